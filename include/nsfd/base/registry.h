@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Named factories of one kind of part. A part registers itself from its own
+   * source file with NSFD_REGISTER; nothing else has to be edited. Names are
+   * what a parameter file writes, texts are what `--list` prints.
+   */
+  template <typename Base, typename... Arguments>
+  class Registry
+  {
+  public:
+    using Factory = std::function<std::unique_ptr<Base>(Arguments...)>;
+
+    struct Entry
+    {
+      Factory factory;
+      std::string text;
+    };
+
+    static Registry &instance()
+    {
+      static Registry registry;
+      return registry;
+    }
+
+    bool add(const std::string &name, const std::string &text, Factory factory)
+    {
+      entries_[name] = {std::move(factory), text};
+      return true;
+    }
+
+    bool knows(const std::string &name) const
+    {
+      return entries_.count(name) != 0;
+    }
+
+    std::unique_ptr<Base> create(const std::string &name,
+                                 Arguments... arguments) const
+    {
+      return entries_.at(name).factory(arguments...);
+    }
+
+    const std::map<std::string, Entry> &entries() const { return entries_; }
+
+    std::vector<std::string> names() const
+    {
+      std::vector<std::string> result;
+      for (const auto &entry : entries_)
+        result.push_back(entry.first);
+      return result;
+    }
+
+  private:
+    std::map<std::string, Entry> entries_;
+  };
+} // namespace nsfd
+
+#define NSFD_CONCATENATE_2(a, b) a##b
+#define NSFD_CONCATENATE(a, b) NSFD_CONCATENATE_2(a, b)
+
+/**
+ * Register a class under a name, with the one line that `--list` prints.
+ * The class is built with the registry's arguments.
+ */
+#define NSFD_REGISTER(RegistryType, Class, name, text)                         \
+  static const bool NSFD_CONCATENATE(registered_, __LINE__) =                  \
+    RegistryType::instance().add(name, text, [](auto &&...arguments) {         \
+      return std::make_unique<Class>(                                          \
+        std::forward<decltype(arguments)>(arguments)...);                      \
+    })

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /** What the program ends with. */
+  namespace exit_code
+  {
+    constexpr int done = 0, bad_input = 1, wrong_usage = 2, step_failed = 3,
+                  stopped = 4, internal_error = 5;
+  }
+
+  /** A run that was asked for: `nsfd FILE.prm` and its options. */
+  struct CommandLine
+  {
+    std::string file;
+    std::vector<std::string> set; ///< Section/name=value, as given
+    std::string output;           ///< empty: what the file says
+    bool force = false;           ///< overwrite the output directory
+    bool check = false;           ///< read and build, but do not run
+    bool print_parameters = false;
+    bool quiet = false;
+
+    /** What read_scene() takes: --set, and --output as one of them. */
+    std::vector<std::string> overrides() const;
+  };
+
+  /**
+   * Parse the arguments of main(). What is asked for and needs no run (--help,
+   * --version, --list) goes to @p out, what is wrong to @p err. Starts no MPI
+   * and reads no file.
+   *
+   * @return the exit code if the program is done, else nothing
+   */
+  std::optional<int> parse_command_line(int argc, const char *const *argv,
+                                        CommandLine &command_line,
+                                        std::ostream &out, std::ostream &err);
+
+  /** The names that a parameter file may write, with their texts. */
+  void print_list(std::ostream &out);
+} // namespace nsfd

@@ -1,0 +1,209 @@
+#pragma once
+
+#include "nsfd/input/expression.h"
+#include "nsfd/interface/cohesive_law.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * What a parameter file says, checked and typed: plain data, in SI or the
+   * bare units of the scene. Built by read_scene(); every other part reads
+   * this and never the file. Vectors per component have `dim` used entries.
+   */
+  struct SceneInput;
+  class VerificationCase;
+
+  /** `where`: all | boundary or material words | a group | a condition. */
+  struct Where
+  {
+    enum class Kind
+    {
+      all,
+      side,              ///< left right bottom top back front of the bounding box
+      group,             ///< a named group of the mesh (material or boundary id)
+      between_materials, ///< faces between two material blocks
+      expression         ///< non-zero at the midpoint of face or cell
+    };
+    Kind kind = Kind::all;
+    std::string name;                     ///< side or group
+    std::array<std::string, 2> materials; ///< names; empty = any two different
+    Expression condition;
+  };
+
+  struct MeshInput
+  {
+    /// rectangle, brick, notched plate, crossed triangles, diagonal triangles,
+    /// tetrahedra, bodies (from `Body:` blocks), or a deal.II generator's name
+    std::string type = "rectangle";
+    std::vector<double> lower, upper; ///< dim entries
+    std::vector<unsigned int> cells;  ///< per direction, dim entries
+    unsigned int refinements = 0;
+    double distortion = 0.; ///< share of the cell size, interior vertices
+    unsigned int seed = 1;
+    /// notched plate: a slot of `notch_width` (0: none removed, use a
+    /// pre-crack) from the left side to `notch_length` at height `notch_height`
+    double notch_length = 0., notch_width = 0., notch_height = 0.;
+    std::string generator_arguments; ///< "a : b : c" as deal.II takes them
+  };
+
+  /** One of several bodies in a mesh of type `bodies`. */
+  struct BodyInput
+  {
+    std::string name;
+    MeshInput mesh;
+    double separation = 0.;
+  };
+
+  struct DiscretizationInput
+  {
+    unsigned int degree = 1;
+    bool lumped_mass = false;
+    std::string interface_quadrature = "gauss"; ///< gauss | gauss lobatto | quarter points
+    unsigned int interface_points = 2;          ///< per direction of a face
+  };
+
+  struct MaterialInput
+  {
+    std::string name;
+    Where where;
+    bool rigid = false;
+    double young = 0., poisson = 0., density = 0.;
+    /// per component, expressions of x, y, z (t = 0); default 0
+    std::array<Expression, 3> initial_displacement, initial_velocity;
+    std::array<Expression, 3> body_force; ///< N/m^3, of x, y, z, t
+  };
+
+  enum class IntactFaces
+  {
+    spring,
+    unilateral,
+    rigid
+  };
+
+  struct InterfaceInput
+  {
+    std::string name;
+    Where where;
+    /// "rigid", "elastic", "contact" or the name of a cohesive law
+    std::string law_name;
+    /// for cohesive laws
+    std::shared_ptr<const CohesiveLaw> law;
+    /// for `elastic`: C_N, C_T in Pa/m
+    double normal_stiffness = 0., tangential_stiffness = 0.;
+    double strength_scatter = 0.; ///< relative half width, uniform, 0..1
+    unsigned int seed = 1;
+    double friction = 0.;
+    /// kappa = (1-beta)^exponent; 0 means kappa = 1
+    double friction_exponent = 1.;
+    double restitution = 0.;
+    bool has_broken = false;
+    Expression broken; ///< points where it is not zero start at beta = 0
+    IntactFaces intact = IntactFaces::spring;
+  };
+
+  struct BoundaryInput
+  {
+    std::string name;
+    Where where;
+    /// prescribed motion per component: velocity, or displacement (then its
+    /// time derivative is what the rows prescribe, exactly per step)
+    std::array<std::optional<Expression>, 3> velocity, displacement;
+    std::array<Expression, 3> traction; ///< Pa, per component
+    bool has_traction = false;
+    Expression pressure; ///< Pa, positive pushes on the body
+    bool has_pressure = false;
+  };
+
+  /** A fixed or moving rigid half space; boundary faces may touch it. */
+  struct ObstacleInput
+  {
+    std::string name;
+    Where where;                          ///< boundary faces that may touch it
+    std::array<double, 3> point{}, normal{}; ///< normal points out of the obstacle, unit length
+    double friction = 0., restitution = 0.;
+  };
+
+  enum class CohesionRule
+  {
+    exact,
+    end_point,
+    end_velocity
+  };
+  enum class ContactTarget
+  {
+    energy_safe,
+    velocity,
+    position
+  };
+  enum class Sliding
+  {
+    velocity,
+    increment
+  };
+  enum class StepKind
+  {
+    time,
+    crossings,
+    automatic
+  };
+
+  struct TimeInput
+  {
+    double end = 0.;
+    StepKind step_kind = StepKind::crossings;
+    double step = 0.5; ///< s, or cell crossings L/c_p; largest step for `auto`
+    double theta = 0.5;
+    double forecast_gamma1 = 0.5, forecast_gamma2 = 0.;
+    CohesionRule cohesion_rule = CohesionRule::exact;
+    ContactTarget contact_target = ContactTarget::energy_safe;
+    Sliding sliding = Sliding::velocity;
+    unsigned int maximum_halvings = 10;
+  };
+
+  struct SolverInput
+  {
+    std::string method = "auto";      ///< auto | dual newton | gauss seidel
+    std::string path = "auto";        ///< auto | element-wise | global
+    std::string linear_solver = "auto"; ///< of the global path: auto | direct | cg
+    double tolerance = 1e-8;
+    unsigned int maximum_iterations = 200;
+  };
+
+  struct OutputInput
+  {
+    std::string directory;
+    double fields_every = 0.;             ///< s; 0: start and end only
+    unsigned int fields_every_steps = 0;  ///< 0: not used
+    bool fields = true, report = true;
+    double history_every = 0.;
+  };
+
+  struct SceneInput
+  {
+    std::string file; ///< as given on the command line
+    std::string title, description; ///< opening comment paragraph of the file
+    unsigned int dimension = 2;
+    bool plane_stress = false;
+    MeshInput mesh;
+    std::vector<BodyInput> bodies;
+    DiscretizationInput discretization;
+    std::vector<MaterialInput> materials;
+    std::vector<InterfaceInput> interfaces;
+    std::vector<BoundaryInput> boundaries;
+    std::vector<ObstacleInput> obstacles;
+    std::array<double, 3> gravity{}; ///< m/s^2
+    TimeInput time;
+    SolverInput solver;
+    OutputInput output;
+    /// section `Verification`: exact solution or exact quantities; may be null
+    std::shared_ptr<VerificationCase> verification;
+    /// complete echo: running it again reproduces the run
+    std::string echo;
+  };
+} // namespace nsfd

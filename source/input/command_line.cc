@@ -1,0 +1,176 @@
+#include "nsfd/input/command_line.h"
+
+#include "nsfd/input/input_errors.h"
+#include "nsfd/input/read_scene.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ostream>
+
+#ifndef NSFD_VERSION
+#define NSFD_VERSION "unknown"
+#endif
+#ifndef NSFD_GIT_HASH
+#define NSFD_GIT_HASH ""
+#endif
+
+namespace nsfd
+{
+  namespace
+  {
+    const char *const short_help =
+      "nsfd - nonsmooth fracture dynamics\n"
+      "  nsfd FILE.prm             run a scene\n"
+      "  nsfd FILE.prm --check     only say whether it would run\n"
+      "  nsfd --help               all options\n";
+
+    /** Options without a value, and what they switch on. */
+    struct Flag
+    {
+      const char *name;
+      bool *target;
+      const char *text;
+    };
+
+    /** What was named, but does not exist yet; empty if all does. */
+    std::string not_there_yet(const int argc, const char *const *argv)
+    {
+      for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (i == 1 && (word == "study" || word == "solve" || word == "law"))
+          return fmt::format("`nsfd {}` is not there yet: only single scenes "
+                             "can be run",
+                             word);
+        if (word.compare(0, 8, "--resume") == 0)
+          return "--resume is not there yet: there are no checkpoints";
+      }
+      return "";
+    }
+
+    int fail(std::ostream &err, const std::string &message,
+             const std::string &advice)
+    {
+      err << "nsfd: " << message << "\n";
+      if (!advice.empty())
+        err << "  " << advice << "\n";
+      return exit_code::wrong_usage;
+    }
+
+    /** Arguments that no option has taken. */
+    int fail_at(std::ostream &err, const std::string &word,
+                const CLI::App &app)
+    {
+      const std::string option = word.substr(0, word.find('='));
+      if (option.empty() || option[0] != '-')
+        return fail(err,
+                    fmt::format("`{}` is one file too many", word),
+                    "run one scene at a time");
+      std::vector<std::string> known;
+      for (const CLI::Option *other : app.get_options())
+        for (const std::string &name : other->get_lnames())
+          known.push_back("--" + name);
+      return fail(err, fmt::format("there is no option `{}`", option),
+                  did_you_mean(option, known, "`nsfd --help` prints them all"));
+    }
+  } // namespace
+
+  std::vector<std::string> CommandLine::overrides() const
+  {
+    std::vector<std::string> result = set;
+    if (!output.empty())
+      result.push_back("Output/directory=" + output);
+    return result;
+  }
+
+  void print_list(std::ostream &out)
+  {
+    const std::vector<NamedPart> parts = named_parts();
+    std::size_t width = 0;
+    for (const NamedPart &part : parts)
+      width = std::max(width, part.name.size());
+    std::string kind;
+    for (const NamedPart &part : parts) {
+      if (part.kind != kind)
+        out << (kind.empty() ? "" : "\n") << part.kind << "\n";
+      kind = part.kind;
+      out << fmt::format("  {:<{}}  {}\n", part.name, width, part.text);
+    }
+  }
+
+  std::optional<int> parse_command_line(const int argc, const char *const *argv,
+                                        CommandLine &command_line,
+                                        std::ostream &out, std::ostream &err)
+  {
+    if (argc < 2) {
+      err << short_help;
+      return exit_code::wrong_usage;
+    }
+    const std::string missing = not_there_yet(argc, argv);
+    if (!missing.empty())
+      return fail(err, missing, "");
+
+    CLI::App app("Nonsmooth fracture dynamics: every cell is a body, faces "
+                 "carry cohesion, contact and friction.",
+                 "nsfd");
+    app.set_help_flag();
+    app.allow_extras();
+    bool help = false, list = false, version = false;
+    app.add_option("FILE.prm", command_line.file, "the scene to run");
+    // one value per --set: further words are not its own
+    app
+      .add_option_function<std::vector<std::string>>(
+        "--set",
+        [&](const std::vector<std::string> &values) {
+          command_line.set = values;
+        },
+        "change an entry, 'Section/name=value'; repeatable")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->type_name("TEXT");
+    app.add_option("--output", command_line.output,
+                   "folder for the results, default output/FILE")
+      ->type_name("DIR");
+    const Flag flags[] = {
+      {"--force", &command_line.force, "overwrite the results of an earlier run"},
+      {"--check", &command_line.check, "say whether it would run, do not run it"},
+      {"--print-parameters", &command_line.print_parameters,
+       "print the complete file, all defaults with their texts"},
+      {"--quiet", &command_line.quiet, "print errors only"},
+      {"--list", &list, "print the names of all laws, meshes, solvers, ..."},
+      {"--version", &version, "print the version"},
+      {"--help", &help, "print this help"}};
+    for (const Flag &flag : flags)
+      app.add_flag(flag.name, *flag.target, flag.text);
+
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError &error) {
+      return fail(err, error.what(), "`nsfd --help` prints all options");
+    }
+    const std::vector<std::string> extras = app.remaining();
+    if (!extras.empty())
+      return fail_at(err, extras.front(), app);
+    if (help) {
+      out << app.help();
+      return exit_code::done;
+    }
+    if (version) {
+      out << "nsfd " << NSFD_VERSION << " " << NSFD_GIT_HASH << "\n";
+      return exit_code::done;
+    }
+    if (list) {
+      print_list(out);
+      return exit_code::done;
+    }
+    for (const std::string &assignment : command_line.set)
+      if (assignment.find('=') == std::string::npos)
+        return fail(err, fmt::format("--set {}: there is no `=`", assignment),
+                    "write for example: --set 'Time/theta=0.5'");
+    if (command_line.file.empty())
+      return fail(err, "no parameter file is named",
+                  "write for example: nsfd prm/quickstart.prm");
+    return {};
+  }
+} // namespace nsfd

@@ -1,0 +1,120 @@
+#include "nsfd/input/expression.h"
+
+#include "formula.h"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <cmath>
+
+namespace nsfd
+{
+  /**
+   * A number, or a parser with its variables. muParser keeps its byte code and
+   * stack inside, hence `mutable`: evaluation is not for several threads.
+   */
+  struct Expression::Compiled {
+    std::string text;
+    double constant = 0.;
+    bool depends_on_time = false;
+    mutable std::unique_ptr<mu::Parser> parser; ///< null: a constant
+    mutable double x = 0., y = 0., z = 0., t = 0.;
+  };
+
+  namespace
+  {
+    double select(const double condition, const double a, const double b)
+    {
+      return condition != 0. ? a : b;
+    }
+
+    double heaviside(const double x) { return x < 0. ? 0. : 1.; }
+
+    /** Functions that muParser does not bring along. */
+    void add_functions(mu::Parser &parser)
+    {
+      parser.DefineFun("if", select);
+      parser.DefineFun("heaviside", heaviside);
+      parser.DefineFun("pow", static_cast<double (*)(double, double)>(std::pow));
+      parser.DefineFun("mod",
+                       static_cast<double (*)(double, double)>(std::fmod));
+      parser.DefineFun("floor", static_cast<double (*)(double)>(std::floor));
+      parser.DefineFun("ceil", static_cast<double (*)(double)>(std::ceil));
+      parser.DefineFun("erf", static_cast<double (*)(double)>(std::erf));
+      parser.DefineFun("erfc", static_cast<double (*)(double)>(std::erfc));
+    }
+  } // namespace
+
+  std::shared_ptr<const Expression::Compiled>
+  compile_constant(const double value, const std::string &text)
+  {
+    auto compiled = std::make_shared<Expression::Compiled>();
+    compiled->text = text;
+    compiled->constant = value;
+    return compiled;
+  }
+
+  std::shared_ptr<const Expression::Compiled>
+  compile_translated(const std::string &translated, const std::string &text,
+                     const bool depends_on_time)
+  {
+    auto compiled = std::make_shared<Expression::Compiled>();
+    compiled->text = text;
+    compiled->depends_on_time = depends_on_time;
+    compiled->parser = std::make_unique<mu::Parser>();
+    mu::Parser &parser = *compiled->parser;
+    add_functions(parser);
+    parser.DefineVar("x", &compiled->x);
+    parser.DefineVar("y", &compiled->y);
+    parser.DefineVar("z", &compiled->z);
+    parser.DefineVar("t", &compiled->t);
+    // constants are folded already; the other rewrites gain little
+    parser.EnableOptimizer(false);
+    parser.SetExpr(translated);
+
+    // the byte code is built by the first evaluation: let it fail here
+    compiled->x = 0.1;
+    compiled->y = 0.2;
+    compiled->z = 0.3;
+    parser.Eval();
+    return compiled;
+  }
+
+  Expression::Expression() : Expression(0.) {}
+
+  Expression::Expression(const double constant)
+      : compiled_(compile_constant(constant, fmt::format("{}", constant)))
+  {
+  }
+
+  Expression::Expression(std::shared_ptr<const Compiled> compiled)
+      : compiled_(std::move(compiled))
+  {
+  }
+
+  double Expression::operator()(const double x, const double y, const double z,
+                                const double t) const
+  {
+    if (!compiled_->parser)
+      return compiled_->constant;
+    compiled_->x = x;
+    compiled_->y = y;
+    compiled_->z = z;
+    compiled_->t = t;
+    return compiled_->parser->Eval();
+  }
+
+  bool Expression::depends_on_time() const
+  {
+    return compiled_->depends_on_time;
+  }
+
+  bool Expression::is_constant() const { return !compiled_->parser; }
+
+  bool Expression::is_zero() const
+  {
+    return is_constant() && compiled_->constant == 0.;
+  }
+
+  const std::string &Expression::text() const { return compiled_->text; }
+} // namespace nsfd

@@ -1,0 +1,61 @@
+#include "formula.h"
+
+#include "formula_parser.h"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  bool is_formula_word(const std::string &name)
+  {
+    const std::vector<std::string> words = formula::formula_words(true);
+    return std::find(words.begin(), words.end(), name) != words.end();
+  }
+
+  Formula compile_formula(const std::string &text, const Unit &expected,
+                          const Constants &constants, const bool with_variables)
+  {
+    Formula result;
+    try {
+      formula::Parser parser(text, constants, with_variables);
+      const formula::Part part = parser.parse();
+      if (part.dimension.certainty == formula::Certainty::stated) {
+        result.unit = part.dimension.unit;
+        if (part.dimension.unit != expected) {
+          result.error =
+            FormulaError{0, text.size(),
+                         fmt::format("`{}` is {}", text,
+                                     describe(part.dimension.unit)),
+                         ""};
+          return result;
+        }
+      }
+      result.depends_on_time = parser.uses_time();
+      result.compiled =
+        compile_translated(part.translated, text, parser.uses_time());
+      if (!parser.uses_variables()) {
+        const double value =
+          Expression(result.compiled)(0., 0., 0., 0.);
+        if (!std::isfinite(value))
+          throw FormulaError{0, text.size(),
+                             fmt::format("`{}` is not a finite number", text),
+                             ""};
+        result.constant = value;
+        result.compiled = compile_constant(value, text);
+      }
+    } catch (const FormulaError &error) {
+      result.error = error;
+    } catch (const mu::ParserError &error) {
+      result.error =
+        FormulaError{0, text.size(),
+                     fmt::format("`{}`: {}", text, error.GetMsg()), ""};
+    }
+    if (result.error)
+      result.compiled.reset();
+    return result;
+  }
+} // namespace nsfd

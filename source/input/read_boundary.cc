@@ -1,0 +1,152 @@
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** An entry that may be left out. */
+    std::optional<Expression> read_optional(SectionReader &reader,
+                                            const std::string &name,
+                                            const Unit unit,
+                                            const std::string &text)
+    {
+      if (!reader.optional(name, text))
+        return {};
+      return reader.expression(name, "", unit, text);
+    }
+
+    /** @return true if the component is prescribed or loaded. */
+    bool read_component(SectionReader &reader, const unsigned int c,
+                        BoundaryInput &boundary)
+    {
+      const std::string velocity = component_name("velocity", c);
+      const std::string displacement = component_name("displacement", c);
+      const std::string traction = component_name("traction", c);
+      boundary.velocity[c] = read_optional(reader, velocity, units::velocity,
+                                           "m/s, of x, y, z, t");
+      boundary.displacement[c] = read_optional(
+        reader, displacement, units::length, "m, of x, y, z, t");
+      const auto load =
+        read_optional(reader, traction, units::pressure, "Pa, of x, y, z, t");
+      if (load) {
+        boundary.traction[c] = *load;
+        boundary.has_traction = true;
+      }
+
+      const bool is_driven =
+        boundary.velocity[c].has_value() || boundary.displacement[c].has_value();
+      if (boundary.velocity[c] && boundary.displacement[c])
+        reader.error(displacement,
+                     fmt::format("`{}` and `{}` are both given", velocity,
+                                 displacement),
+                     "keep one of the two");
+      if (load && is_driven)
+        reader.error(traction,
+                     fmt::format("`{}` has no effect: the motion of this "
+                                 "component is prescribed",
+                                 traction),
+                     "keep one of the two");
+      return load || is_driven;
+    }
+
+    BoundaryInput read_boundary(SectionReader &reader, const SceneInput &scene)
+    {
+      BoundaryInput boundary;
+      boundary.name = reader.block_name();
+      boundary.where = read_where(
+        reader, is_side(boundary.name) ? boundary.name : "",
+        WhereUse::boundary_faces, scene,
+        "left, right, bottom, top, front, back, all, a group or an expression");
+      bool has_effect = false;
+      for (unsigned int c = 0; c < scene.dimension; ++c)
+        has_effect = read_component(reader, c, boundary) || has_effect;
+      refuse_third_component(reader, {"velocity", "displacement", "traction"},
+                             scene);
+      if (const auto pressure =
+            read_optional(reader, "pressure", units::pressure,
+                          "Pa, of x, y, z, t; pushes on the body")) {
+        boundary.pressure = *pressure;
+        boundary.has_pressure = true;
+      }
+      if (!has_effect && !boundary.has_pressure)
+        reader.error("",
+                     fmt::format("section `{}` prescribes nothing",
+                                 reader.section_name()),
+                     "write for example: set velocity x = 0");
+      return boundary;
+    }
+
+    ObstacleInput read_obstacle(SectionReader &reader, const SceneInput &scene)
+    {
+      ObstacleInput obstacle;
+      obstacle.name = reader.block_name();
+      obstacle.where =
+        read_where(reader, "all", WhereUse::boundary_faces, scene,
+                   "boundary faces that may touch it: all, a side, a group or "
+                   "an expression");
+      const unsigned int dim = scene.dimension;
+      const std::vector<double> point =
+        reader.numbers("point", "", units::length, Range::any(), dim,
+                       "m, on its surface");
+      std::vector<double> normal =
+        reader.numbers("normal", "", units::none, Range::any(), dim,
+                       "out of the obstacle, of any length");
+      // scaled first: squares of huge or tiny components stay finite
+      double largest = 0., length = 0.;
+      for (const double n : normal)
+        largest = std::max(largest, std::abs(n));
+      if (largest == 0.)
+        reader.error("normal", "normal = 0 has no direction",
+                     dim == 2 ? "write for example: 0, 1"
+                              : "write for example: 0, 0, 1");
+      else
+        for (double &n : normal)
+          length += (n / largest) * (n / largest);
+      for (unsigned int d = 0; d < dim; ++d) {
+        obstacle.point[d] = point[d];
+        obstacle.normal[d] =
+          largest == 0. ? 0. : normal[d] / largest / std::sqrt(length);
+      }
+      obstacle.friction = reader.number("friction", "0", units::none,
+                                        Range::non_negative(),
+                                        "coefficient of Coulomb friction");
+      obstacle.restitution =
+        reader.number("restitution", "0", units::none, Range::closed(0., 1.),
+                      "of Newton's impact law");
+      return obstacle;
+    }
+  } // namespace
+
+  void read_boundaries(ParameterFile &file, InputErrors &errors,
+                       SceneInput &scene)
+  {
+    for (ParameterSection *block : file.open_blocks("Boundary")) {
+      SectionReader reader(*block, errors);
+      scene.boundaries.push_back(read_boundary(reader, scene));
+    }
+  }
+
+  void read_obstacles(ParameterFile &file, InputErrors &errors,
+                      SceneInput &scene)
+  {
+    for (ParameterSection *block : file.open_blocks("Obstacle")) {
+      SectionReader reader(*block, errors);
+      scene.obstacles.push_back(read_obstacle(reader, scene));
+    }
+  }
+
+  void read_loads(ParameterFile &file, InputErrors &errors, SceneInput &scene)
+  {
+    SectionReader reader(file.open("Loads"), errors);
+    const std::vector<double> gravity = reader.numbers(
+      "gravity", scene.dimension == 2 ? "0, 0" : "0, 0, 0", units::acceleration,
+      Range::any(), scene.dimension, "m/s^2, one value per direction");
+    for (unsigned int d = 0; d < scene.dimension; ++d)
+      scene.gravity[d] = gravity[d];
+  }
+} // namespace nsfd

@@ -1,0 +1,200 @@
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <stdexcept>
+
+namespace nsfd
+{
+  namespace
+  {
+    const std::vector<NamedText> plain_laws = {
+      {"rigid", "faces stay closed, without any compliance"},
+      {"elastic", "springs C_N, C_T that never break"},
+      {"contact", "unilateral contact and Coulomb friction only"},
+    };
+
+    /** The law of a block, checked; empty if nothing more can be read. */
+    std::string read_law_name(SectionReader &reader)
+    {
+      const auto value = reader.raw(
+        "law", "", "rigid, elastic, contact or a cohesive law", "rigid");
+      if (!value) {
+        reader.accept_everything();
+        return "";
+      }
+      const std::string name = collapse_blanks(value->text());
+      std::vector<std::string> known = CohesiveLawRegistry::instance().names();
+      for (const NamedText &law : plain_laws)
+        known.push_back(law.name);
+
+      if (name == "bonded")
+        reader.error("law",
+                     "law = bonded: faces joined through the bulk are not "
+                     "there yet",
+                     "write rigid: at Gauss points it is the continuous "
+                     "element");
+      else if (std::find(known.begin(), known.end(), name) == known.end())
+        reader.error("law", fmt::format("law = {} is not a law", name),
+                     did_you_mean(name, known,
+                                  "`nsfd --list` prints all names"));
+      else
+        return name;
+      reader.accept_everything();
+      return "";
+    }
+
+    void read_springs(SectionReader &reader, InterfaceInput &input)
+    {
+      input.normal_stiffness =
+        reader.number("normal stiffness", "", units::stiffness_per_area,
+                      Range::positive(), "C_N in Pa/m");
+      const std::string tangential = "tangential stiffness";
+      const std::string text = "C_T in Pa/m; default C_N";
+      input.tangential_stiffness =
+        reader.optional(tangential, text)
+          ? reader.number(tangential, "", units::stiffness_per_area,
+                          Range::positive(), text)
+          : input.normal_stiffness;
+    }
+
+    void read_contact(SectionReader &reader, InterfaceInput &input)
+    {
+      input.friction = reader.number("friction", "0", units::none,
+                                     Range::non_negative(),
+                                     "coefficient of Coulomb friction");
+      input.restitution =
+        reader.number("restitution", "0", units::none, Range::closed(0., 1.),
+                      "of Newton's impact law, where beta = 0");
+    }
+
+    void read_damage_start(SectionReader &reader, InterfaceInput &input)
+    {
+      input.friction_exponent =
+        reader.number("friction exponent", "1", units::none,
+                      Range::non_negative(),
+                      "s of kappa = (1 - beta)^s; 0: full friction always");
+      input.broken = read_initial_expression(
+        reader, "broken", "false", units::none,
+        "true, or an expression: open at t = 0 where it is not 0");
+      input.has_broken = !input.broken.is_zero();
+    }
+
+    IntactFaces read_intact_faces(SectionReader &reader,
+                                  const InterfaceInput &input)
+    {
+      const bool extrinsic = input.law && input.law->extrinsic();
+      const std::string name =
+        reader.choice("intact faces", extrinsic ? "rigid" : "spring",
+                      {"spring", "unilateral", "rigid", "bonded"},
+                      "while beta = 1: spring or unilateral (intrinsic laws), "
+                      "rigid (extrinsic laws)");
+      if (name == "bonded")
+        reader.error("intact faces",
+                     "intact faces = bonded: faces joined through the bulk "
+                     "are not there yet",
+                     extrinsic ? "write rigid, and name the faces in `where`"
+                               : "write spring");
+      else if (extrinsic && name != "rigid")
+        reader.error("intact faces",
+                     fmt::format("intact faces = {} needs a stiffness, and the "
+                                 "extrinsic law {} has none",
+                                 name, input.law_name),
+                     "write rigid, or take an intrinsic law");
+      else if (!extrinsic && name == "rigid")
+        reader.error("intact faces",
+                     fmt::format("intact faces = rigid contradicts the "
+                                 "stiffness of the law {}",
+                                 input.law_name),
+                     "write spring or unilateral, or take an extrinsic law");
+      if (name == "unilateral")
+        return IntactFaces::unilateral;
+      return name == "rigid" || extrinsic ? IntactFaces::rigid
+                                          : IntactFaces::spring;
+    }
+
+    /** The entries that the law itself asks for. */
+    void read_cohesive_law(SectionReader &reader, InterfaceInput &input)
+    {
+      const unsigned int n_before = reader.errors().n_errors();
+      try {
+        input.law = CohesiveLawRegistry::instance().create(input.law_name,
+                                                           reader);
+      } catch (const std::exception &exception) {
+        // numbers that stand in for wrong ones need not make a law
+        if (reader.errors().n_errors() == n_before)
+          reader.error("law", fmt::format("law = {}: {}", input.law_name,
+                                          exception.what()));
+      }
+      input.strength_scatter =
+        reader.number("strength scatter", "0", units::none,
+                      {0., 1., false, true},
+                      "relative half width of uniform random strengths");
+      input.seed =
+        reader.integer("seed", "1", 0, std::numeric_limits<unsigned int>::max(),
+                       "of the scatter");
+
+      if (input.law && input.law->extrinsic() &&
+          input.where.kind == Where::Kind::all)
+        reader.error("where",
+                     fmt::format("where = all with the extrinsic law {}: rigid "
+                                 "rows on all faces make the Delassus matrix "
+                                 "W singular, and bonded faces are not there "
+                                 "yet",
+                                 input.law_name),
+                     "name the faces that may break, and give the others law "
+                     "= rigid");
+    }
+
+    InterfaceInput read_interface(SectionReader &reader,
+                                  const SceneInput &scene)
+    {
+      InterfaceInput input;
+      input.name = reader.block_name();
+      input.where = read_where(
+        reader, "all", WhereUse::interior_faces, scene,
+        "all, between materials [a, b], a group or an expression of x, y, z");
+      input.law_name = read_law_name(reader);
+      if (input.law_name.empty())
+        return input;
+      if (input.law_name == "rigid") {
+        reader.refuse({"friction", "restitution", "friction exponent",
+                       "broken", "intact faces", "strength scatter"},
+                      "faces of the law `rigid` never open");
+        return input;
+      }
+      if (input.law_name == "contact") {
+        read_contact(reader, input);
+        reader.refuse({"friction exponent", "broken", "intact faces",
+                       "strength scatter"},
+                      "faces of the law `contact` carry no cohesion");
+        return input;
+      }
+      if (input.law_name == "elastic")
+        read_springs(reader, input);
+      else
+        read_cohesive_law(reader, input);
+      read_contact(reader, input);
+      read_damage_start(reader, input);
+      input.intact = read_intact_faces(reader, input);
+      return input;
+    }
+  } // namespace
+
+  std::vector<NamedText> known_plain_laws() { return plain_laws; }
+
+  void read_interfaces(ParameterFile &file, InputErrors &errors,
+                       SceneInput &scene)
+  {
+    for (ParameterSection *block : file.open_blocks("Interface")) {
+      SectionReader reader(*block, errors);
+      scene.interfaces.push_back(read_interface(reader, scene));
+    }
+    if (scene.interfaces.empty())
+      errors.error(file.location(),
+                   "no Interface block says what holds the faces together",
+                   "add for example: subsection Interface: all, with `set law "
+                   "= rigid`");
+  }
+} // namespace nsfd

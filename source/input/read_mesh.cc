@@ -1,0 +1,369 @@
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  namespace
+  {
+    struct MeshType
+    {
+      const char *name, *text;
+      unsigned int dimension;       ///< 0: two and three
+      unsigned int cells_per_brick; ///< of the lattice `cells`
+      bool simplices;
+    };
+
+    /** Meshes that fill the box between two corners. */
+    const MeshType box_types[] = {
+      {"rectangle", "quadrilaterals in a rectangle", 2, 1, false},
+      {"brick", "hexahedra in a box", 3, 1, false},
+      {"notched plate", "a box with a slot from the left side", 0, 1, false},
+      {"crossed triangles", "four triangles per quadrilateral", 2, 4, true},
+      {"diagonal triangles", "two triangles per quadrilateral", 2, 2, true},
+      {"tetrahedra", "six tetrahedra per hexahedron", 3, 6, true},
+    };
+
+    /** Generators of deal.II that make a body of full dimension. */
+    const char *const generators[] = {
+      "hyper_cube",
+      "subdivided_hyper_cube",
+      "hyper_rectangle",
+      "subdivided_hyper_rectangle",
+      "hyper_ball",
+      "hyper_ball_balanced",
+      "half_hyper_ball",
+      "quarter_hyper_ball",
+      "hyper_shell",
+      "half_hyper_shell",
+      "quarter_hyper_shell",
+      "concentric_hyper_shells",
+      "eccentric_hyper_shell",
+      "hyper_L",
+      "hyper_cross",
+      "hyper_cube_slit",
+      "hyper_cube_with_cylindrical_hole",
+      "enclosed_hyper_cube",
+      "plate_with_a_hole",
+      "channel_with_cylinder",
+      "cheese",
+      "general_cell",
+      "parallelogram",
+      "parallelepiped",
+      "simplex",
+      "cylinder",
+      "subdivided_cylinder",
+      "cylinder_shell",
+      "truncated_cone",
+      "moebius",
+      "torus",
+    };
+
+    const MeshType *find_box_type(const std::string &name)
+    {
+      for (const MeshType &type : box_types)
+        if (name == type.name)
+          return &type;
+      return nullptr;
+    }
+
+    std::string repeated(const std::string &value, const unsigned int count)
+    {
+      std::string result = value;
+      for (unsigned int i = 1; i < count; ++i)
+        result += ", " + value;
+      return result;
+    }
+
+    /** The type, checked; empty if nothing more can be read. */
+    std::string read_type(SectionReader &reader, const unsigned int dimension,
+                          const bool is_body)
+    {
+      const auto value = reader.raw(
+        "type", dimension == 2 ? "rectangle" : "brick",
+        "rectangle, brick, notched plate, crossed triangles, diagonal "
+        "triangles, tetrahedra, bodies, or a generator of deal.II");
+      if (!value)
+        return "";
+      const std::string type = collapse_blanks(value->text());
+      if (type == "bodies" && !is_body)
+        return type;
+      std::vector<std::string> names = names_of(known_meshes());
+      if (is_body)
+        names.erase(std::remove(names.begin(), names.end(), "bodies"),
+                    names.end());
+
+      const MeshType *box = find_box_type(type);
+      if (box != nullptr && box->dimension != 0 && box->dimension != dimension)
+        reader.error("type",
+                     fmt::format("type = {} needs dimension = {}, not {}", type,
+                                 box->dimension, dimension),
+                     dimension == 2 ? "write for example: rectangle"
+                                    : "write for example: brick");
+      else if (type == "voronoi" || type == "file")
+        reader.error("type",
+                     fmt::format("type = {} is not there yet", type),
+                     "take rectangle, brick, triangles, tetrahedra or a "
+                     "generator of deal.II");
+      else if (std::find(names.begin(), names.end(), type) == names.end())
+        reader.error("type",
+                     fmt::format("type = {} is not the name of a mesh", type),
+                     did_you_mean(type, names,
+                                  "`nsfd --list` prints all names"));
+      else
+        return type;
+      reader.accept_everything();
+      return "";
+    }
+
+    void read_notch(SectionReader &reader, MeshInput &mesh,
+                    const bool can_compare)
+    {
+      const unsigned int n_before = reader.errors().n_errors();
+      mesh.notch_length =
+        reader.number("notch length", "", units::length, Range::positive(),
+                      "m, from the left side to the tip");
+      mesh.notch_height = reader.number("notch height", "", units::length,
+                                        Range::any(), "m, y of its middle");
+      mesh.notch_width = reader.number(
+        "notch width", "0", units::length, Range::non_negative(),
+        "m; 0 removes no cells, for an Interface block with broken faces");
+      if (!can_compare || reader.errors().n_errors() > n_before)
+        return;
+      if (mesh.notch_length >= mesh.upper[0] - mesh.lower[0])
+        reader.error("notch length",
+                     fmt::format("notch length = {:g} goes through the plate",
+                                 mesh.notch_length),
+                     "it must be shorter than the plate is long");
+      if (mesh.notch_height - .5 * mesh.notch_width <= mesh.lower[1] ||
+          mesh.notch_height + .5 * mesh.notch_width >= mesh.upper[1])
+        reader.error("notch height",
+                     fmt::format("notch height = {:g}, with a width of {:g}, is "
+                                 "not inside the plate",
+                                 mesh.notch_height, mesh.notch_width),
+                     "write a height between the lower and the upper corner");
+    }
+
+    /** More cells than any machine of today holds are a slip of the pen. */
+    void check_size(SectionReader &reader, const MeshInput &mesh,
+                    const MeshType &type)
+    {
+      constexpr double most_cells = 1e9;
+      double n_cells = type.cells_per_brick *
+                       std::pow(2., static_cast<double>(mesh.cells.size()) *
+                                      mesh.refinements);
+      for (const unsigned int n : mesh.cells)
+        n_cells *= n;
+      if (n_cells > most_cells)
+        reader.error("cells",
+                     fmt::format("the mesh would have {:.2g} cells after {} "
+                                 "refinements",
+                                 n_cells, mesh.refinements),
+                     "write fewer cells or refinements");
+    }
+
+    void read_box(SectionReader &reader, const unsigned int dimension,
+                  const MeshType &type, MeshInput &mesh)
+    {
+      const unsigned int n_before = reader.errors().n_errors();
+      mesh.lower = reader.numbers("lower corner", repeated("0", dimension),
+                                  units::length, Range::any(), dimension, "m");
+      mesh.upper = reader.numbers("upper corner", "", units::length,
+                                  Range::any(), dimension, "m");
+      mesh.cells = reader.integers("cells", "", 1, dimension,
+                                   "number per direction, before refinement");
+      if (mesh.type != "notched plate")
+        reader.refuse({"notch length", "notch width", "notch height"},
+                      "the mesh `" + mesh.type + "` has no notch");
+      // after an error, the numbers are not those of the user
+      const bool can_compare = reader.errors().n_errors() == n_before;
+      for (unsigned int d = 0; can_compare && d < dimension; ++d)
+        if (mesh.upper[d] <= mesh.lower[d])
+          reader.error("upper corner",
+                       fmt::format("upper corner: {} = {:g} must be greater "
+                                   "than {:g} of the lower corner",
+                                   "xyz"[d], mesh.upper[d], mesh.lower[d]),
+                       "exchange the two corners");
+      if (can_compare)
+        check_size(reader, mesh, type);
+      if (mesh.type == "notched plate")
+        read_notch(reader, mesh, can_compare);
+    }
+
+    MeshInput read_one_mesh(SectionReader &reader, const unsigned int dimension,
+                            const bool is_body)
+    {
+      MeshInput mesh;
+      mesh.type = read_type(reader, dimension, is_body);
+      if (mesh.type.empty() || mesh.type == "bodies")
+        return mesh;
+
+      mesh.refinements = reader.integer("refinements", "0", 0, 20,
+                                        "times every cell is halved");
+      if (const MeshType *type = find_box_type(mesh.type))
+        read_box(reader, dimension, *type, mesh);
+      else
+        mesh.generator_arguments = reader.word(
+          "arguments", "", "of the generator, as deal.II takes them: a : b");
+      mesh.distortion = reader.number(
+        "distortion", "0", units::none, {0., 0.5, false, true},
+        "share of the cell size by which interior vertices move");
+      mesh.seed =
+        reader.integer("seed", "1", 0, std::numeric_limits<unsigned int>::max(),
+                       "of the distortion");
+      return mesh;
+    }
+
+    bool is_simplex_type(const std::string &name)
+    {
+      const MeshType *type = find_box_type(name);
+      return type != nullptr && type->simplices;
+    }
+  } // namespace
+
+  std::vector<NamedText> known_meshes()
+  {
+    std::vector<NamedText> result;
+    for (const MeshType &type : box_types)
+      result.push_back({type.name, type.text});
+    result.push_back({"bodies", "the meshes of all blocks `Body: name`"});
+    for (const char *name : generators)
+      result.push_back({name, "generator of deal.II"});
+    return result;
+  }
+
+  bool has_numbered_groups(const SceneInput &scene)
+  {
+    return std::any_of(std::begin(generators), std::end(generators),
+                       [&scene](const char *name) {
+                         return scene.mesh.type == name;
+                       });
+  }
+
+  bool has_simplices(const SceneInput &scene)
+  {
+    return is_simplex_type(scene.mesh.type == "bodies" && !scene.bodies.empty()
+                             ? scene.bodies.front().mesh.type
+                             : scene.mesh.type);
+  }
+
+  void read_mesh(ParameterFile &file, InputErrors &errors, SceneInput &scene)
+  {
+    SectionReader reader(file.open("Mesh"), errors);
+    scene.mesh = read_one_mesh(reader, scene.dimension, false);
+
+    const std::vector<ParameterSection *> blocks = file.open_blocks("Body");
+    if (scene.mesh.type == "bodies" && blocks.empty())
+      reader.error("type", "type = bodies needs blocks `Body: name`",
+                   "add for example: subsection Body: first");
+    for (ParameterSection *block : blocks) {
+      SectionReader body_reader(*block, errors);
+      if (scene.mesh.type != "bodies") {
+        if (!scene.mesh.type.empty())
+          body_reader.error("",
+                            fmt::format("`{}` does not belong here: the mesh "
+                                        "is `{}`",
+                                        block->name(), scene.mesh.type),
+                            "write type = bodies in section Mesh, or remove "
+                            "this block");
+        body_reader.accept_everything();
+        continue;
+      }
+      BodyInput body;
+      body.name = block->block_name();
+      body.mesh = read_one_mesh(body_reader, scene.dimension, true);
+      if (!scene.bodies.empty() && !body.mesh.type.empty() &&
+          is_simplex_type(body.mesh.type) !=
+            is_simplex_type(scene.bodies.front().mesh.type))
+        body_reader.error("type",
+                          fmt::format("type = {} does not go together with "
+                                      "the cells of the first body",
+                                      body.mesh.type),
+                          "all bodies need triangles and tetrahedra, or none");
+      scene.bodies.push_back(body);
+    }
+  }
+
+  namespace
+  {
+    void check_degree(SectionReader &reader, const SceneInput &scene)
+    {
+      const unsigned int degree = scene.discretization.degree;
+      const bool simplices = has_simplices(scene);
+      const unsigned int highest = simplices ? 2 : scene.dimension == 2 ? 8 : 4;
+      if (degree <= highest)
+        return;
+      const char *const reason =
+        simplices ? "deal.II 9.4.1 has no higher element for triangles and "
+                    "tetrahedra"
+                  : (scene.dimension == 2
+                       ? "quadrilaterals are tested to degree 8"
+                       : "hexahedra are tested to degree 4");
+      reader.error("degree",
+                   fmt::format("degree = {} must be at most {} on this mesh: "
+                               "{}",
+                               degree, highest, reason),
+                   fmt::format("write for example: {}", highest));
+    }
+
+    unsigned int read_interface_points(SectionReader &reader,
+                                       const DiscretizationInput &input)
+    {
+      const std::string text = "of the quadrature, per direction of a face: "
+                               "`degree + 1` or a number";
+      const auto raw =
+        reader.raw("interface points", "degree + 1", text, "degree + 1");
+      std::string compact = raw ? raw->text() : "degree+1";
+      compact.erase(std::remove(compact.begin(), compact.end(), ' '),
+                    compact.end());
+      constexpr unsigned int most_points = 20;
+      const unsigned int n_points =
+        compact == "degree+1"
+          ? input.degree + 1
+          : reader.integer("interface points", "degree + 1", 1, most_points,
+                           text);
+
+      const std::string &rule = input.interface_quadrature;
+      if (rule == "quarter points" && n_points != 2)
+        reader.error("interface points",
+                     fmt::format("interface points = {}: the rule `quarter "
+                                 "points` has 2 per direction",
+                                 n_points),
+                     "write 2, or interface quadrature = gauss");
+      if (rule == "gauss lobatto" && n_points < 2)
+        reader.error("interface points",
+                     "interface points = 1: the rule `gauss lobatto` has at "
+                     "least 2 per direction",
+                     "write 2, or interface quadrature = gauss");
+      return n_points;
+    }
+  } // namespace
+
+  void read_discretization(ParameterFile &file, InputErrors &errors,
+                           SceneInput &scene)
+  {
+    SectionReader reader(file.open("Discretization"), errors);
+    DiscretizationInput &input = scene.discretization;
+    constexpr unsigned int absurd_degree = 1000;
+    input.degree = reader.integer("degree", "1", 1, absurd_degree,
+                                  "of the polynomials in a cell");
+    check_degree(reader, scene);
+    input.lumped_mass = reader.choice("mass", "consistent",
+                                      {"consistent", "lumped"},
+                                      "consistent or lumped") == "lumped";
+    if (input.lumped_mass && has_simplices(scene) && input.degree == 2)
+      reader.error("mass",
+                   "mass = lumped with degree = 2 on triangles or tetrahedra "
+                   "would leave vertices without mass",
+                   "write consistent, or degree = 1");
+    input.interface_quadrature =
+      reader.choice("interface quadrature", "gauss",
+                    {"gauss", "gauss lobatto", "quarter points"},
+                    "gauss, gauss lobatto or quarter points");
+    input.interface_points = read_interface_points(reader, input);
+  }
+} // namespace nsfd

@@ -1,0 +1,173 @@
+#include "nsfd/input/read_scene.h"
+
+#include "nsfd/interface/cohesive_law.h"
+#include "nsfd/scene/verification_case.h"
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace nsfd
+{
+  namespace
+  {
+    const std::vector<std::string> plain_sections = {
+      "Mesh", "Discretization", "Loads",        "Time",
+      "Solver", "Output",       "Verification", "Constants"};
+    const std::vector<std::string> block_kinds = {
+      "Body", "Material", "Interface", "Boundary", "Obstacle"};
+    const std::vector<std::string> missing_sections = {"Study", "Adaptivity"};
+
+    std::vector<std::string> all_kinds()
+    {
+      std::vector<std::string> kinds = plain_sections;
+      kinds.insert(kinds.end(), block_kinds.begin(), block_kinds.end());
+      return kinds;
+    }
+
+    bool contains(const std::vector<std::string> &list, const std::string &word)
+    {
+      return std::find(list.begin(), list.end(), word) != list.end();
+    }
+
+    /** Sections that no part of the program reads. */
+    void check_section_name(const ParameterSection &section,
+                            InputErrors &errors)
+    {
+      const std::string &name = section.name();
+      const std::string kind = section.kind();
+      const bool is_block = name.find(':') != std::string::npos;
+      if (contains(plain_sections, kind)) {
+        if (is_block)
+          errors.error(section.location(),
+                       fmt::format("section `{}` takes no name", kind),
+                       "write: subsection " + kind);
+      } else if (contains(block_kinds, kind)) {
+        if (section.block_name().empty())
+          errors.error(section.location(),
+                       fmt::format("section `{}` needs a name", kind),
+                       fmt::format("write for example: subsection {}: first",
+                                   kind));
+      } else if (contains(missing_sections, kind))
+        errors.error(section.location(),
+                     fmt::format("section `{}` is not there yet", kind),
+                     "remove this section");
+      else {
+        const std::string nearest = nearest_name(kind, all_kinds());
+        errors.error(section.location(),
+                     fmt::format("`{}` is not the name of a section", name),
+                     nearest.empty()
+                       ? "known are Mesh, Discretization, Time, Loads, Solver, "
+                         "Output, Verification, Constants, and Body: ..., "
+                         "Material: ..., Interface: ..., Boundary: ..., "
+                         "Obstacle: ..."
+                       : fmt::format("did you mean `{}{}`?", nearest,
+                                     contains(block_kinds, nearest)
+                                       ? ": " + (section.block_name().empty()
+                                                   ? "name"
+                                                   : section.block_name())
+                                       : ""));
+      }
+    }
+
+    void read_top(ParameterFile &file, InputErrors &errors, SceneInput &scene)
+    {
+      SectionReader reader(file.top(), errors);
+      scene.dimension = reader.integer("dimension", "2", 2, 3, "2 or 3");
+      if (scene.dimension == 2)
+        scene.plane_stress =
+          reader.choice("plane", "strain", {"strain", "stress"},
+                        "strain or stress") == "stress";
+      else
+        reader.refuse({"plane"}, "plane strain and plane stress are for "
+                                 "dimension = 2");
+    }
+
+    /** "# name - sentence" becomes title and description. */
+    void read_opening(const ParameterFile &file, SceneInput &scene)
+    {
+      std::string paragraph;
+      for (const std::string &line : file.opening_comment()) {
+        const std::size_t begin = line.find_first_not_of("# \t");
+        if (begin == std::string::npos)
+          break; // an empty comment line ends the paragraph
+        paragraph += (paragraph.empty() ? "" : " ") + line.substr(begin);
+      }
+      const std::size_t dash = paragraph.find(" - ");
+      const bool has_title = dash != std::string::npos && dash < 80;
+      scene.title = has_title ? paragraph.substr(0, dash) : scene.file;
+      scene.description = has_title ? paragraph.substr(dash + 3) : paragraph;
+    }
+
+    std::unique_ptr<SceneInput>
+    read_parsed(ParameterFile &file, const std::string &name,
+                const std::vector<std::string> &overrides, InputErrors &errors)
+    {
+      for (const std::string &assignment : overrides)
+        file.override_entry(assignment, all_kinds(), errors);
+      for (const ParameterSection *section : file.sections())
+        check_section_name(*section, errors);
+
+      auto scene = std::make_unique<SceneInput>();
+      scene->file = name;
+      read_opening(file, *scene);
+      read_constants(file, errors);
+      read_top(file, errors, *scene);
+      read_mesh(file, errors, *scene);
+      read_discretization(file, errors, *scene);
+      read_materials(file, errors, *scene);
+      read_interfaces(file, errors, *scene);
+      read_boundaries(file, errors, *scene);
+      read_obstacles(file, errors, *scene);
+      read_loads(file, errors, *scene);
+      read_time(file, errors, *scene);
+      read_solver(file, errors, *scene);
+      read_output(file, errors, *scene);
+      read_verification(file, errors, *scene);
+      file.report_stray(errors);
+      if (errors.has_errors())
+        return nullptr;
+      scene->echo = file.print();
+      return scene;
+    }
+  } // namespace
+
+  std::unique_ptr<SceneInput>
+  read_scene(const std::string &file, const std::vector<std::string> &overrides,
+             InputErrors &errors)
+  {
+    ParameterFile parsed;
+    // what cannot be read would look like a file in which all is missing
+    if (!parsed.read_file(file, errors))
+      return nullptr;
+    return read_parsed(parsed, file, overrides, errors);
+  }
+
+  std::unique_ptr<SceneInput>
+  read_scene_text(const std::string &text, const std::string &name,
+                  const std::vector<std::string> &overrides,
+                  InputErrors &errors)
+  {
+    ParameterFile parsed;
+    parsed.read_text(text, name, errors);
+    return read_parsed(parsed, name, overrides, errors);
+  }
+
+  std::vector<NamedPart> named_parts()
+  {
+    std::vector<NamedPart> parts;
+    const auto append = [&parts](const std::string &kind, const auto &list) {
+      for (const NamedText &entry : list)
+        parts.push_back({kind, entry.name, entry.text});
+    };
+    append("interface law", known_plain_laws());
+    for (const auto &entry : CohesiveLawRegistry::instance().entries())
+      parts.push_back({"cohesive law", entry.first, entry.second.text});
+    for (const auto &entry : VerificationRegistry::instance().entries())
+      parts.push_back({"verification case", entry.first, entry.second.text});
+    append("mesh", known_meshes());
+    append("solver", known_solvers());
+    return parts;
+  }
+} // namespace nsfd

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "nsfd/input/input_errors.h"
+#include "nsfd/input/parameter_file.h"
+#include "nsfd/input/scene_input.h"
+#include "nsfd/input/section_reader.h"
+
+#include <string>
+#include <vector>
+
+// The parts of read_scene(), in the order in which they run: a part may look
+// at what the parts before it have put into the scene.
+
+namespace nsfd
+{
+  /** Section `Constants`: numbers for all the values that follow. */
+  void read_constants(ParameterFile &file, InputErrors &errors);
+
+  /** Mesh, the bodies of a mesh of type `bodies`, Discretization. */
+  void read_mesh(ParameterFile &file, InputErrors &errors, SceneInput &scene);
+  void read_discretization(ParameterFile &file, InputErrors &errors,
+                           SceneInput &scene);
+
+  void read_materials(ParameterFile &file, InputErrors &errors,
+                      SceneInput &scene);
+  void read_interfaces(ParameterFile &file, InputErrors &errors,
+                       SceneInput &scene);
+
+  /** Boundary and Obstacle blocks, Loads. */
+  void read_boundaries(ParameterFile &file, InputErrors &errors,
+                       SceneInput &scene);
+  void read_obstacles(ParameterFile &file, InputErrors &errors,
+                      SceneInput &scene);
+  void read_loads(ParameterFile &file, InputErrors &errors, SceneInput &scene);
+
+  /** Time, Solver, Output, Verification. */
+  void read_time(ParameterFile &file, InputErrors &errors, SceneInput &scene);
+  void read_solver(ParameterFile &file, InputErrors &errors, SceneInput &scene);
+  void read_output(ParameterFile &file, InputErrors &errors, SceneInput &scene);
+  void read_verification(ParameterFile &file, InputErrors &errors,
+                         SceneInput &scene);
+
+  /** What a `where` picks. */
+  enum class WhereUse
+  {
+    cells,
+    interior_faces,
+    boundary_faces
+  };
+
+  /**
+   * Read an entry `where`; an empty @p default_text means that it must be
+   * given. Needs the mesh and the materials (for interior faces) of @p scene.
+   */
+  Where read_where(SectionReader &reader, const std::string &default_text,
+                   WhereUse use, const SceneInput &scene,
+                   const std::string &text);
+
+  /** left, right, ..., front, back. */
+  bool is_side(const std::string &word);
+
+  /**
+   * An expression of x, y, z that is read once, before the first step; time in
+   * it is an error.
+   */
+  Expression read_initial_expression(SectionReader &reader,
+                                     const std::string &name,
+                                     const std::string &default_text, Unit unit,
+                                     const std::string &text);
+
+  /** True if the cells are triangles or tetrahedra. */
+  bool has_simplices(const SceneInput &scene);
+
+  /** True if material and boundary ids mean something: a generator's mesh. */
+  bool has_numbered_groups(const SceneInput &scene);
+
+  /** "velocity z" for ("velocity", 2). */
+  std::string component_name(const std::string &name, unsigned int component);
+
+  /** Report those of the names whose component z has no place in 2D. */
+  void refuse_third_component(SectionReader &reader,
+                              const std::vector<std::string> &names,
+                              const SceneInput &scene);
+
+  /** The mesh types and solvers by kind, name and text. */
+  struct NamedText
+  {
+    std::string name, text;
+  };
+  std::vector<NamedText> known_meshes();
+  std::vector<NamedText> known_solvers();
+  std::vector<NamedText> known_plain_laws();
+
+  std::vector<std::string> names_of(const std::vector<NamedText> &parts);
+} // namespace nsfd
