@@ -1,0 +1,132 @@
+#pragma once
+
+#include "nsfd/base/communicator.h"
+#include "nsfd/dynamics/bodies.h"
+
+#include <memory>
+#include <string>
+
+namespace nsfd
+{
+  /**
+   * The bodies seen from the faces: H, M_hat^{-1} and W = H M_hat^{-1} H^T,
+   * with M_hat = M + h^2 theta^2 K block diagonal by body. Vectors over points
+   * are in the local frames, dim entries per point; vectors over bodies have
+   * Bodies::n_dofs() entries.
+   *
+   * Both paths share this operator. They differ in how a Newton system
+   * (W + D) x = r is preconditioned: element-wise by face blocks, globally by a
+   * sparse factor or multigrid of A = M_hat + H^T D^{-1} H (Woodbury).
+   */
+  template <int dim>
+  class Dynamics
+  {
+  public:
+    Dynamics(const Communicator &communicator,
+             const Bodies &bodies,
+             const InterfacePoints<dim> &points);
+    virtual ~Dynamics() = default;
+
+    /** Build what depends on the step; nothing if it has not changed. */
+    virtual void reinit(double time_step, double theta);
+
+    /** U = W P over all points. One exchange with the neighbouring ranks. */
+    void apply_delassus(const double *impulse, double *velocity) const;
+
+    /** U = H v. */
+    void relative_velocity(const double *velocity, double *result) const;
+
+    /** r = H^T P. */
+    void generalised_impulse(const double *impulse, double *result) const;
+
+    /** dv += M_hat^{-1} H^T P. */
+    void add_velocity_change(const double *impulse, double *velocity) const;
+
+    enum class Operator
+    {
+      mass,
+      stiffness,
+      inverse ///< M_hat^{-1}
+    };
+    /** y = A x body by body. */
+    void apply(Operator op, const double *x, double *y) const;
+
+    /**
+     * Diagonal blocks of W per face in the local frames, row-major of size
+     * (count dim)^2, at face_block(f).
+     */
+    const double *face_block(const std::size_t face) const
+    {
+      return face_blocks_.data() + face_offset_[face];
+    }
+
+    /**
+     * Prepare the preconditioner for W + diag(D) on the components with
+     * D >= 0; negative D marks a component that does not take part.
+     */
+    virtual void prepare_preconditioner(const std::vector<double> &D) = 0;
+    /** z = approximation of (W + D)^{-1} r on the components that take part. */
+    virtual void precondition(const double *r, double *z) const = 0;
+
+    const InterfacePoints<dim> &points() const { return points_; }
+    const Bodies &bodies() const { return bodies_; }
+    const Communicator &communicator() const { return communicator_; }
+
+    struct Counters
+    {
+      unsigned long long factorisations = 0; ///< of body blocks
+      unsigned long long global_factorisations = 0;
+      mutable unsigned long long delassus = 0;
+    };
+    const Counters &counters() const { return counters_; }
+
+    /** Contribution of each body to W P, used by Gauss-Seidel. */
+    struct ClassBlocks
+    {
+      Block inverse, delassus, velocity_change; ///< M^-1, T M^-1 T^T, M^-1 T^T
+      Block trace_transposed;
+    };
+    const std::vector<ClassBlocks> &class_blocks() const { return blocks_; }
+
+    /**
+     * Complete contributions of both sides at shared points: @p side holds
+     * `stride` values per point for body 1 and body 2.
+     */
+    void exchange(std::array<double *, 2> side, unsigned int stride) const;
+
+  protected:
+    void build_face_blocks();
+
+    const Communicator &communicator_;
+    const Bodies &bodies_;
+    const InterfacePoints<dim> &points_;
+    double time_step_ = 0., theta_ = 0.;
+    std::vector<ClassBlocks> blocks_;
+    std::vector<double> face_blocks_;
+    std::vector<std::size_t> face_offset_;
+    Counters counters_;
+
+  private:
+    void to_cartesian(const double *local) const;
+    void add_sides(double *local) const;
+    mutable std::vector<double> cartesian_, side_1_, side_2_;
+  };
+
+  /** Preconditioned by the face blocks of W: for steps up to some crossings. */
+  template <int dim>
+  std::unique_ptr<Dynamics<dim>>
+  make_elementwise_dynamics(const Communicator &communicator,
+                            const Bodies &bodies,
+                            const InterfacePoints<dim> &points);
+
+  /**
+   * Preconditioned by the sparse matrix A of all bodies in Trilinos: for long
+   * steps. @p solver is `direct` (Amesos) or `cg` (CG with ML).
+   */
+  template <int dim>
+  std::unique_ptr<Dynamics<dim>>
+  make_sparse_dynamics(const Communicator &communicator,
+                       const Bodies &bodies,
+                       const InterfacePoints<dim> &points,
+                       const std::string &solver);
+} // namespace nsfd

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "nsfd/base/registry.h"
+
+#include <limits>
+#include <memory>
+
+namespace nsfd
+{
+  class SectionReader;
+
+  /**
+   * A rate-independent cohesive law with one damage scalar, stated by its
+   * envelope: traction T(d) against the effective opening
+   *
+   *   d^2 = <u_N>_+^2 + r^2 |u_T|^2,        r^2 = shear_weight().
+   *
+   * With beta(d) falling along the envelope (1 intact, 0 broken), the traction
+   * of an intrinsic law is R = beta (C_N <u_N>_+ n + C_T u_T) (equations (3)
+   * and (4) of the report), T(d) = beta(d) C_N d. An extrinsic law is rigid
+   * before activation, and unloads on the secant from the largest opening d_m:
+   * R = (T(d_m) / d_m) (<u_N>_+ n + r^2 u_T).
+   *
+   * Lengths in m, tractions in Pa, energies in J/m^2. All functions are pure:
+   * history (the largest opening) is kept by the caller. They accept any
+   * d >= 0, also far beyond separation, and return finite values.
+   *
+   * A point whose strength is scaled by f keeps its toughness: it evaluates
+   * f T(f d), so its stiffness is f^2 C_N. The caller does this scaling.
+   */
+  class CohesiveLaw
+  {
+  public:
+    virtual ~CohesiveLaw() = default;
+
+    /** Rigid before activation, no stiffness there. */
+    virtual bool extrinsic() const = 0;
+
+    /** C_N in Pa/m; intrinsic laws only (infinity for extrinsic ones). */
+    virtual double normal_stiffness() const = 0;
+
+    /** C_T / C_N, or r^2 for extrinsic laws. */
+    virtual double stiffness_ratio() const = 0;
+
+    /** r^2 in the effective opening. */
+    virtual double shear_weight() const = 0;
+
+    /**
+     * The effective opening is the norm of the stored energy (r^2 = C_T/C_N),
+     * so that the law has a potential and the `exact` cohesion rule applies.
+     */
+    bool has_potential() const;
+
+    /** Damage on the envelope, non-increasing in d; 1 at d = 0. */
+    virtual double beta(double d) const = 0;
+
+    /** Envelope T(d) in Pa; for extrinsic laws T(0) is the strength. */
+    virtual double traction(double d) const = 0;
+
+    /** I(d), the area under the envelope from 0 to d, in J/m^2. */
+    virtual double energy(double d) const = 0;
+
+    /**
+     * I(d1) - I(d0) without cancellation when d1 is close to d0. The default
+     * integrates T between the kinks of the law by a Gauss rule for close
+     * openings and takes the difference of energy() otherwise.
+     */
+    virtual double energy_increment(double d0, double d1) const;
+
+    /** Secant stiffness T(d)/d, with its limit C_N at d = 0 if intrinsic. */
+    double secant(double d) const;
+
+    /** Opening up to which beta = 1 (0 if damage starts at once). */
+    virtual double elastic_limit() const = 0;
+
+    /** Opening at the largest traction. */
+    virtual double peak_opening() const = 0;
+
+    /** Opening at which beta = 0; infinity for laws with a tail. */
+    virtual double final_opening() const = 0;
+
+    /** Largest traction R_max in Pa. */
+    virtual double strength() const = 0;
+
+    /** G = I(infinity) in J/m^2. */
+    virtual double toughness() const = 0;
+
+    /** max |T'| over the softening branch, in Pa/m. */
+    virtual double steepest_softening() const = 0;
+  };
+
+  /** Laws by name; a factory reads the law's own entries of its section. */
+  using CohesiveLawRegistry =
+    Registry<CohesiveLaw, SectionReader &>;
+} // namespace nsfd

@@ -1,0 +1,161 @@
+#pragma once
+
+#include "nsfd/base/communicator.h"
+#include "nsfd/dynamics/bodies.h"
+
+#include <deal.II/base/point.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dealii
+{
+  template <int dim, int spacedim>
+  class Triangulation;
+  template <int dim, int spacedim>
+  class FiniteElement;
+} // namespace dealii
+
+namespace nsfd
+{
+  struct SceneInput;
+  template <int dim>
+  class MeshGroups;
+
+  /** Where a point of InterfacePoints comes from. */
+  struct PointOrigin {
+    enum class Kind : unsigned char {
+      interface, ///< between two cells, `block` of SceneInput::interfaces
+      motion,    ///< prescribed motion, `block` of boundaries
+      obstacle   ///< `block` of obstacles
+    };
+    Kind kind = Kind::interface;
+    unsigned int block = 0;
+  };
+
+  /**
+   * The cells of this rank as bodies, and the points on their faces: matrices,
+   * traces, frames, weights. Straight-sided cells; cells of the same shape and
+   * material share their blocks, built from the shape rounded to 2^-42 of its
+   * size, so that they are the same on every rank. Units of the scene.
+   */
+  template <int dim>
+  class Discretization
+  {
+  public:
+    /** @throws std::runtime_error with a sentence for the user. */
+    Discretization(const Communicator &communicator,
+                   const dealii::Triangulation<dim, dim> &triangulation,
+                   const MeshGroups<dim> &groups,
+                   const std::vector<unsigned int> &materials,
+                   const SceneInput &input);
+    ~Discretization();
+
+    const Bodies &bodies() const { return bodies_; }
+    const InterfacePoints<dim> &points() const { return points_; }
+    const std::vector<PointOrigin> &origins() const { return origins_; }
+    const dealii::FiniteElement<dim, dim> &element() const { return *element_; }
+
+    unsigned int material_of(const unsigned int body) const
+    {
+      return bodies_.classes[bodies_.class_of[body]].material;
+    }
+
+    /** Nodal vectors: node-major, dim components, all cells of this rank. */
+    std::size_t n_nodal() const { return first_node_.back() * dim; }
+    std::size_t first_node(const unsigned int body) const
+    {
+      return first_node_[body];
+    }
+    /** Unknowns of the bodies to nodal values (rigid modes are expanded). */
+    std::vector<double> to_nodal(const std::vector<double> &unknowns) const;
+
+    using Field = std::function<void(const dealii::Point<dim> &,
+                                     unsigned int body, double *values)>;
+
+    /**
+     * Interpolate at the nodes; rigid bodies take the rigid motion nearest in
+     * the norm of their mass.
+     */
+    std::vector<double> interpolate(const Field &field) const;
+
+    /**
+     * Generalised forces at time @p t of gravity, body forces, tractions and
+     * pressures, in N (N per metre of depth in two dimensions).
+     */
+    void add_loads(double t, std::vector<double> &forces) const;
+    bool loads_depend_on_time() const { return loads_depend_on_time_; }
+    bool has_loads() const { return has_loads_; }
+
+    /**
+     * Call @p visit at every quadrature point of every cell of this rank:
+     * (body, position, JxW, values of @p nodal, its gradient [component][dir]).
+     */
+    using Visitor = std::function<void(
+        unsigned int body, const dealii::Point<dim> &position, double JxW,
+        const double *value, const double *gradient)>;
+    void visit_quadrature(const std::vector<double> &nodal,
+                          const Visitor &visit) const;
+
+    /** Stress xx, yy, zz, xy, xz, yz from a displacement gradient. */
+    std::array<double, 6> stress(unsigned int body,
+                                 const double *gradient) const;
+
+    /** Corners of a cell in deal.II's order, and values of a nodal vector. */
+    std::vector<dealii::Point<dim>> corners(unsigned int body) const;
+    std::vector<double> at_corners(unsigned int body,
+                                   const std::vector<double> &nodal) const;
+    double volume(unsigned int body) const;
+    dealii::Point<dim> centre(unsigned int body) const;
+    unsigned long long global_cell(const unsigned int body) const
+    {
+      return global_cell_[body];
+    }
+    unsigned long long n_global_cells() const { return n_global_cells_; }
+    bool simplices() const { return simplices_; }
+
+    /** c_p of a material, and the shortest crossing time over all cells. */
+    double pressure_wave_speed(unsigned int material) const;
+    double shear_wave_speed(unsigned int material) const;
+    double crossing_time() const { return crossing_time_; }
+    double cell_size() const { return cell_size_; }
+    /** Diagonal of the bounding box: a length that no mesh changes. */
+    double extent() const { return extent_; }
+
+    /** Driven boundaries in the order of the reactions of a history row. */
+    const std::vector<unsigned int> &driven_boundaries() const
+    {
+      return driven_;
+    }
+
+  private:
+    struct Shape; // tables of one class
+    void build_bodies(const dealii::Triangulation<dim, dim> &,
+                      const std::vector<unsigned int> &materials);
+    void build_points(const dealii::Triangulation<dim, dim> &,
+                      const MeshGroups<dim> &,
+                      const std::vector<unsigned int> &materials);
+
+    const Communicator &communicator_;
+    const SceneInput &input_;
+    std::unique_ptr<dealii::FiniteElement<dim, dim>> element_;
+    bool simplices_ = false;
+    Bodies bodies_;
+    InterfacePoints<dim> points_;
+    std::vector<PointOrigin> origins_;
+    std::vector<std::unique_ptr<Shape>> shapes_; // per class
+    std::vector<std::vector<dealii::Point<dim>>> corners_;
+    std::vector<std::size_t> first_node_;
+    std::vector<unsigned long long> global_cell_;
+    unsigned long long n_global_cells_ = 0;
+    double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;
+    std::vector<unsigned int> driven_;
+    bool loads_depend_on_time_ = false, has_loads_ = false;
+    struct FaceLoad {
+      unsigned int body, face, boundary;
+    };
+    std::vector<FaceLoad> face_loads_;
+  };
+} // namespace nsfd

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "nsfd/interface/cohesive_law.h"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  enum class CohesionRule;
+  enum class Sliding;
+
+  /** What acts between the two sides of a point; shared by a face group. */
+  struct Interaction
+  {
+    std::shared_ptr<const CohesiveLaw> law; ///< null: no damage
+    double normal_stiffness = 0.; ///< C_N in Pa/m of an elastic joint, else 0
+    double stiffness_ratio = 1.;  ///< C_T / C_N
+    double shear_weight = 1.;     ///< r^2 of the effective opening
+    double friction = 0.;         ///< mu
+    double friction_exponent = 1.; ///< kappa = (1-beta)^s; 0: kappa = 1
+    double restitution = 0.;       ///< e
+  };
+
+  /** What a point is during one step: decided before it, data afterwards. */
+  enum class PointKind : std::uint8_t
+  {
+    prescribed, ///< U = U_given in the components of the mask (rigid joints,
+                ///< supports); the other components carry nothing
+    elastic,    ///< two-sided spring, no damage
+    cohesive,   ///< intrinsic, or extrinsic after activation
+    rigid,      ///< extrinsic before activation: U = 0 up to the strength
+    free        ///< contact and friction only, beta = 0
+  };
+
+  /**
+   * The nonsmooth problem of one step as plain data, without bodies: find
+   * impulses P (integrated, P = w p) and relative velocities U with
+   *
+   *     U = U_free + W P,       -P in the law of each point.
+   *
+   * Vectors have `dim` entries per point in the local frame (n, t1, t2), n
+   * from body 1 to body 2. The jump at the end of the step is
+   * u' = jump_free + h theta U with jump_free = u_k + h (1-theta) U_k.
+   */
+  template <int dim>
+  struct OneStepProblem
+  {
+    std::size_t n_points = 0;   ///< points this rank computes with
+    std::size_t n_owned = 0;    ///< the first ones, counted once over all ranks
+    double time_step = 0., theta = 0.5;
+    CohesionRule rule{};
+
+    std::vector<Interaction> interactions;
+
+    // per point
+    std::vector<PointKind> kind;
+    std::vector<std::uint8_t> mask;         ///< bit c: component c prescribed
+    std::vector<std::uint8_t> contact;      ///< forecast active
+    std::vector<unsigned int> interaction;  ///< index into interactions
+    std::vector<double> weight;             ///< w
+    std::vector<double> strength_factor;    ///< f, see CohesiveLaw
+    std::vector<double> opening_max;        ///< d_m, largest effective opening
+    std::vector<double> compression_stiffness; ///< two-sided while intact, else 0
+    std::vector<double> target;             ///< U_N >= target where in contact
+
+    // per point and component
+    std::vector<double> free_velocity;      ///< U_free
+    std::vector<double> given_velocity;     ///< prescribed
+    std::vector<double> jump_old;           ///< u_k
+    std::vector<double> jump_free;          ///< u_k + h (1-theta) U_k
+    std::vector<double> sliding_offset;     ///< added to U_T where sliding is
+                                            ///< measured by the jump increment
+
+    // scaled identity above the diagonal block of W
+    std::vector<double> majorant_normal, majorant_tangential;
+
+    void resize(std::size_t n);
+  };
+
+  /** P and U of a problem, and what they cost. */
+  struct SolverReport
+  {
+    bool converged = false;
+    double residual = 0.; ///< relative natural map, see residual.h
+    unsigned int newton = 0, krylov = 0, sweeps = 0, line_searches = 0;
+    unsigned int law_calls = 0; ///< sweeps of the point law over all points
+    std::size_t worst_point = 0; ///< local index of the worst point
+    double worst_error = 0.;     ///< its share, this rank
+    std::vector<std::string> switches; ///< hand-overs between methods
+  };
+} // namespace nsfd

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "nsfd/base/registry.h"
+#include "nsfd/output/run_record.h"
+
+#include <array>
+#include <map>
+#include <string>
+
+namespace nsfd
+{
+  struct SceneInput;
+  class SectionReader;
+
+  /** Positions, displacements and velocities at the centre of one cell. */
+  struct CellState
+  {
+    std::array<double, 3> centre{}, displacement{}, velocity{};
+    std::array<double, 6> stress{}; ///< xx, yy, zz, xy, xz, yz, cell average
+    double volume = 0.;
+  };
+
+  /** What a verification case may look at after a step (same on all ranks). */
+  struct StepView
+  {
+    double time = 0., time_step = 0.;
+    const HistoryRow *row = nullptr;
+    /// cells in an order that does not depend on the rank count; gathered only
+    /// for cases that ask for it
+    const std::vector<CellState> *cells = nullptr;
+  };
+
+  /**
+   * An exact solution, or exact quantities of a scene. Selected by
+   * `subsection Verification, set case = NAME`. What it finds goes into the
+   * `errors` of summary.json.
+   */
+  class VerificationCase
+  {
+  public:
+    virtual ~VerificationCase() = default;
+
+    /** Called once, after all of the input has been read. */
+    virtual void initialise(const SceneInput &) {}
+
+    /** True if displacement(), velocity() (and stress()) are known fields. */
+    virtual bool has_fields() const { return false; }
+    virtual bool has_stress() const { return false; }
+    using Vector = std::array<double, 3>;
+    virtual Vector displacement(const Vector &, double) const { return {}; }
+    virtual Vector velocity(const Vector &, double) const { return {}; }
+    /** xx, yy, zz, xy, xz, yz in Pa. */
+    virtual std::array<double, 6> stress(const Vector &, double) const
+    {
+      return {};
+    }
+
+    /** True if observe() wants StepView::cells after every step. */
+    virtual bool wants_cells() const { return false; }
+
+    /** Called with the initial state (row->step = 0) and after each step. */
+    virtual void observe(const StepView &) {}
+
+    /** Relative errors and scene quantities, added to `errors`. */
+    virtual void finish(std::map<std::string, double> &) const {}
+  };
+
+  using VerificationRegistry = Registry<VerificationCase, SectionReader &>;
+} // namespace nsfd

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "nsfd/mesh/discretization.h"
+#include "nsfd/nonsmooth/solver.h"
+#include "nsfd/time/state.h"
+
+#include <chrono>
+#include <stdexcept>
+
+namespace nsfd
+{
+  struct SceneInput;
+
+  /** A step that has to be redone shorter; the text says where and why. */
+  class StepRejected : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
+  /** What an accepted step reports besides its state. */
+  struct StepReport
+  {
+    SolverReport solver;
+    double ledger_defect = 0.; ///< of this step, relative
+    unsigned int active = 0;   ///< points in contact or damaging
+    bool beyond_unique = false; ///< step above the uniqueness bound
+  };
+
+  /**
+   * The implicit Moreau-Jean step: theta scheme in the bulk, velocity-level
+   * contact, impulses of all points in one nonsmooth problem (report, 5.2-5.3).
+   * Every energy line of the step is computed on its own.
+   */
+  template <int dim>
+  class MoreauJean
+  {
+  public:
+    MoreauJean(const SceneInput &input,
+               const Discretization<dim> &discretization,
+               Dynamics<dim> &dynamics,
+               NonsmoothSolver<dim> &solver);
+
+    /** State at t = 0: positions, velocities, gaps, broken points. */
+    State initial_state() const;
+
+    /**
+     * From @p old to @p next = t + h. @throws StepRejected if the nonsmooth
+     * problem was not solved to the tolerance.
+     */
+    StepReport advance(const State &old, double time_step, State &next);
+
+    /** Largest step with one solution, from design bound; inf without damage. */
+    double unique_step(const State &state) const;
+
+    /** Force on each driven boundary during the last step, dim per boundary. */
+    const std::vector<double> &reactions() const { return reactions_; }
+
+    const OneStepProblem<dim> &problem() const { return problem_; }
+
+    struct Timings
+    {
+      double assembly = 0., solve = 0., update = 0., ledger = 0.;
+    };
+    const Timings &timings() const { return timings_; }
+    struct Counters
+    {
+      unsigned long long solves = 0, newton = 0, krylov = 0, sweeps = 0,
+                         law_sweeps = 0, line_searches = 0, load_assemblies = 0;
+    };
+    const Counters &counters() const { return counters_; }
+
+  private:
+    void set_up_points();
+    void prepare(const State &old, double time_step);
+    void book(const State &old, State &next, double time_step,
+              const LawEvaluation<dim> &evaluation, StepReport &report);
+    std::string describe(std::size_t point) const;
+
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    Dynamics<dim> &dynamics_;
+    NonsmoothSolver<dim> &solver_;
+    OneStepProblem<dim> problem_;
+    std::vector<double> strength_factor_, initial_gap_, flexibility_;
+    std::vector<double> forces_, v_free_, work_;
+    bool forces_known_ = false;
+    double forces_time_ = 0.;
+    std::vector<double> reactions_;
+    Timings timings_;
+    Counters counters_;
+  };
+} // namespace nsfd

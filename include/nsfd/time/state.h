@@ -1,0 +1,35 @@
+#pragma once
+
+#include "nsfd/nonsmooth/one_step_problem.h"
+#include "nsfd/output/run_record.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Everything that changes in time, as plain values: copied and swapped.
+   * Bodies: q, v by unknown. Points: dim components in the local frame.
+   */
+  struct State
+  {
+    unsigned int step = 0;
+    double time = 0.;
+    std::vector<double> displacement, velocity;
+    std::vector<double> jump;              ///< u, m
+    std::vector<double> relative_velocity; ///< U, m/s
+    std::vector<double> impulse;           ///< P of the last step, warm start
+    std::vector<double> opening_max;       ///< d_m, m
+    std::vector<double> beta;
+    std::vector<double> slip;              ///< accumulated |u_T| in contact
+    std::vector<double> penetration_bound; ///< what u_N >= -bound allows, m
+    std::vector<PointKind> kind;
+    std::vector<std::uint8_t> two_sided; ///< intact spring, also in compression
+    std::vector<std::uint8_t> contact;   ///< contact impulse in the last step
+    EnergyLines energy;                  ///< dissipated lines and work: sums
+    double initial_energy = 0., largest_energy = 0.;
+    double penetration = 0., penetration_excess = 0., rigid_drift = 0.,
+           positive_friction_work = 0., broken_area = 0.;
+  };
+} // namespace nsfd

@@ -1,0 +1,40 @@
+#pragma once
+
+namespace nsfd
+{
+  /**
+   * Steps on a ladder: the base step divides the time to the end evenly; level
+   * l takes base / 2^l. A rejected step goes down one level at once; a success
+   * goes up one level where the position allows it, so that every time is a
+   * multiple of the base step again. Times are computed from counters, not
+   * summed.
+   */
+  class StepControl
+  {
+  public:
+    /** @p base is shortened so that the end is met exactly. */
+    StepControl(double end, double base, unsigned int maximum_halvings);
+
+    bool finished() const { return base_count_ == n_base_; }
+    double time() const;
+    double step() const;
+    double base_step() const { return base_; }
+    unsigned int level() const { return level_; }
+
+    /** The step was taken. */
+    void accept();
+    /** One level down. False if the ladder ends here. */
+    bool halve();
+    /** Down until step() <= @p limit, as far as the ladder goes. */
+    void limit(double limit);
+    /** Do not go up above steps of @p limit at the next accept(). */
+    void set_ceiling(double limit) { ceiling_ = limit; }
+
+    unsigned int halvings() const { return n_halvings_; }
+
+  private:
+    double end_, base_, ceiling_;
+    unsigned long long n_base_, base_count_ = 0, position_ = 0;
+    unsigned int level_ = 0, maximum_level_, n_halvings_ = 0;
+  };
+} // namespace nsfd

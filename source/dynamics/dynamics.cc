@@ -1,0 +1,402 @@
+#include "nsfd/dynamics/dynamics.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  namespace
+  {
+    /**
+     * Apply one block of every class to all of its bodies, `lanes` at a time.
+     * @p gather fills the inputs of a body, @p scatter takes its outputs; both
+     * get (body, pointer, stride).
+     */
+    template <typename Select, typename Gather, typename Scatter>
+    void for_all_bodies(const Bodies &bodies,
+                        const Select &select,
+                        const Gather &gather,
+                        const Scatter &scatter)
+    {
+      thread_local std::vector<double> x, y;
+      for (std::size_t k = 0; k < bodies.classes.size(); ++k) {
+        const Block &block = select(k);
+        if (block.cols == 0)
+          continue;
+        const auto &members = bodies.classes[k].bodies;
+        x.resize(std::size_t(block.cols) * lanes);
+        y.resize(std::size_t(padded(block.rows)) * lanes);
+        std::size_t begin = 0;
+        for (; begin + 1 < members.size(); begin += lanes) {
+          const std::size_t count =
+            std::min<std::size_t>(lanes, members.size() - begin);
+          if (count < lanes)
+            std::fill(x.begin(), x.end(), 0.);
+          for (std::size_t l = 0; l < count; ++l)
+            gather(members[begin + l], x.data() + l, lanes);
+          multiply_lanes(block.values.data(), block.rows, block.cols, x.data(),
+                         y.data());
+          for (std::size_t l = 0; l < count; ++l)
+            scatter(members[begin + l], y.data() + l, lanes);
+        }
+        if (begin < members.size()) {
+          gather(members[begin], x.data(), 1u);
+          multiply_one(block.values.data(), block.rows, block.cols, x.data(),
+                       y.data());
+          scatter(members[begin], y.data(), 1u);
+        }
+      }
+    }
+
+    auto dof_gather(const Bodies &bodies, const double *v)
+    {
+      return [&bodies, v](const unsigned int b, double *x,
+                          const unsigned int stride) {
+        const std::size_t first = bodies.first_dof[b],
+                          n = bodies.first_dof[b + 1] - first;
+        for (std::size_t i = 0; i < n; ++i)
+          x[i * stride] = v[first + i];
+      };
+    }
+
+    template <bool add>
+    auto dof_scatter(const Bodies &bodies, double *v)
+    {
+      return [&bodies, v](const unsigned int b, const double *y,
+                          const unsigned int stride) {
+        const std::size_t first = bodies.first_dof[b],
+                          n = bodies.first_dof[b + 1] - first;
+        for (std::size_t i = 0; i < n; ++i)
+          if (add)
+            v[first + i] += y[i * stride];
+          else
+            v[first + i] = y[i * stride];
+      };
+    }
+  } // namespace
+
+  template <int dim>
+  Dynamics<dim>::Dynamics(const Communicator &communicator,
+                          const Bodies &bodies,
+                          const InterfacePoints<dim> &points)
+    : communicator_(communicator)
+    , bodies_(bodies)
+    , points_(points)
+    , cartesian_((points.n_points + 1) * dim, 0.)
+    , side_1_((points.n_points + 1) * dim, 0.)
+    , side_2_((points.n_points + 1) * dim, 0.)
+  {
+    face_offset_.push_back(0);
+    for (const auto &face : points.faces)
+      face_offset_.push_back(face_offset_.back() +
+                             std::size_t(face.count) * dim * face.count * dim);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::reinit(const double time_step, const double theta)
+  {
+    if (time_step == time_step_ && theta == theta_)
+      return;
+    time_step_ = time_step;
+    theta_ = theta;
+    blocks_.resize(bodies_.classes.size());
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const BodyClass &body = bodies_.classes[k];
+      Block matrix = body.mass;
+      const double factor = time_step * time_step * theta * theta;
+      if (!body.rigid)
+        for (std::size_t i = 0; i < matrix.values.size(); ++i)
+          matrix.values[i] += factor * body.stiffness.values[i];
+      const Block L = cholesky(matrix);
+      ++counters_.factorisations;
+      Block identity(body.n_dofs, body.n_dofs);
+      for (unsigned int i = 0; i < body.n_dofs; ++i)
+        identity(i, i) = 1.;
+      blocks_[k].inverse = gram(forward_solve(L, std::move(identity)));
+      blocks_[k].trace_transposed = body.trace.transposed();
+      // Gram matrix of L^{-1} T^T: symmetric to the last bit
+      blocks_[k].delassus =
+        gram(forward_solve(L, blocks_[k].trace_transposed));
+      blocks_[k].velocity_change =
+        product(blocks_[k].inverse, blocks_[k].trace_transposed);
+    }
+    build_face_blocks();
+  }
+
+  template <int dim>
+  void Dynamics<dim>::to_cartesian(const double *local) const
+  {
+    for (std::size_t i = 0; i < points_.n_points; ++i) {
+      const double *Q = points_.frame.data() + i * dim * dim;
+      for (unsigned int c = 0; c < dim; ++c) {
+        double value = 0.;
+        for (unsigned int k = 0; k < dim; ++k)
+          value += Q[k * dim + c] * local[i * dim + k];
+        cartesian_[i * dim + c] = value;
+      }
+    }
+  }
+
+  template <int dim>
+  void Dynamics<dim>::add_sides(double *local) const
+  {
+    exchange({{side_1_.data(), side_2_.data()}}, dim);
+    for (std::size_t i = 0; i < points_.n_points; ++i) {
+      const double *Q = points_.frame.data() + i * dim * dim;
+      double jump[dim];
+      for (unsigned int c = 0; c < dim; ++c)
+        jump[c] = side_2_[i * dim + c] + side_1_[i * dim + c];
+      for (unsigned int k = 0; k < dim; ++k) {
+        double value = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          value += Q[k * dim + c] * jump[c];
+        local[i * dim + k] = value;
+      }
+    }
+  }
+
+  namespace
+  {
+    /** Signed sum of the Cartesian impulses at the slots of a body. */
+    template <int dim>
+    auto slot_gather(const Bodies &bodies, const std::vector<double> &cartesian)
+    {
+      return [&](const unsigned int b, double *x, const unsigned int stride) {
+        const std::size_t first = bodies.first_slot[b],
+                          n = bodies.first_slot[b + 1] - first;
+        for (std::size_t s = 0; s < n; ++s) {
+          const double *P =
+            cartesian.data() + std::size_t(bodies.slot_point[first + s]) * dim;
+          const double sign = bodies.slot_sign[first + s];
+          for (unsigned int c = 0; c < dim; ++c)
+            x[(s * dim + c) * stride] = sign * P[c];
+        }
+        if (!bodies.extra_points.empty())
+          for (auto e = std::lower_bound(
+                 bodies.extra_points.begin(), bodies.extra_points.end(),
+                 std::pair<std::size_t, unsigned int>(first, 0));
+               e != bodies.extra_points.end() && e->first < first + n; ++e)
+            for (unsigned int c = 0; c < dim; ++c)
+              x[((e->first - first) * dim + c) * stride] +=
+                cartesian[std::size_t(e->second) * dim + c];
+      };
+    }
+
+    template <int dim>
+    auto slot_scatter(const Bodies &bodies,
+                      std::vector<double> &side_1,
+                      std::vector<double> &side_2)
+    {
+      return [&](const unsigned int b, const double *y,
+                 const unsigned int stride) {
+        const std::size_t first = bodies.first_slot[b],
+                          n = bodies.first_slot[b + 1] - first;
+        for (std::size_t s = 0; s < n; ++s) {
+          const std::size_t p = bodies.slot_point[first + s];
+          const double sign = bodies.slot_sign[first + s];
+          double *U = (sign > 0. ? side_2 : side_1).data() + p * dim;
+          for (unsigned int c = 0; c < dim; ++c)
+            U[c] = sign * y[(s * dim + c) * stride];
+        }
+        if (!bodies.extra_points.empty())
+          for (auto e = std::lower_bound(
+                 bodies.extra_points.begin(), bodies.extra_points.end(),
+                 std::pair<std::size_t, unsigned int>(first, 0));
+               e != bodies.extra_points.end() && e->first < first + n; ++e)
+            for (unsigned int c = 0; c < dim; ++c)
+              side_2[std::size_t(e->second) * dim + c] =
+                y[((e->first - first) * dim + c) * stride];
+      };
+    }
+  } // namespace
+
+  template <int dim>
+  void Dynamics<dim>::apply_delassus(const double *impulse,
+                                     double *velocity) const
+  {
+    ++counters_.delassus;
+    to_cartesian(impulse);
+    for_all_bodies(
+      bodies_, [this](const std::size_t k) -> const Block & {
+        return blocks_[k].delassus;
+      },
+      slot_gather<dim>(bodies_, cartesian_),
+      slot_scatter<dim>(bodies_, side_1_, side_2_));
+    add_sides(velocity);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::relative_velocity(const double *velocity,
+                                        double *result) const
+  {
+    for_all_bodies(
+      bodies_, [this](const std::size_t k) -> const Block & {
+        return bodies_.classes[k].trace;
+      },
+      dof_gather(bodies_, velocity),
+      slot_scatter<dim>(bodies_, side_1_, side_2_));
+    add_sides(result);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::generalised_impulse(const double *impulse,
+                                          double *result) const
+  {
+    to_cartesian(impulse);
+    for_all_bodies(
+      bodies_, [this](const std::size_t k) -> const Block & {
+        return blocks_[k].trace_transposed;
+      },
+      slot_gather<dim>(bodies_, cartesian_),
+      dof_scatter<false>(bodies_, result));
+  }
+
+  template <int dim>
+  void Dynamics<dim>::add_velocity_change(const double *impulse,
+                                          double *velocity) const
+  {
+    to_cartesian(impulse);
+    for_all_bodies(
+      bodies_, [this](const std::size_t k) -> const Block & {
+        return blocks_[k].velocity_change;
+      },
+      slot_gather<dim>(bodies_, cartesian_),
+      dof_scatter<true>(bodies_, velocity));
+  }
+
+  template <int dim>
+  void
+  Dynamics<dim>::apply(const Operator op, const double *x, double *y) const
+  {
+    if (op == Operator::stiffness)
+      std::fill(y, y + bodies_.n_dofs(), 0.);
+    for_all_bodies(
+      bodies_,
+      [this, op](const std::size_t k) -> const Block & {
+        return op == Operator::mass        ? bodies_.classes[k].mass
+               : op == Operator::stiffness ? bodies_.classes[k].stiffness
+                                           : blocks_[k].inverse;
+      },
+      dof_gather(bodies_, x), dof_scatter<false>(bodies_, y));
+  }
+
+  template <int dim>
+  void Dynamics<dim>::exchange(const std::array<double *, 2> side,
+                               const unsigned int stride) const
+  {
+    const std::size_t n = points_.neighbors.size();
+    if (n == 0)
+      return;
+    std::vector<std::vector<double>> out(n), in(n);
+    std::vector<MPI_Request> requests(2 * n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto &neighbor = points_.neighbors[k];
+      in[k].resize(neighbor.points.size() * stride);
+      MPI_Irecv(in[k].data(), int(in[k].size()), MPI_DOUBLE, neighbor.rank, 7,
+                communicator_.mpi(), &requests[k]);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto &neighbor = points_.neighbors[k];
+      out[k].reserve(neighbor.points.size() * stride);
+      for (std::size_t j = 0; j < neighbor.points.size(); ++j) {
+        const double *from = side[neighbor.side[j]] +
+                             std::size_t(neighbor.points[j]) * stride;
+        out[k].insert(out[k].end(), from, from + stride);
+      }
+      MPI_Isend(out[k].data(), int(out[k].size()), MPI_DOUBLE, neighbor.rank,
+                7, communicator_.mpi(), &requests[n + k]);
+    }
+    MPI_Waitall(int(2 * n), requests.data(), MPI_STATUSES_IGNORE);
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto &neighbor = points_.neighbors[k];
+      for (std::size_t j = 0; j < neighbor.points.size(); ++j)
+        std::copy_n(in[k].data() + j * stride, stride,
+                    side[1 - neighbor.side[j]] +
+                      std::size_t(neighbor.points[j]) * stride);
+    }
+  }
+
+  template <int dim>
+  void Dynamics<dim>::build_face_blocks()
+  {
+    // Cartesian blocks of both sides, row by row of a point of the face, so
+    // that shared faces can be completed by the point exchange.
+    std::size_t width = 0;
+    for (const auto &face : points_.faces)
+      width = std::max<std::size_t>(width, face.count);
+    width = std::size_t(
+      communicator_.max(static_cast<double>(width))); // same stride everywhere
+    const std::size_t row = width * dim, stride = dim * row;
+    std::array<std::vector<double>, 2> sides;
+    for (auto &side : sides)
+      side.assign(points_.n_points * stride, 0.);
+
+    // where in a body a point sits
+    struct Place
+    {
+      int body = -1;
+      unsigned int slot = 0;
+    };
+    std::array<std::vector<Place>, 2> place;
+    place.fill(std::vector<Place>(points_.n_points));
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      for (std::size_t s = bodies_.first_slot[b]; s < bodies_.first_slot[b + 1];
+           ++s)
+        if (bodies_.slot_point[s] < points_.n_points)
+          place[bodies_.slot_sign[s] > 0][bodies_.slot_point[s]] = {
+            int(b), unsigned(s - bodies_.first_slot[b])};
+    for (const auto &extra : bodies_.extra_points) {
+      const std::size_t b =
+        std::upper_bound(bodies_.first_slot.begin(), bodies_.first_slot.end(),
+                         extra.first) -
+        bodies_.first_slot.begin() - 1;
+      place[1][extra.second] = {
+        int(b), unsigned(extra.first - bodies_.first_slot[b])};
+    }
+
+    for (const auto &face : points_.faces)
+      for (unsigned int side = 0; side < 2; ++side)
+        for (unsigned int p = 0; p < face.count; ++p) {
+          const Place mine = place[side][face.first + p];
+          if (mine.body < 0)
+            continue;
+          const Block &W = blocks_[bodies_.class_of[mine.body]].delassus;
+          for (unsigned int q = 0; q < face.count; ++q) {
+            const Place other = place[side][face.first + q];
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                sides[side][(face.first + p) * stride + c * row + q * dim + d] =
+                  W(mine.slot * dim + c, other.slot * dim + d);
+          }
+        }
+    exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
+
+    face_blocks_.assign(face_offset_.back(), 0.);
+    for (std::size_t f = 0; f < points_.faces.size(); ++f) {
+      const auto &face = points_.faces[f];
+      const unsigned int n = face.count * dim;
+      double *block = face_blocks_.data() + face_offset_[f];
+      for (unsigned int p = 0; p < face.count; ++p)
+        for (unsigned int q = 0; q < face.count; ++q) {
+          const double *Qp =
+            points_.frame.data() + (face.first + p) * dim * dim;
+          const double *Qq =
+            points_.frame.data() + (face.first + q) * dim * dim;
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int j = 0; j < dim; ++j) {
+              double value = 0.;
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d) {
+                  const std::size_t k =
+                    (face.first + p) * stride + c * row + q * dim + d;
+                  value += Qp[i * dim + c] * (sides[1][k] + sides[0][k]) *
+                           Qq[j * dim + d];
+                }
+              block[(p * dim + i) * n + q * dim + j] = value;
+            }
+        }
+    }
+  }
+
+  template class Dynamics<2>;
+  template class Dynamics<3>;
+} // namespace nsfd

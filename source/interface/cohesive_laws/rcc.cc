@@ -1,0 +1,95 @@
+#include "nsfd/input/section_reader.h"
+#include "nsfd/interface/cohesive_law.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace nsfd
+{
+  /**
+   * Adhesion of Raous, Cangemi and Cocu, rate independent. Their intensity b
+   * minimises b^2 C d^2 / 2 - w b, so b = min(1, w / (C d^2)) with
+   * C d^2 = C_N <u_N>_+^2 + C_T |u_T|^2, and the traction is b^2 C u. In the
+   * form (4) of the report the damage is therefore beta = b^2:
+   *
+   *   T = C d up to u_0 = sqrt(w / C),   T = w^2 / (C d^3) beyond,   G = w,
+   *
+   * half of it dissipated after the peak, in a tail without end.
+   */
+  class Rcc final : public CohesiveLaw
+  {
+  public:
+    explicit Rcc(SectionReader &reader)
+    {
+      stiffness_ = reader.number("stiffness", "", units::stiffness_per_area,
+                                 Range::positive(), "Normal stiffness C_N");
+      adhesion_energy_ =
+          reader.number("adhesion energy", "", units::energy_per_area,
+                        Range::positive(), "Adhesion energy w = G");
+      const std::string text = "Stiffness C_T in shear; default C_N";
+      stiffness_ratio_ = reader.optional("tangential stiffness", text)
+                             ? reader.number("tangential stiffness", "",
+                                             units::stiffness_per_area,
+                                             Range::positive(), text) /
+                                   stiffness_
+                             : 1.;
+      elastic_limit_ = std::sqrt(adhesion_energy_ / stiffness_);
+    }
+
+    bool extrinsic() const override { return false; }
+    double normal_stiffness() const override { return stiffness_; }
+    double stiffness_ratio() const override { return stiffness_ratio_; }
+    double shear_weight() const override { return stiffness_ratio_; }
+
+    double beta(const double d) const override
+    {
+      const double b = intensity(d);
+      return b * b;
+    }
+
+    double traction(const double d) const override
+    {
+      if (d <= elastic_limit_)
+        return stiffness_ * d;
+      return strength() * intensity(d) * (elastic_limit_ / d);
+    }
+
+    double energy(const double d) const override
+    {
+      if (d <= elastic_limit_)
+        return 0.5 * stiffness_ * d * d;
+      return adhesion_energy_ * (1. - 0.5 * intensity(d));
+    }
+
+    double elastic_limit() const override { return elastic_limit_; }
+    double peak_opening() const override { return elastic_limit_; }
+
+    double final_opening() const override
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+
+    double strength() const override { return stiffness_ * elastic_limit_; }
+    double toughness() const override { return adhesion_energy_; }
+
+    /** Just after the peak. */
+    double steepest_softening() const override { return 3. * stiffness_; }
+
+  private:
+    double stiffness_, adhesion_energy_, stiffness_ratio_, elastic_limit_;
+
+    /** The authors' own beta, min(1, w / (C d^2)). */
+    double intensity(const double d) const
+    {
+      if (d <= elastic_limit_)
+        return 1.;
+      const double x = elastic_limit_ / d;
+      return x * x;
+    }
+  };
+
+  NSFD_REGISTER(CohesiveLawRegistry, Rcc, "rcc",
+                "Intrinsic adhesion of Raous, Cangemi and Cocu, endless tail; "
+                "from stiffness and adhesion energy");
+} // namespace nsfd

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "nsfd/input/scene_input.h"
+
+#include <deal.II/base/point.h>
+#include <deal.II/grid/tria_description.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /** A mesh of one level as plain data, equal on every rank. */
+  template <int dim>
+  struct CoarseMesh {
+    std::vector<dealii::Point<dim>> vertices;
+    std::vector<dealii::CellData<dim>> cells;
+    dealii::SubCellData boundary; ///< faces whose boundary id is not 0
+  };
+
+  /** Edges, corner angles (degrees) and corner Jacobians of one cell. */
+  struct CellShape {
+    double shortest_edge, longest_edge;
+    double smallest_angle, largest_angle;
+    double scaled_jacobian; ///< smallest of the corners
+  };
+
+  /** Of a simplex (dim + 1 corners) or a quad / hex (2^dim corners). */
+  template <int dim>
+  CellShape cell_shape(const std::vector<dealii::Point<dim>> &corners);
+
+  /** Local vertices of each face. */
+  template <int dim>
+  std::vector<std::vector<unsigned int>> cell_faces(unsigned int n_corners);
+
+  /** True for the types that fill the box between the two corners. */
+  bool is_box(const std::string &mesh_type);
+
+  /**
+   * rectangle, brick, notched plate, crossed triangles, diagonal triangles or
+   * tetrahedra, with 2^refinements times the cells of the input.
+   */
+  template <int dim>
+  CoarseMesh<dim> lattice_mesh(const MeshInput &input, unsigned int refinements,
+                               std::vector<std::string> &problems);
+
+  /**
+   * Move every interior vertex by less than @p share of its shortest edge; the
+   * way depends on seed and position in the mesh only.
+   */
+  template <int dim>
+  void distort(CoarseMesh<dim> &mesh, double share, unsigned int seed);
+
+  /**
+   * Put the meshes into one; coinciding boundary vertices of different bodies
+   * become one. The body is the material id. Touching faces that do not match
+   * and overlapping boxes are problems.
+   */
+  template <int dim>
+  CoarseMesh<dim> merge_bodies(const std::vector<BodyInput> &bodies,
+                               const std::vector<CoarseMesh<dim>> &meshes,
+                               std::vector<std::string> &problems);
+
+  /** Empty mesh, stray values, inverted and degenerate cells, glued faces. */
+  template <int dim>
+  void check(const CoarseMesh<dim> &mesh, std::vector<std::string> &problems);
+
+  /** (1, 2) */
+  template <int dim>
+  std::string text(const dealii::Point<dim> &p);
+} // namespace nsfd

@@ -1,0 +1,301 @@
+#include "nsfd/mesh/mesh_builder.h"
+
+#include "coarse_mesh.h"
+
+#include <deal.II/distributed/shared_tria.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+#include <sstream>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const std::vector<std::string> own_types = {"rectangle",
+                                                "brick",
+                                                "notched plate",
+                                                "crossed triangles",
+                                                "diagonal triangles",
+                                                "tetrahedra",
+                                                "bodies"};
+
+    /** Those of generate_from_name_and_arguments() that fill a volume. */
+    const std::vector<std::string> generators = {
+        "channel_with_cylinder",
+        "cheese",
+        "concentric_hyper_shells",
+        "cylinder",
+        "cylinder_shell",
+        "eccentric_hyper_shell",
+        "enclosed_hyper_cube",
+        "general_cell",
+        "half_hyper_ball",
+        "half_hyper_shell",
+        "hyper_L",
+        "hyper_ball",
+        "hyper_ball_balanced",
+        "hyper_cross",
+        "hyper_cube",
+        "hyper_cube_slit",
+        "hyper_cube_with_cylindrical_hole",
+        "hyper_rectangle",
+        "hyper_shell",
+        "moebius",
+        "plate_with_a_hole",
+        "quarter_hyper_ball",
+        "quarter_hyper_shell",
+        "simplex",
+        "subdivided_cylinder",
+        "subdivided_hyper_cube",
+        "subdivided_hyper_rectangle",
+        "torus",
+        "truncated_cone"};
+
+    bool contains(const std::vector<std::string> &list, const std::string &name)
+    {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    }
+
+    /** What deal.II says of an error, as one line. */
+    std::string message(const std::exception &exception)
+    {
+      std::ostringstream out;
+      if (const auto *error = dynamic_cast<const ExceptionBase *>(&exception))
+        error->print_info(out);
+      else
+        out << exception.what();
+      std::istringstream words(out.str());
+      std::string result, word;
+      while (words >> word)
+        result += (result.empty() ? "" : " ") + word;
+      const std::array<std::pair<std::string, std::string>, 5> shorter = {
+          {{"[Double -MAX_DOUBLE...MAX_DOUBLE (inclusive)]", "number"},
+           {"[Integer]", "integer"},
+           {"[Bool]", "true or false"},
+           {" of length 0...4294967295 (inclusive)", ""},
+           {" (inclusive)", ""}}};
+      for (const auto &[from, to] : shorter)
+        for (auto at = result.find(from); at != std::string::npos;
+             at = result.find(from))
+          result.replace(at, from.size(), to);
+      return result;
+    }
+
+    /** The active cells of a mesh without hanging nodes. */
+    template <int dim>
+    CoarseMesh<dim> active_level(const Triangulation<dim> &triangulation)
+    {
+      CoarseMesh<dim> mesh;
+      std::vector<unsigned int> number(triangulation.n_vertices(),
+                                       numbers::invalid_unsigned_int);
+      for (const auto &cell : triangulation.active_cell_iterators()) {
+        auto &data = mesh.cells.emplace_back(cell->n_vertices());
+        data.material_id = cell->material_id();
+        for (const unsigned int v : cell->vertex_indices()) {
+          unsigned int &n = number[cell->vertex_index(v)];
+          if (n == numbers::invalid_unsigned_int) {
+            n = mesh.vertices.size();
+            mesh.vertices.push_back(cell->vertex(v));
+          }
+          data.vertices[v] = n;
+        }
+        for (const unsigned int f : cell->face_indices()) {
+          const auto face = cell->face(f);
+          if (!face->at_boundary() || face->boundary_id() == 0)
+            continue;
+          CellData<dim - 1> part(face->n_vertices());
+          for (const unsigned int v : face->vertex_indices())
+            part.vertices[v] = number[face->vertex_index(v)];
+          part.boundary_id = face->boundary_id();
+          if constexpr (dim == 2)
+            mesh.boundary.boundary_lines.push_back(part);
+          else
+            mesh.boundary.boundary_quads.push_back(part);
+        }
+      }
+      return mesh;
+    }
+
+    /** Refined along the generator's own curved boundaries, then straight. */
+    template <int dim>
+    CoarseMesh<dim> generated_mesh(const MeshInput &input,
+                                   const unsigned int refinements,
+                                   std::vector<std::string> &problems)
+    {
+      try {
+        Triangulation<dim> triangulation;
+        GridGenerator::generate_from_name_and_arguments(
+            triangulation, input.type, input.generator_arguments);
+        if (triangulation.n_active_cells() *
+                std::ldexp(1., dim * int(refinements)) >
+            5e8) {
+          problems.push_back("too many cells; reduce `refinements`");
+          return {};
+        }
+        triangulation.refine_global(refinements);
+        if (triangulation.has_hanging_nodes() ||
+            triangulation.is_mixed_mesh()) {
+          problems.push_back(fmt::format("the generator `{}` makes a mesh with "
+                                         "hanging nodes or mixed cells",
+                                         input.type));
+          return {};
+        }
+        return active_level(triangulation);
+      } catch (const std::exception &exception) {
+        problems.push_back(fmt::format(
+            "the generator `{}` does not accept `{}`: {}", input.type,
+            input.generator_arguments, message(exception)));
+        return {};
+      }
+    }
+
+    template <int dim>
+    CoarseMesh<dim> one_mesh(const MeshInput &input,
+                             const unsigned int refinements,
+                             std::vector<std::string> &problems)
+    {
+      CoarseMesh<dim> mesh;
+      if (!(input.distortion >= 0.))
+        problems.push_back(fmt::format("`distortion` ({:g}) must not be "
+                                       "negative",
+                                       input.distortion));
+      else if (contains(generators, input.type))
+        mesh = generated_mesh<dim>(input, refinements, problems);
+      else if (contains(own_types, input.type) && input.type != "bodies")
+        mesh = lattice_mesh<dim>(input, refinements, problems);
+      else
+        problems.push_back(fmt::format(
+            "there is no mesh type `{}`{}; there are {}", input.type,
+            input.type == "bodies" ? " for one body" : "",
+            fmt::join(mesh_types(), ", ")));
+      if (problems.empty() && input.distortion > 0.)
+        distort(mesh, input.distortion, input.seed);
+      return mesh;
+    }
+
+    template <int dim>
+    CoarseMesh<dim> mesh_of_bodies(const SceneInput &input,
+                                   std::vector<std::string> &problems)
+    {
+      if (input.bodies.empty()) {
+        problems.push_back("a mesh of type `bodies` needs `Body:` sections");
+        return {};
+      }
+      std::vector<CoarseMesh<dim>> meshes;
+      std::set<std::string> names;
+      for (const BodyInput &body : input.bodies) {
+        std::vector<std::string> of_body;
+        meshes.push_back(one_mesh<dim>(
+            body.mesh, body.mesh.refinements + input.mesh.refinements,
+            of_body));
+        if (of_body.empty() && meshes.back().cells.empty())
+          of_body.push_back("the mesh has no cell");
+        if (!names.insert(body.name).second)
+          of_body.push_back("there are two bodies of this name");
+        if (body.separation != 0.)
+          of_body.push_back("`separation` is not available for this mesh");
+        for (const std::string &problem : of_body)
+          problems.push_back("Body: " + body.name + ": " + problem);
+      }
+      if (!problems.empty())
+        return {};
+      CoarseMesh<dim> mesh = merge_bodies(input.bodies, meshes, problems);
+      if (problems.empty() && input.mesh.distortion > 0.)
+        distort(mesh, input.mesh.distortion, input.mesh.seed);
+      return mesh;
+    }
+
+    /**
+     * deal.II stores every line once; quads and hexes that share a line must
+     * agree on its direction. True for lattices, not for any merged mesh.
+     */
+    template <int dim>
+    bool lines_agree(const std::vector<CellData<dim>> &cells)
+    {
+      std::vector<std::pair<unsigned int, unsigned int>> lines;
+      for (const auto &cell : cells)
+        for (unsigned int v = 0; v < cell.vertices.size(); ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            if (!(v >> d & 1u))
+              lines.emplace_back(cell.vertices[v], cell.vertices[v | 1u << d]);
+      std::sort(lines.begin(), lines.end());
+      return std::none_of(lines.begin(), lines.end(), [&](const auto &line) {
+        return line.first < line.second &&
+               std::binary_search(lines.begin(), lines.end(),
+                                  std::pair(line.second, line.first));
+      });
+    }
+
+    template <int dim>
+    std::unique_ptr<Triangulation<dim>> make(CoarseMesh<dim> &mesh,
+                                             const MPI_Comm communicator)
+    {
+      std::unique_ptr<Triangulation<dim>> result;
+      if (mesh.cells[0].vertices.size() == dim + 1)
+        result = std::make_unique<parallel::shared::Triangulation<dim>>(
+            communicator, Triangulation<dim>::none, true,
+            parallel::shared::Triangulation<dim>::partition_metis);
+      else {
+        if (!lines_agree(mesh.cells))
+          GridTools::consistently_order_cells(mesh.cells);
+        result = std::make_unique<parallel::distributed::Triangulation<dim>>(
+            communicator);
+      }
+      result->create_triangulation(mesh.vertices, mesh.cells, mesh.boundary);
+      return result;
+    }
+  } // namespace
+
+  std::vector<std::string> mesh_types()
+  {
+    std::vector<std::string> types = own_types;
+    types.insert(types.end(), generators.begin(), generators.end());
+    return types;
+  }
+
+  template <int dim>
+  std::unique_ptr<Triangulation<dim>>
+  build_mesh(const SceneInput &input, const MPI_Comm communicator,
+             std::vector<std::string> &problems)
+  {
+    const MeshInput &mesh_input = input.mesh;
+    const bool by_p4est =
+        (mesh_input.type == "rectangle" || mesh_input.type == "brick") &&
+        mesh_input.distortion == 0.;
+    std::vector<std::string> found;
+    CoarseMesh<dim> mesh =
+        mesh_input.type == "bodies"
+            ? mesh_of_bodies<dim>(input, found)
+            : one_mesh<dim>(mesh_input, by_p4est ? 0 : mesh_input.refinements,
+                            found);
+    if (found.empty())
+      check(mesh, found);
+    std::unique_ptr<Triangulation<dim>> result;
+    if (found.empty())
+      try {
+        result = make(mesh, communicator);
+        if (by_p4est)
+          result->refine_global(mesh_input.refinements);
+      } catch (const std::exception &exception) {
+        result.reset();
+        found.push_back("the mesh cannot be used: " + message(exception));
+      }
+    for (const std::string &problem : found)
+      problems.push_back((problem.rfind("Body: ", 0) == 0 ? "" : "Mesh: ") +
+                         problem);
+    return result;
+  }
+
+  template std::unique_ptr<Triangulation<2>>
+  build_mesh(const SceneInput &, MPI_Comm, std::vector<std::string> &);
+  template std::unique_ptr<Triangulation<3>>
+  build_mesh(const SceneInput &, MPI_Comm, std::vector<std::string> &);
+} // namespace nsfd

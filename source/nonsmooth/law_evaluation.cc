@@ -1,0 +1,81 @@
+#include "nsfd/nonsmooth/solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  template <int dim>
+  LawEvaluation<dim>::LawEvaluation(const OneStepProblem<dim> &problem,
+                                    const Dynamics<dim> &dynamics,
+                                    const double energy_scale,
+                                    const double tolerance)
+    : velocity(problem.n_points * dim)
+    , defect(problem.n_points * dim)
+    , solutions(problem.n_points)
+    , problem_(problem)
+    , dynamics_(dynamics)
+    , floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
+  {
+    // local solves start from the opening without any change
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      solutions[i].opening = problem.opening_max[i];
+  }
+
+  template <int dim>
+  void LawEvaluation<dim>::update(const std::vector<double> &impulse)
+  {
+    dynamics_.apply_delassus(impulse.data(), velocity.data());
+    for (std::size_t k = 0; k < velocity.size(); ++k)
+      velocity[k] += problem_.free_velocity[k];
+    update_laws(impulse);
+  }
+
+  template <int dim>
+  std::array<double, dim> LawEvaluation<dim>::local_velocity(
+    const std::vector<double> &impulse, const std::size_t i) const
+  {
+    std::array<double, dim> local;
+    for (unsigned int c = 0; c < dim; ++c)
+      local[c] = velocity[i * dim + c] - majorant(i, c) * impulse[i * dim + c];
+    return local;
+  }
+
+  template <int dim>
+  void LawEvaluation<dim>::update_laws(const std::vector<double> &impulse)
+  {
+    ++law_calls;
+    for (std::size_t i = 0; i < problem_.n_points; ++i) {
+      solutions[i] = solve_point<dim>(problem_, i, local_velocity(impulse, i),
+                                      majorant(i, 0), majorant(i, 1),
+                                      solutions[i].opening);
+      for (unsigned int c = 0; c < dim; ++c)
+        defect[i * dim + c] =
+          impulse[i * dim + c] - solutions[i].impulse[c];
+    }
+    const std::size_t n = problem_.n_owned;
+    terms_.assign(2 * n, 0.);
+    worst_error = 0.;
+    worst_point = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double R = majorant(i, c), d = defect[i * dim + c],
+                     P = impulse[i * dim + c];
+        terms_[i] += R * d * d;
+        terms_[n + i] += R * P * P;
+      }
+      if (!(terms_[i] <= worst_error)) {
+        worst_error = terms_[i];
+        worst_point = i;
+      }
+    }
+    const auto sums = dynamics_.communicator().sums(terms_.data(), 2, n);
+    const double scale = std::sqrt(sums[1]) + floor_;
+    const double norm = std::sqrt(sums[0]);
+    error = norm == 0. ? 0. : norm / scale;
+    worst_error = scale > 0. ? std::sqrt(worst_error) / scale : 0.;
+  }
+
+  template class LawEvaluation<2>;
+  template class LawEvaluation<3>;
+} // namespace nsfd

@@ -1,0 +1,260 @@
+#include "nsfd/nonsmooth/solver.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace nsfd
+{
+  /**
+   * Jones-Plassmann: in each round a face without a colour whose key is the
+   * largest among such faces of its two bodies takes the smallest colour that
+   * its bodies have not used. Keys are the same on all ranks, so is the
+   * colouring.
+   */
+  template <int dim>
+  std::vector<std::vector<unsigned int>>
+  colour_faces(const Dynamics<dim> &dynamics)
+  {
+    const auto &points = dynamics.points();
+    const std::size_t n_bodies = dynamics.bodies().size();
+    std::vector<int> colour(points.faces.size(), -1);
+    std::vector<std::uint64_t> used(n_bodies, 0);
+    // A body's largest open key, and per point of shared faces what the other
+    // rank knows: key halves (exact as doubles) and used colours.
+    std::array<std::vector<double>, 2> side;
+    const unsigned int stride = 4;
+    for (auto &s : side)
+      s.assign((points.n_points + 1) * stride, 0.);
+    bool open = true;
+    while (dynamics.communicator().any(open)) {
+      std::vector<std::uint64_t> top(n_bodies, 0);
+      for (std::size_t f = 0; f < points.faces.size(); ++f)
+        if (colour[f] < 0)
+          for (const int b : points.faces[f].bodies)
+            if (b >= 0)
+              top[b] = std::max(top[b], points.faces[f].key);
+      for (const auto &face : points.faces)
+        for (unsigned int s = 0; s < 2; ++s)
+          if (face.bodies[s] >= 0) {
+            const int b = face.bodies[s];
+            double *out = side[s].data() + std::size_t(face.first) * stride;
+            out[0] = double(top[b] >> 32);
+            out[1] = double(top[b] & 0xffffffffu);
+            out[2] = double(used[b] >> 32);
+            out[3] = double(used[b] & 0xffffffffu);
+          }
+      dynamics.exchange({{side[0].data(), side[1].data()}}, stride);
+      const auto join = [](const double high, const double low) {
+        return (std::uint64_t(high) << 32) | std::uint64_t(low);
+      };
+      open = false;
+      std::vector<std::pair<std::size_t, int>> chosen;
+      for (std::size_t f = 0; f < points.faces.size(); ++f) {
+        const auto &face = points.faces[f];
+        if (colour[f] >= 0)
+          continue;
+        std::uint64_t limit = 0, taken = 0;
+        for (unsigned int s = 0; s < 2; ++s) {
+          const double *in = side[s].data() + std::size_t(face.first) * stride;
+          if (face.bodies[s] >= 0 || face.neighbor_rank >= 0) {
+            limit = std::max(limit, join(in[0], in[1]));
+            taken |= join(in[2], in[3]);
+          }
+        }
+        if (face.key < limit) {
+          open = true;
+          continue;
+        }
+        int mine = 0;
+        while (taken & (std::uint64_t(1) << mine))
+          ++mine;
+        chosen.emplace_back(f, mine);
+      }
+      for (const auto &[f, mine] : chosen) {
+        colour[f] = mine;
+        for (const int b : points.faces[f].bodies)
+          if (b >= 0)
+            used[b] |= std::uint64_t(1) << mine;
+      }
+    }
+    const int n_colours = int(dynamics.communicator().max(
+                            colour.empty() ? -1. :
+                                             *std::max_element(colour.begin(),
+                                                               colour.end()))) +
+                          1;
+    std::vector<std::vector<unsigned int>> result(n_colours);
+    for (std::size_t f = 0; f < colour.size(); ++f)
+      result[colour[f]].push_back(unsigned(f));
+    return result;
+  }
+
+  template <int dim>
+  void
+  gauss_seidel(const OneStepProblem<dim> &problem,
+               const Dynamics<dim> &dynamics,
+               const std::vector<std::vector<unsigned int>> &colours,
+               const unsigned int count,
+               std::vector<double> &impulse)
+  {
+    const auto &points = dynamics.points();
+    const auto &bodies = dynamics.bodies();
+    const auto &blocks = dynamics.class_blocks();
+
+    // where in its bodies a point sits
+    struct Place
+    {
+      int body = -1;
+      unsigned int slot = 0;
+    };
+    std::array<std::vector<Place>, 2> place;
+    place.fill(std::vector<Place>(points.n_points));
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
+           ++s)
+        if (bodies.slot_point[s] < points.n_points)
+          place[bodies.slot_sign[s] > 0][bodies.slot_point[s]] = {
+            int(b), unsigned(s - bodies.first_slot[b])};
+    for (const auto &[slot, point] : bodies.extra_points) {
+      const std::size_t b =
+        std::upper_bound(bodies.first_slot.begin(), bodies.first_slot.end(),
+                         slot) -
+        bodies.first_slot.begin() - 1;
+      place[1][point] = {int(b), unsigned(slot - bodies.first_slot[b])};
+    }
+
+    // Cartesian velocity at every point from each side
+    std::array<std::vector<double>, 2> side;
+    for (auto &s : side)
+      s.assign((points.n_points + 1) * dim, 0.);
+    const auto add = [&](const std::size_t i, const double *change) {
+      const double *Q = points.frame.data() + i * dim * dim;
+      for (unsigned int s = 0; s < 2; ++s) {
+        const Place mine = place[s][i];
+        if (mine.body < 0)
+          continue;
+        const double sign = s == 1 ? 1. : -1.;
+        double P[dim];
+        for (unsigned int c = 0; c < dim; ++c) {
+          P[c] = 0.;
+          for (unsigned int k = 0; k < dim; ++k)
+            P[c] += sign * Q[k * dim + c] * change[k];
+        }
+        const Block &W = blocks[bodies.class_of[mine.body]].delassus;
+        const std::size_t first = bodies.first_slot[mine.body],
+                          n = bodies.first_slot[mine.body + 1] - first;
+        const auto add_at = [&](const std::size_t t, const std::size_t point,
+                                const double other) {
+          double *U = side[other > 0.].data() + point * dim;
+          for (unsigned int d = 0; d < dim; ++d) {
+            const double *column =
+              &W.values[std::size_t(mine.slot * dim + d) * padded(W.rows)];
+            for (unsigned int c = 0; c < dim; ++c)
+              U[c] += other * column[t * dim + c] * P[d];
+          }
+        };
+        for (std::size_t t = 0; t < n; ++t)
+          add_at(t, bodies.slot_point[first + t], bodies.slot_sign[first + t]);
+        for (const auto &[slot, point] : bodies.extra_points)
+          if (slot >= first && slot < first + n)
+            add_at(slot - first, point, 1.);
+      }
+    };
+    for (std::size_t i = 0; i < points.n_points; ++i)
+      add(i, impulse.data() + i * dim);
+    dynamics.exchange({{side[0].data(), side[1].data()}}, dim);
+
+    std::vector<double> opening(problem.opening_max);
+    for (unsigned int sweep = 0; sweep < count; ++sweep)
+      for (const auto &faces : colours) {
+        for (const unsigned int f : faces)
+          for (unsigned int i = points.faces[f].first;
+               i < points.faces[f].first + points.faces[f].count; ++i) {
+            const double *Q = points.frame.data() + i * dim * dim;
+            std::array<double, dim> local;
+            for (unsigned int k = 0; k < dim; ++k) {
+              local[k] = problem.free_velocity[i * dim + k];
+              for (unsigned int c = 0; c < dim; ++c)
+                local[k] += Q[k * dim + c] *
+                            (side[1][i * dim + c] + side[0][i * dim + c]);
+              local[k] -= (k == 0 ? problem.majorant_normal[i]
+                                  : problem.majorant_tangential[i]) *
+                          impulse[i * dim + k];
+            }
+            const auto solution = solve_point<dim>(
+              problem, i, local, problem.majorant_normal[i],
+              problem.majorant_tangential[i], opening[i]);
+            opening[i] = solution.opening;
+            double change[dim];
+            bool changed = false;
+            for (unsigned int k = 0; k < dim; ++k) {
+              change[k] = solution.impulse[k] - impulse[i * dim + k];
+              impulse[i * dim + k] = solution.impulse[k];
+              changed = changed || change[k] != 0.;
+            }
+            if (changed)
+              add(i, change);
+          }
+        // A rank updates the sides of its own bodies; the points of a shared
+        // face are solved by both ranks with the same numbers.
+        dynamics.exchange({{side[0].data(), side[1].data()}}, dim);
+      }
+  }
+
+  namespace
+  {
+    /** Sweeps of the full law until the natural map is small. */
+    template <int dim>
+    class GaussSeidel final : public NonsmoothSolver<dim>
+    {
+    public:
+      SolverReport solve(const OneStepProblem<dim> &problem,
+                         Dynamics<dim> &dynamics,
+                         double,
+                         const SolverControl &control,
+                         std::vector<double> &impulse,
+                         LawEvaluation<dim> &evaluation) override
+      {
+        if (colours_.empty())
+          colours_ = colour_faces(dynamics);
+        SolverReport report;
+        evaluation.update(impulse);
+        unsigned int batch = 5;
+        while (evaluation.error > control.tolerance &&
+               report.sweeps < 100 * control.maximum_iterations) {
+          gauss_seidel(problem, dynamics, colours_, batch, impulse);
+          report.sweeps += batch;
+          batch = std::min(100u, batch * 2);
+          evaluation.update(impulse);
+          if (!(evaluation.error < std::numeric_limits<double>::infinity()))
+            break;
+        }
+        report.residual = evaluation.error;
+        report.converged = evaluation.error <= control.tolerance;
+        return report;
+      }
+
+    private:
+      std::vector<std::vector<unsigned int>> colours_;
+    };
+
+    using GaussSeidel2 = GaussSeidel<2>;
+    using GaussSeidel3 = GaussSeidel<3>;
+    NSFD_REGISTER(SolverRegistry<2>, GaussSeidel2, "gauss seidel",
+                  "nonlinear Gauss-Seidel over coloured faces, damage and "
+                  "friction in the local solve");
+    NSFD_REGISTER(SolverRegistry<3>, GaussSeidel3, "gauss seidel",
+                  "nonlinear Gauss-Seidel over coloured faces, damage and "
+                  "friction in the local solve");
+  } // namespace
+
+  template std::vector<std::vector<unsigned int>>
+  colour_faces<2>(const Dynamics<2> &);
+  template std::vector<std::vector<unsigned int>>
+  colour_faces<3>(const Dynamics<3> &);
+  template void gauss_seidel<2>(const OneStepProblem<2> &, const Dynamics<2> &,
+                                const std::vector<std::vector<unsigned int>> &,
+                                unsigned int, std::vector<double> &);
+  template void gauss_seidel<3>(const OneStepProblem<3> &, const Dynamics<3> &,
+                                const std::vector<std::vector<unsigned int>> &,
+                                unsigned int, std::vector<double> &);
+} // namespace nsfd

@@ -1,0 +1,60 @@
+#include "nsfd/time/step_control.h"
+
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  StepControl::StepControl(const double end,
+                           const double base,
+                           const unsigned int maximum_halvings)
+    : end_(end)
+    , ceiling_(std::numeric_limits<double>::infinity())
+    , n_base_(static_cast<unsigned long long>(
+        std::fmax(1., std::ceil(end / base * (1. - 1e-12)))))
+    , maximum_level_(maximum_halvings)
+  {
+    base_ = end / double(n_base_);
+  }
+
+  double StepControl::time() const
+  {
+    if (finished())
+      return end_;
+    return (double(base_count_) + std::ldexp(double(position_), -int(level_))) *
+           base_;
+  }
+
+  double StepControl::step() const { return std::ldexp(base_, -int(level_)); }
+
+  void StepControl::accept()
+  {
+    ++position_;
+    if (level_ > 0 && position_ % 2 == 0 && 2. * step() <= ceiling_) {
+      position_ /= 2;
+      --level_;
+    }
+    if (position_ == 1ull << level_) {
+      ++base_count_;
+      position_ = 0;
+    }
+  }
+
+  bool StepControl::halve()
+  {
+    if (level_ == maximum_level_)
+      return false;
+    ++level_;
+    position_ *= 2;
+    ++n_halvings_;
+    return true;
+  }
+
+  void StepControl::limit(const double limit)
+  {
+    while (step() > limit && level_ < maximum_level_) {
+      ++level_;
+      position_ *= 2;
+    }
+  }
+} // namespace nsfd
