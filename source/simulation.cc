@@ -377,16 +377,14 @@ namespace nsfd
       view.row = &row;
       std::vector<CellState> cells;
       if (input_.verification->wants_cells()) {
-        // number, centre, u, v, stress, volume
-        constexpr unsigned int width = 17;
+        // centre, u, v, stress, volume
+        constexpr unsigned int width = 16;
         const auto &bodies = discretization_->bodies();
         std::vector<double> mine(bodies.size() * width, 0.);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
-          mine[b * width] = double(discretization_->global_cell(unsigned(b)));
           for (unsigned int c = 0; c < dim; ++c)
-            mine[b * width + 1 + c] =
-              discretization_->centre(unsigned(b))[c];
-          mine[b * width + 16] = discretization_->volume(unsigned(b));
+            mine[b * width + c] = discretization_->centre(unsigned(b))[c];
+          mine[b * width + 15] = discretization_->volume(unsigned(b));
         }
         const auto average = [&](const std::vector<double> &unknowns,
                                  const unsigned int at, const bool stress) {
@@ -401,12 +399,12 @@ namespace nsfd
               if (stress) {
                 const auto sigma = discretization_->stress(b, gradient);
                 for (unsigned int c = 0; c < 6; ++c)
-                  mine[b * width + 10 + c] += share * sigma[c];
+                  mine[b * width + 9 + c] += share * sigma[c];
               }
             });
         };
-        average(state_.displacement, 4, true);
-        average(state_.velocity, 7, false);
+        average(state_.displacement, 3, true);
+        average(state_.velocity, 6, false);
         std::vector<int> counts(communicator_.size()),
           offsets(communicator_.size(), 0);
         const int count = int(mine.size());
@@ -421,13 +419,18 @@ namespace nsfd
         cells.resize(all.size() / width);
         for (std::size_t k = 0; k < cells.size(); ++k) {
           const double *in = all.data() + k * width;
-          CellState &cell = cells[std::size_t(in[0])];
-          std::copy_n(in + 1, 3, cell.centre.begin());
-          std::copy_n(in + 4, 3, cell.displacement.begin());
-          std::copy_n(in + 7, 3, cell.velocity.begin());
-          std::copy_n(in + 10, 6, cell.stress.begin());
-          cell.volume = in[16];
+          CellState &cell = cells[k];
+          std::copy_n(in, 3, cell.centre.begin());
+          std::copy_n(in + 3, 3, cell.displacement.begin());
+          std::copy_n(in + 6, 3, cell.velocity.begin());
+          std::copy_n(in + 9, 6, cell.stress.begin());
+          cell.volume = in[15];
         }
+        // the numbers of cells depend on the ranks, their places do not
+        std::sort(cells.begin(), cells.end(),
+                  [](const CellState &a, const CellState &b) {
+                    return a.centre < b.centre;
+                  });
         view.cells = &cells;
       }
       input_.verification->observe(view);
@@ -556,6 +559,7 @@ namespace nsfd
       c["block_factorisations"] = double(dynamics.factorisations);
       c["global_factorisations"] = double(dynamics.global_factorisations);
       c["load_assemblies"] = double(stepper.load_assemblies);
+      c["activation_rounds"] = double(stepper.activation_rounds);
       c["rejected_steps"] = rejected_;
       c["steps_beyond_uniqueness"] = beyond_unique_;
       c["penetration_excess"] = state_.penetration_excess;

@@ -21,14 +21,13 @@ namespace nsfd
   namespace
   {
     const char *const short_help =
-      "nsfd - nonsmooth fracture dynamics\n"
-      "  nsfd FILE.prm             run a scene\n"
-      "  nsfd FILE.prm --check     only say whether it would run\n"
-      "  nsfd --help               all options\n";
+        "nsfd - nonsmooth fracture dynamics\n"
+        "  nsfd FILE.prm             run a scene\n"
+        "  nsfd FILE.prm --check     only say whether it would run\n"
+        "  nsfd --help               all options\n";
 
     /** Options without a value, and what they switch on. */
-    struct Flag
-    {
+    struct Flag {
       const char *name;
       bool *target;
       const char *text;
@@ -59,13 +58,11 @@ namespace nsfd
     }
 
     /** Arguments that no option has taken. */
-    int fail_at(std::ostream &err, const std::string &word,
-                const CLI::App &app)
+    int fail_at(std::ostream &err, const std::string &word, const CLI::App &app)
     {
       const std::string option = word.substr(0, word.find('='));
       if (option.empty() || option[0] != '-')
-        return fail(err,
-                    fmt::format("`{}` is one file too many", word),
+        return fail(err, fmt::format("`{}` is one file too many", word),
                     "run one scene at a time");
       std::vector<std::string> known;
       for (const CLI::Option *other : app.get_options())
@@ -119,28 +116,29 @@ namespace nsfd
     bool help = false, list = false, version = false;
     app.add_option("FILE.prm", command_line.file, "the scene to run");
     // one value per --set: further words are not its own
-    app
-      .add_option_function<std::vector<std::string>>(
-        "--set",
-        [&](const std::vector<std::string> &values) {
-          command_line.set = values;
-        },
-        "change an entry, 'Section/name=value'; repeatable")
-      ->type_size(1)
-      ->allow_extra_args(false)
-      ->type_name("TEXT");
+    app.add_option_function<std::vector<std::string>>(
+           "--set",
+           [&](const std::vector<std::string> &values) {
+             command_line.set = values;
+           },
+           "change an entry, 'Section/name=value'; repeatable")
+        ->type_size(1)
+        ->allow_extra_args(false)
+        ->type_name("TEXT");
     app.add_option("--output", command_line.output,
                    "folder for the results, default output/FILE")
-      ->type_name("DIR");
+        ->type_name("DIR");
     const Flag flags[] = {
-      {"--force", &command_line.force, "overwrite the results of an earlier run"},
-      {"--check", &command_line.check, "say whether it would run, do not run it"},
-      {"--print-parameters", &command_line.print_parameters,
-       "print the complete file, all defaults with their texts"},
-      {"--quiet", &command_line.quiet, "print errors only"},
-      {"--list", &list, "print the names of all laws, meshes, solvers, ..."},
-      {"--version", &version, "print the version"},
-      {"--help", &help, "print this help"}};
+        {"--force", &command_line.force,
+         "overwrite the results of an earlier run"},
+        {"--check", &command_line.check,
+         "say whether it would run, do not run it"},
+        {"--print-parameters", &command_line.print_parameters,
+         "print the complete file, all defaults with their texts"},
+        {"--quiet", &command_line.quiet, "print errors only"},
+        {"--list", &list, "print the names of all laws, meshes, solvers, ..."},
+        {"--version", &version, "print the version"},
+        {"--help", &help, "print this help"}};
     for (const Flag &flag : flags)
       app.add_flag(flag.name, *flag.target, flag.text);
 

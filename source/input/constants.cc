@@ -29,10 +29,10 @@ namespace nsfd
                                  entry.name),
                      "give it another name");
       else if (!is_identifier(entry.name))
-        errors.error(entry.name_location,
-                     fmt::format("`{}` cannot be the name of a constant",
-                                 entry.name),
-                     "use letters, digits and _, and no digit in front");
+        errors.error(
+            entry.name_location,
+            fmt::format("`{}` cannot be the name of a constant", entry.name),
+            "use letters, digits and _, and no digit in front");
     }
   } // namespace
 
@@ -56,10 +56,10 @@ namespace nsfd
                                     section.constants(), false);
         if (formula.error)
           errors.error(
-            value->locate(formula.error->offset, formula.error->length),
-            fmt::format("{} = {}: {}", entry.name, value->text(),
-                        formula.error->message),
-            formula.error->advice);
+              value->locate(formula.error->offset, formula.error->length),
+              fmt::format("{} = {}: {}", entry.name, value->text(),
+                          formula.error->message),
+              formula.error->advice);
         else
           constant = {*formula.constant, formula.unit.value_or(units::none),
                       !formula.unit};

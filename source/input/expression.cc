@@ -35,7 +35,8 @@ namespace nsfd
     {
       parser.DefineFun("if", select);
       parser.DefineFun("heaviside", heaviside);
-      parser.DefineFun("pow", static_cast<double (*)(double, double)>(std::pow));
+      parser.DefineFun("pow",
+                       static_cast<double (*)(double, double)>(std::pow));
       parser.DefineFun("mod",
                        static_cast<double (*)(double, double)>(std::fmod));
       parser.DefineFun("floor", static_cast<double (*)(double)>(std::floor));

@@ -26,20 +26,18 @@ namespace nsfd
       if (part.dimension.certainty == formula::Certainty::stated) {
         result.unit = part.dimension.unit;
         if (part.dimension.unit != expected) {
-          result.error =
-            FormulaError{0, text.size(),
-                         fmt::format("`{}` is {}", text,
-                                     describe(part.dimension.unit)),
-                         ""};
+          result.error = FormulaError{
+              0, text.size(),
+              fmt::format("`{}` is {}", text, describe(part.dimension.unit)),
+              ""};
           return result;
         }
       }
       result.depends_on_time = parser.uses_time();
       result.compiled =
-        compile_translated(part.translated, text, parser.uses_time());
+          compile_translated(part.translated, text, parser.uses_time());
       if (!parser.uses_variables()) {
-        const double value =
-          Expression(result.compiled)(0., 0., 0., 0.);
+        const double value = Expression(result.compiled)(0., 0., 0., 0.);
         if (!std::isfinite(value))
           throw FormulaError{0, text.size(),
                              fmt::format("`{}` is not a finite number", text),
@@ -50,9 +48,8 @@ namespace nsfd
     } catch (const FormulaError &error) {
       result.error = error;
     } catch (const mu::ParserError &error) {
-      result.error =
-        FormulaError{0, text.size(),
-                     fmt::format("`{}`: {}", text, error.GetMsg()), ""};
+      result.error = FormulaError{
+          0, text.size(), fmt::format("`{}`: {}", text, error.GetMsg()), ""};
     }
     if (result.error)
       result.compiled.reset();

@@ -10,15 +10,13 @@
 namespace nsfd
 {
   /** What is wrong with a formula, and where in its text. */
-  struct FormulaError
-  {
+  struct FormulaError {
     std::size_t offset = 0, length = 0;
     std::string message, advice;
   };
 
   /** A compiled formula, or the reason why there is none. */
-  struct Formula
-  {
+  struct Formula {
     std::shared_ptr<const Expression::Compiled> compiled;
     std::optional<FormulaError> error;
     /// dimension, if every part of the formula states one

@@ -17,7 +17,7 @@ namespace nsfd::formula
     const char c = text_[at_];
     const std::size_t name_end = end_of_name(at_);
     const std::string token =
-      text_.substr(at_, std::max<std::size_t>(1, name_end - at_));
+        text_.substr(at_, std::max<std::size_t>(1, name_end - at_));
     std::string advice = "an operator is missing before it, or it is one "
                          "too many";
     if (c == '=')
@@ -200,10 +200,10 @@ namespace nsfd::formula
     for (const auto &variable : formula_variables())
       if (name == variable.first) {
         if (!with_variables_)
-          fail(begin, end,
-               fmt::format("`{}` cannot stand here: a number is expected",
-                           name),
-               "write a number, or constants and functions of them");
+          fail(
+              begin, end,
+              fmt::format("`{}` cannot stand here: a number is expected", name),
+              "write a number, or constants and functions of them");
         uses_variables_ = true;
         uses_time_ = uses_time_ || name == "t";
         return {name, {Certainty::natural, variable.second}, begin, end};
@@ -224,10 +224,10 @@ namespace nsfd::formula
     for (const auto &entry : constants_)
       known.push_back(entry.first);
     std::string otherwise =
-      with_variables_ ? "known are x, y, z, t, pi, functions and the entries "
-                        "of section Constants"
-                      : "a number is expected, or an entry of section "
-                        "Constants";
+        with_variables_ ? "known are x, y, z, t, pi, functions and the entries "
+                          "of section Constants"
+                        : "a number is expected, or an entry of section "
+                          "Constants";
     if (name == "and" || name == "or" || name == "not")
       otherwise = "write && || ! for and, or, not";
     if (find_unit(name))
@@ -260,14 +260,13 @@ namespace nsfd::formula
 
     std::string translated = std::string(function.name) + "(";
     for (const Part &argument : arguments)
-      translated += (&argument == &arguments.front() ? "" : ",") +
-                    argument.translated;
+      translated +=
+          (&argument == &arguments.front() ? "" : ",") + argument.translated;
     return {translated + ")", result_of(function, arguments), begin, at_};
   }
 
-  Dimension
-  Parser::result_of(const Function &function,
-                           const std::vector<Part> &arguments) const
+  Dimension Parser::result_of(const Function &function,
+                              const std::vector<Part> &arguments) const
   {
     const Part &first = arguments.front();
     Dimension result;
@@ -315,18 +314,17 @@ namespace nsfd::formula
   }
 
   void Parser::demand_alike(const Part &a, const Part &b,
-                                   const std::string &verb) const
+                            const std::string &verb) const
   {
     if (conflict(a.dimension, b.dimension))
       fail(a.begin, b.end,
            fmt::format("`{}` is {} and cannot be {} `{}`, which is {}",
-                       written(b), describe(b.dimension.unit), verb,
-                       written(a), describe(a.dimension.unit)),
+                       written(b), describe(b.dimension.unit), verb, written(a),
+                       describe(a.dimension.unit)),
            "both must have the same unit");
   }
 
-  void Parser::demand_plain(const Part &a,
-                                   const std::string &what) const
+  void Parser::demand_plain(const Part &a, const std::string &what) const
   {
     if (a.dimension.certainty == Certainty::stated &&
         a.dimension.unit != units::none)

@@ -12,8 +12,7 @@
 namespace nsfd::formula
 {
   /** A part of a formula: what muParser gets, and what it is. */
-  struct Part
-  {
+  struct Part {
     std::string translated;
     Dimension dimension;
     std::size_t begin = 0, end = 0; ///< in the text of the user
@@ -29,7 +28,7 @@ namespace nsfd::formula
   {
   public:
     Parser(const std::string &text, const Constants &constants,
-                  const bool with_variables)
+           const bool with_variables)
         : text_(text), constants_(constants), with_variables_(with_variables)
     {
     }
@@ -57,8 +56,8 @@ namespace nsfd::formula
                            const std::string &message,
                            const std::string &advice = "") const
     {
-      throw FormulaError{begin, std::max<std::size_t>(1, end - begin),
-                         message, advice};
+      throw FormulaError{begin, std::max<std::size_t>(1, end - begin), message,
+                         advice};
     }
 
     [[noreturn]] void fail_unexpected() const;

@@ -55,8 +55,7 @@ namespace nsfd::formula
   {
     const std::size_t end = begin + word.size();
     if (constants_.count(word) != 0 || is_formula_word(word))
-      fail(begin, end,
-           fmt::format("an operator is missing before `{}`", word),
+      fail(begin, end, fmt::format("an operator is missing before `{}`", word),
            "write for example: 2 * " + word);
     fail(begin, end, fmt::format("`{}` is not a unit", word),
          did_you_mean(word, unit_symbols(),
@@ -82,7 +81,7 @@ namespace nsfd::formula
       const auto first = unit_factor();
       if (!first) {
         const std::string word =
-          text_.substr(begin, end_of_name(begin) - begin);
+            text_.substr(begin, end_of_name(begin) - begin);
         if (word == "and" || word == "or")
           fail_unexpected();
         fail_no_unit(begin, word);
@@ -149,13 +148,14 @@ namespace nsfd::formula
       fail(before, at_ + 1, "the exponent of a unit must be a whole number",
            "write for example: kg/m^3");
     const int digit = text_[at_++] - '0';
-    const bool goes_on = at_ < text_.size() &&
-                         (std::isdigit(static_cast<unsigned char>(
-                            text_[at_])) ||
-                          text_[at_] == '.');
+    const bool goes_on =
+        at_ < text_.size() &&
+        (std::isdigit(static_cast<unsigned char>(text_[at_])) ||
+         text_[at_] == '.');
     if (goes_on)
-      fail(before, at_ + 1, "the exponent of a unit must be a whole number "
-                            "of one digit");
+      fail(before, at_ + 1,
+           "the exponent of a unit must be a whole number "
+           "of one digit");
     last_end_ = at_;
     return negative ? -digit : digit;
   }

@@ -8,23 +8,23 @@ namespace nsfd::formula
   {
     constexpr unsigned int many = 1000;
     const Function functions[] = {
-      {"sin", 1, 1, Rule::plain},      {"cos", 1, 1, Rule::plain},
-      {"tan", 1, 1, Rule::plain},      {"asin", 1, 1, Rule::plain},
-      {"acos", 1, 1, Rule::plain},     {"atan", 1, 1, Rule::plain},
-      {"sinh", 1, 1, Rule::plain},     {"cosh", 1, 1, Rule::plain},
-      {"tanh", 1, 1, Rule::plain},     {"asinh", 1, 1, Rule::plain},
-      {"acosh", 1, 1, Rule::plain},    {"atanh", 1, 1, Rule::plain},
-      {"exp", 1, 1, Rule::plain},      {"ln", 1, 1, Rule::plain},
-      {"log", 1, 1, Rule::plain},      {"log2", 1, 1, Rule::plain},
-      {"log10", 1, 1, Rule::plain},    {"erf", 1, 1, Rule::plain},
-      {"erfc", 1, 1, Rule::plain},     {"floor", 1, 1, Rule::plain},
-      {"ceil", 1, 1, Rule::plain},     {"rint", 1, 1, Rule::plain},
-      {"atan2", 2, 2, Rule::compares}, {"abs", 1, 1, Rule::keeps},
-      {"min", 1, many, Rule::keeps},   {"max", 1, many, Rule::keeps},
-      {"sum", 1, many, Rule::keeps},   {"avg", 1, many, Rule::keeps},
-      {"mod", 2, 2, Rule::keeps},      {"sqrt", 1, 1, Rule::root},
-      {"pow", 2, 2, Rule::power},      {"sign", 1, 1, Rule::drops},
-      {"heaviside", 1, 1, Rule::drops}, {"if", 3, 3, Rule::selects},
+        {"sin", 1, 1, Rule::plain},       {"cos", 1, 1, Rule::plain},
+        {"tan", 1, 1, Rule::plain},       {"asin", 1, 1, Rule::plain},
+        {"acos", 1, 1, Rule::plain},      {"atan", 1, 1, Rule::plain},
+        {"sinh", 1, 1, Rule::plain},      {"cosh", 1, 1, Rule::plain},
+        {"tanh", 1, 1, Rule::plain},      {"asinh", 1, 1, Rule::plain},
+        {"acosh", 1, 1, Rule::plain},     {"atanh", 1, 1, Rule::plain},
+        {"exp", 1, 1, Rule::plain},       {"ln", 1, 1, Rule::plain},
+        {"log", 1, 1, Rule::plain},       {"log2", 1, 1, Rule::plain},
+        {"log10", 1, 1, Rule::plain},     {"erf", 1, 1, Rule::plain},
+        {"erfc", 1, 1, Rule::plain},      {"floor", 1, 1, Rule::plain},
+        {"ceil", 1, 1, Rule::plain},      {"rint", 1, 1, Rule::plain},
+        {"atan2", 2, 2, Rule::compares},  {"abs", 1, 1, Rule::keeps},
+        {"min", 1, many, Rule::keeps},    {"max", 1, many, Rule::keeps},
+        {"sum", 1, many, Rule::keeps},    {"avg", 1, many, Rule::keeps},
+        {"mod", 2, 2, Rule::keeps},       {"sqrt", 1, 1, Rule::root},
+        {"pow", 2, 2, Rule::power},       {"sign", 1, 1, Rule::drops},
+        {"heaviside", 1, 1, Rule::drops}, {"if", 3, 3, Rule::selects},
     };
   } // namespace
 
@@ -73,17 +73,17 @@ namespace nsfd::formula
   const std::vector<std::pair<std::string, double>> &fixed_names()
   {
     static const std::vector<std::pair<std::string, double>> names = {
-      {"pi", 3.14159265358979323846}, {"true", 1.}, {"false", 0.}};
+        {"pi", 3.14159265358979323846}, {"true", 1.}, {"false", 0.}};
     return names;
   }
 
   const std::vector<std::pair<std::string, Unit>> &formula_variables()
   {
     static const std::vector<std::pair<std::string, Unit>> variables = {
-      {"x", units::length},
-      {"y", units::length},
-      {"z", units::length},
-      {"t", units::time}};
+        {"x", units::length},
+        {"y", units::length},
+        {"z", units::length},
+        {"t", units::time}};
     return variables;
   }
 

@@ -9,10 +9,8 @@
 namespace nsfd::formula
 {
   /** What is known about the dimension of a part of a formula. */
-  struct Dimension
-  {
-    enum class Certainty
-    {
+  struct Dimension {
+    enum class Certainty {
       pure,    ///< a mere factor by its nature: pi, sin(...), x < y
       any,     ///< a bare number: fits everywhere
       natural, ///< x, y, z, t, which may be in bare units as well
@@ -34,8 +32,7 @@ namespace nsfd::formula
   /** Of a product. */
   Dimension times(const Dimension &a, const Dimension &b);
 
-  enum class Rule
-  {
+  enum class Rule {
     plain,    ///< plain numbers only: sin, exp
     keeps,    ///< all arguments alike, and so is the result: abs, max
     compares, ///< all arguments alike, the result is plain: atan2
@@ -45,8 +42,7 @@ namespace nsfd::formula
     selects   ///< if(condition, a, b)
   };
 
-  struct Function
-  {
+  struct Function {
     const char *name;
     unsigned int least, most; ///< number of arguments
     Rule rule;

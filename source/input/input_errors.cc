@@ -18,8 +18,9 @@ namespace nsfd
 
     unsigned int n_characters(const std::string &text)
     {
-      return std::count_if(text.begin(), text.end(),
-                           [](const char c) { return !continues_character(c); });
+      return std::count_if(text.begin(), text.end(), [](const char c) {
+        return !continues_character(c);
+      });
     }
 
     /** Control characters would disturb the terminal; tabs keep the caret. */
@@ -45,10 +46,9 @@ namespace nsfd
         ++end;
 
       const std::string gutter =
-        at.line > 0 ? fmt::format("{:>4}", at.line) : std::string(4, ' ');
+          at.line > 0 ? fmt::format("{:>4}", at.line) : std::string(4, ' ');
       std::string result = fmt::format(
-        "{} | {}\n", gutter,
-        printable(at.text.substr(begin, end - begin)));
+          "{} | {}\n", gutter, printable(at.text.substr(begin, end - begin)));
       if (at.length == 0 || at.column < begin || at.column > end)
         return result;
 
@@ -59,9 +59,9 @@ namespace nsfd
         else if (!continues_character(at.text[i]))
           padding += ' ';
       const unsigned int n_marks = std::max(
-        1u, n_characters(at.text.substr(at.column, std::min<std::size_t>(
-                                                     at.length,
-                                                     end - at.column))));
+          1u,
+          n_characters(at.text.substr(
+              at.column, std::min<std::size_t>(at.length, end - at.column))));
       return result + std::string(gutter.size(), ' ') + " | " + padding + "^" +
              std::string(n_marks - 1, '~') + "\n";
     }
@@ -85,7 +85,7 @@ namespace nsfd
     std::size_t edit_distance(const std::string &a, const std::string &b)
     {
       std::vector<std::vector<std::size_t>> d(
-        a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+          a.size() + 1, std::vector<std::size_t>(b.size() + 1));
       for (std::size_t i = 0; i <= a.size(); ++i)
         d[i][0] = i;
       for (std::size_t j = 0; j <= b.size(); ++j)
@@ -114,13 +114,12 @@ namespace nsfd
       const std::string &longer = a.size() < b.size() ? b : a;
       return shorter.size() > 2 &&
              (" " + longer + " ").find(" " + shorter + " ") !=
-               std::string::npos;
+                 std::string::npos;
     }
   } // namespace
 
   void InputErrors::error(const SourceLocation &location,
-                          const std::string &message,
-                          const std::string &advice)
+                          const std::string &message, const std::string &advice)
   {
     diagnostics_.push_back({location, message, advice, true});
   }
@@ -130,6 +129,18 @@ namespace nsfd
                             const std::string &advice)
   {
     diagnostics_.push_back({location, message, advice, false});
+  }
+
+  void InputErrors::withdraw(const SourceLocation &location,
+                             const std::string &message)
+  {
+    const auto is_meant = [&](const Diagnostic &d) {
+      return d.message == message && d.location.source == location.source &&
+             d.location.line == location.line;
+    };
+    diagnostics_.erase(
+        std::remove_if(diagnostics_.begin(), diagnostics_.end(), is_meant),
+        diagnostics_.end());
   }
 
   unsigned int InputErrors::n_errors() const
@@ -179,7 +190,7 @@ namespace nsfd
     std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string &candidate : candidates) {
       const std::size_t distance =
-        edit_distance(lower_case(word), lower_case(candidate));
+          edit_distance(lower_case(word), lower_case(candidate));
       if (distance < best_distance && distance < candidate.size()) {
         best = candidate;
         best_distance = distance;

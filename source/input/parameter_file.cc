@@ -62,8 +62,8 @@ namespace nsfd
     result.length = length;
     if (result.column + length > result.text.size())
       result.length = result.column < result.text.size()
-                        ? result.text.size() - result.column
-                        : 1;
+                          ? result.text.size() - result.column
+                          : 1;
     return result;
   }
 
@@ -71,7 +71,7 @@ namespace nsfd
                               const std::size_t length) const
   {
     const std::size_t stop =
-      length == std::string::npos ? text_.size() : offset + length;
+        length == std::string::npos ? text_.size() : offset + length;
     std::size_t begin = text_.find_first_not_of(blanks, offset);
     begin = std::min(begin, stop);
     std::size_t end = stop;
@@ -152,6 +152,19 @@ namespace nsfd
     declared_.push_back(std::move(parameter));
   }
 
+  std::string ParameterSection::missing_message(const std::string &name) const
+  {
+    return fmt::format("`{}` is missing in {}", name, description());
+  }
+
+  void ParameterSection::report_missing(const std::string &name,
+                                        const std::string &advice,
+                                        InputErrors &errors)
+  {
+    missing_.insert(name);
+    errors.error(location_, missing_message(name), advice);
+  }
+
   void ParameterSection::report_stray(InputErrors &errors) const
   {
     if (accepts_everything_)
@@ -170,10 +183,13 @@ namespace nsfd
 
     for (const ParameterEntry &entry : entries_) {
       const bool is_declared = std::any_of(
-        declared_.begin(), declared_.end(),
-        [&](const DeclaredParameter &p) { return p.name == entry.name; });
+          declared_.begin(), declared_.end(),
+          [&](const DeclaredParameter &p) { return p.name == entry.name; });
       if (is_declared || refused_.count(entry.name) != 0)
         continue;
+      const std::string meant = nearest_name(entry.name, free);
+      if (missing_.count(meant) != 0)
+        errors.withdraw(location_, missing_message(meant));
       errors.error(entry.name_location,
                    fmt::format("`{}` is not an entry of {} in this scene",
                                entry.name, description()),
@@ -194,7 +210,7 @@ namespace nsfd
     for (const DeclaredParameter &parameter : declared_) {
       left_width = std::max(left_width, left_side(parameter).size());
       value_width =
-        std::max(value_width, std::min(parameter.value.size(), widest_value));
+          std::max(value_width, std::min(parameter.value.size(), widest_value));
     }
 
     const std::string indent = name_.empty() ? "" : "  ";
@@ -203,8 +219,8 @@ namespace nsfd
       result += "subsection " + name_ + "\n";
     for (const DeclaredParameter &parameter : declared_) {
       std::string line =
-        fmt::format("{}{:<{}} = {:<{}}", indent, left_side(parameter),
-                    left_width, parameter.value, value_width);
+          fmt::format("{}{:<{}} = {:<{}}", indent, left_side(parameter),
+                      left_width, parameter.value, value_width);
       if (!parameter.text.empty())
         line += " # " + parameter.text;
       line.erase(line.find_last_not_of(' ') + 1);
@@ -218,7 +234,7 @@ namespace nsfd
   ParameterFile::ParameterFile()
   {
     sections_.push_back(
-      std::make_unique<ParameterSection>("", SourceLocation(), constants_));
+        std::make_unique<ParameterSection>("", SourceLocation(), constants_));
     opened_.push_back(sections_.front().get());
   }
 
@@ -226,7 +242,7 @@ namespace nsfd
                                        const SourceLocation &location)
   {
     sections_.push_back(
-      std::make_unique<ParameterSection>(name, location, constants_));
+        std::make_unique<ParameterSection>(name, location, constants_));
     return *sections_.back();
   }
 
@@ -292,21 +308,22 @@ namespace nsfd
     opening_comment_ = std::move(lines);
   }
 
-  void ParameterFile::override_entry(
-    const std::string &assignment, const std::vector<std::string> &known_kinds,
-    InputErrors &errors)
+  void
+  ParameterFile::override_entry(const std::string &assignment,
+                                const std::vector<std::string> &known_kinds,
+                                InputErrors &errors)
   {
-    const SourceText source(assignment,
-                            {"--set", 0, 0,
-                             static_cast<unsigned int>(assignment.size()),
-                             assignment});
+    const SourceText source(
+        assignment, {"--set", 0, 0,
+                     static_cast<unsigned int>(assignment.size()), assignment});
     const std::size_t equals = assignment.find('=');
     // names of blocks may hold a slash, names of entries do not
     const std::size_t slash = equals == std::string::npos || equals == 0
-                                ? std::string::npos
-                                : assignment.rfind('/', equals - 1);
+                                  ? std::string::npos
+                                  : assignment.rfind('/', equals - 1);
     const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
-    if (equals == std::string::npos || source.part(begin, equals - begin).empty())
+    if (equals == std::string::npos ||
+        source.part(begin, equals - begin).empty())
       return errors.error(source.location(),
                           fmt::format("`{}` assigns nothing", assignment),
                           "write for example: --set 'Time/theta=0.5'");
@@ -317,9 +334,9 @@ namespace nsfd
                           "leave out `#`, line ends and a closing backslash");
 
     const std::string section_name =
-      slash == std::string::npos
-        ? ""
-        : canonical_section_name(assignment.substr(0, slash));
+        slash == std::string::npos
+            ? ""
+            : canonical_section_name(assignment.substr(0, slash));
     ParameterSection *section = find(section_name);
     if (section == nullptr) {
       const std::string kind = section_name.substr(0, section_name.find(':'));
@@ -328,22 +345,22 @@ namespace nsfd
         std::vector<std::string> names = known_kinds;
         for (const ParameterSection *other : sections())
           names.push_back(other->name());
-        return errors.error(source.part(0, slash).location(),
-                            fmt::format("there is no section `{}`",
-                                        section_name),
-                            did_you_mean(section_name, names));
+        return errors.error(
+            source.part(0, slash).location(),
+            fmt::format("there is no section `{}`", section_name),
+            did_you_mean(section_name, names));
       }
       section = &add(section_name, source.location());
     }
 
     const SourceText name = source.part(begin, equals - begin);
-    ParameterEntry entry{collapse_blanks(name.text()),
-                         source.part(equals + 1), name.location()};
+    ParameterEntry entry{collapse_blanks(name.text()), source.part(equals + 1),
+                         name.location()};
     if (!overridden_.insert(section_name + "/" + entry.name).second)
-      return errors.error(name.location(),
-                          fmt::format("`{}` is set twice on the command line",
-                                      entry.name),
-                          "keep one of the two");
+      return errors.error(
+          name.location(),
+          fmt::format("`{}` is set twice on the command line", entry.name),
+          "keep one of the two");
     section->assign(std::move(entry));
   }
 } // namespace nsfd

@@ -93,8 +93,8 @@ namespace nsfd
                                    0, line};
         const std::size_t comment = line.find('#');
         SourceText code =
-          SourceText(line, start)
-            .part(0, comment == std::string::npos ? line.size() : comment);
+            SourceText(line, start)
+                .part(0, comment == std::string::npos ? line.size() : comment);
 
         // a comment of its own does not end a continued statement
         if (code.empty() && comment != std::string::npos &&
@@ -118,10 +118,10 @@ namespace nsfd
                       "it ends a section that it does not begin",
                       "remove the last `end`");
       else if (section_ != outer) {
-        errors_.error(section_->location(),
-                      fmt::format("section `{}` is not closed",
-                                  section_->name()),
-                      "add a line `end`");
+        errors_.error(
+            section_->location(),
+            fmt::format("section `{}` is not closed", section_->name()),
+            "add a line `end`");
         section_ = outer;
       }
     }
@@ -152,9 +152,9 @@ namespace nsfd
       } else {
         const bool assigns = text.find('=') != std::string::npos;
         std::string advice = did_you_mean(
-          keyword, {"set", "subsection", "end", "include"},
-          assigns ? "write for example: set " + collapse_blanks(text)
-                  : "a line begins with set, subsection, end or include");
+            keyword, {"set", "subsection", "end", "include"},
+            assigns ? "write for example: set " + collapse_blanks(text)
+                    : "a line begins with set, subsection, end or include");
         errors_.error(line.locate(0, end),
                       fmt::format("`{}` does not begin a statement", keyword),
                       advice);
@@ -176,11 +176,12 @@ namespace nsfd
                            name.location()};
       if (const ParameterEntry *first = section_->find(entry.name))
         return errors_.error(
-          entry.name_location,
-          fmt::format("`{}` is given twice in {}", entry.name,
-                      section_->description()),
-          fmt::format("it stands in {}:{} already; keep one of the two",
-                      first->name_location.source, first->name_location.line));
+            entry.name_location,
+            fmt::format("`{}` is given twice in {}", entry.name,
+                        section_->description()),
+            fmt::format("it stands in {}:{} already; keep one of the two",
+                        first->name_location.source,
+                        first->name_location.line));
       section_->assign(std::move(entry));
     }
 
@@ -188,12 +189,12 @@ namespace nsfd
     {
       if (section_ != &file_.top()) {
         errors_.error(
-          line.location(),
-          fmt::format("section `{}` is not closed before this line",
-                      section_->name()),
-          fmt::format("it begins in line {}: add a line `end`; sections are "
-                      "not nested",
-                      section_->location().line));
+            line.location(),
+            fmt::format("section `{}` is not closed before this line",
+                        section_->name()),
+            fmt::format("it begins in line {}: add a line `end`; sections are "
+                        "not nested",
+                        section_->location().line));
         section_ = &file_.top();
       }
 
@@ -216,13 +217,13 @@ namespace nsfd
       }
       if (first != nullptr && first != &file_.top())
         errors_.error(
-          name.location(),
-          fmt::format("there are two sections `{}`", full_name),
-          fmt::format("the first begins in {}:{}; join them, or give the "
-                      "second another name",
-                      first->location().source, first->location().line));
+            name.location(),
+            fmt::format("there are two sections `{}`", full_name),
+            fmt::format("the first begins in {}:{}; join them, or give the "
+                        "second another name",
+                        first->location().source, first->location().line));
       discarded_ = std::make_unique<ParameterSection>(
-        full_name, line.location(), file_.constants());
+          full_name, line.location(), file_.constants());
       section_ = discarded_.get();
     }
 
@@ -233,8 +234,7 @@ namespace nsfd
                       fmt::format("`{}` after `end`", rest.text()),
                       "`end` stands alone; write a comment after #");
       if (section_ == &file_.top())
-        return errors_.error(line.location(),
-                             "there is no section to end here",
+        return errors_.error(line.location(), "there is no section to end here",
                              "remove this line, or look for an `end` too many "
                              "above it");
       section_ = &file_.top();

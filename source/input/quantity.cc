@@ -11,8 +11,7 @@ namespace nsfd
 {
   namespace
   {
-    struct KnownUnit
-    {
+    struct KnownUnit {
       const char *symbol;
       UnitScale scale;
       bool takes_prefix;
@@ -20,26 +19,25 @@ namespace nsfd
 
     // the gram carries the prefixes, the kilogram is the base
     const KnownUnit known_units[] = {
-      {"m", {units::length, 0, 1.}, true},
-      {"s", {units::time, 0, 1.}, true},
-      {"g", {units::mass, -3, 1.}, true},
-      {"Pa", {units::pressure, 0, 1.}, true},
-      {"N", {{1, 1, -2}, 0, 1.}, true},
-      {"J", {{1, 2, -2}, 0, 1.}, true},
-      {"Hz", {{0, 0, -1}, 0, 1.}, true},
-      {"min", {units::time, 0, 60.}, false},
-      {"h", {units::time, 0, 3600.}, false},
+        {"m", {units::length, 0, 1.}, true},
+        {"s", {units::time, 0, 1.}, true},
+        {"g", {units::mass, -3, 1.}, true},
+        {"Pa", {units::pressure, 0, 1.}, true},
+        {"N", {{1, 1, -2}, 0, 1.}, true},
+        {"J", {{1, 2, -2}, 0, 1.}, true},
+        {"Hz", {{0, 0, -1}, 0, 1.}, true},
+        {"min", {units::time, 0, 60.}, false},
+        {"h", {units::time, 0, 3600.}, false},
     };
 
-    struct Prefix
-    {
+    struct Prefix {
       const char *symbol;
       int exponent;
     };
 
-    const Prefix prefixes[] = {{"n", -9}, {"u", -6},      {"\u00b5", -6},
+    const Prefix prefixes[] = {{"n", -9},      {"u", -6}, {"\u00b5", -6},
                                {"\u03bc", -6}, {"m", -3}, {"c", -2},
-                               {"k", 3},  {"M", 6},       {"G", 9}};
+                               {"k", 3},       {"M", 6},  {"G", 9}};
 
     const std::map<std::string, UnitScale> &unit_table()
     {
@@ -60,29 +58,28 @@ namespace nsfd
       return table;
     }
 
-    struct UnitName
-    {
+    struct UnitName {
       Unit unit;
       const char *name, *example;
     };
 
     // J/m^2 = N/m and Pa/m = N/m^3 cannot be told apart
     const UnitName unit_names[] = {
-      {units::none, "a plain number", "0.5"},
-      {units::length, "a length", "10 um"},
-      {units::time, "a time", "10 ns"},
-      {units::mass, "a mass", "2 kg"},
-      {units::velocity, "a velocity", "2 m/s"},
-      {units::acceleration, "an acceleration", "-9.81 m/s^2"},
-      {units::density, "a density", "7800 kg/m^3"},
-      {units::pressure, "a pressure", "135 GPa"},
-      {units::energy_per_area, "an energy per area", "0.5 J/m^2"},
-      {units::stiffness_per_area, "a pressure per length", "10 GPa/um"},
-      {{1, 1, -2}, "a force", ""},
-      {{1, 2, -2}, "an energy", ""},
-      {{0, 0, -1}, "a frequency", ""},
-      {{0, 2, 0}, "an area", ""},
-      {{0, 3, 0}, "a volume", ""},
+        {units::none, "a plain number", "0.5"},
+        {units::length, "a length", "10 um"},
+        {units::time, "a time", "10 ns"},
+        {units::mass, "a mass", "2 kg"},
+        {units::velocity, "a velocity", "2 m/s"},
+        {units::acceleration, "an acceleration", "-9.81 m/s^2"},
+        {units::density, "a density", "7800 kg/m^3"},
+        {units::pressure, "a pressure", "135 GPa"},
+        {units::energy_per_area, "an energy per area", "0.5 J/m^2"},
+        {units::stiffness_per_area, "a pressure per length", "10 GPa/um"},
+        {{1, 1, -2}, "a force", ""},
+        {{1, 2, -2}, "an energy", ""},
+        {{0, 0, -1}, "a frequency", ""},
+        {{0, 2, 0}, "an area", ""},
+        {{0, 3, 0}, "a volume", ""},
     };
   } // namespace
 
@@ -146,7 +143,7 @@ namespace nsfd
     if (mark != std::string::npos)
       exponent += std::clamp(std::atoi(digits.c_str() + mark + 1), -9999, 9999);
     const std::string shifted =
-      digits.substr(0, mark) + "e" + std::to_string(exponent);
+        digits.substr(0, mark) + "e" + std::to_string(exponent);
 
     double value = 0.;
     const char *const end = shifted.data() + shifted.size();

@@ -30,21 +30,21 @@ namespace nsfd
       boundary.velocity[c] = read_optional(reader, velocity, units::velocity,
                                            "m/s, of x, y, z, t");
       boundary.displacement[c] = read_optional(
-        reader, displacement, units::length, "m, of x, y, z, t");
+          reader, displacement, units::length, "m, of x, y, z, t");
       const auto load =
-        read_optional(reader, traction, units::pressure, "Pa, of x, y, z, t");
+          read_optional(reader, traction, units::pressure, "Pa, of x, y, z, t");
       if (load) {
         boundary.traction[c] = *load;
         boundary.has_traction = true;
       }
 
-      const bool is_driven =
-        boundary.velocity[c].has_value() || boundary.displacement[c].has_value();
+      const bool is_driven = boundary.velocity[c].has_value() ||
+                             boundary.displacement[c].has_value();
       if (boundary.velocity[c] && boundary.displacement[c])
-        reader.error(displacement,
-                     fmt::format("`{}` and `{}` are both given", velocity,
-                                 displacement),
-                     "keep one of the two");
+        reader.error(
+            displacement,
+            fmt::format("`{}` and `{}` are both given", velocity, displacement),
+            "keep one of the two");
       if (load && is_driven)
         reader.error(traction,
                      fmt::format("`{}` has no effect: the motion of this "
@@ -58,18 +58,19 @@ namespace nsfd
     {
       BoundaryInput boundary;
       boundary.name = reader.block_name();
-      boundary.where = read_where(
-        reader, is_side(boundary.name) ? boundary.name : "",
-        WhereUse::boundary_faces, scene,
-        "left, right, bottom, top, front, back, all, a group or an expression");
+      boundary.where =
+          read_where(reader, is_side(boundary.name) ? boundary.name : "",
+                     WhereUse::boundary_faces, scene,
+                     "left, right, bottom, top, front, back, all, a group or "
+                     "an expression");
       bool has_effect = false;
       for (unsigned int c = 0; c < scene.dimension; ++c)
         has_effect = read_component(reader, c, boundary) || has_effect;
       refuse_third_component(reader, {"velocity", "displacement", "traction"},
                              scene);
       if (const auto pressure =
-            read_optional(reader, "pressure", units::pressure,
-                          "Pa, of x, y, z, t; pushes on the body")) {
+              read_optional(reader, "pressure", units::pressure,
+                            "Pa, of x, y, z, t; pushes on the body")) {
         boundary.pressure = *pressure;
         boundary.has_pressure = true;
       }
@@ -85,17 +86,16 @@ namespace nsfd
     {
       ObstacleInput obstacle;
       obstacle.name = reader.block_name();
-      obstacle.where =
-        read_where(reader, "all", WhereUse::boundary_faces, scene,
-                   "boundary faces that may touch it: all, a side, a group or "
-                   "an expression");
+      obstacle.where = read_where(
+          reader, "all", WhereUse::boundary_faces, scene,
+          "boundary faces that may touch it: all, a side, a group or "
+          "an expression");
       const unsigned int dim = scene.dimension;
-      const std::vector<double> point =
-        reader.numbers("point", "", units::length, Range::any(), dim,
-                       "m, on its surface");
+      const std::vector<double> point = reader.numbers(
+          "point", "", units::length, Range::any(), dim, "m, on its surface");
       std::vector<double> normal =
-        reader.numbers("normal", "", units::none, Range::any(), dim,
-                       "out of the obstacle, of any length");
+          reader.numbers("normal", "", units::none, Range::any(), dim,
+                         "out of the obstacle, of any length");
       // scaled first: squares of huge or tiny components stay finite
       double largest = 0., length = 0.;
       for (const double n : normal)
@@ -110,14 +110,14 @@ namespace nsfd
       for (unsigned int d = 0; d < dim; ++d) {
         obstacle.point[d] = point[d];
         obstacle.normal[d] =
-          largest == 0. ? 0. : normal[d] / largest / std::sqrt(length);
+            largest == 0. ? 0. : normal[d] / largest / std::sqrt(length);
       }
-      obstacle.friction = reader.number("friction", "0", units::none,
-                                        Range::non_negative(),
-                                        "coefficient of Coulomb friction");
+      obstacle.friction =
+          reader.number("friction", "0", units::none, Range::non_negative(),
+                        "coefficient of Coulomb friction");
       obstacle.restitution =
-        reader.number("restitution", "0", units::none, Range::closed(0., 1.),
-                      "of Newton's impact law");
+          reader.number("restitution", "0", units::none, Range::closed(0., 1.),
+                        "of Newton's impact law");
       return obstacle;
     }
   } // namespace
@@ -143,9 +143,10 @@ namespace nsfd
   void read_loads(ParameterFile &file, InputErrors &errors, SceneInput &scene)
   {
     SectionReader reader(file.open("Loads"), errors);
-    const std::vector<double> gravity = reader.numbers(
-      "gravity", scene.dimension == 2 ? "0, 0" : "0, 0, 0", units::acceleration,
-      Range::any(), scene.dimension, "m/s^2, one value per direction");
+    const std::vector<double> gravity =
+        reader.numbers("gravity", scene.dimension == 2 ? "0, 0" : "0, 0, 0",
+                       units::acceleration, Range::any(), scene.dimension,
+                       "m/s^2, one value per direction");
     for (unsigned int d = 0; d < scene.dimension; ++d)
       scene.gravity[d] = gravity[d];
   }

@@ -17,9 +17,9 @@ namespace nsfd
     constexpr unsigned int any_count = std::numeric_limits<unsigned int>::max();
 
     const std::vector<NamedText> solvers = {
-      {"auto", "dual newton; what it cannot solve goes to the others"},
-      {"dual newton", "Newton on the impulses with exact line search"},
-      {"gauss seidel", "sweeps over the points with local solves"},
+        {"auto", "dual newton; what it cannot solve goes to the others"},
+        {"dual newton", "Newton on the impulses with exact line search"},
+        {"gauss seidel", "sweeps over the points with local solves"},
     };
 
     /** Splits "0.6 crossings" into "0.6" and "crossings". */
@@ -35,24 +35,25 @@ namespace nsfd
 
     void read_step(SectionReader &reader, TimeInput &time)
     {
-      const auto value = reader.raw(
-        "step", "0.5 crossings", "a time, crossings of a cell L/c_p, or auto");
+      const auto value =
+          reader.raw("step", "0.5 crossings",
+                     "a time, crossings of a cell L/c_p, or auto");
       if (!value || value->text() == "auto") {
         time.step_kind = StepKind::automatic;
         return;
       }
       const auto [number, word] = split_last_word(*value);
       const bool is_misspelt =
-        !find_unit(word) && nearest_name(word, {"crossings"}) == "crossings";
+          !find_unit(word) && nearest_name(word, {"crossings"}) == "crossings";
       if (word == "crossings" || word == "crossing") {
         time.step_kind = StepKind::crossings;
         time.step = reader.number_in(number, "step", "0.5 crossings",
                                      units::none, Range::positive());
       } else if (is_misspelt)
-        reader.error("step",
-                     fmt::format("step = {}: `{}` is not a unit", value->text(),
-                                 word),
-                     "did you mean `crossings`?");
+        reader.error(
+            "step",
+            fmt::format("step = {}: `{}` is not a unit", value->text(), word),
+            "did you mean `crossings`?");
       else if (nearest_name(value->text(), {"auto"}) == "auto")
         reader.error("step",
                      fmt::format("step = {} is not a step", value->text()),
@@ -67,9 +68,9 @@ namespace nsfd
     void check_step(SectionReader &reader, const SceneInput &scene)
     {
       const bool all_rigid =
-        !scene.materials.empty() &&
-        std::all_of(scene.materials.begin(), scene.materials.end(),
-                    [](const MaterialInput &m) { return m.rigid; });
+          !scene.materials.empty() &&
+          std::all_of(scene.materials.begin(), scene.materials.end(),
+                      [](const MaterialInput &m) { return m.rigid; });
       if (all_rigid && scene.time.step_kind != StepKind::time)
         reader.error("step",
                      "the step must be a time: all materials are rigid, and no "
@@ -120,7 +121,7 @@ namespace nsfd
       for (const auto &value : values)
         names.push_back(value.first);
       const std::string chosen =
-        reader.choice(name, names.front(), names, text);
+          reader.choice(name, names.front(), names, text);
       for (const auto &value : values)
         if (value.first == chosen)
           return value.second;
@@ -135,12 +136,13 @@ namespace nsfd
       for (const InterfaceInput &interface : scene.interfaces)
         if (interface.law && !interface.law->has_potential())
           SectionReader(file.open("Interface: " + interface.name), errors)
-            .error("law",
-                   fmt::format("law = {} has no potential with these numbers, "
-                               "which cohesion rule = exact needs",
-                               interface.law_name),
-                   "write cohesion rule = end point in section Time, or make "
-                   "C_T / C_N the square of the weight of the slip");
+              .error(
+                  "law",
+                  fmt::format("law = {} has no potential with these numbers, "
+                              "which cohesion rule = exact needs",
+                              interface.law_name),
+                  "write cohesion rule = end point in section Time, or make "
+                  "C_T / C_N the square of the weight of the slip");
     }
   } // namespace
 
@@ -163,31 +165,30 @@ namespace nsfd
     check_step(reader, scene);
     reader.choice("scheme", "moreau-jean", {"moreau-jean"}, "moreau-jean");
     read_theta(reader, scene, time);
-    time.forecast_gamma1 =
-      reader.number("forecast gamma1", "0.5", units::none, Range::closed(0., 1.),
-                    "weight of the old velocity in the forecast of the gap");
+    time.forecast_gamma1 = reader.number(
+        "forecast gamma1", "0.5", units::none, Range::closed(0., 1.),
+        "weight of the old velocity in the forecast of the gap");
     time.forecast_gamma2 =
-      reader.number("forecast gamma2", "0", units::none, Range::closed(0., 1.),
-                    "weight of the new velocity");
+        reader.number("forecast gamma2", "0", units::none,
+                      Range::closed(0., 1.), "weight of the new velocity");
     time.cohesion_rule =
-      read_named<CohesionRule>(reader, "cohesion rule",
-                               {{"exact", CohesionRule::exact},
-                                {"end point", CohesionRule::end_point},
-                                {"end velocity", CohesionRule::end_velocity}},
-                               "exact, end point or end velocity");
+        read_named<CohesionRule>(reader, "cohesion rule",
+                                 {{"exact", CohesionRule::exact},
+                                  {"end point", CohesionRule::end_point},
+                                  {"end velocity", CohesionRule::end_velocity}},
+                                 "exact, end point or end velocity");
     time.contact_target =
-      read_named<ContactTarget>(reader, "contact target",
-                                {{"energy safe", ContactTarget::energy_safe},
-                                 {"velocity", ContactTarget::velocity},
-                                 {"position", ContactTarget::position}},
-                                "energy safe, velocity or position");
+        read_named<ContactTarget>(reader, "contact target",
+                                  {{"energy safe", ContactTarget::energy_safe},
+                                   {"velocity", ContactTarget::velocity},
+                                   {"position", ContactTarget::position}},
+                                  "energy safe, velocity or position");
     time.sliding = read_named<Sliding>(
-      reader, "sliding",
-      {{"velocity", Sliding::velocity}, {"increment", Sliding::increment}},
-      "what friction opposes: velocity or increment");
-    time.maximum_halvings =
-      reader.integer("maximum halvings", "10", 0, 60,
-                     "of a step that cannot be solved");
+        reader, "sliding",
+        {{"velocity", Sliding::velocity}, {"increment", Sliding::increment}},
+        "what friction opposes: velocity or increment");
+    time.maximum_halvings = reader.integer("maximum halvings", "10", 0, 60,
+                                           "of a step that cannot be solved");
     check_cohesion_rule(file, errors, scene);
   }
 
@@ -198,16 +199,16 @@ namespace nsfd
     solver.method = reader.choice("method", "auto", names_of(solvers),
                                   "auto, dual newton or gauss seidel");
     solver.path =
-      reader.choice("path", "auto", {"auto", "element-wise", "global"},
-                    "auto, element-wise or global");
+        reader.choice("path", "auto", {"auto", "element-wise", "global"},
+                      "auto, element-wise or global");
     solver.linear_solver =
-      reader.choice("linear solver", "auto", {"auto", "direct", "cg"},
-                    "of the global path: auto, direct or cg");
-    solver.tolerance = reader.number("tolerance", "1e-8", units::none,
-                                     {0., 0.1, true, false},
-                                     "relative error of a step");
+        reader.choice("linear solver", "auto", {"auto", "direct", "cg"},
+                      "of the global path: auto, direct or cg");
+    solver.tolerance =
+        reader.number("tolerance", "1e-8", units::none, {0., 0.1, true, false},
+                      "relative error of a step");
     solver.maximum_iterations =
-      reader.integer("maximum iterations", "200", 1, any_count, "per step");
+        reader.integer("maximum iterations", "200", 1, any_count, "per step");
   }
 
   void read_output(ParameterFile &file, InputErrors &errors, SceneInput &scene)
@@ -215,21 +216,21 @@ namespace nsfd
     SectionReader reader(file.open("Output"), errors);
     OutputInput &output = scene.output;
     output.directory =
-      reader.word("directory", "auto", "auto: output/NAME of NAME.prm");
+        reader.word("directory", "auto", "auto: output/NAME of NAME.prm");
     if (output.directory == "auto")
       output.directory =
-        "output/" + std::filesystem::path(scene.file).stem().string();
+          "output/" + std::filesystem::path(scene.file).stem().string();
     output.fields =
-      reader.boolean("fields", true, "write fields.pvd and interfaces.pvd");
+        reader.boolean("fields", true, "write fields.pvd and interfaces.pvd");
     reader.choice("format", "vtu", {"vtu"}, "of the fields: vtu");
     output.fields_every =
-      reader.number("fields every", "0", units::time, Range::non_negative(),
-                    "s; 0: at the start and the end");
+        reader.number("fields every", "0", units::time, Range::non_negative(),
+                      "s; 0: at the start and the end");
     output.fields_every_steps =
-      reader.integer("fields every steps", "0", 0, any_count, "0: not used");
+        reader.integer("fields every steps", "0", 0, any_count, "0: not used");
     output.history_every =
-      reader.number("history every", "0", units::time, Range::non_negative(),
-                    "s; 0: every step");
+        reader.number("history every", "0", units::time, Range::non_negative(),
+                      "s; 0: every step");
     output.report = reader.boolean("report", true, "write report.html");
     if (reader.integer("checkpoint every steps", "0", 0, any_count,
                        "0: never") != 0)
@@ -245,8 +246,7 @@ namespace nsfd
     if (!file.has_section("Verification"))
       return;
     SectionReader reader(file.open("Verification"), errors);
-    const auto value =
-      reader.raw("case", "", "what the run is compared with");
+    const auto value = reader.raw("case", "", "what the run is compared with");
     const auto &registry = VerificationRegistry::instance();
     const std::string name = value ? collapse_blanks(value->text()) : "";
     if (!registry.knows(name)) {

@@ -10,16 +10,16 @@ namespace nsfd
   namespace
   {
     const std::vector<NamedText> plain_laws = {
-      {"rigid", "faces stay closed, without any compliance"},
-      {"elastic", "springs C_N, C_T that never break"},
-      {"contact", "unilateral contact and Coulomb friction only"},
+        {"rigid", "faces stay closed, without any compliance"},
+        {"elastic", "springs C_N, C_T that never break"},
+        {"contact", "unilateral contact and Coulomb friction only"},
     };
 
     /** The law of a block, checked; empty if nothing more can be read. */
     std::string read_law_name(SectionReader &reader)
     {
       const auto value = reader.raw(
-        "law", "", "rigid, elastic, contact or a cohesive law", "rigid");
+          "law", "", "rigid, elastic, contact or a cohesive law", "rigid");
       if (!value) {
         reader.accept_everything();
         return "";
@@ -36,9 +36,9 @@ namespace nsfd
                      "write rigid: at Gauss points it is the continuous "
                      "element");
       else if (std::find(known.begin(), known.end(), name) == known.end())
-        reader.error("law", fmt::format("law = {} is not a law", name),
-                     did_you_mean(name, known,
-                                  "`nsfd --list` prints all names"));
+        reader.error(
+            "law", fmt::format("law = {} is not a law", name),
+            did_you_mean(name, known, "`nsfd --list` prints all names"));
       else
         return name;
       reader.accept_everything();
@@ -48,36 +48,35 @@ namespace nsfd
     void read_springs(SectionReader &reader, InterfaceInput &input)
     {
       input.normal_stiffness =
-        reader.number("normal stiffness", "", units::stiffness_per_area,
-                      Range::positive(), "C_N in Pa/m");
+          reader.number("normal stiffness", "", units::stiffness_per_area,
+                        Range::positive(), "C_N in Pa/m");
       const std::string tangential = "tangential stiffness";
       const std::string text = "C_T in Pa/m; default C_N";
       input.tangential_stiffness =
-        reader.optional(tangential, text)
-          ? reader.number(tangential, "", units::stiffness_per_area,
-                          Range::positive(), text)
-          : input.normal_stiffness;
+          reader.optional(tangential, text)
+              ? reader.number(tangential, "", units::stiffness_per_area,
+                              Range::positive(), text)
+              : input.normal_stiffness;
     }
 
     void read_contact(SectionReader &reader, InterfaceInput &input)
     {
-      input.friction = reader.number("friction", "0", units::none,
-                                     Range::non_negative(),
-                                     "coefficient of Coulomb friction");
+      input.friction =
+          reader.number("friction", "0", units::none, Range::non_negative(),
+                        "coefficient of Coulomb friction");
       input.restitution =
-        reader.number("restitution", "0", units::none, Range::closed(0., 1.),
-                      "of Newton's impact law, where beta = 0");
+          reader.number("restitution", "0", units::none, Range::closed(0., 1.),
+                        "of Newton's impact law, where beta = 0");
     }
 
     void read_damage_start(SectionReader &reader, InterfaceInput &input)
     {
-      input.friction_exponent =
-        reader.number("friction exponent", "1", units::none,
-                      Range::non_negative(),
-                      "s of kappa = (1 - beta)^s; 0: full friction always");
+      input.friction_exponent = reader.number(
+          "friction exponent", "1", units::none, Range::non_negative(),
+          "s of kappa = (1 - beta)^s; 0: full friction always");
       input.broken = read_initial_expression(
-        reader, "broken", "false", units::none,
-        "true, or an expression: open at t = 0 where it is not 0");
+          reader, "broken", "false", units::none,
+          "true, or an expression: open at t = 0 where it is not 0");
       input.has_broken = !input.broken.is_zero();
     }
 
@@ -85,11 +84,11 @@ namespace nsfd
                                   const InterfaceInput &input)
     {
       const bool extrinsic = input.law && input.law->extrinsic();
-      const std::string name =
-        reader.choice("intact faces", extrinsic ? "rigid" : "spring",
-                      {"spring", "unilateral", "rigid", "bonded"},
-                      "while beta = 1: spring or unilateral (intrinsic laws), "
-                      "rigid (extrinsic laws)");
+      const std::string name = reader.choice(
+          "intact faces", extrinsic ? "rigid" : "spring",
+          {"spring", "unilateral", "rigid", "bonded"},
+          "while beta = 1: spring or unilateral (intrinsic laws), "
+          "rigid (extrinsic laws)");
       if (name == "bonded")
         reader.error("intact faces",
                      "intact faces = bonded: faces joined through the bulk "
@@ -119,21 +118,20 @@ namespace nsfd
     {
       const unsigned int n_before = reader.errors().n_errors();
       try {
-        input.law = CohesiveLawRegistry::instance().create(input.law_name,
-                                                           reader);
+        input.law =
+            CohesiveLawRegistry::instance().create(input.law_name, reader);
       } catch (const std::exception &exception) {
         // numbers that stand in for wrong ones need not make a law
         if (reader.errors().n_errors() == n_before)
           reader.error("law", fmt::format("law = {}: {}", input.law_name,
                                           exception.what()));
       }
-      input.strength_scatter =
-        reader.number("strength scatter", "0", units::none,
-                      {0., 1., false, true},
-                      "relative half width of uniform random strengths");
-      input.seed =
-        reader.integer("seed", "1", 0, std::numeric_limits<unsigned int>::max(),
-                       "of the scatter");
+      input.strength_scatter = reader.number(
+          "strength scatter", "0", units::none, {0., 1., false, true},
+          "relative half width of uniform random strengths");
+      input.seed = reader.integer("seed", "1", 0,
+                                  std::numeric_limits<unsigned int>::max(),
+                                  "of the scatter");
 
       if (input.law && input.law->extrinsic() &&
           input.where.kind == Where::Kind::all)
@@ -153,22 +151,22 @@ namespace nsfd
       InterfaceInput input;
       input.name = reader.block_name();
       input.where = read_where(
-        reader, "all", WhereUse::interior_faces, scene,
-        "all, between materials [a, b], a group or an expression of x, y, z");
+          reader, "all", WhereUse::interior_faces, scene,
+          "all, between materials [a, b], a group or an expression of x, y, z");
       input.law_name = read_law_name(reader);
       if (input.law_name.empty())
         return input;
       if (input.law_name == "rigid") {
-        reader.refuse({"friction", "restitution", "friction exponent",
-                       "broken", "intact faces", "strength scatter"},
+        reader.refuse({"friction", "restitution", "friction exponent", "broken",
+                       "intact faces", "strength scatter"},
                       "faces of the law `rigid` never open");
         return input;
       }
       if (input.law_name == "contact") {
         read_contact(reader, input);
-        reader.refuse({"friction exponent", "broken", "intact faces",
-                       "strength scatter"},
-                      "faces of the law `contact` carry no cohesion");
+        reader.refuse(
+            {"friction exponent", "broken", "intact faces", "strength scatter"},
+            "faces of the law `contact` carry no cohesion");
         return input;
       }
       if (input.law_name == "elastic")

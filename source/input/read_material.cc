@@ -27,32 +27,32 @@ namespace nsfd
       const std::vector<std::string> names = {"Young modulus", "Poisson ratio"};
       if (material.rigid)
         return reader.refuse(names, "the material is rigid");
-      material.young = reader.number(names[0], "", units::pressure,
-                                     Range::positive(), "Pa");
+      material.young =
+          reader.number(names[0], "", units::pressure, Range::positive(), "Pa");
       // the bulk modulus is infinite at 1/2, the shear modulus at -1
-      material.poisson = reader.number(names[1], "", units::none,
-                                       {-1., 0.5, true, true}, "lateral over "
-                                                               "axial strain");
+      material.poisson =
+          reader.number(names[1], "", units::none, {-1., 0.5, true, true},
+                        "lateral over "
+                        "axial strain");
     }
 
     void read_fields(SectionReader &reader, const SceneInput &scene,
                      MaterialInput &material)
     {
       for (unsigned int c = 0; c < scene.dimension; ++c) {
-        material.initial_displacement[c] =
-          read_initial_expression(reader,
-                                  component_name("initial displacement", c),
-                                  "0", units::length, "m, of x, y, z");
-        material.initial_velocity[c] =
-          read_initial_expression(reader, component_name("initial velocity", c),
-                                  "0", units::velocity, "m/s, of x, y, z");
+        material.initial_displacement[c] = read_initial_expression(
+            reader, component_name("initial displacement", c), "0",
+            units::length, "m, of x, y, z");
+        material.initial_velocity[c] = read_initial_expression(
+            reader, component_name("initial velocity", c), "0", units::velocity,
+            "m/s, of x, y, z");
         material.body_force[c] =
-          reader.expression(component_name("body force", c), "0",
-                            units::force_per_volume, "N/m^3, of x, y, z, t");
+            reader.expression(component_name("body force", c), "0",
+                              units::force_per_volume, "N/m^3, of x, y, z, t");
       }
       refuse_third_component(
-        reader, {"initial displacement", "initial velocity", "body force"},
-        scene);
+          reader, {"initial displacement", "initial velocity", "body force"},
+          scene);
     }
   } // namespace
 
@@ -66,8 +66,8 @@ namespace nsfd
       material.where = read_where(reader, "all", WhereUse::cells, scene,
                                   "all, a group or an expression of x, y, z");
       material.rigid =
-        reader.choice("model", "linear elastic", {"linear elastic", "rigid"},
-                      "linear elastic or rigid") == "rigid";
+          reader.choice("model", "linear elastic", {"linear elastic", "rigid"},
+                        "linear elastic or rigid") == "rigid";
       read_elasticity(reader, material);
       material.density = reader.number("density", "", units::density,
                                        Range::positive(), "kg/m^3");

@@ -10,8 +10,7 @@ namespace nsfd
 {
   namespace
   {
-    struct MeshType
-    {
+    struct MeshType {
       const char *name, *text;
       unsigned int dimension;       ///< 0: two and three
       unsigned int cells_per_brick; ///< of the lattice `cells`
@@ -20,47 +19,45 @@ namespace nsfd
 
     /** Meshes that fill the box between two corners. */
     const MeshType box_types[] = {
-      {"rectangle", "quadrilaterals in a rectangle", 2, 1, false},
-      {"brick", "hexahedra in a box", 3, 1, false},
-      {"notched plate", "a box with a slot from the left side", 0, 1, false},
-      {"crossed triangles", "four triangles per quadrilateral", 2, 4, true},
-      {"diagonal triangles", "two triangles per quadrilateral", 2, 2, true},
-      {"tetrahedra", "six tetrahedra per hexahedron", 3, 6, true},
+        {"rectangle", "quadrilaterals in a rectangle", 2, 1, false},
+        {"brick", "hexahedra in a box", 3, 1, false},
+        {"notched plate", "a box with a slot from the left side", 0, 1, false},
+        {"crossed triangles", "four triangles per quadrilateral", 2, 4, true},
+        {"diagonal triangles", "two triangles per quadrilateral", 2, 2, true},
+        {"tetrahedra", "six tetrahedra per hexahedron", 3, 6, true},
     };
 
     /** Generators of deal.II that make a body of full dimension. */
     const char *const generators[] = {
-      "hyper_cube",
-      "subdivided_hyper_cube",
-      "hyper_rectangle",
-      "subdivided_hyper_rectangle",
-      "hyper_ball",
-      "hyper_ball_balanced",
-      "half_hyper_ball",
-      "quarter_hyper_ball",
-      "hyper_shell",
-      "half_hyper_shell",
-      "quarter_hyper_shell",
-      "concentric_hyper_shells",
-      "eccentric_hyper_shell",
-      "hyper_L",
-      "hyper_cross",
-      "hyper_cube_slit",
-      "hyper_cube_with_cylindrical_hole",
-      "enclosed_hyper_cube",
-      "plate_with_a_hole",
-      "channel_with_cylinder",
-      "cheese",
-      "general_cell",
-      "parallelogram",
-      "parallelepiped",
-      "simplex",
-      "cylinder",
-      "subdivided_cylinder",
-      "cylinder_shell",
-      "truncated_cone",
-      "moebius",
-      "torus",
+        "hyper_cube",
+        "subdivided_hyper_cube",
+        "hyper_rectangle",
+        "subdivided_hyper_rectangle",
+        "hyper_ball",
+        "hyper_ball_balanced",
+        "half_hyper_ball",
+        "quarter_hyper_ball",
+        "hyper_shell",
+        "half_hyper_shell",
+        "quarter_hyper_shell",
+        "concentric_hyper_shells",
+        "eccentric_hyper_shell",
+        "hyper_L",
+        "hyper_cross",
+        "hyper_cube_slit",
+        "hyper_cube_with_cylindrical_hole",
+        "enclosed_hyper_cube",
+        "plate_with_a_hole",
+        "channel_with_cylinder",
+        "cheese",
+        "general_cell",
+        "simplex",
+        "cylinder",
+        "subdivided_cylinder",
+        "cylinder_shell",
+        "truncated_cone",
+        "moebius",
+        "torus",
     };
 
     const MeshType *find_box_type(const std::string &name)
@@ -84,9 +81,9 @@ namespace nsfd
                           const bool is_body)
     {
       const auto value = reader.raw(
-        "type", dimension == 2 ? "rectangle" : "brick",
-        "rectangle, brick, notched plate, crossed triangles, diagonal "
-        "triangles, tetrahedra, bodies, or a generator of deal.II");
+          "type", dimension == 2 ? "rectangle" : "brick",
+          "rectangle, brick, notched plate, crossed triangles, diagonal "
+          "triangles, tetrahedra, bodies, or a generator of deal.II");
       if (!value)
         return "";
       const std::string type = collapse_blanks(value->text());
@@ -105,15 +102,13 @@ namespace nsfd
                      dimension == 2 ? "write for example: rectangle"
                                     : "write for example: brick");
       else if (type == "voronoi" || type == "file")
-        reader.error("type",
-                     fmt::format("type = {} is not there yet", type),
+        reader.error("type", fmt::format("type = {} is not there yet", type),
                      "take rectangle, brick, triangles, tetrahedra or a "
                      "generator of deal.II");
       else if (std::find(names.begin(), names.end(), type) == names.end())
-        reader.error("type",
-                     fmt::format("type = {} is not the name of a mesh", type),
-                     did_you_mean(type, names,
-                                  "`nsfd --list` prints all names"));
+        reader.error(
+            "type", fmt::format("type = {} is not the name of a mesh", type),
+            did_you_mean(type, names, "`nsfd --list` prints all names"));
       else
         return type;
       reader.accept_everything();
@@ -125,13 +120,13 @@ namespace nsfd
     {
       const unsigned int n_before = reader.errors().n_errors();
       mesh.notch_length =
-        reader.number("notch length", "", units::length, Range::positive(),
-                      "m, from the left side to the tip");
+          reader.number("notch length", "", units::length, Range::positive(),
+                        "m, from the left side to the tip");
       mesh.notch_height = reader.number("notch height", "", units::length,
                                         Range::any(), "m, y of its middle");
       mesh.notch_width = reader.number(
-        "notch width", "0", units::length, Range::non_negative(),
-        "m; 0 removes no cells, for an Interface block with broken faces");
+          "notch width", "0", units::length, Range::non_negative(),
+          "m; 0 removes no cells, for an Interface block with broken faces");
       if (!can_compare || reader.errors().n_errors() > n_before)
         return;
       if (mesh.notch_length >= mesh.upper[0] - mesh.lower[0])
@@ -141,11 +136,12 @@ namespace nsfd
                      "it must be shorter than the plate is long");
       if (mesh.notch_height - .5 * mesh.notch_width <= mesh.lower[1] ||
           mesh.notch_height + .5 * mesh.notch_width >= mesh.upper[1])
-        reader.error("notch height",
-                     fmt::format("notch height = {:g}, with a width of {:g}, is "
-                                 "not inside the plate",
-                                 mesh.notch_height, mesh.notch_width),
-                     "write a height between the lower and the upper corner");
+        reader.error(
+            "notch height",
+            fmt::format("notch height = {:g}, with a width of {:g}, is "
+                        "not inside the plate",
+                        mesh.notch_height, mesh.notch_width),
+            "write a height between the lower and the upper corner");
     }
 
     /** More cells than any machine of today holds are a slip of the pen. */
@@ -155,7 +151,7 @@ namespace nsfd
       constexpr double most_cells = 1e9;
       double n_cells = type.cells_per_brick *
                        std::pow(2., static_cast<double>(mesh.cells.size()) *
-                                      mesh.refinements);
+                                        mesh.refinements);
       for (const unsigned int n : mesh.cells)
         n_cells *= n;
       if (n_cells > most_cells)
@@ -199,22 +195,22 @@ namespace nsfd
     {
       MeshInput mesh;
       mesh.type = read_type(reader, dimension, is_body);
-      if (mesh.type.empty() || mesh.type == "bodies")
+      if (mesh.type.empty())
         return mesh;
 
       mesh.refinements = reader.integer("refinements", "0", 0, 20,
                                         "times every cell is halved");
       if (const MeshType *type = find_box_type(mesh.type))
         read_box(reader, dimension, *type, mesh);
-      else
+      else if (mesh.type != "bodies")
         mesh.generator_arguments = reader.word(
-          "arguments", "", "of the generator, as deal.II takes them: a : b");
+            "arguments", "", "of the generator, as deal.II takes them: a : b");
       mesh.distortion = reader.number(
-        "distortion", "0", units::none, {0., 0.5, false, true},
-        "share of the cell size by which interior vertices move");
-      mesh.seed =
-        reader.integer("seed", "1", 0, std::numeric_limits<unsigned int>::max(),
-                       "of the distortion");
+          "distortion", "0", units::none, {0., 0.5, false, true},
+          "share of the cell size by which interior vertices move");
+      mesh.seed = reader.integer("seed", "1", 0,
+                                 std::numeric_limits<unsigned int>::max(),
+                                 "of the distortion");
       return mesh;
     }
 
@@ -238,17 +234,16 @@ namespace nsfd
 
   bool has_numbered_groups(const SceneInput &scene)
   {
-    return std::any_of(std::begin(generators), std::end(generators),
-                       [&scene](const char *name) {
-                         return scene.mesh.type == name;
-                       });
+    return std::any_of(
+        std::begin(generators), std::end(generators),
+        [&scene](const char *name) { return scene.mesh.type == name; });
   }
 
   bool has_simplices(const SceneInput &scene)
   {
     return is_simplex_type(scene.mesh.type == "bodies" && !scene.bodies.empty()
-                             ? scene.bodies.front().mesh.type
-                             : scene.mesh.type);
+                               ? scene.bodies.front().mesh.type
+                               : scene.mesh.type);
   }
 
   void read_mesh(ParameterFile &file, InputErrors &errors, SceneInput &scene)
@@ -278,7 +273,7 @@ namespace nsfd
       body.mesh = read_one_mesh(body_reader, scene.dimension, true);
       if (!scene.bodies.empty() && !body.mesh.type.empty() &&
           is_simplex_type(body.mesh.type) !=
-            is_simplex_type(scene.bodies.front().mesh.type))
+              is_simplex_type(scene.bodies.front().mesh.type))
         body_reader.error("type",
                           fmt::format("type = {} does not go together with "
                                       "the cells of the first body",
@@ -298,11 +293,11 @@ namespace nsfd
       if (degree <= highest)
         return;
       const char *const reason =
-        simplices ? "deal.II 9.4.1 has no higher element for triangles and "
-                    "tetrahedra"
-                  : (scene.dimension == 2
-                       ? "quadrilaterals are tested to degree 8"
-                       : "hexahedra are tested to degree 4");
+          simplices
+              ? "deal.II 9.4.1 has no higher element for triangles and "
+                "tetrahedra"
+              : (scene.dimension == 2 ? "quadrilaterals are tested to degree 8"
+                                      : "hexahedra are tested to degree 4");
       reader.error("degree",
                    fmt::format("degree = {} must be at most {} on this mesh: "
                                "{}",
@@ -316,16 +311,16 @@ namespace nsfd
       const std::string text = "of the quadrature, per direction of a face: "
                                "`degree + 1` or a number";
       const auto raw =
-        reader.raw("interface points", "degree + 1", text, "degree + 1");
+          reader.raw("interface points", "degree + 1", text, "degree + 1");
       std::string compact = raw ? raw->text() : "degree+1";
       compact.erase(std::remove(compact.begin(), compact.end(), ' '),
                     compact.end());
       constexpr unsigned int most_points = 20;
       const unsigned int n_points =
-        compact == "degree+1"
-          ? input.degree + 1
-          : reader.integer("interface points", "degree + 1", 1, most_points,
-                           text);
+          compact == "degree+1"
+              ? input.degree + 1
+              : reader.integer("interface points", "degree + 1", 1, most_points,
+                               text);
 
       const std::string &rule = input.interface_quadrature;
       if (rule == "quarter points" && n_points != 2)
@@ -352,18 +347,18 @@ namespace nsfd
     input.degree = reader.integer("degree", "1", 1, absurd_degree,
                                   "of the polynomials in a cell");
     check_degree(reader, scene);
-    input.lumped_mass = reader.choice("mass", "consistent",
-                                      {"consistent", "lumped"},
-                                      "consistent or lumped") == "lumped";
+    input.lumped_mass =
+        reader.choice("mass", "consistent", {"consistent", "lumped"},
+                      "consistent or lumped") == "lumped";
     if (input.lumped_mass && has_simplices(scene) && input.degree == 2)
       reader.error("mass",
                    "mass = lumped with degree = 2 on triangles or tetrahedra "
                    "would leave vertices without mass",
                    "write consistent, or degree = 1");
     input.interface_quadrature =
-      reader.choice("interface quadrature", "gauss",
-                    {"gauss", "gauss lobatto", "quarter points"},
-                    "gauss, gauss lobatto or quarter points");
+        reader.choice("interface quadrature", "gauss",
+                      {"gauss", "gauss lobatto", "quarter points"},
+                      "gauss, gauss lobatto or quarter points");
     input.interface_points = read_interface_points(reader, input);
   }
 } // namespace nsfd

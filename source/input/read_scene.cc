@@ -13,10 +13,10 @@ namespace nsfd
   namespace
   {
     const std::vector<std::string> plain_sections = {
-      "Mesh", "Discretization", "Loads",        "Time",
-      "Solver", "Output",       "Verification", "Constants"};
+        "Mesh",   "Discretization", "Loads",        "Time",
+        "Solver", "Output",         "Verification", "Constants"};
     const std::vector<std::string> block_kinds = {
-      "Body", "Material", "Interface", "Boundary", "Obstacle"};
+        "Body", "Material", "Interface", "Boundary", "Obstacle"};
     const std::vector<std::string> missing_sections = {"Study", "Adaptivity"};
 
     std::vector<std::string> all_kinds()
@@ -45,29 +45,30 @@ namespace nsfd
                        "write: subsection " + kind);
       } else if (contains(block_kinds, kind)) {
         if (section.block_name().empty())
-          errors.error(section.location(),
-                       fmt::format("section `{}` needs a name", kind),
-                       fmt::format("write for example: subsection {}: first",
-                                   kind));
+          errors.error(
+              section.location(),
+              fmt::format("section `{}` needs a name", kind),
+              fmt::format("write for example: subsection {}: first", kind));
       } else if (contains(missing_sections, kind))
         errors.error(section.location(),
                      fmt::format("section `{}` is not there yet", kind),
                      "remove this section");
       else {
         const std::string nearest = nearest_name(kind, all_kinds());
-        errors.error(section.location(),
-                     fmt::format("`{}` is not the name of a section", name),
-                     nearest.empty()
-                       ? "known are Mesh, Discretization, Time, Loads, Solver, "
-                         "Output, Verification, Constants, and Body: ..., "
-                         "Material: ..., Interface: ..., Boundary: ..., "
-                         "Obstacle: ..."
-                       : fmt::format("did you mean `{}{}`?", nearest,
-                                     contains(block_kinds, nearest)
-                                       ? ": " + (section.block_name().empty()
-                                                   ? "name"
-                                                   : section.block_name())
-                                       : ""));
+        errors.error(
+            section.location(),
+            fmt::format("`{}` is not the name of a section", name),
+            nearest.empty()
+                ? "known are Mesh, Discretization, Time, Loads, Solver, "
+                  "Output, Verification, Constants, and Body: ..., "
+                  "Material: ..., Interface: ..., Boundary: ..., "
+                  "Obstacle: ..."
+                : fmt::format("did you mean `{}{}`?", nearest,
+                              contains(block_kinds, nearest)
+                                  ? ": " + (section.block_name().empty()
+                                                ? "name"
+                                                : section.block_name())
+                                  : ""));
       }
     }
 
@@ -77,8 +78,8 @@ namespace nsfd
       scene.dimension = reader.integer("dimension", "2", 2, 3, "2 or 3");
       if (scene.dimension == 2)
         scene.plane_stress =
-          reader.choice("plane", "strain", {"strain", "stress"},
-                        "strain or stress") == "stress";
+            reader.choice("plane", "strain", {"strain", "stress"},
+                          "strain or stress") == "stress";
       else
         reader.refuse({"plane"}, "plane strain and plane stress are for "
                                  "dimension = 2");

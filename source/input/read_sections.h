@@ -41,12 +41,7 @@ namespace nsfd
                          SceneInput &scene);
 
   /** What a `where` picks. */
-  enum class WhereUse
-  {
-    cells,
-    interior_faces,
-    boundary_faces
-  };
+  enum class WhereUse { cells, interior_faces, boundary_faces };
 
   /**
    * Read an entry `where`; an empty @p default_text means that it must be
@@ -83,8 +78,7 @@ namespace nsfd
                               const SceneInput &scene);
 
   /** The mesh types and solvers by kind, name and text. */
-  struct NamedText
-  {
+  struct NamedText {
     std::string name, text;
   };
   std::vector<NamedText> known_meshes();

@@ -33,9 +33,8 @@ namespace nsfd
       if (range.lower != -infinity && range.upper != infinity)
         result += " and ";
       if (range.upper != infinity)
-        result += fmt::format("{} {:g}",
-                              range.upper_open ? "less than" : "at most",
-                              range.upper);
+        result += fmt::format(
+            "{} {:g}", range.upper_open ? "less than" : "at most", range.upper);
       return result;
     }
 
@@ -51,8 +50,7 @@ namespace nsfd
 
     /** Sensible sizes, where the unit alone would suggest an odd one. */
     std::string example_value(const std::string &name,
-                              const std::string &default_text,
-                              const Unit &unit)
+                              const std::string &default_text, const Unit &unit)
     {
       if (name == "strength")
         return "300 MPa";
@@ -131,22 +129,19 @@ namespace nsfd
                                                const std::string &text,
                                                const std::string &example_text)
   {
-    const std::string advice =
-      for_example(example_text.empty()
-                    ? default_text
-                    : fmt::format("set {} = {}", name, example_text));
+    const std::string advice = for_example(
+        example_text.empty() ? default_text
+                             : fmt::format("set {} = {}", name, example_text));
     const ParameterEntry *entry = section_.find(name);
     section_.declare(
-      {name, entry != nullptr ? entry->value.text() : default_text, text});
+        {name, entry != nullptr ? entry->value.text() : default_text, text});
     if (entry == nullptr && !default_text.empty())
       return SourceText(default_text, section_.location());
     if (entry != nullptr && !entry->value.empty())
       return entry->value;
 
     if (entry == nullptr)
-      error(name,
-            fmt::format("`{}` is missing in {}", name, section_.description()),
-            advice);
+      section_.report_missing(name, advice, errors_);
     else
       errors_.error(entry->name_location,
                     fmt::format("`{}` has no value", name), advice);
@@ -190,9 +185,9 @@ namespace nsfd
     for (const std::string &name : names)
       if (const ParameterEntry *entry = section_.find(name)) {
         errors_.error(
-          entry->name_location,
-          fmt::format("`{}` does not belong here: {}", name, reason),
-          "remove this line");
+            entry->name_location,
+            fmt::format("`{}` does not belong here: {}", name, reason),
+            "remove this line");
         section_.refuse(name);
       }
   }
@@ -205,23 +200,25 @@ namespace nsfd
                                   const Unit unit, const Range range)
   {
     const std::string advice =
-      for_example(example_value(name, example_text, unit));
+        for_example(example_value(name, example_text, unit));
     const Formula formula =
-      compile_formula(value.text(), unit, section_.constants(), false);
+        compile_formula(value.text(), unit, section_.constants(), false);
     if (formula.error && formula.unit)
       errors_.error(value.location(),
                     fmt::format("{}; `{}` must be {}", formula.error->message,
                                 name, nsfd::describe(unit)),
                     advice);
     else if (formula.error)
-      errors_.error(
-        value.locate(formula.error->offset, formula.error->length),
-        fmt::format("{} = {}: {}", name, value.text(), formula.error->message),
-        formula.error->advice.empty() ? advice : formula.error->advice);
+      errors_.error(value.locate(formula.error->offset, formula.error->length),
+                    fmt::format("{} = {}: {}", name, value.text(),
+                                formula.error->message),
+                    formula.error->advice.empty() ? advice
+                                                  : formula.error->advice);
     else if (!contains(range, *formula.constant))
       errors_.error(
-        value.location(),
-        fmt::format("{} = {} {}", name, value.text(), describe(range)), advice);
+          value.location(),
+          fmt::format("{} = {} {}", name, value.text(), describe(range)),
+          advice);
     else
       return *formula.constant;
     return number_inside(range);
@@ -232,7 +229,7 @@ namespace nsfd
                                const Range range, const std::string &text)
   {
     const auto value =
-      raw(name, default_text, text, example_value(name, default_text, unit));
+        raw(name, default_text, text, example_value(name, default_text, unit));
     return value ? number_in(*value, name, default_text, unit, range)
                  : number_inside(range);
   }
@@ -245,7 +242,7 @@ namespace nsfd
   {
     std::vector<double> result(count, number_inside(range));
     const std::vector<SourceText> parts =
-      list(name, default_text, count, text, example_value(name, "", unit));
+        list(name, default_text, count, text, example_value(name, "", unit));
     for (unsigned int i = 0; i < parts.size(); ++i)
       result[i] = number_in(parts[i], name, "", unit, range);
     return result;
@@ -258,7 +255,7 @@ namespace nsfd
   {
     const unsigned int n_before = errors_.n_errors();
     const double number =
-      number_in(value, name, example_text, units::none, Range::any());
+        number_in(value, name, example_text, units::none, Range::any());
     if (errors_.n_errors() > n_before)
       return {};
     std::string problem;
@@ -297,11 +294,11 @@ namespace nsfd
   {
     std::vector<unsigned int> result(count, lower);
     const std::vector<SourceText> parts =
-      list(name, default_text, count, text, std::to_string(lower));
+        list(name, default_text, count, text, std::to_string(lower));
     for (unsigned int i = 0; i < parts.size(); ++i)
       result[i] = integer_in(parts[i], name, "", lower,
                              std::numeric_limits<unsigned int>::max())
-                    .value_or(lower);
+                      .value_or(lower);
     return result;
   }
 
@@ -316,9 +313,9 @@ namespace nsfd
     if (value->text() == "false" || value->text() == "no")
       return false;
     errors_.error(
-      value->location(),
-      fmt::format("{} = {} is neither true nor false", name, value->text()),
-      "write true or false");
+        value->location(),
+        fmt::format("{} = {} is neither true nor false", name, value->text()),
+        "write true or false");
     return default_value;
   }
 
@@ -346,9 +343,9 @@ namespace nsfd
     if (std::find(choices.begin(), choices.end(), word) != choices.end())
       return word;
     errors_.error(
-      value->location(),
-      fmt::format("{} = {} is not one of: {}", name, word, join(choices)),
-      did_you_mean(word, choices));
+        value->location(),
+        fmt::format("{} = {} is not one of: {}", name, word, join(choices)),
+        did_you_mean(word, choices));
     return default_text.empty() ? choices.front() : default_text;
   }
 
@@ -357,7 +354,7 @@ namespace nsfd
                                           const Unit unit)
   {
     const Formula formula =
-      compile_formula(value.text(), unit, section_.constants(), true);
+        compile_formula(value.text(), unit, section_.constants(), true);
     if (!formula.error)
       return Expression(formula.compiled);
     if (formula.unit)
@@ -377,7 +374,7 @@ namespace nsfd
                                        const Unit unit, const std::string &text)
   {
     const auto value =
-      raw(name, default_text, text, example_value(name, default_text, unit));
+        raw(name, default_text, text, example_value(name, default_text, unit));
     return value ? expression_in(*value, name, unit) : Expression();
   }
 

@@ -67,10 +67,10 @@ namespace nsfd
       const std::size_t comma = rest.find(',');
       if (comma == std::string::npos ||
           rest.find(',', comma + 1) != std::string::npos) {
-        reader.error("where",
-                     fmt::format("where = {} does not name two materials",
-                                 value),
-                     "write for example: between materials [a, b]");
+        reader.error(
+            "where",
+            fmt::format("where = {} does not name two materials", value),
+            "write for example: between materials [a, b]");
         return where;
       }
       where.materials = {collapse_blanks(rest.substr(0, comma)),
@@ -96,11 +96,11 @@ namespace nsfd
         known.push_back(between);
       for (const std::string &body : body_names(scene))
         known.push_back(body);
-      reader.error("where",
-                   fmt::format("where = {}: the mesh `{}` has no such group",
-                               value, scene.mesh.type),
-                   did_you_mean(value, known,
-                                "write all or an expression of x, y, z"));
+      reader.error(
+          "where",
+          fmt::format("where = {}: the mesh `{}` has no such group", value,
+                      scene.mesh.type),
+          did_you_mean(value, known, "write all or an expression of x, y, z"));
     }
   } // namespace
 
@@ -115,7 +115,7 @@ namespace nsfd
                                      const Unit unit, const std::string &text)
   {
     const Expression expression =
-      reader.expression(name, default_text, unit, text);
+        reader.expression(name, default_text, unit, text);
     if (expression.depends_on_time())
       reader.error(name,
                    fmt::format("{} = {} depends on t, but is read once, before "
@@ -139,7 +139,7 @@ namespace nsfd
 
     const std::vector<std::string> bodies = body_names(scene);
     const bool is_body =
-      std::find(bodies.begin(), bodies.end(), value) != bodies.end();
+        std::find(bodies.begin(), bodies.end(), value) != bodies.end();
 
     if (is_body || (is_number(value) && has_numbered_groups(scene))) {
       where.kind = Where::Kind::group;
@@ -148,10 +148,10 @@ namespace nsfd
       where.kind = Where::Kind::side;
       where.name = value;
       if (scene.dimension == 2 && (value == "front" || value == "back"))
-        reader.error("where",
-                     fmt::format("the side `{}` exists for dimension = 3 only",
-                                 value),
-                     "write left, right, bottom or top");
+        reader.error(
+            "where",
+            fmt::format("the side `{}` exists for dimension = 3 only", value),
+            "write left, right, bottom or top");
       else if (use == WhereUse::interior_faces)
         reader.error("where",
                      fmt::format("where = {} is a side of the mesh, and there "
@@ -165,7 +165,7 @@ namespace nsfd
     else {
       where.kind = Where::Kind::expression;
       where.condition =
-        read_initial_expression(reader, "where", "", units::none, text);
+          read_initial_expression(reader, "where", "", units::none, text);
     }
     return where;
   }

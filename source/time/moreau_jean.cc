@@ -146,7 +146,10 @@ namespace nsfd
     flexibility_.assign(points.faces.size(), 0.);
     bool softens = false;
     for (const auto &block : input_.interfaces)
-      softens |= bool(block.law);
+      if (block.law) {
+        softens = true;
+        has_extrinsic_ |= block.law->extrinsic();
+      }
     if (!softens)
       return;
     const auto &bodies = discretization_.bodies();
@@ -251,8 +254,12 @@ namespace nsfd
         state.two_sided[i] =
           !block.law->extrinsic() && block.intact == IntactFaces::spring;
         if (!block.law->extrinsic()) {
-          state.opening_max[i] = effective_opening<dim>(
-            problem_.interactions[origin.block], &state.jump[i * dim]);
+          // below the elastic limit there is nothing to remember
+          state.opening_max[i] =
+            std::max(block.law->elastic_limit() / strength_factor_[i],
+                     effective_opening<dim>(
+                       problem_.interactions[origin.block],
+                       &state.jump[i * dim]));
           state.beta[i] =
             beta_of(problem_.interactions[origin.block], state.kind[i],
                     strength_factor_[i], state.opening_max[i]);
@@ -319,6 +326,17 @@ namespace nsfd
       problem.mask[i] = 0;
       problem.compression_stiffness[i] = 0.;
       const auto &interaction = problem.interactions[problem.interaction[i]];
+      if (old.kind[i] == PointKind::rigid) {
+        // joined until activate() finds that the strength is reached
+        problem.kind[i] = PointKind::prescribed;
+        problem.mask[i] = (1u << dim) - 1u;
+        for (unsigned int c = 0; c < dim; ++c) {
+          problem.given_velocity[i * dim + c] = 0.;
+          // the law counts from where the joint lets go, not from its drift
+          problem.jump_free[i * dim + c] -= old.jump[i * dim + c];
+          problem.jump_old[i * dim + c] = 0.;
+        }
+      }
       if (old.kind[i] == PointKind::prescribed)
         problem.mask[i] = (1u << dim) - 1u;
       else if (old.two_sided[i])
@@ -446,9 +464,25 @@ namespace nsfd
       SolverControl control;
       control.tolerance = input_.solver.tolerance;
       control.maximum_iterations = input_.solver.maximum_iterations;
-      report.solver = solver_.solve(problem_, dynamics_, energy_scale, control,
-                                    next.impulse, evaluation);
-      ++counters_.solves;
+      for (unsigned int round = 0;; ++round) {
+        const SolverReport part =
+          solver_.solve(problem_, dynamics_, energy_scale, control,
+                        next.impulse, evaluation);
+        report.solver.newton += part.newton;
+        report.solver.krylov += part.krylov;
+        report.solver.sweeps += part.sweeps;
+        report.solver.line_searches += part.line_searches;
+        report.solver.residual = part.residual;
+        report.solver.converged = part.converged;
+        report.solver.switches.insert(report.solver.switches.end(),
+                                      part.switches.begin(),
+                                      part.switches.end());
+        ++counters_.solves;
+        if (!part.converged || !has_extrinsic_ || round > 30 ||
+            !activate(next.impulse))
+          break;
+        ++counters_.activation_rounds;
+      }
       counters_.newton += report.solver.newton;
       counters_.krylov += report.solver.krylov;
       counters_.sweeps += report.solver.sweeps;
@@ -482,6 +516,85 @@ namespace nsfd
     const Stopwatch watch(timings_.ledger);
     book(old, next, h, evaluation, report);
     return report;
+  }
+
+  /**
+   * Let go of rigidly joined extrinsic points whose traction exceeds the
+   * strength; true if there was one. Rigid rows on neighbouring faces make
+   * tractions ambiguous (W is singular, one condition per loop around a
+   * vertex): what counts is the impulse of least norm on the joined rows with
+   * the same effect, W^+ W P, by conjugate gradients from zero.
+   */
+  template <int dim>
+  bool MoreauJean<dim>::activate(const std::vector<double> &impulse)
+  {
+    const auto &communicator = dynamics_.communicator();
+    auto &problem = problem_;
+    const std::size_t n = problem.n_points * dim,
+                      n_owned = problem.n_owned * dim;
+    std::vector<double> P(n, 0.), x(n, 0.), r(n), p(n), Wp(n);
+    const auto joined = [&](const std::size_t k) {
+      return problem.mask[k / dim] & (1u << (k % dim)) &&
+             problem.kind[k / dim] == PointKind::prescribed;
+    };
+    bool candidates = false;
+    for (std::size_t k = 0; k < n; ++k)
+      if (joined(k)) {
+        P[k] = impulse[k];
+        candidates |= discretization_.origins()[k / dim].kind ==
+                        PointOrigin::Kind::interface &&
+                      problem.interactions[problem.interaction[k / dim]].law;
+      }
+    if (!communicator.any(candidates))
+      return false;
+    const auto apply = [&](const std::vector<double> &in,
+                           std::vector<double> &out) {
+      dynamics_.apply_delassus(in.data(), out.data());
+      for (std::size_t k = 0; k < n; ++k)
+        if (!joined(k))
+          out[k] = 0.;
+    };
+    apply(P, r);
+    p = r;
+    double rr = communicator.dot(r.data(), r.data(), n_owned);
+    const double goal = 1e-20 * rr;
+    for (unsigned int k = 0; k < 1000 && rr > goal; ++k) {
+      apply(p, Wp);
+      const double pWp = communicator.dot(p.data(), Wp.data(), n_owned);
+      if (!(pWp > 0.))
+        break;
+      for (std::size_t j = 0; j < n; ++j) {
+        x[j] += rr / pWp * p[j];
+        r[j] -= rr / pWp * Wp[j];
+      }
+      const double next = communicator.dot(r.data(), r.data(), n_owned);
+      for (std::size_t j = 0; j < n; ++j)
+        p[j] = r[j] + next / rr * p[j];
+      rr = next;
+    }
+
+    bool any = false;
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      if (!joined(i * dim) || !interaction.law ||
+          discretization_.origins()[i].kind != PointOrigin::Kind::interface)
+        continue;
+      const double pull = std::max(0., -x[i * dim]);
+      double traction = pull * pull;
+      for (unsigned int c = 1; c < dim; ++c)
+        traction += interaction.shear_weight > 0.
+                      ? x[i * dim + c] * x[i * dim + c] /
+                          interaction.shear_weight
+                      : 0.;
+      if (std::sqrt(traction) > problem.weight[i] * problem.time_step *
+                                  problem.strength_factor[i] *
+                                  interaction.law->strength()) {
+        problem.kind[i] = PointKind::rigid;
+        problem.mask[i] = 0;
+        any = true;
+      }
+    }
+    return communicator.any(any);
   }
 
   template <int dim>
@@ -571,7 +684,7 @@ namespace nsfd
           rows[row * n + i] += value;
       };
       const auto &solution = evaluation.solutions[i];
-      const PointKind kind = old.kind[i];
+      const PointKind kind = problem_.kind[i];
 
       if (kind == PointKind::prescribed) {
         const PointOrigin origin = discretization_.origins()[i];
@@ -588,7 +701,7 @@ namespace nsfd
             for (unsigned int c = 0; c < dim; ++c)
               reaction[(d * dim + c) * n + i] = P[c] / h;
         } else {
-          put(impact, -power); // a rigid joint that starts with a jump
+          put(impact, -power); // a joint that closes a jump of velocities
           double jump = 0.;
           for (unsigned int c = 0; c < dim; ++c)
             jump += next.jump[i * dim + c] * next.jump[i * dim + c];

@@ -15,8 +15,7 @@ namespace nsfd
   }
 
   /** A run that was asked for: `nsfd FILE.prm` and its options. */
-  struct CommandLine
-  {
+  struct CommandLine {
     std::string file;
     std::vector<std::string> set; ///< Section/name=value, as given
     std::string output;           ///< empty: what the file says

@@ -6,8 +6,7 @@
 namespace nsfd
 {
   /** A stretch of one line of the input, which a message underlines. */
-  struct SourceLocation
-  {
+  struct SourceLocation {
     std::string source;      ///< file as it was named, or "--set"
     unsigned int line = 0;   ///< from 1; 0: the whole source, or a --set
     unsigned int column = 0; ///< from 0, in bytes of `text`
@@ -16,8 +15,7 @@ namespace nsfd
   };
 
   /** One error or warning. */
-  struct Diagnostic
-  {
+  struct Diagnostic {
     SourceLocation location;
     std::string message; ///< names parameter and value
     std::string advice;  ///< what to write instead, may be empty
@@ -40,6 +38,9 @@ namespace nsfd
                const std::string &advice = "");
     void warning(const SourceLocation &location, const std::string &message,
                  const std::string &advice = "");
+
+    /** Take back an error that turned out to follow from another one. */
+    void withdraw(const SourceLocation &location, const std::string &message);
 
     bool has_errors() const { return n_errors() > 0; }
     unsigned int n_errors() const;

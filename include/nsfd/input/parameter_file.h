@@ -39,8 +39,7 @@ namespace nsfd
     void append(const SourceText &next);
 
   private:
-    struct Piece
-    {
+    struct Piece {
       std::size_t offset;   ///< in the joined text
       SourceLocation start; ///< of its first character
     };
@@ -49,16 +48,14 @@ namespace nsfd
   };
 
   /** `set NAME = VALUE`. */
-  struct ParameterEntry
-  {
+  struct ParameterEntry {
     std::string name; ///< runs of blanks are one blank
     SourceText value;
     SourceLocation name_location;
   };
 
   /** What a reader made known about an entry, for the echo. */
-  struct DeclaredParameter
-  {
+  struct DeclaredParameter {
     std::string name, value, text;
     bool is_set = true; ///< false: may be given, but has no default
   };
@@ -107,7 +104,14 @@ namespace nsfd
     /** Do not look for stray entries: what belongs here is unknown. */
     void accept_everything() { accepts_everything_ = true; }
 
-    /** Report entries that nobody declared. */
+    /** An entry that must be given is not there. */
+    void report_missing(const std::string &name, const std::string &advice,
+                        InputErrors &errors);
+
+    /**
+     * Report entries that nobody declared. If one is a misspelt name of a
+     * missing entry, that is the only error.
+     */
     void report_stray(InputErrors &errors) const;
 
     /** The section as it stands in a file, comments aligned. */
@@ -119,8 +123,10 @@ namespace nsfd
     const Constants &constants_;
     std::vector<ParameterEntry> entries_;
     std::vector<DeclaredParameter> declared_;
-    std::set<std::string> mentioned_, refused_;
+    std::set<std::string> mentioned_, refused_, missing_;
     bool accepts_everything_ = false;
+
+    std::string missing_message(const std::string &name) const;
   };
 
   /**

@@ -19,8 +19,7 @@ namespace nsfd
    * What one of a named unit is in SI: `factor * 10^exponent` of `unit`. The
    * power of ten is kept apart so that `5 um` is exactly the double 5e-6.
    */
-  struct UnitScale
-  {
+  struct UnitScale {
     Unit unit;
     int exponent = 0;
     double factor = 1.;
@@ -53,8 +52,7 @@ namespace nsfd
   std::string example(const Unit &unit);
 
   /** A named number of the section `Constants`. */
-  struct Constant
-  {
+  struct Constant {
     double value = 0.;
     Unit unit;
     /// written without any unit: fits every dimension

@@ -27,8 +27,7 @@ namespace nsfd
                   InputErrors &errors);
 
   /** A name that a parameter file may write, for `--list`. */
-  struct NamedPart
-  {
+  struct NamedPart {
     std::string kind, name, text;
   };
 

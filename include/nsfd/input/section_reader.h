@@ -13,22 +13,21 @@ namespace nsfd
   class InputErrors;      // collects every error of the input
 
   /** Dimension of a quantity: exponents of kg, m, s. */
-  struct Unit
-  {
+  struct Unit {
     int kilogram = 0, metre = 0, second = 0;
   };
 
   namespace units
   {
-    constexpr Unit none{0, 0, 0}, length{0, 1, 0}, time{0, 0, 1},
-      mass{1, 0, 0}, velocity{0, 1, -1}, acceleration{0, 1, -2},
-      density{1, -3, 0}, pressure{1, -1, -2}, energy_per_area{1, 0, -2},
-      stiffness_per_area{1, -2, -2}, force_per_volume{1, -2, -2};
+    constexpr Unit none{0, 0, 0}, length{0, 1, 0}, time{0, 0, 1}, mass{1, 0, 0},
+        velocity{0, 1, -1}, acceleration{0, 1, -2}, density{1, -3, 0},
+        pressure{1, -1, -2}, energy_per_area{1, 0, -2},
+        stiffness_per_area{1, -2, -2}, force_per_volume{1, -2, -2};
   } // namespace units
 
-  /** Closed or open interval a number must lie in; reported when it does not. */
-  struct Range
-  {
+  /** Closed or open interval a number must lie in; reported when it does not.
+   */
+  struct Range {
     double lower, upper;
     bool lower_open = false, upper_open = false;
     static Range any();
@@ -60,40 +59,28 @@ namespace nsfd
     /** True if the file or --set gives this entry. Does not declare it. */
     bool has(const std::string &name) const;
 
-    double number(const std::string &name,
-                  const std::string &default_text,
-                  Unit unit,
-                  Range range,
-                  const std::string &text);
+    double number(const std::string &name, const std::string &default_text,
+                  Unit unit, Range range, const std::string &text);
     unsigned int integer(const std::string &name,
-                         const std::string &default_text,
-                         unsigned int lower,
-                         unsigned int upper,
-                         const std::string &text);
-    bool boolean(const std::string &name,
-                 bool default_value,
+                         const std::string &default_text, unsigned int lower,
+                         unsigned int upper, const std::string &text);
+    bool boolean(const std::string &name, bool default_value,
                  const std::string &text);
-    std::string word(const std::string &name,
-                     const std::string &default_text,
+    std::string word(const std::string &name, const std::string &default_text,
                      const std::string &text);
-    std::string choice(const std::string &name,
-                       const std::string &default_text,
+    std::string choice(const std::string &name, const std::string &default_text,
                        const std::vector<std::string> &choices,
                        const std::string &text);
     std::vector<double> numbers(const std::string &name,
-                                const std::string &default_text,
-                                Unit unit,
-                                Range range,
-                                unsigned int count,
+                                const std::string &default_text, Unit unit,
+                                Range range, unsigned int count,
                                 const std::string &text);
     std::vector<unsigned int> integers(const std::string &name,
                                        const std::string &default_text,
-                                       unsigned int lower,
-                                       unsigned int count,
+                                       unsigned int lower, unsigned int count,
                                        const std::string &text);
     Expression expression(const std::string &name,
-                          const std::string &default_text,
-                          Unit unit,
+                          const std::string &default_text, Unit unit,
                           const std::string &text);
 
     /**
@@ -122,11 +109,8 @@ namespace nsfd
     void accept_everything();
 
     /** A number in a text of its own, as number() reads it. */
-    double number_in(const SourceText &value,
-                     const std::string &name,
-                     const std::string &example_text,
-                     Unit unit,
-                     Range range);
+    double number_in(const SourceText &value, const std::string &name,
+                     const std::string &example_text, Unit unit, Range range);
 
     /** A formula in a text of its own, as expression() reads it. */
     Expression expression_in(const SourceText &value, const std::string &name,
@@ -148,8 +132,7 @@ namespace nsfd
 
     std::vector<SourceText> list(const std::string &name,
                                  const std::string &default_text,
-                                 unsigned int count,
-                                 const std::string &text,
+                                 unsigned int count, const std::string &text,
                                  const std::string &example_text);
     std::optional<unsigned int> integer_in(const SourceText &value,
                                            const std::string &name,

@@ -66,7 +66,8 @@ namespace nsfd
     struct Counters
     {
       unsigned long long solves = 0, newton = 0, krylov = 0, sweeps = 0,
-                         law_sweeps = 0, line_searches = 0, load_assemblies = 0;
+                         law_sweeps = 0, line_searches = 0, load_assemblies = 0,
+                         activation_rounds = 0;
     };
     const Counters &counters() const { return counters_; }
 
@@ -75,6 +76,7 @@ namespace nsfd
     void prepare(const State &old, double time_step);
     void book(const State &old, State &next, double time_step,
               const LawEvaluation<dim> &evaluation, StepReport &report);
+    bool activate(const std::vector<double> &impulse);
     std::string describe(std::size_t point) const;
 
     const SceneInput &input_;
@@ -87,6 +89,7 @@ namespace nsfd
     bool forces_known_ = false;
     double forces_time_ = 0.;
     std::vector<double> reactions_;
+    bool has_extrinsic_ = false;
     Timings timings_;
     Counters counters_;
   };

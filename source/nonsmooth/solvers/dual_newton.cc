@@ -433,7 +433,7 @@ namespace nsfd
           continue;
         }
         ++stalled;
-        if (report.sweeps > 50 * control.maximum_iterations)
+        if (report.sweeps > 5 * control.maximum_iterations)
           break;
         if (colours_.empty())
           colours_ = colour_faces(dynamics);

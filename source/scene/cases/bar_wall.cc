@@ -1,0 +1,108 @@
+#include "case_tools.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  using namespace cases;
+
+  /**
+   * Elastic bar that flies against a rigid wall, the first benchmark of Doyen,
+   * Ern and Piperno (SIAM J. Sci. Comput. 33, 2011). With x the distance from
+   * the front end, v_0 the speed towards the wall, T = L/c and s the time
+   * since the impact,
+   *
+   *   u = -v_0 t + v_0 <s - x/c> + v_0 <s + x/c - 2T>
+   *
+   * at all times: contact for 0 < s < 2T under the pressure rho c v_0, then
+   * the bar flies back with v_0 and without stress. The impulse of the wall is
+   * 2 rho L v_0 per area, and no energy is lost.
+   */
+  class BarWall final : public VerificationCase
+  {
+  public:
+    explicit BarWall(SectionReader &) {}
+
+    void initialise(const SceneInput &input) override
+    {
+      bar_ = bar_of(input);
+      demand(input.obstacles.size() == 1, "the case needs one Obstacle");
+      const ObstacleInput &wall = input.obstacles[0];
+      direction_ = direction_of(wall.normal);
+      const unsigned int d = direction_.axis;
+      front_ = (direction_.sign > 0. ? input.mesh.lower : input.mesh.upper)[d];
+      length_ = extent(input, d);
+      speed_ = -direction_.sign *
+               input.materials[0].initial_velocity[d](
+                   input.mesh.lower[0], input.mesh.lower[1],
+                   input.dimension == 3 ? input.mesh.lower[2] : 0.);
+      const double gap = direction_.sign * (front_ - wall.point[d]);
+      demand(speed_ > 0. && gap >= 0., "the bar must fly towards the wall");
+      impact_time_ = gap / speed_;
+      crossing_ = length_ / bar_.speed;
+    }
+
+    bool has_fields() const override { return true; }
+
+    Vector displacement(const Vector &x, const double t) const override
+    {
+      const double s = t - impact_time_, delay = delay_of(x);
+      return along(speed_ * (-t + positive_part(s - delay) +
+                             positive_part(s + delay - 2. * crossing_)));
+    }
+
+    Vector velocity(const Vector &x, const double t) const override
+    {
+      const double s = t - impact_time_, delay = delay_of(x);
+      return along(speed_ * (-1. + heaviside(s - delay) +
+                             heaviside(s + delay - 2. * crossing_)));
+    }
+
+    bool wants_cells() const override { return true; }
+
+    void observe(const StepView &view) override
+    {
+      time_ = view.time;
+      mean_velocity_ = direction_.sign *
+                       mean(*view.cells, &CellState::velocity, direction_.axis);
+      energy_ = mechanical_energy(*view.row);
+      if (view.row->step == 0)
+        initial_energy_ = energy_;
+    }
+
+    /** Impulse from the momentum of the bar, and the share of energy lost. */
+    void finish(std::map<std::string, double> &errors) const override
+    {
+      // rho c v_0 for the time of contact, over the mass rho L
+      const double exact = bar_.speed * speed_ / length_ *
+                           std::clamp(time_ - impact_time_, 0., 2. * crossing_);
+      if (exact > 0.)
+        errors["impulse"] = relative_error(mean_velocity_ + speed_, exact);
+      errors["energy"] = std::abs(1. - energy_ / initial_energy_);
+    }
+
+  private:
+    Bar bar_;
+    Direction direction_; // of the normal of the wall
+    double front_ = 0., length_ = 0., speed_ = 0.;
+    double impact_time_ = 0., crossing_ = 0.;
+    double time_ = 0., mean_velocity_ = 0., energy_ = 0., initial_energy_ = 0.;
+
+    /** Time of a wave from the front end to x. */
+    double delay_of(const Vector &x) const
+    {
+      return direction_.sign * (x[direction_.axis] - front_) / bar_.speed;
+    }
+
+    /** A vector away from the wall. */
+    Vector along(const double value) const
+    {
+      Vector result{};
+      result[direction_.axis] = direction_.sign * value;
+      return result;
+    }
+  };
+
+  NSFD_REGISTER(VerificationRegistry, BarWall, "bar wall",
+                "Elastic bar hits a rigid wall: fields, impulse, energy lost");
+} // namespace nsfd
