@@ -1,5 +1,6 @@
 #include "nsfd/dynamics/dynamics.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nsfd
@@ -7,8 +8,8 @@ namespace nsfd
   namespace
   {
     /**
-     * Block Jacobi by face: the Cholesky factors of W_ff + D_f, components
-     * that do not take part replaced by the identity.
+     * Block Jacobi by face: the inverses of W_ff + D_f on the components that
+     * take part, zero on the others.
      */
     template <int dim>
     class ElementwiseDynamics final : public Dynamics<dim>
@@ -20,7 +21,6 @@ namespace nsfd
       {
         const auto &faces = this->points_.faces;
         factors_.resize(this->face_offset_.back());
-        takes_part_.resize(D.size());
         for (std::size_t f = 0; f < faces.size(); ++f) {
           const unsigned int n = faces[f].count * dim;
           const std::size_t first = std::size_t(faces[f].first) * dim;
@@ -28,7 +28,6 @@ namespace nsfd
           double *L = factors_.data() + this->face_offset_[f];
           for (unsigned int i = 0; i < n; ++i) {
             const bool active = D[first + i] >= 0.;
-            takes_part_[first + i] = active;
             for (unsigned int j = 0; j <= i; ++j)
               L[i * n + j] =
                 active && D[first + j] >= 0.
@@ -36,6 +35,11 @@ namespace nsfd
                   : (i == j ? 1. : 0.);
           }
           factorise(L, n);
+          invert(L, n);
+          for (unsigned int i = 0; i < n; ++i)
+            if (D[first + i] < 0.)
+              for (unsigned int j = 0; j < n; ++j)
+                L[i * n + j] = L[j * n + i] = 0.;
         }
       }
 
@@ -45,20 +49,12 @@ namespace nsfd
         for (std::size_t f = 0; f < faces.size(); ++f) {
           const unsigned int n = faces[f].count * dim;
           const std::size_t first = std::size_t(faces[f].first) * dim;
-          const double *L = factors_.data() + this->face_offset_[f];
-          double *x = z + first;
-          for (unsigned int i = 0; i < n; ++i) {
-            double value = takes_part_[first + i] ? r[first + i] : 0.;
-            for (unsigned int k = 0; k < i; ++k)
-              value -= L[i * n + k] * x[k];
-            x[i] = value * L[i * n + i];
-          }
-          for (unsigned int i = n; i-- > 0;) {
-            double value = x[i];
-            for (unsigned int k = i + 1; k < n; ++k)
-              value -= L[k * n + i] * x[k];
-            x[i] = value * L[i * n + i];
-          }
+          const double *A = factors_.data() + this->face_offset_[f];
+          // two Gauss points in two dimensions are by far the most frequent
+          if (n == 4)
+            multiply<4>(A, r + first, z + first);
+          else
+            multiply(A, n, r + first, z + first);
         }
       }
 
@@ -87,8 +83,52 @@ namespace nsfd
         }
       }
 
-      std::vector<double> factors_;
-      std::vector<char> takes_part_;
+      /** (L L^T)^{-1} in place of L, whose diagonal holds inverse pivots. */
+      void invert(double *L, const unsigned int n)
+      {
+        inverse_.assign(std::size_t(n) * n, 0.);
+        for (unsigned int c = 0; c < n; ++c) {
+          double *x = inverse_.data() + std::size_t(c) * n;
+          for (unsigned int i = c; i < n; ++i) {
+            double value = i == c ? 1. : 0.;
+            for (unsigned int k = c; k < i; ++k)
+              value -= L[i * n + k] * x[k];
+            x[i] = value * L[i * n + i];
+          }
+        }
+        // columns of L^{-1} are rows of inverse_: A^{-1} = L^{-T} L^{-1}
+        std::fill(L, L + std::size_t(n) * n, 0.);
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j <= i; ++j) {
+            double value = 0.;
+            for (unsigned int k = i; k < n; ++k)
+              value += inverse_[i * n + k] * inverse_[j * n + k];
+            L[i * n + j] = L[j * n + i] = value;
+          }
+      }
+
+      template <unsigned int n>
+      static void multiply(const double *A, const double *r, double *z)
+      {
+        for (unsigned int i = 0; i < n; ++i) {
+          double value = 0.;
+          for (unsigned int j = 0; j < n; ++j)
+            value += A[i * n + j] * r[j];
+          z[i] = value;
+        }
+      }
+
+      static void
+      multiply(const double *A, const unsigned int n, const double *r,
+               double *z)
+      {
+        std::fill(z, z + n, 0.);
+        for (unsigned int j = 0; j < n; ++j)
+          for (unsigned int i = 0; i < n; ++i)
+            z[i] += A[j * n + i] * r[j];
+      }
+
+      std::vector<double> factors_, inverse_;
     };
   } // namespace
 

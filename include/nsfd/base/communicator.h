@@ -52,6 +52,5 @@ namespace nsfd
   private:
     MPI_Comm communicator_;
     int rank_ = 0, size_ = 1;
-    mutable std::vector<double> scratch_;
   };
 } // namespace nsfd
