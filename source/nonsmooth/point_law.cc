@@ -700,11 +700,10 @@ namespace nsfd
           0., (b_old - b_new) / C *
                 (spring_energy(C, old) + spring_energy(C, jump)) / 2.);
       }
-      if (result.beta < 1. && compression > 0.) {
-        result.overlap_released =
-          compression * square(negative(jump[0])) / 2.;
-        result.stored -= result.overlap_released;
-      }
+    }
+    if (result.beta < 1. && compression > 0.) {
+      result.overlap_released = compression * square(negative(jump[0])) / 2.;
+      result.stored -= result.overlap_released;
     }
     return result;
   }

@@ -256,7 +256,9 @@ namespace nsfd
         if (!block.law->extrinsic()) {
           // below the elastic limit there is nothing to remember
           state.opening_max[i] =
-            std::max(block.law->elastic_limit() / strength_factor_[i],
+            // (just below, so that round-off does not damage it)
+            std::max((1. - 1e-14) * block.law->elastic_limit() /
+                       strength_factor_[i],
                      effective_opening<dim>(
                        problem_.interactions[origin.block],
                        &state.jump[i * dim]));
@@ -770,8 +772,8 @@ namespace nsfd
         const auto &interaction =
           problem_.interactions[problem_.interaction[i]];
         next.beta[i] = std::min(old.beta[i], energies.beta);
-        if (next.beta[i] < 1.)
-          next.two_sided[i] = 0;
+        if (energies.beta < 1.)
+          next.two_sided[i] = 0; // its overlap is booked in point_energies()
         if (next.beta[i] <= 0.)
           next.kind[i] = PointKind::free;
         // a softening point in a step above the uniqueness bound
