@@ -653,11 +653,18 @@ namespace nsfd
         discretization_->bodies().n_dofs());
       summary_.interface_points =
         communicator_.sum_integer(discretization_->points().n_owned);
+      if (input_.verification)
+        try {
+          input_.verification->initialise(input_);
+        } catch (const std::runtime_error &error) {
+          if (communicator_.is_root())
+            print_problems({std::string("Verification: ") + error.what()},
+                           input_.file, "error");
+          return exit_code::bad_input;
+        }
       if (options_.check)
         return print_check<dim>(input_, *triangulation_, *discretization_,
                                 control_->base_step(), communicator_);
-      if (input_.verification)
-        input_.verification->initialise(input_);
       bool ours = true;
       if (communicator_.is_root())
         ours = claim_directory(input_.output.directory, options_.force);

@@ -50,6 +50,8 @@ namespace nsfd
         const double mine = x > 0. ? tension : compression;
         if (!exact)
           return mine * slope;
+        if (tension == compression)
+          return mine * slope / 2.; // linear: the same bits at every velocity
         const double other = old > 0. ? tension : compression;
         if (x * old >= 0.)
           return (x == 0. ? other : mine) * slope / 2.;

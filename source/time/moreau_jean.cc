@@ -347,7 +347,9 @@ namespace nsfd
                               interaction.law->normal_stiffness()
                           : interaction.normal_stiffness;
       else {
-        problem.contact[i] = u_N + h * input_.time.forecast_gamma1 * U_N <= 0.;
+        // a closed point must not open by round-off of its position
+        problem.contact[i] = u_N + h * input_.time.forecast_gamma1 * U_N <=
+                             1e-14 * discretization_.extent();
         // restitution belongs to broken points
         const double e =
           old.kind[i] == PointKind::free ? interaction.restitution : 0.;

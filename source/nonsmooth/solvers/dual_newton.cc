@@ -433,7 +433,7 @@ namespace nsfd
           continue;
         }
         ++stalled;
-        if (report.sweeps > 5 * control.maximum_iterations)
+        if (report.sweeps >= 150) // a shorter step is cheaper than more of them
           break;
         if (colours_.empty())
           colours_ = colour_faces(dynamics);

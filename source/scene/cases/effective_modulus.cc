@@ -1,4 +1,4 @@
-#include "case_tools.h"
+#include "case_input.h"
 
 #include <algorithm>
 
@@ -44,7 +44,8 @@ namespace nsfd
       demand(tension_ != 0., "the tension at the end of the run is 0");
       demand(input.materials.size() == 1 && !input.materials[0].rigid,
              "the body needs one elastic material");
-      demand(input.interfaces.front().where.kind == Where::Kind::all,
+      demand(input.interfaces.front().law_name == "elastic" &&
+                 input.interfaces.front().where.kind == Where::Kind::all,
              "the first Interface block must be elastic, with where = all");
 
       const MaterialInput &material = input.materials[0];

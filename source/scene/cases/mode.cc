@@ -1,4 +1,6 @@
-#include "case_tools.h"
+#include "case_input.h"
+
+#include <algorithm>
 
 namespace nsfd
 {

@@ -1,4 +1,4 @@
-#include "case_tools.h"
+#include "case_input.h"
 
 #include "nsfd/input/section_reader.h"
 

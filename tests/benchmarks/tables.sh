@@ -1,0 +1,80 @@
+#!/bin/sh
+# Tables of the results pages, as Markdown on standard output:
+#   sh tests/benchmarks/tables.sh solver   work per step of the pulse scene
+#   sh tests/benchmarks/tables.sh orders   L2 error of the standing mode
+#   sh tests/benchmarks/tables.sh cost     fracture everywhere, time by part
+#   sh tests/benchmarks/tables.sh paths    element-wise against global path
+# Run from the top of a built checkout. Times depend on the machine, counts do
+# not.
+set -eu
+cd "$(dirname "$0")/../.."
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
+run() { # run FILE [options]: leaves $out/run/summary.json
+  ./nsfd "$@" --output "$out/run" --force --quiet
+}
+value() { # value KEY: a number from the summary
+  sed -n "s/^ *\"$1\": *\([-0-9.e+]*\),*$/\1/p" "$out/run/summary.json" | head -n 1
+}
+
+case "${1:-}" in
+solver)
+  echo "| degree | C_N L/E | step (crossings) | Newton per step | CG per Newton | CG per step |"
+  echo "|---|---|---|---|---|---|"
+  for p in 1 2 3; do
+    for ratio in 21 1e3 1e5 1e8; do
+      for step in 0.1 0.25 0.5 1; do
+        end=$(awk "BEGIN { print 20 * $step / 40 / 1.16 }")
+        run prm/benchmarks/pulse.prm --set "Constants/ratio=$ratio" \
+          --set "Discretization/degree=$p" --set "Time/step=$step crossings" \
+          --set "Time/end=$end"
+        awk -v p=$p -v c=$ratio -v h=$step -v n="$(value newton)" \
+          -v k="$(value krylov)" -v s="$(value steps)" 'BEGIN {
+          printf "| %s | %s | %s | %.2f | %.1f | %.1f |\n", p, c, h, n / s, k / n, k / s }'
+      done
+    done
+  done ;;
+orders)
+  echo "| degree | cells | steps | L2 error of u | order |"
+  echo "|---|---|---|---|---|"
+  for setting in 1:400:4,8,16,32 2:2000:4,8,16,32 3:8000:4,8,16,32 4:20000:2,4,8,16; do
+    p=${setting%%:*}
+    steps=${setting#*:}
+    steps=${steps%%:*}
+    last=
+    for n in $(echo "${setting##*:}" | tr ',' ' '); do
+      run prm/verification/mode.prm --set "Discretization/degree=$p" \
+        --set "Mesh/cells=$n, 1" --set "Time/end=1e-4 s" \
+        --set "Time/step=$(awk "BEGIN { print 1e-4 / $steps }") s" \
+        --set "Solver/tolerance=1e-11"
+      error=$(value displacement_L2)
+      awk -v p="$p" -v n="$n" -v s="$steps" -v e="$error" -v l="$last" 'BEGIN {
+        order = l == "" ? "" : sprintf("%.2f", log(l / e) / log(2))
+        printf "| %s | %s | %s | %.3e | %s |\n", p, n, s, e, order }'
+      last=$error
+    done
+  done ;;
+cost)
+  ./nsfd prm/benchmarks/fracture_everywhere.prm --output "$out/run" --force |
+    sed -n '/steps, /,/energy:/p' ;;
+paths)
+  echo "| step (crossings) | element-wise: CG per step, ms per step | global: CG per step, ms per step |"
+  echo "|---|---|---|"
+  for step in 0.5 2 5 20 100; do
+    end=$(awk "BEGIN { print 10 * $step / 20 / 1.16 }")
+    row="| $step |"
+    for path in element-wise global; do
+      run prm/benchmarks/pulse.prm --set "Mesh/cells=20, 20" \
+        --set "Time/step=$step crossings" --set "Time/end=$end" \
+        --set "Solver/path=$path"
+      row="$row $(awk -v k="$(value krylov)" -v s="$(value steps)" \
+        -v t="$(value 'nonsmooth solve')" \
+        'BEGIN { printf "%.1f, %.2f", k / s, 1e3 * t / s }') |"
+    done
+    echo "$row"
+  done ;;
+*)
+  echo "usage: sh $0 solver | orders | cost | paths" >&2
+  exit 2 ;;
+esac
