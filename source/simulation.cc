@@ -658,8 +658,7 @@ namespace nsfd
           input_.verification->initialise(input_);
         } catch (const std::runtime_error &error) {
           if (communicator_.is_root())
-            print_problems({std::string("Verification: ") + error.what()},
-                           input_.file, "error");
+            print_problems({error.what()}, input_.file, "error");
           return exit_code::bad_input;
         }
       if (options_.check)

@@ -225,6 +225,15 @@ namespace nsfd
   }
 
   template <int dim>
+  void Dynamics<dim>::delassus_sides(
+    const double *impulse, std::array<std::vector<double>, 2> &side) const
+  {
+    std::vector<double> sum(points_.n_points * dim);
+    apply_delassus(impulse, sum.data());
+    side = {{side_1_, side_2_}};
+  }
+
+  template <int dim>
   void Dynamics<dim>::relative_velocity(const double *velocity,
                                         double *result) const
   {

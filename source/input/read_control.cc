@@ -171,6 +171,10 @@ namespace nsfd
     time.forecast_gamma2 =
         reader.number("forecast gamma2", "0", units::none,
                       Range::closed(0., 1.), "weight of the new velocity");
+    if (time.forecast_gamma2 != 0.)
+      reader.error("forecast gamma2",
+                   "an implicit forecast of the gap is not there yet",
+                   "write: forecast gamma2 = 0");
     time.cohesion_rule =
         read_named<CohesionRule>(reader, "cohesion rule",
                                  {{"exact", CohesionRule::exact},
@@ -228,9 +232,6 @@ namespace nsfd
                       "s; 0: at the start and the end");
     output.fields_every_steps =
         reader.integer("fields every steps", "0", 0, any_count, "0: not used");
-    output.history_every =
-        reader.number("history every", "0", units::time, Range::non_negative(),
-                      "s; 0: every step");
     output.report = reader.boolean("report", true, "write report.html");
     if (reader.integer("checkpoint every steps", "0", 0, any_count,
                        "0: never") != 0)

@@ -111,9 +111,10 @@ namespace nsfd
               const double root =
                 std::sqrt(std::max(0., square(traction) - mine * r));
               x = (traction + (opens ? root : -root)) / mine;
-            } else
-              x = traction == 0. ? (opens ? infinity : -infinity)
-                                 : r / (2. * traction);
+            } else // a traction that only tends to zero
+              x = (opens ? traction < 0. : traction > 0.)
+                    ? r / (2. * traction)
+                    : (opens ? infinity : -infinity);
           }
         }
         return (x - offset) / slope;

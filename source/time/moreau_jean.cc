@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <map>
 
 namespace nsfd
 {
@@ -161,32 +162,33 @@ namespace nsfd
     std::array<std::vector<double>, 2> sides;
     for (auto &side : sides)
       side.assign(points.n_points, 0.);
+    // congruent bodies with points at the same slots share the value
+    std::map<std::pair<unsigned int, std::vector<unsigned int>>, double> known;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const Block &W = delassus[bodies.class_of[b]];
-      // slots of each face of the body
-      std::map<unsigned int, std::vector<std::pair<unsigned int, unsigned int>>>
-        by_face;
+      std::vector<unsigned int> slots, places;
       for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
            ++s)
-        if (bodies.slot_point[s] < points.n_points)
-          by_face[points.face_of[bodies.slot_point[s]]].emplace_back(
-            unsigned(s - bodies.first_slot[b]), bodies.slot_point[s]);
-      for (const auto &[f, list] : by_face) {
-        const unsigned int n = unsigned(list.size()) * dim;
-        std::vector<double> A(n * n);
+        if (bodies.slot_point[s] < points.n_points) {
+          slots.push_back(unsigned(s - bodies.first_slot[b]));
+          places.push_back(bodies.slot_point[s]);
+        }
+      const auto [entry, is_new] =
+        known.emplace(std::pair(bodies.class_of[b], slots), 0.);
+      if (is_new) {
+        const unsigned int n = unsigned(slots.size()) * dim;
+        std::vector<double> A(std::size_t(n) * n);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < n; ++j)
-            A[i * n + j] =
-              std::sqrt(points.weight[list[i / dim].second] *
-                        points.weight[list[j / dim].second]) *
-              W(list[i / dim].first * dim + i % dim,
-                list[j / dim].first * dim + j % dim);
-        const double value = largest_eigenvalue(A, n);
-        const unsigned int side =
-          points.faces[f].bodies[1] == int(b) ? 1 : 0;
-        for (const auto &entry : list)
-          sides[side][entry.second] = value;
+            A[std::size_t(i) * n + j] =
+              std::sqrt(points.weight[places[i / dim]] *
+                        points.weight[places[j / dim]]) *
+              W(slots[i / dim] * dim + i % dim, slots[j / dim] * dim + j % dim);
+        entry->second = largest_eigenvalue(A, n);
       }
+      for (const unsigned int i : places)
+        sides[points.faces[points.face_of[i]].bodies[1] == int(b)][i] =
+          entry->second;
     }
     dynamics_.exchange({{sides[0].data(), sides[1].data()}}, 1);
     for (std::size_t f = 0; f < points.faces.size(); ++f)
@@ -247,7 +249,7 @@ namespace nsfd
         state.beta[i] = 0.;
       } else if (block.law_name == "elastic") {
         state.kind[i] = PointKind::elastic;
-        state.two_sided[i] = 1;
+        state.two_sided[i] = block.intact == IntactFaces::spring;
       } else if (block.law) {
         state.kind[i] =
           block.law->extrinsic() ? PointKind::rigid : PointKind::cohesive;

@@ -33,6 +33,14 @@ namespace nsfd
     /** U = W P over all points. One exchange with the neighbouring ranks. */
     void apply_delassus(const double *impulse, double *velocity) const;
 
+    /**
+     * The Cartesian contributions of both bodies to W P at every point (body 1
+     * with its sign), each of size (n_points + 1) dim, complete at shared
+     * points: what Gauss-Seidel keeps up to date.
+     */
+    void delassus_sides(const double *impulse,
+                        std::array<std::vector<double>, 2> &side) const;
+
     /** U = H v. */
     void relative_velocity(const double *velocity, double *result) const;
 

@@ -181,7 +181,6 @@ namespace nsfd
     double fields_every = 0.;             ///< s; 0: start and end only
     unsigned int fields_every_steps = 0;  ///< 0: not used
     bool fields = true, report = true;
-    double history_every = 0.;
   };
 
   struct SceneInput

@@ -52,7 +52,7 @@ namespace nsfd
       void symmetric_direction(const Work &work, double tolerance, Vector &dP);
       void coupled_direction(const Work &work, double tolerance, Vector &dP);
       bool line_search(const Work &work, const Vector &direction,
-                       Vector &impulse, double energy_scale);
+                       Vector &impulse);
       double majorant(const Work &work, const std::size_t k) const
       {
         return work.evaluation.majorant(k / dim, k % dim);
@@ -289,8 +289,7 @@ namespace nsfd
     template <int dim>
     bool DualNewton<dim>::line_search(const Work &work,
                                       const Vector &direction,
-                                      Vector &impulse,
-                                      const double)
+                                      Vector &impulse)
     {
       const auto &problem = work.problem;
       const auto &communicator = work.dynamics.communicator();
@@ -364,7 +363,7 @@ namespace nsfd
     template <int dim>
     SolverReport DualNewton<dim>::solve(const OneStepProblem<dim> &problem,
                                         Dynamics<dim> &dynamics,
-                                        const double energy_scale,
+                                        const double,
                                         const SolverControl &control,
                                         std::vector<double> &impulse,
                                         LawEvaluation<dim> &evaluation)
@@ -420,11 +419,13 @@ namespace nsfd
         evaluation.error = before;
         if (coupled)
           symmetric_direction(work, forcing, dP);
-        bool moved = line_search(work, dP, impulse, energy_scale);
+        bool moved = line_search(work, dP, impulse);
         evaluation.update(impulse);
         remember();
-        if (moved && !coupled && stalled < 10) {
-          // monotone in the objective: let it run
+        // Monotone in the convex objective: let it run a few times, with
+        // thresholds that change only after sweeps have not helped.
+        if (moved && (coupled ? stalled >= 4 && stalled % 5 != 4 :
+                                stalled % 5 != 4)) {
           ++stalled;
           continue;
         }
@@ -437,14 +438,13 @@ namespace nsfd
           break;
         if (colours_.empty())
           colours_ = colour_faces(dynamics);
-        if (stalled == 1)
+        if (report.sweeps == 0)
           report.switches.push_back("gauss seidel");
-        if (stalled > 3 && best_error < evaluation.error)
+        if (best_error < 0.5 * evaluation.error)
           impulse = best;
         gauss_seidel(problem, dynamics, colours_, sweeps, impulse);
         report.sweeps += sweeps;
-        if (stalled > 1)
-          sweeps = std::min(160u, sweeps * 2);
+        sweeps = std::min(80u, sweeps * 2);
         evaluation.update(impulse);
         remember();
         if (!(evaluation.error < std::numeric_limits<double>::infinity()))

@@ -124,8 +124,7 @@ namespace nsfd
 
     // Cartesian velocity at every point from each side
     std::array<std::vector<double>, 2> side;
-    for (auto &s : side)
-      s.assign((points.n_points + 1) * dim, 0.);
+    dynamics.delassus_sides(impulse.data(), side);
     const auto add = [&](const std::size_t i, const double *change) {
       const double *Q = points.frame.data() + i * dim * dim;
       for (unsigned int s = 0; s < 2; ++s) {
@@ -159,45 +158,49 @@ namespace nsfd
             add_at(slot - first, point, 1.);
       }
     };
-    for (std::size_t i = 0; i < points.n_points; ++i)
-      add(i, impulse.data() + i * dim);
-    dynamics.exchange({{side[0].data(), side[1].data()}}, dim);
+
+    unsigned int largest = 0;
+    for (const auto &face : points.faces)
+      largest = std::max(largest, face.count);
+    largest = unsigned(dynamics.communicator().max(largest));
 
     std::vector<double> opening(problem.opening_max);
-    for (unsigned int sweep = 0; sweep < count; ++sweep)
-      for (const auto &faces : colours) {
-        for (const unsigned int f : faces)
-          for (unsigned int i = points.faces[f].first;
-               i < points.faces[f].first + points.faces[f].count; ++i) {
-            const double *Q = points.frame.data() + i * dim * dim;
-            std::array<double, dim> local;
-            for (unsigned int k = 0; k < dim; ++k) {
-              local[k] = problem.free_velocity[i * dim + k];
-              for (unsigned int c = 0; c < dim; ++c)
-                local[k] += Q[k * dim + c] *
-                            (side[1][i * dim + c] + side[0][i * dim + c]);
-              local[k] -= (k == 0 ? problem.majorant_normal[i]
-                                  : problem.majorant_tangential[i]) *
-                          impulse[i * dim + k];
-            }
-            const auto solution = solve_point<dim>(
-              problem, i, local, problem.majorant_normal[i],
-              problem.majorant_tangential[i], opening[i]);
-            opening[i] = solution.opening;
-            double change[dim];
-            bool changed = false;
-            for (unsigned int k = 0; k < dim; ++k) {
-              change[k] = solution.impulse[k] - impulse[i * dim + k];
-              impulse[i * dim + k] = solution.impulse[k];
-              changed = changed || change[k] != 0.;
-            }
-            if (changed)
-              add(i, change);
-          }
-        // A rank updates the sides of its own bodies; the points of a shared
-        // face are solved by both ranks with the same numbers.
-        dynamics.exchange({{side[0].data(), side[1].data()}}, dim);
+    const auto solve = [&](const std::size_t i) {
+      const double *Q = points.frame.data() + i * dim * dim;
+      std::array<double, dim> local;
+      for (unsigned int k = 0; k < dim; ++k) {
+        local[k] = problem.free_velocity[i * dim + k];
+        for (unsigned int c = 0; c < dim; ++c)
+          local[k] +=
+            Q[k * dim + c] * (side[1][i * dim + c] + side[0][i * dim + c]);
+        local[k] -= (k == 0 ? problem.majorant_normal[i]
+                            : problem.majorant_tangential[i]) *
+                    impulse[i * dim + k];
       }
+      const auto solution = solve_point<dim>(
+        problem, i, local, problem.majorant_normal[i],
+        problem.majorant_tangential[i], opening[i]);
+      opening[i] = solution.opening;
+      double change[dim];
+      bool changed = false;
+      for (unsigned int k = 0; k < dim; ++k) {
+        change[k] = solution.impulse[k] - impulse[i * dim + k];
+        impulse[i * dim + k] = solution.impulse[k];
+        changed = changed || change[k] != 0.;
+      }
+      if (changed)
+        add(i, change);
+    };
+    // A rank updates the sides of its own bodies; the points of a shared face
+    // are solved by both ranks with the same numbers, one after the other.
+    for (unsigned int sweep = 0; sweep < count; ++sweep)
+      for (const auto &faces : colours)
+        for (unsigned int q = 0; q < largest; ++q) {
+          for (const unsigned int f : faces)
+            if (q < points.faces[f].count)
+              solve(points.faces[f].first + q);
+          dynamics.exchange({{side[0].data(), side[1].data()}}, dim);
+        }
   }
 
   namespace

@@ -1,0 +1,220 @@
+#!/bin/sh
+# Writes doc/parameters.md from the program itself. Run it after ./nsfd has
+# been built:
+#   sh doc/generate_parameters.sh
+set -eu
+cd "$(dirname -- "$0")/.."
+[ -x ./nsfd ] || { echo "build ./nsfd first: sh start build" >&2; exit 1; }
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# Every interface law, every kind of load and an obstacle.
+cat >"$scratch/parts.prm" <<'END'
+# parts - one block of every kind.
+set dimension = 2
+subsection Mesh
+  set lower corner = 0, 0
+  set upper corner = 8, 1
+  set cells        = 8, 1
+end
+subsection Material: block
+  set model   = rigid
+  set density = 1
+end
+subsection Interface: extrinsic
+  set where     = x < 1.5
+  set law       = camacho-ortiz
+  set strength  = 1
+  set toughness = 1
+end
+subsection Interface: tvergaard
+  set where     = x < 2.5
+  set law       = tvergaard
+  set strength  = 1
+  set toughness = 1
+end
+subsection Interface: michel-suquet
+  set where     = x < 3.5
+  set law       = michel-suquet
+  set strength  = 1
+  set toughness = 1
+end
+subsection Interface: rcc
+  set where           = x < 4.5
+  set law             = rcc
+  set stiffness       = 1
+  set adhesion energy = 1
+end
+subsection Interface: elastic
+  set where            = x < 5.5
+  set law              = elastic
+  set normal stiffness = 1
+end
+subsection Interface: contact
+  set where = x < 6.5
+  set law   = contact
+end
+subsection Interface: rigid
+  set where = all
+  set law   = rigid
+end
+subsection Obstacle: floor
+  set where  = bottom
+  set point  = 0, 0
+  set normal = 0, 1
+end
+subsection Time
+  set end  = 1
+  set step = 1 s
+end
+END
+
+# Several bodies in three dimensions.
+cat >"$scratch/bodies.prm" <<'END'
+# bodies - two bricks of their own meshes.
+set dimension = 3
+subsection Mesh
+  set type = bodies
+end
+subsection Body: lower
+  set type         = brick
+  set lower corner = 0, 0, 0
+  set upper corner = 1, 1, 1
+  set cells        = 1, 1, 1
+end
+subsection Body: upper
+  set type         = brick
+  set lower corner = 0, 0, 1
+  set upper corner = 1, 1, 2
+  set cells        = 1, 1, 1
+end
+subsection Material: rock
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Time
+  set end = 1
+end
+END
+
+# A mesh of deal.II's generators.
+cat >"$scratch/generator.prm" <<'END'
+# generator - a disc.
+set dimension = 2
+subsection Mesh
+  set type      = hyper_ball
+  set arguments = 0, 0 : 1
+end
+subsection Material: rock
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Time
+  set end = 1
+end
+END
+
+# The sections of scene $1 whose first line matches $2.
+sections() {
+  ./nsfd "$1" --print-parameters >"$scratch/all"
+  printf '```\n'
+  awk -v pattern="^subsection ($2)\$" '
+    $0 ~ pattern { if (n++) print ""; inside = 1 }
+    inside { print }
+    /^end/ { inside = 0 }' "$scratch/all"
+  printf '```\n'
+}
+
+{
+  cat <<'END'
+# Parameters
+
+This page is written by `sh doc/generate_parameters.sh` from what the program
+prints; do not edit it. For your own scene,
+
+    ./nsfd FILE.prm --print-parameters
+
+prints the same: every entry that the parts of *this* scene have, with its
+value and its text. An entry that no part of the scene reads is an error, so a
+page of all entries does not exist; below are a whole scene and then the blocks
+that it does not use.
+
+## How values are written
+
+- Bare numbers are SI, or any consistent set of units. With a suffix they are
+  checked: `135 GPa`, `0.2 um`, `0.5 J/m^2`, `-9.81 m/s^2`. Units: `m s g Pa N J
+  Hz` with the prefixes `n u m c k M G`, and `min`, `h`; products with `*`,
+  quotients with `/`, powers with `^`.
+- Wherever a number stands, a formula may stand: `+ - * / ^`, comparisons,
+  `&&`, `||`, `pi`, `true`, `false`, the names of section `Constants`, and
+  `sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp ln log
+  log2 log10 sqrt pow abs min max sum avg mod floor ceil rint sign erf erfc
+  heaviside if(condition, a, b)`. Entries that say so also take `x`, `y`, `z`
+  and `t`.
+- `where` is `all`, a side of the bounding box (`left right bottom top front
+  back`, boundary faces only), `between materials [a, b]` (interior faces), the
+  name of a body, a material or boundary id of a generator's mesh, or a
+  condition on the centre of the cell or face. The first Material block that
+  holds owns a cell, the first Interface block an interior face; Boundary and
+  Obstacle blocks add up.
+- A line ends with `\` if the next one continues it; `#` starts a comment;
+  `include FILE` reads another file.
+- `--set 'Section/name=value'` changes an entry from the command line; a block
+  is named in full: `--set 'Interface: all/toughness=2 J/m^2'`.
+
+## A whole scene: `prm/quickstart.prm`
+
+```
+END
+  ./nsfd prm/quickstart.prm --print-parameters
+  cat <<'END'
+```
+
+## Interfaces: one block per law
+
+END
+  sections "$scratch/parts.prm" 'Interface: .*'
+  cat <<'END'
+
+## Obstacles, and a rigid material
+
+END
+  sections "$scratch/parts.prm" '(Obstacle|Material): .*'
+  cat <<'END'
+
+## Several bodies, three dimensions
+
+END
+  sections "$scratch/bodies.prm" '(Mesh|Body: .*|Material: .*|Loads)'
+  cat <<'END'
+
+## A mesh of deal.II's generators
+
+END
+  sections "$scratch/generator.prm" 'Mesh'
+  cat <<'END'
+
+## Exact values: `prm/verification/midplane.prm`
+
+END
+  sections prm/verification/midplane.prm 'Verification'
+  cat <<'END'
+
+## All names: `./nsfd --list`
+
+```
+END
+  ./nsfd --list
+  printf '```\n'
+} >"$scratch/parameters.md"
+mv "$scratch/parameters.md" doc/parameters.md
+echo "doc/parameters.md: $(wc -l <doc/parameters.md) lines"

@@ -1,0 +1,148 @@
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+// One, two and four ranks give the same files: bit for bit on the element-wise
+// path, to 1e-9 with global solves.
+
+namespace end_to_end
+{
+  namespace
+  {
+    struct RankRow {
+      std::string name;
+      std::vector<std::string> element_wise, global;
+      std::string scene = name; ///< the file
+    };
+
+    const std::vector<std::string> column = {"dimension=3",
+                                             "Mesh/type=brick",
+                                             "Mesh/cells=8, 2, 2",
+                                             "Mesh/lower corner=0, 0, 0",
+                                             "Mesh/upper corner=10 m, 1 m, 1 m",
+                                             "Mesh/distortion=0.2",
+                                             "Solver/tolerance=1e-11",
+                                             "Obstacle: wall/point=-5 m, 0, 0",
+                                             "Obstacle: wall/normal=1, 0, 0"};
+
+    // small and short: what is compared is the arithmetic, not the physics
+    const std::vector<RankRow> rows = {
+        {"ball", {"Time/end=0.6 s"}, {"Time/end=0.6 s"}},
+        {"bar_wall", {"Mesh/cells=30, 1"}, {"Mesh/cells=20, 1"}},
+        {"bimodular",
+         {"Mesh/cells=30, 1"},
+         {"Mesh/cells=20, 1", "Time/end=200 us"}},
+        {"escape", {}, {}},
+        {"incline", {}, {}},
+        {"interface_step", {"Mesh/cells=60, 1"}, {"Mesh/cells=40, 1"}},
+        {"midplane",
+         {"Mesh/cells=10, 10"},
+         {"Mesh/cells=10, 10", "Time/end=4 ns", "Solver/tolerance=1e-11"}},
+        {"mode", {"Time/end=200 us"}, {"Time/end=100 us"}},
+        {"patch_blocks", {}, {}},
+        {"patch_crossed", {}, {}},
+        {"rigid_motion", {}, {}},
+        {"step_load", {}, {}},
+        {"stop", {}, {}},
+        {"bar_wall_in_space", column, column, "bar_wall"},
+        // damage, contact and friction together, and sweeps where Newton stalls
+        {"quickstart",
+         {"Mesh/cells=12, 9", "Time/step=0.4 us", "Constants/turn=60 us",
+          "Constants/pull=4 m/s", "Time/end=120 us"},
+         {"Mesh/cells=12, 9", "Time/step=0.4 us", "Constants/pull=4 m/s",
+          "Time/end=42 us", "Solver/tolerance=1e-12"}},
+    };
+
+    std::filesystem::path file_of(const RankRow &row)
+    {
+      return row.scene == "quickstart" ? quickstart() : scene(row.scene);
+    }
+
+    /** Records position + values of all points, in an order of their own. */
+    std::vector<std::vector<double>> records(const Result &result,
+                                             const std::string &base)
+    {
+      std::vector<std::vector<double>> all;
+      double number = 0.;
+      for (const Snapshot &snapshot : snapshots(result.directory, base)) {
+        const std::size_t n_points = snapshot.at("Points").size() / 3;
+        const std::size_t first = all.size();
+        for (std::size_t i = 0; i < n_points; ++i)
+          all.push_back({number});
+        for (const auto &[name, values] : snapshot)
+          if (n_points > 0 && values.size() % n_points == 0 &&
+              (name == "Points" || name == "displacement" ||
+               name == "velocity" || name == "stress")) {
+            const std::size_t width = values.size() / n_points;
+            for (std::size_t i = 0; i < n_points; ++i)
+              all[first + i].insert(all[first + i].end(),
+                                    values.begin() + i * width,
+                                    values.begin() + (i + 1) * width);
+          }
+        ++number;
+      }
+      std::sort(all.begin(), all.end());
+      return all;
+    }
+
+    void PrintTo(const RankRow &row, std::ostream *stream)
+    {
+      *stream << row.name;
+    }
+
+    class RanksTest : public testing::TestWithParam<RankRow>
+    {
+    };
+  } // namespace
+
+  TEST_P(RanksTest, AreTheSameBitForBitElementWise)
+  {
+    const RankRow &row = GetParam();
+    const Workspace workspace;
+    std::vector<std::string> set = {"Solver/path=element-wise"};
+    set.insert(set.end(), row.element_wise.begin(), row.element_wise.end());
+    const Result one = good_run(workspace, "1 rank", {file_of(row), set});
+    ASSERT_TRUE(one.completed());
+    const auto fields = records(one, "fields");
+    for (const unsigned int n : {2u, 4u}) {
+      const Result several = good_run(workspace, std::to_string(n) + " ranks",
+                                      {file_of(row), set, n});
+      ASSERT_TRUE(several.completed());
+      EXPECT_TRUE(one.history_text == several.history_text)
+          << "history.csv of " << n << " ranks differs by "
+          << energy_difference(one.history, several.history);
+      EXPECT_EQ(one.summary["errors"], several.summary["errors"]);
+      EXPECT_EQ(one.summary["penetration_max"],
+                several.summary["penetration_max"]);
+      EXPECT_EQ(one.summary["fragments"], several.summary["fragments"]);
+      EXPECT_TRUE(fields == records(several, "fields"))
+          << "fields of " << n << " ranks";
+    }
+  }
+
+  TEST_P(RanksTest, AgreeWithGlobalSolves)
+  {
+    const RankRow &row = GetParam();
+    const Workspace workspace;
+    std::vector<std::string> set = {"Solver/path=global",
+                                    "Output/fields=false"};
+    set.insert(set.end(), row.global.begin(), row.global.end());
+    const Result one = good_run(workspace, "1 rank", {file_of(row), set});
+    ASSERT_TRUE(one.completed());
+    for (const unsigned int n : {2u, 4u}) {
+      const Result several = good_run(workspace, std::to_string(n) + " ranks",
+                                      {file_of(row), set, n});
+      ASSERT_TRUE(several.completed());
+      expect_below(std::to_string(n) + " ranks: energies",
+                   energy_difference(one.history, several.history), 1e-9,
+                   "up to the first solution jump");
+    }
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Table, RanksTest, testing::ValuesIn(rows),
+                           [](const auto &info) { return info.param.name; });
+} // namespace end_to_end
