@@ -25,8 +25,9 @@ namespace nsfd
      *     (W + D)^{-1} = D^{-1} (1 - H A^{-1} H^T D^{-1}).
      *
      * With D > 0 everywhere this is the inverse itself. Rigid rows and closed
-     * contacts (D = 0) enter with a compliance 1e-8 of the diagonal of W: a
-     * stiffness only for the preconditioner, the row stays exact.
+     * contacts (D = 0) enter with a compliance 1e-2 of the diagonal of W: a
+     * stiffness only for the preconditioner, the row stays exact. (A smaller
+     * one lets round-off grow along impulses that W does not see.)
      */
     template <int dim>
     class SparseDynamics final : public Dynamics<dim>
@@ -207,7 +208,7 @@ namespace nsfd
         for (unsigned int k = 0; k < n; ++k) {
           const std::size_t row = std::size_t(face.first) * dim + k;
           if (D[row] >= 0.)
-            inverse_D_[row] = 1. / std::max(D[row], 1e-8 * W[k * n + k]);
+            inverse_D_[row] = 1. / std::max(D[row], 1e-2 * W[k * n + k]);
         }
       }
 

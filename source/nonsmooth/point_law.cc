@@ -219,10 +219,19 @@ namespace nsfd
         return secant_at(interaction, f, opening);
       const double d =
         effective_opening<dim>(interaction, &problem.jump_old[i * dim]);
+      // d <= d_m but for round-off, which must not reach a small difference
+      const bool unloads = d < d_m * (1. - 2e-15);
+      const double start = unloads ? d_m : std::max(d, d_m);
+      if (opening <= start)
+        return secant_at(interaction, f, start);
       const double unloaded =
-        d_m > 0. ? secant_at(interaction, f, d_m) * (d_m - d) * (d_m + d) : 0.;
-      return (unloaded +
-              2. * interaction.law->energy_increment(f * d_m, f * opening)) /
+        unloads ? secant_at(interaction, f, d_m) * (d_m - d) * (d_m + d) : 0.;
+      // mean traction times the way: the way must not suffer from scaling by f
+      const double a = f * start, b = f * opening;
+      const double mean =
+        b > a ? interaction.law->energy_increment(a, b) / (b - a)
+              : interaction.law->traction(a);
+      return (unloaded + 2. * f * mean * (opening - start)) /
              ((opening - d) * (opening + d));
     }
 
@@ -236,9 +245,13 @@ namespace nsfd
         problem.interactions[problem.interaction[i]];
       if (interaction.friction == 0. || contact_impulse <= 0.)
         return 0.;
+      const double end = std::max(opening, problem.opening_max[i]);
+      // a rigid point that lets go in this step is damaged already
       const double beta =
-        beta_of(interaction, problem.kind[i], problem.strength_factor[i],
-                std::max(opening, problem.opening_max[i]));
+        problem.kind[i] == PointKind::rigid
+          ? interaction.law->beta(problem.strength_factor[i] * end)
+          : beta_of(interaction, problem.kind[i], problem.strength_factor[i],
+                    end);
       return interaction.friction *
              kappa(beta, interaction.friction_exponent) *
              contact_impulse;
@@ -466,7 +479,7 @@ namespace nsfd
                               majorant_tangential);
 
     const auto &interaction = problem.interactions[problem.interaction[i]];
-    LocalSolution<dim> solution;
+    LocalSolution<dim> solution, held;
     // everything at a given secant; friction follows the normal part at once
     const auto solve_at = [&](const double secant, const double opening) {
       solve_normal<dim>(problem, i, secant, local[0], majorant_normal, solution);
@@ -486,7 +499,6 @@ namespace nsfd
     const double d_m = problem.opening_max[i];
     double low = d_m;
     if (kind == PointKind::rigid) {
-      LocalSolution<dim> held;
       held.status = PointStatus::prescribed;
       for (unsigned int c = 0; c < dim; ++c)
         held.impulse[c] =
@@ -512,6 +524,12 @@ namespace nsfd
     if (kind == PointKind::rigid)
       low = 1e-9 * high;
     double a = low, b = high, f_a = excess(a), f_b = excess(b);
+    // a spring that is crossed (u and u' on both sides) may push further
+    for (unsigned int k = 0; k < 60 && f_b > 0.; ++k)
+      f_b = excess(b *= 2.);
+    // friction with kappa(1) > 0 may hold what the strength alone does not
+    if (kind == PointKind::rigid && f_a <= 0.)
+      return held;
     if (f_a <= 0.)
       b = a, f_b = 0.;
     else if (opening_start > a && opening_start < b) {

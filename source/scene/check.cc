@@ -81,17 +81,19 @@ namespace nsfd
   {
     const MeshReport mesh = mesh_report<dim>(triangulation);
     const auto problems = evaluate_expressions(input, discretization);
-    std::vector<double> forces(discretization.bodies().n_dofs());
-    discretization.add_loads(0., forces);
     bool finite = true;
-    for (const double f : forces)
-      finite = finite && std::isfinite(f);
+    for (const double t : {0., input.time.end}) {
+      std::vector<double> forces(discretization.bodies().n_dofs());
+      discretization.add_loads(t, forces);
+      for (const double f : forces)
+        finite = finite && std::isfinite(f);
+    }
     const bool bad = communicator.any(!problems.empty() || !finite);
     for (const auto &problem : problems)
       std::cerr << input.file << ": error: " << problem << "\n";
     if (!finite)
       std::cerr << input.file
-                << ": error: a load is not a finite number at t = 0\n";
+                << ": error: a load is not a finite number at the start or the end\n";
     const auto dofs = communicator.sum_integer(discretization.bodies().n_dofs());
     const auto n_points =
       communicator.sum_integer(discretization.points().n_owned);

@@ -310,7 +310,7 @@ end
         {"traction_at_the_start", "interface_step",
          "Boundary: left/traction x=-1 Pa / (t / 1 us)", "load"},
         {"traction_at_the_end", "interface_step",
-         "Boundary: left/traction x=-1 Pa / (180 - t / 1 us)", "load"},
+         "Boundary: left/traction x=-1 Pa / if(t > 179 us, 0, 1)", "load"},
         {"pressure_at_the_end", "bimodular",
          "Boundary: left/pressure=1 Pa * log(420 - t / 1 us)", "load"},
     };

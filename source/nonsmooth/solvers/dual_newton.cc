@@ -434,7 +434,7 @@ namespace nsfd
           continue;
         }
         ++stalled;
-        if (report.sweeps >= 150) // a shorter step is cheaper than more of them
+        if (report.sweeps >= 5 * control.maximum_iterations)
           break;
         if (colours_.empty())
           colours_ = colour_faces(dynamics);
