@@ -25,8 +25,9 @@ solver)
   for p in 1 2 3; do
     for ratio in 21 1e3 1e5 1e8; do
       for step in 0.1 0.25 0.5 1; do
-        end=$(awk "BEGIN { print 20 * $step / 40 / 1.16 }")
-        run prm/benchmarks/pulse.prm --set "Constants/ratio=$ratio" \
+        end=$(awk "BEGIN { print 20 * $step / 20 / 1.16 }")
+        run prm/benchmarks/pulse.prm --set "Mesh/cells=20, 20" \
+          --set "Constants/ratio=$ratio" \
           --set "Discretization/degree=$p" --set "Time/step=$step crossings" \
           --set "Time/end=$end"
         awk -v p=$p -v c=$ratio -v h=$step -v n="$(value newton)" \
