@@ -86,10 +86,10 @@ namespace end_to_end
           {"stress", 1e-9, "uniform"},
           {"kinetic", 1e-12, "at rest"}}},
         {"patch_crossed",
-         {{"modulus", 5e-9, "uniform stress is exact; 40 crossings per step"},
+         {{"modulus", 1e-8, "uniform stress is exact; 40 crossings per step"},
           {"compliance", 1e-7, "1/E + (3/4)/5 + sqrt(1/2)(1/5 + 1/2)",
            1.6449747},
-          {"stress", 5e-9, "uniform"},
+          {"stress", 1e-8, "uniform"},
           {"kinetic", 1e-12, "at rest"}}},
         {"rigid_motion",
          {{"displacement_L2", 1e-12, "exact"},
@@ -218,7 +218,10 @@ namespace end_to_end
                                    nullptr));
       expect_below("energy gained at an impact, per step", gain, tolerance,
                    "theta <= 1/(1+e): no impact creates energy");
-      expect_below("energy gained by friction, per step", rubbing_gain,
+      // possible on slip reversal, but then summed and named
+      expect_below("energy gained by friction, not named",
+                   rubbing_gain -
+                       result.number("positive_friction_work") / scale,
                    tolerance);
     }
 
@@ -364,17 +367,17 @@ namespace end_to_end
        "patch_crossed",
        {"Mesh/type=diagonal triangles"},
        {{"compliance", 1e-7, "sqrt(2)/4 for one diagonal", 1.3974874},
-        {"modulus", 5e-9, "exact"}}},
+        {"modulus", 1e-8, "exact"}}},
       {"quadratic_triangles",
        "patch_crossed",
        {"Discretization/degree=2"},
        {{"compliance", 1e-7, "the same for every degree", 1.6449747},
-        {"modulus", 5e-9, "exact"}}},
+        {"modulus", 1e-8, "exact"}}},
       {"quadratic_blocks",
        "patch_blocks",
        {"Discretization/degree=2"},
        {{"compliance", 1e-8, "the same for every degree", 1.15},
-        {"modulus", 5e-9, "exact"}}},
+        {"modulus", 1e-8, "exact"}}},
       // 1.5 % below the threshold 0.6893021 R_max the same block stays
       {"below_the_threshold",
        "step_load",

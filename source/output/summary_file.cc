@@ -1,0 +1,115 @@
+#include "nsfd/output/summary_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+    Json number(const double value)
+    {
+      return std::isfinite(value) ? Json(value) : Json(nullptr);
+    }
+
+    template <typename Pairs>
+    Json numbers(const Pairs &pairs)
+    {
+      Json object = Json::object();
+      for (const auto &[name, value] : pairs)
+        object[name] = number(value);
+      return object;
+    }
+
+    void write_json(const std::string &path, const Json &json)
+    {
+      // host names and paths may hold bytes that are no UTF-8
+      write_file_atomically(
+          path,
+          json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+    }
+  } // namespace
+
+  void write_file_atomically(const std::string &path, const std::string &text)
+  {
+    const std::string temporary = path + ".part";
+    const auto fail = [&]() {
+      const std::string reason = std::strerror(errno);
+      std::remove(temporary.c_str());
+      throw std::runtime_error("Cannot write '" + path + "': " + reason + '.');
+    };
+
+    errno = 0;
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    file.close();
+    if (!file || std::rename(temporary.c_str(), path.c_str()) != 0)
+      fail();
+  }
+
+  void write_summary(const std::string &path, const Summary &summary)
+  {
+    const EnergyLines &e = summary.energy;
+
+    Json json;
+    json["completed"] = summary.completed;
+    json["failure"] =
+        summary.failure.empty() ? Json(nullptr) : Json(summary.failure);
+    json["dimension"] = summary.dimension;
+    json["steps"] = summary.steps;
+    json["dofs"] = summary.dofs;
+    json["cells"] = summary.cells;
+    json["interface_points"] = summary.interface_points;
+    json["final_time"] = number(summary.final_time);
+    json["wall_seconds"] = number(summary.wall_seconds);
+    json["cpu_seconds"] = number(summary.cpu_seconds);
+    json["setup_seconds"] = number(summary.setup_seconds);
+    json["peak_memory_mb"] = number(summary.peak_memory_mb);
+    json["energy"] = {{"kinetic", number(e.kinetic)},
+                      {"elastic", number(e.elastic)},
+                      {"cohesive", number(e.cohesive)}};
+    json["dissipated"] = {
+        {"damage", number(e.damage)},   {"friction", number(e.friction)},
+        {"viscous", number(e.viscous)}, {"plastic", number(e.plastic)},
+        {"impact", number(e.impact)},   {"numerical", number(e.numerical)}};
+    json["work"] = number(e.work);
+    json["ledger_defect_max"] = number(summary.ledger_defect_max);
+    json["residual_max"] = number(summary.residual_max);
+    json["penetration_max"] = number(summary.penetration_max);
+    json["penetration_bound"] = number(summary.penetration_bound);
+    json["positive_friction_work"] = number(summary.positive_friction_work);
+    json["rigid_drift_max"] = number(summary.rigid_drift_max);
+    json["fragments"] = summary.fragments;
+    json["counters"] = numbers(summary.counters);
+    json["errors"] = numbers(summary.errors);
+    json["timings"] = numbers(summary.timings);
+    write_json(path, json);
+  }
+
+  void write_run_info(const std::string &path, const RunInfo &info)
+  {
+    Json json;
+    json["version"] = info.version;
+    json["git_hash"] = info.git_hash;
+    json["build_type"] = info.build_type;
+    json["libraries"] = info.libraries;
+    json["command_line"] = info.command_line;
+    json["file"] = info.file;
+    json["date"] = info.date;
+    json["host"] = info.host;
+    json["ranks"] = info.ranks;
+    json["seeds"] = info.seeds;
+    json["parts"] = Json::array();
+    for (const auto &[kind, name] : info.parts)
+      json["parts"].push_back({{"kind", kind}, {"name", name}});
+    write_json(path, json);
+  }
+} // namespace nsfd
