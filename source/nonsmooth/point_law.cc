@@ -275,7 +275,10 @@ namespace nsfd
         solution.contact_impulse = solution.impulse[0] + wh * spring.at(U);
         solution.status = PointStatus::stick;
       } else {
-        solution.impulse[0] = -wh * spring.at(U);
+        // a stiff spring: its traction is a difference of large jumps
+        solution.impulse[0] = majorant * wh * spring.derivative(U) > 1.
+                                ? (U - local) / majorant
+                                : -wh * spring.at(U);
         solution.status = PointStatus::open;
       }
       solution.velocity[0] = U;
@@ -309,7 +312,7 @@ namespace nsfd
           share * z[c] - problem.sliding_offset[i * dim + c];
         solution.velocity[c] = U;
         solution.impulse[c] =
-          threshold == 0.
+          threshold == 0. && factor < 2.
             ? -k * (tangential_offset<dim>(problem, i, c) + spring.slope * U)
             : (U - local[c]) / majorant;
       }
