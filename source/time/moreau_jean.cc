@@ -349,9 +349,11 @@ namespace nsfd
                               interaction.law->normal_stiffness()
                           : interaction.normal_stiffness;
       else {
-        // a closed point must not open by round-off of its position
+        // A closed point must not open by what the solver left of its position;
+        // one without restitution stays a candidate as long as it rests.
+        const bool rests = old.contact[i] && interaction.restitution == 0.;
         problem.contact[i] = u_N + h * input_.time.forecast_gamma1 * U_N <=
-                             1e-14 * discretization_.extent();
+                             (rests ? 1e-9 : 1e-14) * discretization_.extent();
         // restitution belongs to broken points
         const double e =
           old.kind[i] == PointKind::free ? interaction.restitution : 0.;
