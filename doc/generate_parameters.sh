@@ -9,7 +9,8 @@ cd "$(dirname -- "$0")/.."
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Every interface law, every kind of load and an obstacle.
+# Every interface law, every kind of load and an obstacle. Cohesive laws are
+# those of --list, with the entries of their example.
 cat >"$scratch/parts.prm" <<'END'
 # parts - one block of every kind.
 set dimension = 2
@@ -22,30 +23,22 @@ subsection Material: block
   set model   = rigid
   set density = 1
 end
-subsection Interface: extrinsic
-  set where     = x < 1.5
-  set law       = camacho-ortiz
-  set strength  = 1
-  set toughness = 1
-end
-subsection Interface: tvergaard
-  set where     = x < 2.5
-  set law       = tvergaard
-  set strength  = 1
-  set toughness = 1
-end
-subsection Interface: michel-suquet
-  set where     = x < 3.5
-  set law       = michel-suquet
-  set strength  = 1
-  set toughness = 1
-end
-subsection Interface: rcc
-  set where           = x < 4.5
-  set law             = rcc
-  set stiffness       = 1
-  set adhesion energy = 1
-end
+END
+./nsfd --list | awk '
+  /^[^ ]/ { kind = $0 }
+  kind != "cohesive law" { next }
+  /^ *for example: / {
+    sub(/^ *for example: /, "")
+    n = split($0, entries, /; */)
+    print "subsection Interface: " name
+    print "  set where = x < 4"
+    print "  set law = " name
+    for (i = 1; i <= n; ++i) print "  set " entries[i]
+    print "end"
+    next
+  }
+  /^  / { name = substr($0, 3); sub(/  .*/, "", name) }' >>"$scratch/parts.prm"
+cat >>"$scratch/parts.prm" <<'END'
 subsection Interface: elastic
   set where            = x < 5.5
   set law              = elastic

@@ -93,6 +93,9 @@ namespace nsfd
         out << (kind.empty() ? "" : "\n") << part.kind << "\n";
       kind = part.kind;
       out << fmt::format("  {:<{}}  {}\n", part.name, width, part.text);
+      if (!part.example.empty())
+        out << fmt::format("  {:<{}}  for example: {}\n", "", width,
+                           part.example);
     }
   }
 

@@ -163,10 +163,14 @@ namespace nsfd
         parts.push_back({kind, entry.name, entry.text});
     };
     append("interface law", known_plain_laws());
-    for (const auto &entry : CohesiveLawRegistry::instance().entries())
-      parts.push_back({"cohesive law", entry.first, entry.second.text});
-    for (const auto &entry : VerificationRegistry::instance().entries())
-      parts.push_back({"verification case", entry.first, entry.second.text});
+    const auto append_registered = [&parts](const std::string &kind,
+                                            const auto &registry) {
+      for (const auto &[name, entry] : registry.entries())
+        parts.push_back({kind, name, entry.text,
+                         entry.examples.empty() ? "" : entry.examples.front()});
+    };
+    append_registered("cohesive law", CohesiveLawRegistry::instance());
+    append_registered("verification case", VerificationRegistry::instance());
     append("mesh", known_meshes());
     append("solver", known_solvers());
     return parts;

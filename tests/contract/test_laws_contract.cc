@@ -7,47 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
 // What every registered cohesive law must satisfy, whatever its shape.
 
 using namespace nsfd;
-using nsfd::test::LawEntries;
+using nsfd::test::entries_of;
 using nsfd::test::make_law;
 
 namespace
 {
-  /** Parameters to try. A new law needs at least one row here. */
-  const std::multimap<std::string, LawEntries> parameters = {
-      {"tvergaard", {{"strength", "3 MPa"}, {"critical opening", "2 um"}}},
-      {"tvergaard",
-       {{"strength", "3 MPa"},
-        {"toughness", "4 J/m^2"},
-        {"tangential critical opening", "5 um"}}},
-      {"tvergaard",
-       {{"strength", "3 MPa"},
-        {"toughness", "4 J/m^2"},
-        {"tangential critical opening", "5 um"},
-        {"mixity", "1.5"}}},
-      {"michel-suquet", {{"strength", "324 MPa"}, {"toughness", "0.5 J/m^2"}}},
-      {"michel-suquet",
-       {{"stiffness", "1e18"},
-        {"toughness", "10 J/m^2"},
-        {"tangential stiffness", "3e17"}}},
-      {"camacho-ortiz", {{"strength", "300 MPa"}, {"toughness", "0.5 J/m^2"}}},
-      {"camacho-ortiz",
-       {{"strength", "300 MPa"},
-        {"critical opening", "1 um"},
-        {"mode mixity", "0.7"}}},
-      {"rcc", {{"stiffness", "2e12"}, {"adhesion energy", "8 J/m^2"}}},
-      {"rcc",
-       {{"stiffness", "2e12"},
-        {"adhesion energy", "8 J/m^2"},
-        {"tangential stiffness", "5e12"}}},
-  };
-
   /** Kinks of the envelope, in order. */
   std::vector<double> kinks(const CohesiveLaw &law)
   {
@@ -246,25 +216,23 @@ namespace
       EXPECT_GE(difference, 1e-4 * law.toughness());
   }
 
+  /** Every registered law, with each of the examples it registers. */
   void
   expect_for_all_laws(const std::function<void(const CohesiveLaw &)> &check)
   {
-    for (const auto &[name, entries] : parameters) {
-      std::string trace = name;
-      for (const auto &[entry, value] : entries)
-        trace += ", " + entry + " = " + value;
-      SCOPED_TRACE(trace);
-      check(*make_law(name, entries));
-    }
+    for (const auto &[name, entry] : CohesiveLawRegistry::instance().entries())
+      for (const std::string &example : entry.examples) {
+        SCOPED_TRACE(name + ": " + example);
+        check(*make_law(name, entries_of(example)));
+      }
   }
 
-  TEST(LawsContract, EveryLawHasParameters)
+  TEST(LawsContract, EveryLawHasExamples)
   {
-    for (const std::string &name : CohesiveLawRegistry::instance().names())
-      EXPECT_TRUE(parameters.count(name))
-          << "no parameters are known for the cohesive law '" << name
-          << "': add a row to the table `parameters` at the top of "
-          << __FILE__;
+    for (const auto &[name, entry] : CohesiveLawRegistry::instance().entries())
+      EXPECT_FALSE(entry.examples.empty())
+          << "the cohesive law '" << name
+          << "' is not tested: add examples of its entries to NSFD_REGISTER";
   }
 
   TEST(LawsContract, BetaNeverGrows) { expect_for_all_laws(beta_never_grows); }

@@ -6,6 +6,7 @@
 #include "nsfd/interface/cohesive_law.h"
 
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,6 +18,20 @@ namespace nsfd
   {
     /** Names and values as written in a parameter file. */
     using LawEntries = std::vector<std::pair<std::string, std::string>>;
+
+    /** The entries of an example, "strength = 3 MPa; toughness = 4 J/m^2". */
+    inline LawEntries entries_of(const std::string &example)
+    {
+      LawEntries entries;
+      std::istringstream parts(example);
+      for (std::string part; std::getline(parts, part, ';');) {
+        const std::size_t equals = part.find('=');
+        if (equals == std::string::npos)
+          throw std::invalid_argument("no `=` in the example `" + part + "`");
+        entries.emplace_back(part.substr(0, equals), part.substr(equals + 1));
+      }
+      return entries;
+    }
 
     /** Build a law as a scene does; what is wrong goes into @p errors. */
     inline std::unique_ptr<CohesiveLaw> read_law(const std::string &name,

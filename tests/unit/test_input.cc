@@ -1,6 +1,7 @@
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/parameter_file.h"
 #include "nsfd/input/read_scene.h"
+#include "nsfd/interface/cohesive_law.h"
 
 #include <gtest/gtest.h>
 
@@ -775,6 +776,13 @@ end
     for (const char *name :
          {"camacho-ortiz", "rigid", "rectangle", "gauss seidel", "hyper_cube"})
       EXPECT_NE(list.out.find(name), std::string::npos) << name;
+    for (const auto &[name, entry] : CohesiveLawRegistry::instance().entries())
+      for (const std::string &example : entry.examples) {
+        const bool is_first = &example == &entry.examples.front();
+        EXPECT_EQ(list.out.find(": " + example + "\n") != std::string::npos,
+                  is_first)
+            << name << ": " << example;
+      }
   }
 
   TEST(CommandLineTest, WrongUsageEndsWithTwo)

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace nsfd
@@ -23,6 +24,7 @@ namespace nsfd
     {
       Factory factory;
       std::string text;
+      std::vector<std::string> examples;
     };
 
     static Registry &instance()
@@ -31,9 +33,15 @@ namespace nsfd
       return registry;
     }
 
-    bool add(const std::string &name, const std::string &text, Factory factory)
+    /** For NSFD_REGISTER; what examples are is explained there. */
+    template <typename Part, typename... Examples>
+    bool add(const std::string &name, const std::string &text,
+             const Examples &...examples)
     {
-      entries_[name] = {std::move(factory), text};
+      const Factory factory = [](Arguments... arguments) {
+        return std::make_unique<Part>(std::forward<Arguments>(arguments)...);
+      };
+      entries_[name] = {factory, text, {examples...}};
       return true;
     }
 
@@ -67,12 +75,15 @@ namespace nsfd
 #define NSFD_CONCATENATE(a, b) NSFD_CONCATENATE_2(a, b)
 
 /**
- * Register a class under a name, with the one line that `--list` prints.
- * The class is built with the registry's arguments.
+ * Register a class under a name, with the one line that `--list` prints:
+ *
+ *   NSFD_REGISTER(RegistryType, Class, name, text, example, ...);
+ *
+ * The class is built with the registry's arguments. A part that reads entries
+ * of its own may state examples of them, "strength = 3 MPa; toughness = 4
+ * J/m^2": each one is enough to build the part. The contract tests try them
+ * all; `--list` and doc/parameters.md show the first.
  */
-#define NSFD_REGISTER(RegistryType, Class, name, text)                         \
+#define NSFD_REGISTER(RegistryType, Class, ...)                                \
   static const bool NSFD_CONCATENATE(registered_, __LINE__) =                  \
-    RegistryType::instance().add(name, text, [](auto &&...arguments) {         \
-      return std::make_unique<Class>(                                          \
-        std::forward<decltype(arguments)>(arguments)...);                      \
-    })
+    RegistryType::instance().add<Class>(__VA_ARGS__)

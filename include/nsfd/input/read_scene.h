@@ -29,6 +29,7 @@ namespace nsfd
   /** A name that a parameter file may write, for `--list`. */
   struct NamedPart {
     std::string kind, name, text;
+    std::string example = {}; ///< entries it needs: "strength = 3 MPa; ..."
   };
 
   /** Interface laws, verification cases, meshes, solvers, in this order. */

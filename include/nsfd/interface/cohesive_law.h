@@ -89,7 +89,10 @@ namespace nsfd
     virtual double steepest_softening() const = 0;
   };
 
-  /** Laws by name; a factory reads the law's own entries of its section. */
+  /**
+   * Laws by name; a factory reads the law's own entries of its section. A law
+   * registers examples of them, at least one.
+   */
   using CohesiveLawRegistry =
     Registry<CohesiveLaw, SectionReader &>;
 } // namespace nsfd

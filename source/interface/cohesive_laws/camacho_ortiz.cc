@@ -105,5 +105,8 @@ namespace nsfd
 
   NSFD_REGISTER(CohesiveLawRegistry, CamachoOrtiz, "camacho-ortiz",
                 "Extrinsic, linear softening, secant unloading; from strength "
-                "and toughness or critical opening");
+                "and toughness or critical opening",
+                "strength = 300 MPa; toughness = 0.5 J/m^2",
+                "strength = 300 MPa; critical opening = 1 um; "
+                "mode mixity = 0.7");
 } // namespace nsfd

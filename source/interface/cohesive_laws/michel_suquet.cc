@@ -117,5 +117,8 @@ namespace nsfd
 
   NSFD_REGISTER(CohesiveLawRegistry, MichelSuquet, "michel-suquet",
                 "Intrinsic, elastic up to d_c, (19); from two of stiffness, "
-                "strength and toughness");
+                "strength and toughness",
+                "strength = 324 MPa; toughness = 0.5 J/m^2",
+                "stiffness = 1e18; toughness = 10 J/m^2; "
+                "tangential stiffness = 3e17");
 } // namespace nsfd

@@ -91,5 +91,8 @@ namespace nsfd
 
   NSFD_REGISTER(CohesiveLawRegistry, Rcc, "rcc",
                 "Intrinsic adhesion of Raous, Cangemi and Cocu, endless tail; "
-                "from stiffness and adhesion energy");
+                "from stiffness and adhesion energy",
+                "stiffness = 2e12; adhesion energy = 8 J/m^2",
+                "stiffness = 2e12; adhesion energy = 8 J/m^2; "
+                "tangential stiffness = 5e12");
 } // namespace nsfd

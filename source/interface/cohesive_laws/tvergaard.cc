@@ -122,5 +122,10 @@ namespace nsfd
 
   NSFD_REGISTER(CohesiveLawRegistry, Tvergaard, "tvergaard",
                 "Intrinsic, beta = (1 - lambda)^2, (12)-(17); from strength "
-                "and toughness or critical opening");
+                "and toughness or critical opening",
+                "strength = 3 MPa; critical opening = 2 um",
+                "strength = 3 MPa; toughness = 4 J/m^2; "
+                "tangential critical opening = 5 um",
+                "strength = 3 MPa; toughness = 4 J/m^2; "
+                "tangential critical opening = 5 um; mixity = 1.5");
 } // namespace nsfd
