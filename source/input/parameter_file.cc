@@ -9,6 +9,12 @@ namespace nsfd
   namespace
   {
     constexpr const char *blanks = " \t\r\v\f";
+    constexpr const char *command_line = "--set";
+
+    bool is_override(const ParameterEntry &entry)
+    {
+      return entry.name_location.source == command_line;
+    }
 
     std::string join(const std::vector<std::string> &words)
     {
@@ -170,16 +176,23 @@ namespace nsfd
     if (accepts_everything_)
       return;
 
-    std::vector<std::string> valid, free;
+    std::vector<std::string> valid;
     for (const DeclaredParameter &parameter : declared_)
       valid.push_back(parameter.name);
     for (const std::string &name : mentioned_)
       if (std::find(valid.begin(), valid.end(), name) == valid.end())
         valid.push_back(name);
-    // what the file already gives cannot have been meant a second time
-    for (const std::string &name : valid)
-      if (find(name) == nullptr)
-        free.push_back(name);
+    // what is given already cannot have been meant a second time, but --set
+    // may replace what the file gives
+    const auto candidates = [&](const ParameterEntry &stray) {
+      std::vector<std::string> names;
+      for (const std::string &name : valid) {
+        const ParameterEntry *given = find(name);
+        if (given == nullptr || (is_override(stray) && !is_override(*given)))
+          names.push_back(name);
+      }
+      return names;
+    };
 
     for (const ParameterEntry &entry : entries_) {
       const bool is_declared = std::any_of(
@@ -187,13 +200,14 @@ namespace nsfd
           [&](const DeclaredParameter &p) { return p.name == entry.name; });
       if (is_declared || refused_.count(entry.name) != 0)
         continue;
-      const std::string meant = nearest_name(entry.name, free);
+      const std::vector<std::string> names = candidates(entry);
+      const std::string meant = nearest_name(entry.name, names);
       if (missing_.count(meant) != 0)
         errors.withdraw(location_, missing_message(meant));
       errors.error(entry.name_location,
                    fmt::format("`{}` is not an entry of {} in this scene",
                                entry.name, description()),
-                   did_you_mean(entry.name, free,
+                   did_you_mean(entry.name, names,
                                 valid.empty() ? "it has no entries"
                                               : "it knows: " + join(valid)));
     }
@@ -314,7 +328,7 @@ namespace nsfd
                                 InputErrors &errors)
   {
     const SourceText source(
-        assignment, {"--set", 0, 0,
+        assignment, {command_line, 0, 0,
                      static_cast<unsigned int>(assignment.size()), assignment});
     const std::size_t equals = assignment.find('=');
     // names of blocks may hold a slash, names of entries do not

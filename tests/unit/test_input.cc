@@ -728,6 +728,8 @@ end
     };
     fails("Tme/theta=0.5", "did you mean `Time`?");
     fails("Time/teta=0.5", "did you mean `theta`?");
+    // the file gives `cells`, and --set may replace it
+    fails("Mesh/cels=4, 4", "did you mean `cells`?");
     fails("Interfce: all/law=rigid", "did you mean `Interface: all`?");
     fails("Material: steel/density=3", "`Young modulus` is missing");
     fails("Mesh: big/cells=3, 3", "section `Mesh` takes no name");
