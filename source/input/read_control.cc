@@ -1,5 +1,6 @@
 #include "read_sections.h"
 
+#include "nsfd/nonsmooth/solver.h"
 #include "nsfd/scene/verification_case.h"
 
 #include <fmt/format.h>
@@ -15,12 +16,6 @@ namespace nsfd
   namespace
   {
     constexpr unsigned int any_count = std::numeric_limits<unsigned int>::max();
-
-    const std::vector<NamedText> solvers = {
-        {"auto", "dual newton; what it cannot solve goes to the others"},
-        {"dual newton", "Newton on the impulses with exact line search"},
-        {"gauss seidel", "sweeps over the points with local solves"},
-    };
 
     /** Splits "0.6 crossings" into "0.6" and "crossings". */
     std::pair<SourceText, std::string> split_last_word(const SourceText &value)
@@ -146,14 +141,13 @@ namespace nsfd
     }
   } // namespace
 
-  std::vector<NamedText> known_solvers() { return solvers; }
-
-  std::vector<std::string> names_of(const std::vector<NamedText> &parts)
+  std::vector<NamedText> known_solvers()
   {
-    std::vector<std::string> names;
-    for (const NamedText &part : parts)
-      names.push_back(part.name);
-    return names;
+    std::vector<NamedText> solvers = {
+        {"auto", "dual newton; what it cannot solve goes to the others"}};
+    for (const auto &[name, entry] : SolverRegistry<2>::instance().entries())
+      solvers.push_back({name, entry.text});
+    return solvers;
   }
 
   void read_time(ParameterFile &file, InputErrors &errors, SceneInput &scene)
@@ -200,8 +194,11 @@ namespace nsfd
   {
     SectionReader reader(file.open("Solver"), errors);
     SolverInput &solver = scene.solver;
-    solver.method = reader.choice("method", "auto", names_of(solvers),
-                                  "auto, dual newton or gauss seidel");
+    std::vector<std::string> methods;
+    for (const NamedText &known : known_solvers())
+      methods.push_back(known.name);
+    solver.method = reader.choice("method", "auto", methods,
+                                  fmt::format("{}", fmt::join(methods, ", ")));
     solver.path =
         reader.choice("path", "auto", {"auto", "element-wise", "global"},
                       "auto, element-wise or global");

@@ -1,3 +1,4 @@
+#include "nsfd/mesh/mesh_types.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -10,62 +11,12 @@ namespace nsfd
 {
   namespace
   {
-    struct MeshType {
-      const char *name, *text;
-      unsigned int dimension;       ///< 0: two and three
-      unsigned int cells_per_brick; ///< of the lattice `cells`
-      bool simplices;
-    };
-
-    /** Meshes that fill the box between two corners. */
-    const MeshType box_types[] = {
-        {"rectangle", "quadrilaterals in a rectangle", 2, 1, false},
-        {"brick", "hexahedra in a box", 3, 1, false},
-        {"notched plate", "a box with a slot from the left side", 0, 1, false},
-        {"crossed triangles", "four triangles per quadrilateral", 2, 4, true},
-        {"diagonal triangles", "two triangles per quadrilateral", 2, 2, true},
-        {"tetrahedra", "six tetrahedra per hexahedron", 3, 6, true},
-    };
-
-    /** Generators of deal.II that make a body of full dimension. */
-    const char *const generators[] = {
-        "hyper_cube",
-        "subdivided_hyper_cube",
-        "hyper_rectangle",
-        "subdivided_hyper_rectangle",
-        "hyper_ball",
-        "hyper_ball_balanced",
-        "half_hyper_ball",
-        "quarter_hyper_ball",
-        "hyper_shell",
-        "half_hyper_shell",
-        "quarter_hyper_shell",
-        "concentric_hyper_shells",
-        "eccentric_hyper_shell",
-        "hyper_L",
-        "hyper_cross",
-        "hyper_cube_slit",
-        "hyper_cube_with_cylindrical_hole",
-        "enclosed_hyper_cube",
-        "plate_with_a_hole",
-        "channel_with_cylinder",
-        "cheese",
-        "general_cell",
-        "simplex",
-        "cylinder",
-        "subdivided_cylinder",
-        "cylinder_shell",
-        "truncated_cone",
-        "moebius",
-        "torus",
-    };
-
+    /** The type if it fills a box, else null. */
     const MeshType *find_box_type(const std::string &name)
     {
-      for (const MeshType &type : box_types)
-        if (name == type.name)
-          return &type;
-      return nullptr;
+      const MeshType *type = find_mesh_type(name);
+      return type != nullptr && type->kind == MeshType::Kind::box ? type
+                                                                  : nullptr;
     }
 
     std::string repeated(const std::string &value, const unsigned int count)
@@ -89,16 +40,17 @@ namespace nsfd
       const std::string type = collapse_blanks(value->text());
       if (type == "bodies" && !is_body)
         return type;
-      std::vector<std::string> names = names_of(known_meshes());
-      if (is_body)
-        names.erase(std::remove(names.begin(), names.end(), "bodies"),
-                    names.end());
+      std::vector<std::string> names;
+      for (const MeshType &known : mesh_types())
+        if (known.kind != MeshType::Kind::bodies || !is_body)
+          names.push_back(known.name);
 
-      const MeshType *box = find_box_type(type);
-      if (box != nullptr && box->dimension != 0 && box->dimension != dimension)
+      const MeshType *known = find_mesh_type(type);
+      if (known != nullptr && known->dimension != 0 &&
+          known->dimension != dimension)
         reader.error("type",
                      fmt::format("type = {} needs dimension = {}, not {}", type,
-                                 box->dimension, dimension),
+                                 known->dimension, dimension),
                      dimension == 2 ? "write for example: rectangle"
                                     : "write for example: brick");
       else if (type == "voronoi" || type == "file")
@@ -221,22 +173,10 @@ namespace nsfd
     }
   } // namespace
 
-  std::vector<NamedText> known_meshes()
-  {
-    std::vector<NamedText> result;
-    for (const MeshType &type : box_types)
-      result.push_back({type.name, type.text});
-    result.push_back({"bodies", "the meshes of all blocks `Body: name`"});
-    for (const char *name : generators)
-      result.push_back({name, "generator of deal.II"});
-    return result;
-  }
-
   bool has_numbered_groups(const SceneInput &scene)
   {
-    return std::any_of(
-        std::begin(generators), std::end(generators),
-        [&scene](const char *name) { return scene.mesh.type == name; });
+    const MeshType *type = find_mesh_type(scene.mesh.type);
+    return type != nullptr && type->kind == MeshType::Kind::generator;
   }
 
   bool has_simplices(const SceneInput &scene)

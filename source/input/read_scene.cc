@@ -1,6 +1,7 @@
 #include "nsfd/input/read_scene.h"
 
 #include "nsfd/interface/cohesive_law.h"
+#include "nsfd/mesh/mesh_types.h"
 #include "nsfd/scene/verification_case.h"
 #include "read_sections.h"
 
@@ -159,7 +160,7 @@ namespace nsfd
   {
     std::vector<NamedPart> parts;
     const auto append = [&parts](const std::string &kind, const auto &list) {
-      for (const NamedText &entry : list)
+      for (const auto &entry : list)
         parts.push_back({kind, entry.name, entry.text});
     };
     append("interface law", known_plain_laws());
@@ -171,7 +172,7 @@ namespace nsfd
     };
     append_registered("cohesive law", CohesiveLawRegistry::instance());
     append_registered("verification case", VerificationRegistry::instance());
-    append("mesh", known_meshes());
+    append("mesh", mesh_types());
     append("solver", known_solvers());
     return parts;
   }

@@ -77,13 +77,12 @@ namespace nsfd
                               const std::vector<std::string> &names,
                               const SceneInput &scene);
 
-  /** The mesh types and solvers by kind, name and text. */
+  /** What a file may name besides what is registered, with its text. */
   struct NamedText {
     std::string name, text;
   };
-  std::vector<NamedText> known_meshes();
-  std::vector<NamedText> known_solvers();
   std::vector<NamedText> known_plain_laws();
 
-  std::vector<std::string> names_of(const std::vector<NamedText> &parts);
+  /** `auto` and the registered ones. */
+  std::vector<NamedText> known_solvers();
 } // namespace nsfd

@@ -1,6 +1,7 @@
 #include "nsfd/mesh/mesh_builder.h"
 
 #include "coarse_mesh.h"
+#include "nsfd/mesh/mesh_types.h"
 
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>
@@ -19,51 +20,6 @@ namespace nsfd
 
   namespace
   {
-    const std::vector<std::string> own_types = {"rectangle",
-                                                "brick",
-                                                "notched plate",
-                                                "crossed triangles",
-                                                "diagonal triangles",
-                                                "tetrahedra",
-                                                "bodies"};
-
-    /** Those of generate_from_name_and_arguments() that fill a volume. */
-    const std::vector<std::string> generators = {
-        "channel_with_cylinder",
-        "cheese",
-        "concentric_hyper_shells",
-        "cylinder",
-        "cylinder_shell",
-        "eccentric_hyper_shell",
-        "enclosed_hyper_cube",
-        "general_cell",
-        "half_hyper_ball",
-        "half_hyper_shell",
-        "hyper_L",
-        "hyper_ball",
-        "hyper_ball_balanced",
-        "hyper_cross",
-        "hyper_cube",
-        "hyper_cube_slit",
-        "hyper_cube_with_cylindrical_hole",
-        "hyper_rectangle",
-        "hyper_shell",
-        "moebius",
-        "plate_with_a_hole",
-        "quarter_hyper_ball",
-        "quarter_hyper_shell",
-        "simplex",
-        "subdivided_cylinder",
-        "subdivided_hyper_cube",
-        "subdivided_hyper_rectangle",
-        "torus",
-        "truncated_cone"};
-
-    bool contains(const std::vector<std::string> &list, const std::string &name)
-    {
-      return std::find(list.begin(), list.end(), name) != list.end();
-    }
-
     /** What deal.II says of an error, as one line. */
     std::string message(const std::exception &exception)
     {
@@ -134,6 +90,12 @@ namespace nsfd
         Triangulation<dim> triangulation;
         GridGenerator::generate_from_name_and_arguments(
             triangulation, input.type, input.generator_arguments);
+        if (triangulation.n_active_cells() == 0) {
+          problems.push_back(fmt::format("the generator `{}` makes no mesh in "
+                                         "{} dimensions",
+                                         input.type, dim));
+          return {};
+        }
         if (triangulation.n_active_cells() *
                 std::ldexp(1., dim * int(refinements)) >
             5e8) {
@@ -162,20 +124,27 @@ namespace nsfd
                              const unsigned int refinements,
                              std::vector<std::string> &problems)
     {
+      const MeshType *type = find_mesh_type(input.type);
       CoarseMesh<dim> mesh;
       if (!(input.distortion >= 0.))
         problems.push_back(fmt::format("`distortion` ({:g}) must not be "
                                        "negative",
                                        input.distortion));
-      else if (contains(generators, input.type))
-        mesh = generated_mesh<dim>(input, refinements, problems);
-      else if (contains(own_types, input.type) && input.type != "bodies")
-        mesh = lattice_mesh<dim>(input, refinements, problems);
-      else
+      else if (type == nullptr || type->kind == MeshType::Kind::bodies) {
+        std::vector<std::string> names;
+        for (const MeshType &known : mesh_types())
+          names.push_back(known.name);
         problems.push_back(fmt::format(
             "there is no mesh type `{}`{}; there are {}", input.type,
-            input.type == "bodies" ? " for one body" : "",
-            fmt::join(mesh_types(), ", ")));
+            type == nullptr ? "" : " for one body", fmt::join(names, ", ")));
+      } else if (type->dimension != 0 && type->dimension != dim)
+        problems.push_back(fmt::format("`{}` is a mesh of {} dimensions, the "
+                                       "scene has {}",
+                                       input.type, type->dimension, dim));
+      else if (type->kind == MeshType::Kind::generator)
+        mesh = generated_mesh<dim>(input, refinements, problems);
+      else
+        mesh = lattice_mesh<dim>(input, refinements, problems);
       if (problems.empty() && input.distortion > 0.)
         distort(mesh, input.distortion, input.seed);
       return mesh;
@@ -253,13 +222,6 @@ namespace nsfd
       return result;
     }
   } // namespace
-
-  std::vector<std::string> mesh_types()
-  {
-    std::vector<std::string> types = own_types;
-    types.insert(types.end(), generators.begin(), generators.end());
-    return types;
-  }
 
   template <int dim>
   std::unique_ptr<Triangulation<dim>>

@@ -292,6 +292,8 @@ end
          "type = file is not there yet", "set type = file"},
         {"mesh_dimension", "set type = rectangle", "set type = brick",
          "type = brick needs dimension = 3, not 2", "set type = brick"},
+        {"generator_dimension", "set type = rectangle", "set type = torus",
+         "type = torus needs dimension = 3, not 2", "set type = torus"},
         {"boolean", "set fields every = 0.5 ns", "set fields = perhaps",
          "fields = perhaps is neither true nor false", "set fields = perhaps"},
         {"side_in_2d", "subsection Boundary: left",

@@ -2,6 +2,7 @@
 #include "nsfd/input/parameter_file.h"
 #include "nsfd/input/read_scene.h"
 #include "nsfd/interface/cohesive_law.h"
+#include "nsfd/nonsmooth/solver.h"
 
 #include <gtest/gtest.h>
 
@@ -658,6 +659,14 @@ end
     EXPECT_EQ(step("0.6crossings").step_kind, StepKind::crossings);
     EXPECT_EQ(step("1e-9").step_kind, StepKind::time);
     EXPECT_EQ(step("2e-3 ns").step, 2e-12);
+  }
+
+  TEST(Scene, EveryRegisteredSolverCanBeNamed)
+  {
+    for (const std::string &name : SolverRegistry<2>::instance().names())
+      EXPECT_EQ(
+          read_good(small_scene, {"Solver/method=" + name})->solver.method,
+          name);
   }
 
   TEST(Scene, WarningsDoNotStopARun)

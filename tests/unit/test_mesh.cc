@@ -1,10 +1,12 @@
 #include "nsfd/mesh/mesh_builder.h"
+#include "nsfd/mesh/mesh_types.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
@@ -427,6 +429,93 @@ TEST(Mesh, GeneratorsByName)
   mesh = generator("hyper_cube_slit", "0. : 1. : false");
   mesh.refinements = 2;
   EXPECT_NEAR(report<2>(mesh).inner_face_area, 14. - .5, 1e-12);
+}
+
+namespace
+{
+  /** Arguments in two and in three dimensions; empty: there is no such mesh. */
+  struct GeneratorRow {
+    const char *name, *plane, *space;
+  };
+
+  const GeneratorRow generator_rows[] = {
+      {"hyper_cube", "0 : 1 : false", "0 : 1 : false"},
+      {"subdivided_hyper_cube", "2 : 0 : 1 : false", "2 : 0 : 1 : false"},
+      {"hyper_rectangle", "0, 0 : 1, 1 : false", "0, 0, 0 : 1, 1, 1 : false"},
+      {"subdivided_hyper_rectangle", "2, 2 : 0, 0 : 1, 1 : false",
+       "2, 2, 2 : 0, 0, 0 : 1, 1, 1 : false"},
+      {"hyper_ball", "0, 0 : 1 : false", "0, 0, 0 : 1 : false"},
+      {"hyper_ball_balanced", "0, 0 : 1", "0, 0, 0 : 1"},
+      {"half_hyper_ball", "0, 0 : 1", "0, 0, 0 : 1"},
+      {"quarter_hyper_ball", "0, 0 : 1", "0, 0, 0 : 1"},
+      {"hyper_shell", "0, 0 : 1 : 2 : 12 : false",
+       "0, 0, 0 : 1 : 2 : 12 : false"},
+      {"half_hyper_shell", "0, 0 : 1 : 2 : 12 : false",
+       "0, 0, 0 : 1 : 2 : 5 : false"},
+      {"quarter_hyper_shell", "0, 0 : 1 : 2 : 12 : false",
+       "0, 0, 0 : 1 : 2 : 3 : false"},
+      {"concentric_hyper_shells", "0, 0 : 1 : 2 : 2 : 0 : 12 : false",
+       "0, 0, 0 : 1 : 2 : 2 : 0 : 12 : false"},
+      {"eccentric_hyper_shell", "0, 0 : 0, 0 : 1 : 2 : 12",
+       "0, 0, 0 : 0, 0, 0 : 1 : 2 : 12"},
+      {"hyper_L", "0 : 1 : false", "0 : 1 : false"},
+      {"hyper_cross", "1, 0, 1, 0 : false", "1, 0, 1, 0, 1, 0 : false"},
+      {"hyper_cube_slit", "0 : 1 : false", "0 : 1 : false"},
+      {"hyper_cube_with_cylindrical_hole", "0.25 : 0.5 : 0.5 : 1 : false",
+       "0.25 : 0.5 : 0.5 : 1 : false"},
+      {"enclosed_hyper_cube", "0 : 1 : 1 : false", "0 : 1 : 1 : false"},
+      {"plate_with_a_hole",
+       ".4 : 1 : 1 : 1 : 1 : 1 : 0, 0 : 0 : 1 : 1 : 2 : true",
+       ".4 : 1 : 1 : 1 : 1 : 1 : 0, 0, 0 : 0 : 1 : 1 : 2 : true"},
+      {"channel_with_cylinder", "0.03 : 2 : 2 : false", "0.03 : 2 : 2 : false"},
+      {"cheese", "2, 2", "2, 2, 2"},
+      {"general_cell", "0, 0 ; 1, 0 ; 0, 1 ; 1, 1 : false",
+       "0, 0, 0 ; 1, 0, 0 ; 0, 1, 0 ; 1, 1, 0 ; "
+       "0, 0, 1 ; 1, 0, 1 ; 0, 1, 1 ; 1, 1, 1 : false"},
+      {"simplex", "0, 0 ; 1, 0 ; 0, 1",
+       "0, 0, 0 ; 1, 0, 0 ; 0, 1, 0 ; 0, 0, 1"},
+      {"cylinder", "1 : 1", "1 : 1"},
+      {"subdivided_cylinder", "", "2 : 1 : 1"},
+      {"cylinder_shell", "", "2 : 1 : 2 : 12 : 2"},
+      {"truncated_cone", "1 : 0.5 : 1", "1 : 0.5 : 1"},
+      {"moebius", "", "16 : 0 : 1 : 0.5"},
+      {"torus", "", "2 : 0.5 : 6 : 6.283185307179586"},
+  };
+
+  /** A mesh with the right arguments, a sentence with others. */
+  template <int dim>
+  void expect_generated(const GeneratorRow &row)
+  {
+    SCOPED_TRACE(std::string(row.name) + ", dim = " + std::to_string(dim));
+    const std::string arguments = dim == 2 ? row.plane : row.space;
+    if (arguments.empty()) {
+      EXPECT_TRUE(
+          contains(problems_of<dim>(scene_of(generator(row.name, "1 : 1"))),
+                   "`" + std::string(row.name) + "` is a mesh of "));
+    } else {
+      const MeshReport mesh = report<dim>(generator(row.name, arguments));
+      EXPECT_GE(mesh.n_cells, 1u);
+      EXPECT_GT(mesh.volume, 0.);
+      EXPECT_TRUE(
+          contains(problems_of<dim>(scene_of(generator(row.name, "one"))),
+                   "`" + std::string(row.name) + "` does not accept `one`"));
+    }
+  }
+} // namespace
+
+TEST(Mesh, EveryListedGeneratorMakesAMeshOrIsRefused)
+{
+  for (const GeneratorRow &row : generator_rows) {
+    expect_generated<2>(row);
+    expect_generated<3>(row);
+  }
+  for (const MeshType &type : mesh_types())
+    if (type.kind == MeshType::Kind::generator) {
+      EXPECT_TRUE(std::any_of(
+          std::begin(generator_rows), std::end(generator_rows),
+          [&](const GeneratorRow &row) { return type.name == row.name; }))
+          << "no row for the generator " << type.name;
+    }
 }
 
 TEST(Mesh, BodiesFromGenerators)

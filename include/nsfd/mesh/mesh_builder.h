@@ -14,9 +14,6 @@
 
 namespace nsfd
 {
-  /** The mesh types of our own, then the names of deal.II's generators. */
-  std::vector<std::string> mesh_types();
-
   /**
    * Build the mesh that the input names, with straight cells and no manifolds.
    * Quads and hexes live on parallel::distributed, triangles and tetrahedra on
