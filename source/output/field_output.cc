@@ -425,7 +425,7 @@ namespace nsfd
     grid.time = state.time;
     grid.point_data = {{"displacement", 3, {}},
                        {"velocity", 3, {}},
-                       {"stress", 6, {}}, // xx yy zz xy xz yz
+                       {"stress", 6, {}}, // xx yy zz xy yz xz, as ParaView
                        {"von_mises", 1, {}}};
     grid.cell_data = {{"fragment", 1, {}}, {"material", 1, {}}};
     const auto append = [](VtuGrid::Array &array, const auto &values) {
@@ -443,7 +443,9 @@ namespace nsfd
         append(grid.point_data[1], in_space<dim>(sampler.value(q, v)));
         const auto stress =
             discretization_.stress(b, sampler.gradient(q, corners, u).data());
-        append(grid.point_data[2], stress);
+        append(grid.point_data[2],
+               std::array<double, 6>{{stress[0], stress[1], stress[2],
+                                      stress[3], stress[5], stress[4]}});
         grid.point_data[3].values.push_back(von_mises(stress));
       }
       for (auto cell : lattice.cells) {

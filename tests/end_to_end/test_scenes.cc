@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <ostream>
@@ -418,4 +419,42 @@ namespace end_to_end
                            [](const auto &info) {
                              return info.param.scene + "_" + info.param.name;
                            });
+
+  // Six components of an array are, for ParaView, XX YY ZZ XY YZ XZ.
+  TEST(Scenes, StressIsInTheOrderOfParaView)
+  {
+    const Workspace workspace;
+    const auto file = workspace.path() / "strained.prm";
+    write_text(file, R"(# strained - a cube with six different stresses.
+set dimension = 3
+subsection Mesh
+  set type         = brick
+  set upper corner = 1, 1, 1
+  set cells        = 2, 1, 1
+end
+subsection Material: cube
+  set Young modulus          = 2 MPa
+  set Poisson ratio          = 0
+  set density                = 1000
+  set initial displacement x = 1e-6 * (x + 7 * y)
+  set initial displacement y = 1e-6 * (2 * y + 8 * z)
+  set initial displacement z = 1e-6 * (3 * z + 9 * x)
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Time
+  set end = 1 ns
+end
+)");
+    const Result result = good_run(workspace, "strained", {file});
+    ASSERT_TRUE(result.completed());
+    const Snapshot start = snapshots(result.directory, "fields").front();
+    // E e_ii = 2 e_ii and G gamma_ij = gamma_ij, in Pa
+    const std::array<double, 6> exact = {{2., 4., 6., 7., 8., 9.}};
+    const std::vector<double> &stress = start.at("stress");
+    ASSERT_EQ(stress.size(), 2 * start.at("Points").size());
+    for (std::size_t i = 0; i < stress.size(); ++i)
+      ASSERT_NEAR(stress[i], exact[i % 6], 1e-9) << "component " << i % 6;
+  }
 } // namespace end_to_end
