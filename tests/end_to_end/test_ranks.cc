@@ -7,7 +7,7 @@
 #include <ostream>
 
 // One, two and four ranks give the same files: bit for bit on the element-wise
-// path, to 1e-9 with global solves.
+// path, to 1e-9 with global solves. What is wrong is said once.
 
 namespace end_to_end
 {
@@ -144,5 +144,101 @@ namespace end_to_end
   }
 
   INSTANTIATE_TEST_SUITE_P(Table, RanksTest, testing::ValuesIn(rows),
+                           [](const auto &info) { return info.param.name; });
+
+  namespace
+  {
+    struct BadInput {
+      std::string name;
+      std::vector<std::string> arguments;
+      std::string message;
+    };
+
+    const std::string stop_scene = scene("stop").string();
+
+    // found in the file, in the mesh, on its faces, by the exact solution, and
+    // on the disk
+    const std::vector<BadInput> bad_inputs = {
+        {"missing_file", {"missing.prm"}, "`missing.prm` cannot be read"},
+        {"entry", {stop_scene, "--set", "Time/theta=0.3"}, "theta = 0.3 must"},
+        {"generator",
+         {"disc.prm"},
+         "the generator `hyper_ball` does not accept `0`"},
+        {"face_without_law",
+         {scene("rigid_motion").string(), "--set",
+          "Interface: springs/where=x < 0"},
+         "no Interface block holds for the face"},
+        {"boundary",
+         {stop_scene, "--set", "Boundary: far/where=x > 1 km", "--set",
+          "Boundary: far/velocity x=0"},
+         "Boundary: far: no boundary face of the mesh is there"},
+        {"verification",
+         {scene("incline").string(), "--set",
+          "Material: block/initial velocity x=1 m/s"},
+         "the block must start from rest"},
+        {"output", {stop_scene, "--output", "."}, "exists already"},
+    };
+
+    void PrintTo(const BadInput &row, std::ostream *stream)
+    {
+      *stream << row.name;
+    }
+
+    unsigned int count(const std::string &text, const std::string &part)
+    {
+      unsigned int n = 0;
+      for (std::size_t at = text.find(part); at != std::string::npos;
+           at = text.find(part, at + part.size()))
+        ++n;
+      return n;
+    }
+
+    class BadInputRanksTest : public testing::TestWithParam<BadInput>
+    {
+    };
+  } // namespace
+
+  // No rank ends the others: each says how it ended.
+  TEST_P(BadInputRanksTest, IsReportedOnceAndEndsAllRanks)
+  {
+    const BadInput &row = GetParam();
+    const Workspace workspace;
+    write_text(workspace.path() / "disc.prm",
+               "# disc - a generator with too few arguments.\n"
+               "subsection Mesh\n"
+               "  set type      = hyper_ball\n"
+               "  set arguments = 0\n"
+               "end\n"
+               "subsection Material: disc\n"
+               "  set Young modulus = 1 GPa\n"
+               "  set Poisson ratio = 0\n"
+               "  set density       = 1000 kg/m^3\n"
+               "end\n"
+               "subsection Interface: all\n"
+               "  set law = rigid\n"
+               "end\n"
+               "subsection Time\n"
+               "  set end = 1 ms\n"
+               "end\n");
+    std::vector<std::string> command = {NSFD_MPIRUN,
+                                        "--allow-run-as-root",
+                                        "--oversubscribe",
+                                        "-n",
+                                        "2",
+                                        "sh",
+                                        "-c",
+                                        "\"$0\" \"$@\"; echo ended with $?",
+                                        NSFD_PROGRAM};
+    command.insert(command.end(), row.arguments.begin(), row.arguments.end());
+    const Outcome outcome = Process(command, workspace.path()).wait(60.);
+    EXPECT_EQ(outcome.exit_code, 0) << "of mpirun and the shell\n"
+                                    << outcome.err;
+    EXPECT_EQ(outcome.out, "ended with 1\nended with 1\n");
+    EXPECT_EQ(count(outcome.err, row.message), 1u) << outcome.err;
+    EXPECT_EQ(outcome.err.find("MPI_ABORT"), std::string::npos) << outcome.err;
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Table, BadInputRanksTest,
+                           testing::ValuesIn(bad_inputs),
                            [](const auto &info) { return info.param.name; });
 } // namespace end_to_end
