@@ -378,8 +378,9 @@ namespace nsfd
                       problem.n_owned * dim};
       Vector dP, best, trial;
       evaluation.update(impulse);
-      unsigned int stalled = 0, sweeps = 10;
-      double best_error = std::numeric_limits<double>::infinity();
+      unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
+      double best_error = std::numeric_limits<double>::infinity(),
+             best_of_round = best_error;
       const auto remember = [&] {
         if (evaluation.error < best_error) {
           best_error = evaluation.error;
@@ -434,7 +435,12 @@ namespace nsfd
           continue;
         }
         ++stalled;
-        if (report.sweeps >= 5 * control.maximum_iterations)
+        // A cycle or several solutions: more of the same seldom helps, and a
+        // shorter step does.
+        idle_rounds = best_error < 0.5 * best_of_round ? 0 : idle_rounds + 1;
+        best_of_round = best_error;
+        if (idle_rounds > control.idle_rounds ||
+            report.sweeps >= 5 * control.maximum_iterations)
           break;
         if (colours_.empty())
           colours_ = colour_faces(dynamics);
