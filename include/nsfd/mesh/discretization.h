@@ -56,6 +56,14 @@ namespace nsfd
     const Bodies &bodies() const { return bodies_; }
     const InterfacePoints<dim> &points() const { return points_; }
     const std::vector<PointOrigin> &origins() const { return origins_; }
+    /** Place of a face point. */
+    dealii::Point<dim> position(const std::size_t point) const
+    {
+      dealii::Point<dim> x;
+      for (unsigned int c = 0; c < dim; ++c)
+        x[c] = points_.position[point * dim + c];
+      return x;
+    }
     const dealii::FiniteElement<dim, dim> &element() const { return *element_; }
 
     unsigned int material_of(const unsigned int body) const

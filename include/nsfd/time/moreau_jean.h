@@ -4,12 +4,16 @@
 #include "nsfd/nonsmooth/solver.h"
 #include "nsfd/time/state.h"
 
-#include <chrono>
+#include <memory>
 #include <stdexcept>
 
 namespace nsfd
 {
   struct SceneInput;
+  template <int dim>
+  class Ledger;
+  template <int dim>
+  class UniquenessBound;
 
   /** A step that has to be redone shorter; the text says where and why. */
   class StepRejected : public std::runtime_error
@@ -40,6 +44,7 @@ namespace nsfd
                const Discretization<dim> &discretization,
                Dynamics<dim> &dynamics,
                NonsmoothSolver<dim> &solver);
+    ~MoreauJean();
 
     /** State at t = 0: positions, velocities, gaps, broken points. */
     State initial_state() const;
@@ -54,7 +59,7 @@ namespace nsfd
     double unique_step(const State &state) const;
 
     /** Force on each driven boundary during the last step, dim per boundary. */
-    const std::vector<double> &reactions() const { return reactions_; }
+    const std::vector<double> &reactions() const;
 
     const OneStepProblem<dim> &problem() const { return problem_; }
 
@@ -72,11 +77,13 @@ namespace nsfd
     const Counters &counters() const { return counters_; }
 
   private:
-    void set_up_points();
-    void prepare(const State &old, double time_step);
-    void book(const State &old, State &next, double time_step,
-              const LawEvaluation<dim> &evaluation, StepReport &report);
-    bool activate(const std::vector<double> &impulse);
+    void set_loads(double time);
+    void move_freely(const State &old);
+    SolverReport solve(double energy_scale,
+                       std::vector<double> &impulse,
+                       LawEvaluation<dim> &evaluation);
+    void move(const State &old, const LawEvaluation<dim> &evaluation,
+              State &next) const;
     std::string describe(std::size_t point) const;
 
     const SceneInput &input_;
@@ -84,12 +91,12 @@ namespace nsfd
     Dynamics<dim> &dynamics_;
     NonsmoothSolver<dim> &solver_;
     OneStepProblem<dim> problem_;
-    std::vector<double> strength_factor_, initial_gap_, flexibility_;
+    std::unique_ptr<UniquenessBound<dim>> uniqueness_;
+    std::unique_ptr<Ledger<dim>> ledger_;
+    bool has_extrinsic_ = false;
     std::vector<double> forces_, v_free_, work_;
     bool forces_known_ = false;
     double forces_time_ = 0.;
-    std::vector<double> reactions_;
-    bool has_extrinsic_ = false;
     Timings timings_;
     Counters counters_;
   };

@@ -1,0 +1,172 @@
+#include "initial_state.h"
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/nonsmooth/point_law.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Components = std::array<Expression, 3>;
+
+    /** One of the initial fields of the materials, as unknowns. */
+    template <int dim>
+    std::vector<double> initial_field(const SceneInput &input,
+                                      const Discretization<dim> &discretization,
+                                      const Components MaterialInput::*field)
+    {
+      return discretization.interpolate([&](const dealii::Point<dim> &x,
+                                            const unsigned int body,
+                                            double *value) {
+        const auto &material =
+            input.materials[discretization.material_of(body)];
+        for (unsigned int c = 0; c < dim; ++c)
+          value[c] = (material.*field)[c].at(x, 0.);
+      });
+    }
+
+    /** Distance of a boundary point from the half space it may touch. */
+    template <int dim>
+    double initial_gap(const InterfacePoints<dim> &points,
+                       const ObstacleInput &obstacle, const std::size_t i)
+    {
+      double gap = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        gap += points.frame[i * dim * dim + c] *
+               (points.position[i * dim + c] - obstacle.point[c]);
+      return gap;
+    }
+
+    template <int dim>
+    void set_interface_point(const InterfaceInput &block,
+                             const dealii::Point<dim> &x,
+                             const OneStepProblem<dim> &problem,
+                             const std::size_t i, State &state)
+    {
+      if (block.law_name == "contact" ||
+          (block.has_broken && block.broken.at(x, 0.) != 0.)) {
+        state.kind[i] = PointKind::free;
+        state.beta[i] = 0.;
+      } else if (block.law_name == "elastic") {
+        state.kind[i] = PointKind::elastic;
+        state.two_sided[i] = block.intact == IntactFaces::spring;
+      } else if (block.law && block.law->extrinsic())
+        state.kind[i] = PointKind::rigid;
+      else if (block.law) {
+        state.kind[i] = PointKind::cohesive;
+        state.two_sided[i] = block.intact == IntactFaces::spring;
+        const auto &interaction = problem.interactions[problem.interaction[i]];
+        const double f = problem.strength_factor[i];
+        // below the elastic limit there is nothing to remember
+        // (just below, so that round-off does not damage it)
+        state.opening_max[i] =
+            std::max((1. - 1e-14) * block.law->elastic_limit() / f,
+                     effective_opening<dim>(interaction, &state.jump[i * dim]));
+        state.beta[i] =
+            beta_of(interaction, state.kind[i], f, state.opening_max[i]);
+      }
+    }
+
+    /** Stored in springs and cohesion, over the points of this rank. */
+    template <int dim>
+    std::vector<double> stored_energy(const OneStepProblem<dim> &problem,
+                                      const State &state)
+    {
+      std::vector<double> stored(problem.n_owned, 0.);
+      for (std::size_t i = 0; i < problem.n_owned; ++i) {
+        if (state.kind[i] != PointKind::elastic &&
+            state.kind[i] != PointKind::cohesive)
+          continue;
+        const auto &interaction = problem.interactions[problem.interaction[i]];
+        const double f = problem.strength_factor[i];
+        const double b =
+            interaction.law
+                ? f * f * interaction.law->secant(f * state.opening_max[i])
+                : interaction.normal_stiffness;
+        const double *u = &state.jump[i * dim];
+        double slip = 0.;
+        for (unsigned int c = 1; c < dim; ++c)
+          slip += u[c] * u[c];
+        const double normal =
+            u[0] > 0. || state.two_sided[i] ? u[0] * u[0] : 0.;
+        stored[i] = problem.weight[i] * b *
+                    (normal + interaction.stiffness_ratio * slip) / 2.;
+      }
+      return stored;
+    }
+
+    template <int dim>
+    double half_product(const Dynamics<dim> &dynamics,
+                        const typename Dynamics<dim>::Operator op,
+                        const std::vector<double> &x)
+    {
+      std::vector<double> y(x.size());
+      dynamics.apply(op, x.data(), y.data());
+      return dynamics.communicator().dot(x.data(), y.data(), x.size()) / 2.;
+    }
+  } // namespace
+
+  template <int dim>
+  State initial_state(const SceneInput &input,
+                      const Discretization<dim> &discretization,
+                      const Dynamics<dim> &dynamics,
+                      const OneStepProblem<dim> &problem)
+  {
+    using Operator = typename Dynamics<dim>::Operator;
+    const auto &points = discretization.points();
+    State state;
+    state.displacement = initial_field(input, discretization,
+                                       &MaterialInput::initial_displacement);
+    state.velocity =
+        initial_field(input, discretization, &MaterialInput::initial_velocity);
+
+    const std::size_t n = points.n_points;
+    state.jump.assign(n * dim, 0.);
+    state.relative_velocity.assign(n * dim, 0.);
+    dynamics.relative_velocity(state.displacement.data(), state.jump.data());
+    dynamics.relative_velocity(state.velocity.data(),
+                               state.relative_velocity.data());
+    state.impulse.assign(n * dim, 0.);
+    state.opening_max.assign(n, 0.);
+    state.beta.assign(n, 1.);
+    state.slip.assign(n, 0.);
+    state.penetration_bound.assign(n, 0.);
+    state.kind.assign(n, PointKind::prescribed);
+    state.two_sided.assign(n, 0);
+    state.contact.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const PointOrigin origin = discretization.origins()[i];
+      switch (origin.kind) {
+      case PointOrigin::Kind::interface:
+        set_interface_point(input.interfaces[origin.block],
+                            discretization.position(i), problem, i, state);
+        break;
+      case PointOrigin::Kind::obstacle:
+        state.jump[i * dim] +=
+            initial_gap(points, input.obstacles[origin.block], i);
+        state.kind[i] = PointKind::free;
+        state.beta[i] = 0.;
+        break;
+      case PointOrigin::Kind::motion:
+        break;
+      }
+    }
+
+    auto &energy = state.energy;
+    energy.kinetic = half_product(dynamics, Operator::mass, state.velocity);
+    energy.elastic =
+        half_product(dynamics, Operator::stiffness, state.displacement);
+    energy.cohesive =
+        dynamics.communicator().sum(stored_energy(problem, state));
+    state.initial_energy = energy.kinetic + energy.elastic + energy.cohesive;
+    state.largest_energy = state.initial_energy;
+    return state;
+  }
+
+  template State initial_state(const SceneInput &, const Discretization<2> &,
+                               const Dynamics<2> &, const OneStepProblem<2> &);
+  template State initial_state(const SceneInput &, const Discretization<3> &,
+                               const Dynamics<3> &, const OneStepProblem<3> &);
+} // namespace nsfd

@@ -1,0 +1,348 @@
+#include "ledger.h"
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/time/moreau_jean.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Sums over the bodies. */
+    enum BodyRow { kinetic, elastic, theta_mass, theta_stiffness, loads };
+    constexpr unsigned int n_body_rows = 5;
+
+    /** Sums over the points. */
+    enum PointRow {
+      stored,
+      damage,
+      friction,
+      positive_friction,
+      impact,
+      numerical,
+      motion,
+      broken
+    };
+    constexpr unsigned int n_point_rows = 8;
+
+    /** All points of one step, one after the other. */
+    template <int dim>
+    class PointBook
+    {
+    public:
+      PointBook(const Discretization<dim> &discretization,
+                const UniquenessBound<dim> &uniqueness,
+                const OneStepProblem<dim> &problem,
+                const LawEvaluation<dim> &evaluation, const State &old,
+                State &next);
+
+      void book(std::size_t point);
+
+      std::size_t n_owned;
+      std::vector<double> terms;     ///< rows of n_owned
+      std::vector<double> reactions; ///< the same, dim rows per boundary
+      double penetration = 0., excess = 0., drift = 0.;
+      unsigned int active = 0;
+      bool beyond_unique = false;
+
+    private:
+      using Vector = std::array<double, dim>;
+
+      void put(const PointRow row, const std::size_t i, const double value)
+      {
+        if (i < n_owned)
+          terms[row * n_owned + i] += value;
+      }
+      void book_prescribed(std::size_t i, const Vector &U_theta);
+      void book_law(std::size_t i, const Vector &U_theta,
+                    const PointEnergies<dim> &energies);
+      void remember(std::size_t i, const PointEnergies<dim> &energies);
+      void book_penetration(std::size_t i, const Vector &U_theta);
+
+      const Discretization<dim> &discretization_;
+      const UniquenessBound<dim> &uniqueness_;
+      const OneStepProblem<dim> &problem_;
+      const LawEvaluation<dim> &evaluation_;
+      const State &old_;
+      State &next_;
+    };
+
+    template <int dim>
+    PointBook<dim>::PointBook(const Discretization<dim> &discretization,
+                              const UniquenessBound<dim> &uniqueness,
+                              const OneStepProblem<dim> &problem,
+                              const LawEvaluation<dim> &evaluation,
+                              const State &old, State &next)
+        : n_owned(problem.n_owned), terms(n_point_rows * n_owned, 0.),
+          reactions(discretization.driven_boundaries().size() * dim * n_owned,
+                    0.),
+          discretization_(discretization), uniqueness_(uniqueness),
+          problem_(problem), evaluation_(evaluation), old_(old), next_(next)
+    {
+      next.opening_max = old.opening_max;
+      next.beta = old.beta;
+      next.kind = old.kind;
+      next.two_sided = old.two_sided;
+      next.slip = old.slip;
+      next.penetration_bound = old.penetration_bound;
+      next.contact.assign(problem.n_points, 0);
+    }
+
+    template <int dim>
+    void PointBook<dim>::book(const std::size_t i)
+    {
+      const double theta = problem_.theta;
+      Vector U, U_theta;
+      for (unsigned int c = 0; c < dim; ++c) {
+        U[c] = next_.relative_velocity[i * dim + c];
+        U_theta[c] =
+            theta * U[c] + (1. - theta) * old_.relative_velocity[i * dim + c];
+      }
+      if (problem_.kind[i] == PointKind::prescribed) {
+        book_prescribed(i, U_theta);
+        return;
+      }
+      const auto energies =
+          point_energies<dim>(problem_, i, U, evaluation_.solutions[i].frozen);
+      book_law(i, U_theta, energies);
+      remember(i, energies);
+      book_penetration(i, U_theta);
+    }
+
+    template <int dim>
+    void PointBook<dim>::book_prescribed(const std::size_t i,
+                                         const Vector &U_theta)
+    {
+      const double *P = &next_.impulse[i * dim];
+      double power = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        power += P[c] * U_theta[c];
+      const PointOrigin origin = discretization_.origins()[i];
+      if (origin.kind == PointOrigin::Kind::motion) {
+        put(motion, i, power);
+        const auto &driven = discretization_.driven_boundaries();
+        const std::size_t d =
+            std::find(driven.begin(), driven.end(), origin.block) -
+            driven.begin();
+        if (i < n_owned)
+          for (unsigned int c = 0; c < dim; ++c)
+            reactions[(d * dim + c) * n_owned + i] = P[c] / problem_.time_step;
+      } else {
+        put(impact, i, -power); // a joint that closes a jump of velocities
+        double square = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          square += next_.jump[i * dim + c] * next_.jump[i * dim + c];
+        drift = std::max(drift, std::sqrt(square));
+      }
+    }
+
+    template <int dim>
+    void PointBook<dim>::book_law(const std::size_t i, const Vector &U_theta,
+                                  const PointEnergies<dim> &energies)
+    {
+      const double w = problem_.weight[i], h = problem_.time_step;
+      const double *P = &next_.impulse[i * dim];
+      const auto &solution = evaluation_.solutions[i];
+      // contact part by the law, what is left over is the solver's residual
+      double cohesive_work = 0., residual = 0.;
+      Vector contact{};
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double pull = w * h * energies.cohesive_traction[c];
+        cohesive_work += -pull * U_theta[c];
+        contact[c] = P[c] + pull;
+      }
+      if (problem_.kind[i] == PointKind::rigid && !solution.damages) {
+        for (unsigned int c = 0; c < dim; ++c)
+          residual += contact[c] * U_theta[c];
+        put(numerical, i, -residual);
+      } else {
+        const bool closed = solution.contact_impulse > 0.;
+        if (closed)
+          put(impact, i, -contact[0] * U_theta[0]);
+        else
+          residual += contact[0] * U_theta[0];
+        double rubbing = 0.;
+        for (unsigned int c = 1; c < dim; ++c)
+          rubbing += contact[c] * U_theta[c];
+        if (solution.frozen.threshold > 0.) {
+          put(friction, i, -rubbing);
+          put(positive_friction, i, rubbing > 0. ? rubbing : 0.);
+        } else
+          residual += rubbing;
+        put(numerical, i, -residual);
+        next_.contact[i] = closed;
+        if (closed) {
+          double square = 0.;
+          for (unsigned int c = 1; c < dim; ++c)
+            square += U_theta[c] * U_theta[c];
+          next_.slip[i] += h * std::sqrt(square);
+        }
+        if (i < n_owned && (closed || solution.damages))
+          ++active;
+      }
+
+      const double dissipated = w * energies.damage;
+      put(stored, i, w * energies.stored);
+      put(damage, i, dissipated);
+      // -w h R.U_theta = -w (d psi + d D + N)
+      put(numerical, i,
+          -cohesive_work -
+              w * (energies.stored + energies.overlap_released -
+                   energies.stored_old) -
+              dissipated);
+      put(numerical, i, w * energies.overlap_released);
+    }
+
+    template <int dim>
+    void PointBook<dim>::remember(const std::size_t i,
+                                  const PointEnergies<dim> &energies)
+    {
+      const auto &solution = evaluation_.solutions[i];
+      next_.opening_max[i] = energies.opening_max;
+      if (problem_.kind[i] == PointKind::rigid && solution.damages)
+        next_.kind[i] = PointKind::cohesive;
+      if (next_.kind[i] != PointKind::cohesive)
+        return;
+      next_.beta[i] = std::min(old_.beta[i], energies.beta);
+      if (energies.beta < 1.)
+        next_.two_sided[i] = 0; // its overlap is booked in point_energies()
+      if (next_.beta[i] <= 0.)
+        next_.kind[i] = PointKind::free;
+      // a softening point in a step above the uniqueness bound
+      const auto &law = *problem_.interactions[problem_.interaction[i]].law;
+      if (solution.damages &&
+          problem_.strength_factor[i] * energies.opening_max >=
+              law.peak_opening())
+        beyond_unique |=
+            uniqueness_.ratio(problem_, i, problem_.time_step) >= 1.;
+      // newly broken surface; tails count once they carry a thousandth
+      if (next_.beta[i] < 1e-3 && old_.beta[i] >= 1e-3)
+        put(broken, i, problem_.weight[i]);
+    }
+
+    /**
+     * Penetration against its bound: approach speed at activation, and the
+     * overlap of the spring where it turns into a contact.
+     */
+    template <int dim>
+    void PointBook<dim>::book_penetration(const std::size_t i,
+                                          const Vector &U_theta)
+    {
+      if (next_.two_sided[i])
+        return;
+      const double h = problem_.time_step;
+      const double depth = -next_.jump[i * dim];
+      double &bound = next_.penetration_bound[i];
+      if (old_.two_sided[i])
+        bound = std::max(bound, depth);
+      if (problem_.contact[i])
+        bound = std::max(bound, -h * old_.relative_velocity[i * dim]);
+      else // approach that the forecast did not see
+        bound = std::max(bound, -h * U_theta[0]);
+      penetration = std::max(penetration, depth);
+      excess = std::max(excess, depth - bound);
+    }
+  } // namespace
+
+  template <int dim>
+  Ledger<dim>::Ledger(const SceneInput &input,
+                      const Discretization<dim> &discretization,
+                      const Dynamics<dim> &dynamics,
+                      const UniquenessBound<dim> &uniqueness)
+      : discretization_(discretization), dynamics_(dynamics),
+        uniqueness_(uniqueness), theta_(input.time.theta),
+        reactions_(discretization.driven_boundaries().size() * dim, 0.)
+  {
+  }
+
+  /** Energies, what theta > 1/2 takes, and the work of the loads. */
+  template <int dim>
+  std::vector<double>
+  Ledger<dim>::book_bodies(const std::vector<double> &forces, const double h,
+                           const State &old, const State &next) const
+  {
+    using Operator = typename Dynamics<dim>::Operator;
+    const std::size_t n = next.velocity.size();
+    std::vector<double> change(n), product(n), terms(n_body_rows * n);
+    const auto put = [&](const BodyRow row, const Operator op,
+                         const std::vector<double> &x, const double factor) {
+      dynamics_.apply(op, x.data(), product.data());
+      for (std::size_t i = 0; i < n; ++i)
+        terms[row * n + i] = factor * x[i] * product[i];
+    };
+    put(kinetic, Operator::mass, next.velocity, 0.5);
+    put(elastic, Operator::stiffness, next.displacement, 0.5);
+    if (theta_ > 0.5) {
+      for (std::size_t i = 0; i < n; ++i)
+        change[i] = next.velocity[i] - old.velocity[i];
+      put(theta_mass, Operator::mass, change, theta_ - 0.5);
+      for (std::size_t i = 0; i < n; ++i)
+        change[i] = next.displacement[i] - old.displacement[i];
+      put(theta_stiffness, Operator::stiffness, change, theta_ - 0.5);
+    }
+    if (discretization_.has_loads())
+      for (std::size_t i = 0; i < n; ++i)
+        terms[loads * n + i] =
+            h * forces[i] *
+            (theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i]);
+    return dynamics_.communicator().sums(terms.data(), n_body_rows, n);
+  }
+
+  template <int dim>
+  void Ledger<dim>::book(const OneStepProblem<dim> &problem,
+                         const LawEvaluation<dim> &evaluation,
+                         const std::vector<double> &forces, const State &old,
+                         State &next, StepReport &report)
+  {
+    const auto &communicator = dynamics_.communicator();
+    const auto body = book_bodies(forces, problem.time_step, old, next);
+    PointBook<dim> points(discretization_, uniqueness_, problem, evaluation,
+                          old, next);
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      points.book(i);
+    const auto sums =
+        communicator.sums(points.terms.data(), n_point_rows, points.n_owned);
+    if (!reactions_.empty())
+      reactions_ = communicator.sums(points.reactions.data(), reactions_.size(),
+                                     points.n_owned);
+
+    EnergyLines &energy = next.energy;
+    energy = old.energy;
+    energy.kinetic = body[kinetic];
+    energy.elastic = body[elastic];
+    energy.cohesive = sums[stored];
+    energy.damage += sums[damage];
+    energy.friction += sums[friction];
+    energy.impact += sums[impact];
+    energy.numerical +=
+        sums[numerical] + body[theta_mass] + body[theta_stiffness];
+    energy.work += sums[motion] + body[loads];
+    next.broken_area = old.broken_area + sums[broken];
+    next.positive_friction_work =
+        old.positive_friction_work + sums[positive_friction];
+    next.initial_energy = old.initial_energy;
+    next.penetration =
+        std::max(old.penetration, communicator.max(points.penetration));
+    next.penetration_excess =
+        std::max(old.penetration_excess, communicator.max(points.excess));
+    next.rigid_drift =
+        std::max(old.rigid_drift, communicator.max(points.drift));
+    report.active = unsigned(communicator.sum_integer(points.active));
+    report.beyond_unique = communicator.any(points.beyond_unique);
+
+    next.largest_energy = std::max(
+        {old.largest_energy, energy.kinetic, energy.elastic, energy.cohesive,
+         std::abs(energy.work), energy.damage, energy.impact, energy.friction});
+    const double defect = energy.kinetic + energy.elastic + energy.cohesive +
+                          energy.damage + energy.friction + energy.viscous +
+                          energy.plastic + energy.impact + energy.numerical -
+                          energy.work - next.initial_energy;
+    report.ledger_defect =
+        next.largest_energy > 0. ? std::abs(defect) / next.largest_energy : 0.;
+  }
+
+  template class Ledger<2>;
+  template class Ledger<3>;
+} // namespace nsfd

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "nsfd/mesh/discretization.h"
+#include "nsfd/nonsmooth/solver.h"
+#include "nsfd/time/state.h"
+#include "uniqueness.h"
+
+#include <vector>
+
+namespace nsfd
+{
+  struct StepReport;
+
+  /**
+   * The books of a step that has been solved: every energy line on its own
+   * (report, 5.3), what the points remember (d_m, beta, kind, slip, bound of
+   * the penetration), and the forces on driven boundaries.
+   */
+  template <int dim>
+  class Ledger
+  {
+  public:
+    Ledger(const SceneInput &input, const Discretization<dim> &discretization,
+           const Dynamics<dim> &dynamics,
+           const UniquenessBound<dim> &uniqueness);
+
+    /**
+     * From @p old to @p next, whose motion and impulses are known: everything
+     * else of @p next, and all of @p report but the solver's. @p forces are
+     * the loads of the step. Collective.
+     */
+    void book(const OneStepProblem<dim> &problem,
+              const LawEvaluation<dim> &evaluation,
+              const std::vector<double> &forces, const State &old, State &next,
+              StepReport &report);
+
+    /** Force on each driven boundary during the last step, dim per boundary. */
+    const std::vector<double> &reactions() const { return reactions_; }
+
+  private:
+    std::vector<double> book_bodies(const std::vector<double> &forces,
+                                    double time_step, const State &old,
+                                    const State &next) const;
+
+    const Discretization<dim> &discretization_;
+    const Dynamics<dim> &dynamics_;
+    const UniquenessBound<dim> &uniqueness_;
+    double theta_;
+    std::vector<double> reactions_;
+  };
+} // namespace nsfd

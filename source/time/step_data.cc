@@ -1,0 +1,247 @@
+#include "step_data.h"
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/interface/scatter.h"
+#include "nsfd/time/state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    Interaction interaction_of(const InterfaceInput &block)
+    {
+      Interaction interaction;
+      interaction.law = block.law;
+      interaction.friction = block.friction;
+      interaction.friction_exponent = block.friction_exponent;
+      interaction.restitution = block.restitution;
+      if (block.law) {
+        interaction.stiffness_ratio = block.law->stiffness_ratio();
+        interaction.shear_weight = block.law->shear_weight();
+      } else if (block.law_name == "elastic") {
+        interaction.normal_stiffness = block.normal_stiffness;
+        interaction.stiffness_ratio =
+            block.tangential_stiffness / block.normal_stiffness;
+        interaction.shear_weight = interaction.stiffness_ratio;
+      }
+      return interaction;
+    }
+
+    Interaction interaction_of(const ObstacleInput &obstacle)
+    {
+      Interaction interaction;
+      interaction.friction = obstacle.friction;
+      interaction.restitution = obstacle.restitution;
+      return interaction;
+    }
+
+    /** Random, by the position alone. */
+    template <int dim>
+    double strength_factor(const InterfaceInput &block, const double *position,
+                           const double extent)
+    {
+      if (!(block.strength_scatter > 0.))
+        return 1.;
+      std::array<double, 3> scaled{};
+      for (unsigned int c = 0; c < dim; ++c)
+        scaled[c] = position[c] / extent;
+      return scatter_uniform(block.seed, scaled, block.strength_scatter);
+    }
+
+    /** U_N that contact allows, without the forecast. */
+    double contact_target(const TimeInput &time, const double restitution,
+                          const double u_N, const double U_N,
+                          const double jump_free, const double h)
+    {
+      switch (time.contact_target) {
+      case ContactTarget::energy_safe:
+        return U_N <= 0. ? -restitution * U_N
+                         : -(1. - time.theta) / time.theta * U_N;
+      case ContactTarget::velocity:
+        return -restitution * U_N;
+      case ContactTarget::position:
+        return (std::min(0., u_N) - jump_free) / (h * time.theta);
+      }
+      return 0.;
+    }
+
+    /** Joints, springs in compression, contact by forecast. */
+    template <int dim>
+    void set_point(const TimeInput &time, const double extent, const State &old,
+                   const std::size_t i, OneStepProblem<dim> &problem)
+    {
+      constexpr auto all_components = std::uint8_t((1u << dim) - 1u);
+      const double h = problem.time_step;
+      const double u_N = old.jump[i * dim],
+                   U_N = old.relative_velocity[i * dim];
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      problem.contact[i] = 0;
+      problem.mask[i] = 0;
+      problem.compression_stiffness[i] = 0.;
+      if (old.kind[i] == PointKind::rigid) {
+        // joined until activate() finds that the strength is reached
+        problem.kind[i] = PointKind::prescribed;
+        problem.mask[i] = all_components;
+        for (unsigned int c = 0; c < dim; ++c) {
+          problem.given_velocity[i * dim + c] = 0.;
+          // the law counts from where the joint lets go, not from its drift
+          problem.jump_free[i * dim + c] -= old.jump[i * dim + c];
+          problem.jump_old[i * dim + c] = 0.;
+        }
+      }
+      if (old.kind[i] == PointKind::prescribed)
+        problem.mask[i] = all_components;
+      else if (old.two_sided[i]) {
+        const double f = problem.strength_factor[i];
+        problem.compression_stiffness[i] =
+            interaction.law ? f * f * interaction.law->normal_stiffness()
+                            : interaction.normal_stiffness;
+      } else {
+        // A closed point must not open by what the solver left of its position;
+        // one without restitution stays a candidate as long as it rests.
+        const bool rests = old.contact[i] && interaction.restitution == 0.;
+        problem.contact[i] = u_N + h * time.forecast_gamma1 * U_N <=
+                             (rests ? 1e-9 : 1e-14) * extent;
+        // restitution belongs to broken points
+        const double e =
+            old.kind[i] == PointKind::free ? interaction.restitution : 0.;
+        problem.target[i] =
+            contact_target(time, e, u_N, U_N, problem.jump_free[i * dim], h);
+      }
+      if (time.sliding == Sliding::increment)
+        for (unsigned int c = 1; c < dim; ++c)
+          problem.sliding_offset[i * dim + c] =
+              (1. - time.theta) / time.theta *
+              old.relative_velocity[i * dim + c];
+    }
+
+    /** Velocities of driven boundaries at the end of the step. */
+    template <int dim>
+    void set_motion(const SceneInput &input,
+                    const Discretization<dim> &discretization, const State &old,
+                    OneStepProblem<dim> &problem)
+    {
+      const double h = problem.time_step, t = old.time + h;
+      for (std::size_t i = 0; i < problem.n_points; ++i) {
+        const PointOrigin origin = discretization.origins()[i];
+        if (origin.kind != PointOrigin::Kind::motion)
+          continue;
+        const auto &boundary = input.boundaries[origin.block];
+        const auto x = discretization.position(i);
+        problem.mask[i] = 0;
+        for (unsigned int c = 0; c < dim; ++c) {
+          double &given = problem.given_velocity[i * dim + c];
+          if (boundary.velocity[c])
+            given = boundary.velocity[c]->at(x, t);
+          else if (boundary.displacement[c])
+            // back to the path: what the last step missed is made up for
+            given =
+                (boundary.displacement[c]->at(x, t) - old.jump[i * dim + c]) /
+                h;
+          else
+            continue;
+          problem.mask[i] |= std::uint8_t(1u << c);
+        }
+      }
+    }
+
+    /** Largest row sums of the diagonal blocks of W, point by point. */
+    template <int dim>
+    void set_majorants(const Dynamics<dim> &dynamics,
+                       OneStepProblem<dim> &problem)
+    {
+      const auto &faces = dynamics.points().faces;
+      for (std::size_t f = 0; f < faces.size(); ++f) {
+        const auto &face = faces[f];
+        const unsigned int n = face.count * dim;
+        const double *W = dynamics.face_block(f);
+        for (unsigned int p = 0; p < face.count; ++p) {
+          double normal = 0., tangential = 0.;
+          for (unsigned int r = 0; r < dim; ++r) {
+            double sum = 0.;
+            for (unsigned int c = 0; c < dim; ++c)
+              sum += std::abs(W[(p * dim + r) * n + p * dim + c]);
+            double &largest = r == 0 ? normal : tangential;
+            largest = std::max(largest, sum);
+          }
+          problem.majorant_normal[face.first + p] = normal;
+          problem.majorant_tangential[face.first + p] = tangential;
+        }
+      }
+    }
+  } // namespace
+
+  template <int dim>
+  OneStepProblem<dim> constant_data(const SceneInput &input,
+                                    const Discretization<dim> &discretization)
+  {
+    const auto &points = discretization.points();
+    OneStepProblem<dim> problem;
+    problem.resize(points.n_points);
+    problem.n_owned = points.n_owned;
+    problem.weight = points.weight;
+    problem.theta = input.time.theta;
+    problem.rule = input.time.cohesion_rule;
+
+    // one interaction per interface block, then per obstacle, then a support
+    for (const auto &block : input.interfaces)
+      problem.interactions.push_back(interaction_of(block));
+    for (const auto &obstacle : input.obstacles)
+      problem.interactions.push_back(interaction_of(obstacle));
+    problem.interactions.emplace_back();
+
+    problem.strength_factor.assign(points.n_points, 1.);
+    for (std::size_t i = 0; i < points.n_points; ++i) {
+      const PointOrigin origin = discretization.origins()[i];
+      switch (origin.kind) {
+      case PointOrigin::Kind::interface:
+        problem.interaction[i] = origin.block;
+        problem.strength_factor[i] = strength_factor<dim>(
+            input.interfaces[origin.block], &points.position[i * dim],
+            discretization.extent());
+        break;
+      case PointOrigin::Kind::obstacle:
+        problem.interaction[i] =
+            unsigned(input.interfaces.size()) + origin.block;
+        break;
+      case PointOrigin::Kind::motion:
+        problem.interaction[i] = unsigned(problem.interactions.size()) - 1;
+        break;
+      }
+    }
+    return problem;
+  }
+
+  template <int dim>
+  void set_step(const SceneInput &input,
+                const Discretization<dim> &discretization,
+                const Dynamics<dim> &dynamics, const State &old, const double h,
+                OneStepProblem<dim> &problem)
+  {
+    problem.time_step = h;
+    problem.kind = old.kind;
+    problem.opening_max = old.opening_max;
+    problem.jump_old = old.jump;
+    for (std::size_t k = 0; k < old.jump.size(); ++k)
+      problem.jump_free[k] =
+          old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      set_point(input.time, discretization.extent(), old, i, problem);
+    set_motion(input, discretization, old, problem);
+    set_majorants(dynamics, problem);
+  }
+
+  template OneStepProblem<2> constant_data(const SceneInput &,
+                                           const Discretization<2> &);
+  template OneStepProblem<3> constant_data(const SceneInput &,
+                                           const Discretization<3> &);
+  template void set_step(const SceneInput &, const Discretization<2> &,
+                         const Dynamics<2> &, const State &, double,
+                         OneStepProblem<2> &);
+  template void set_step(const SceneInput &, const Discretization<3> &,
+                         const Dynamics<3> &, const State &, double,
+                         OneStepProblem<3> &);
+} // namespace nsfd

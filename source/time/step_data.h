@@ -1,0 +1,27 @@
+#pragma once
+
+#include "nsfd/dynamics/dynamics.h"
+#include "nsfd/mesh/discretization.h"
+#include "nsfd/nonsmooth/one_step_problem.h"
+
+namespace nsfd
+{
+  struct SceneInput;
+  struct State;
+
+  /** The part of the data that no step changes. */
+  template <int dim>
+  OneStepProblem<dim> constant_data(const SceneInput &input,
+                                    const Discretization<dim> &discretization);
+
+  /**
+   * The data of the step from @p old over @p time_step, all but the free
+   * velocity: kinds of points, forecast and targets of contact, prescribed
+   * motion, majorants of the diagonal blocks of W.
+   */
+  template <int dim>
+  void set_step(const SceneInput &input,
+                const Discretization<dim> &discretization,
+                const Dynamics<dim> &dynamics, const State &old,
+                double time_step, OneStepProblem<dim> &problem);
+} // namespace nsfd

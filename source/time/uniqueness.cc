@@ -1,0 +1,143 @@
+#include "uniqueness.h"
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/time/state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Largest eigenvalue of a small symmetric positive semi-definite block. */
+    double largest_eigenvalue(const std::vector<double> &A,
+                              const unsigned int n)
+    {
+      std::vector<double> x(n), y(n);
+      for (unsigned int i = 0; i < n; ++i)
+        x[i] = 1. + 0.1 * i;
+      double value = 0.;
+      for (unsigned int k = 0; k < 60; ++k) {
+        double norm = 0.;
+        for (unsigned int i = 0; i < n; ++i) {
+          y[i] = 0.;
+          for (unsigned int j = 0; j < n; ++j)
+            y[i] += A[i * n + j] * x[j];
+          norm += y[i] * y[i];
+        }
+        norm = std::sqrt(norm);
+        if (norm == 0.)
+          return 0.;
+        value = norm;
+        for (unsigned int i = 0; i < n; ++i)
+          x[i] = y[i] / norm;
+      }
+      return value;
+    }
+
+    /** Of sqrt(w_i) W_ij sqrt(w_j) over the slots that hold a point. */
+    template <int dim>
+    double largest_eigenvalue(const Block &W,
+                              const std::vector<unsigned int> &slots,
+                              const std::vector<unsigned int> &places,
+                              const std::vector<double> &weight)
+    {
+      const unsigned int n = unsigned(slots.size()) * dim;
+      std::vector<double> A(std::size_t(n) * n);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          A[std::size_t(i) * n + j] =
+              std::sqrt(weight[places[i / dim]] * weight[places[j / dim]]) *
+              W(slots[i / dim] * dim + i % dim, slots[j / dim] * dim + j % dim);
+      return largest_eigenvalue(A, n);
+    }
+  } // namespace
+
+  template <int dim>
+  UniquenessBound<dim>::UniquenessBound(const SceneInput &input,
+                                        const Dynamics<dim> &dynamics)
+      : dynamics_(dynamics), theta_(input.time.theta),
+        chi_(input.time.cohesion_rule == CohesionRule::exact ? 0.5 : 1.),
+        flexibility_(dynamics.points().faces.size(), 0.)
+  {
+    for (const auto &block : input.interfaces)
+      if (block.law) {
+        set_flexibility();
+        return;
+      }
+  }
+
+  template <int dim>
+  void UniquenessBound<dim>::set_flexibility()
+  {
+    const auto &points = dynamics_.points();
+    const auto &bodies = dynamics_.bodies();
+    std::vector<Block> delassus;
+    for (const auto &body : bodies.classes)
+      delassus.push_back(
+          gram(forward_solve(cholesky(body.mass), body.trace.transposed())));
+    std::array<std::vector<double>, 2> sides;
+    for (auto &side : sides)
+      side.assign(points.n_points, 0.);
+    // congruent bodies with points at the same slots share the value
+    std::map<std::pair<unsigned int, std::vector<unsigned int>>, double> known;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      std::vector<unsigned int> slots, places;
+      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
+           ++s)
+        if (bodies.slot_point[s] < points.n_points) {
+          slots.push_back(unsigned(s - bodies.first_slot[b]));
+          places.push_back(bodies.slot_point[s]);
+        }
+      const auto [entry, is_new] =
+          known.emplace(std::pair(bodies.class_of[b], slots), 0.);
+      if (is_new)
+        entry->second = largest_eigenvalue<dim>(delassus[bodies.class_of[b]],
+                                                slots, places, points.weight);
+      for (const unsigned int i : places)
+        sides[points.faces[points.face_of[i]].bodies[1] == int(b)][i] =
+            entry->second;
+    }
+    dynamics_.exchange({{sides[0].data(), sides[1].data()}}, 1);
+    for (std::size_t f = 0; f < points.faces.size(); ++f)
+      flexibility_[f] =
+          sides[0][points.faces[f].first] + sides[1][points.faces[f].first];
+  }
+
+  template <int dim>
+  double UniquenessBound<dim>::ratio(const OneStepProblem<dim> &problem,
+                                     const std::size_t point,
+                                     const double h) const
+  {
+    const auto &law = *problem.interactions[problem.interaction[point]].law;
+    const double f = problem.strength_factor[point];
+    return h * h * theta_ * chi_ * f * f * law.steepest_softening() *
+           flexibility_[dynamics_.points().face_of[point]];
+  }
+
+  template <int dim>
+  double UniquenessBound<dim>::largest_step(const OneStepProblem<dim> &problem,
+                                            const State &state) const
+  {
+    double result = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < problem.n_owned; ++i) {
+      if (state.kind[i] != PointKind::cohesive)
+        continue;
+      const auto &law = *problem.interactions[problem.interaction[i]].law;
+      if (problem.strength_factor[i] * state.opening_max[i] <
+              law.peak_opening() &&
+          !(law.extrinsic() && state.opening_max[i] > 0.))
+        continue;
+      const double factor = ratio(problem, i, 1.);
+      if (factor > 0.)
+        result = std::min(result, 1. / std::sqrt(factor));
+    }
+    return dynamics_.communicator().min(result);
+  }
+
+  template class UniquenessBound<2>;
+  template class UniquenessBound<3>;
+} // namespace nsfd
