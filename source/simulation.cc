@@ -1,5 +1,6 @@
 #include "nsfd/simulation.h"
 
+#include "nsfd/base/version.h"
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
@@ -12,9 +13,6 @@
 #include "nsfd/scene/verification_case.h"
 #include "nsfd/time/moreau_jean.h"
 #include "nsfd/time/step_control.h"
-
-#include <deal.II/base/config.h>
-#include <deal.II/base/utilities.h>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -263,9 +261,9 @@ namespace nsfd
       for (const unsigned int b : discretization_->driven_boundaries())
         reaction_names_.push_back(input_.boundaries[b].name);
 
-      info_.version = NSFD_VERSION;
-      info_.git_hash = NSFD_GIT_HASH;
-      info_.build_type = NSFD_BUILD_TYPE;
+      info_.version = version().number;
+      info_.git_hash = version().git_hash;
+      info_.build_type = version().build_type;
       info_.command_line = options_.command_line;
       info_.file = input_.file;
       info_.date = today();
@@ -309,7 +307,7 @@ namespace nsfd
           std::cout << fmt::format(
             "nsfd {}  {}  {} cells, {} unknowns, {} interface points, step "
             "{:.4g}",
-            NSFD_VERSION, input_.file, discretization_->n_global_cells(),
+            version().number, input_.file, discretization_->n_global_cells(),
             summary_.dofs, summary_.interface_points, control_->base_step());
           if (discretization_->crossing_time() > 0.)
             std::cout << fmt::format(
@@ -736,16 +734,6 @@ namespace nsfd
       return exit_code::done;
     }
   } // namespace
-
-  std::vector<std::pair<std::string, std::string>> library_versions()
-  {
-    char mpi[MPI_MAX_LIBRARY_VERSION_STRING];
-    int length = 0;
-    MPI_Get_library_version(mpi, &length);
-    std::string text(mpi, std::size_t(length));
-    return {{"deal.II", DEAL_II_PACKAGE_VERSION},
-            {"MPI", text.substr(0, text.find(','))}};
-  }
 
   int run_scene(const SceneInput &input,
                 const RunOptions &options,

@@ -3,8 +3,6 @@
 #include <mpi.h>
 
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace nsfd
 {
@@ -23,7 +21,4 @@ namespace nsfd
   int run_scene(const SceneInput &input,
                 const RunOptions &options,
                 MPI_Comm communicator);
-
-  /** Versions of the libraries for `--version` and run.json. */
-  std::vector<std::pair<std::string, std::string>> library_versions();
 } // namespace nsfd
