@@ -23,6 +23,10 @@ namespace nsfd
   struct SceneInput;
   template <int dim>
   class MeshGroups;
+  template <int dim>
+  struct Cells;
+  template <int dim>
+  class Loads;
 
   /** Where a point of InterfacePoints comes from. */
   struct PointOrigin {
@@ -53,7 +57,7 @@ namespace nsfd
                    const SceneInput &input);
     ~Discretization();
 
-    const Bodies &bodies() const { return bodies_; }
+    const Bodies &bodies() const;
     const InterfacePoints<dim> &points() const { return points_; }
     const std::vector<PointOrigin> &origins() const { return origins_; }
     /** Place of a face point. */
@@ -64,19 +68,13 @@ namespace nsfd
         x[c] = points_.position[point * dim + c];
       return x;
     }
-    const dealii::FiniteElement<dim, dim> &element() const { return *element_; }
+    const dealii::FiniteElement<dim, dim> &element() const;
 
-    unsigned int material_of(const unsigned int body) const
-    {
-      return bodies_.classes[bodies_.class_of[body]].material;
-    }
+    unsigned int material_of(unsigned int body) const;
 
     /** Nodal vectors: node-major, dim components, all cells of this rank. */
-    std::size_t n_nodal() const { return first_node_.back() * dim; }
-    std::size_t first_node(const unsigned int body) const
-    {
-      return first_node_[body];
-    }
+    std::size_t n_nodal() const;
+    std::size_t first_node(unsigned int body) const;
     /** Unknowns of the bodies to nodal values (rigid modes are expanded). */
     std::vector<double> to_nodal(const std::vector<double> &unknowns) const;
 
@@ -94,8 +92,8 @@ namespace nsfd
      * pressures, in N (N per metre of depth in two dimensions).
      */
     void add_loads(double t, std::vector<double> &forces) const;
-    bool loads_depend_on_time() const { return loads_depend_on_time_; }
-    bool has_loads() const { return has_loads_; }
+    bool loads_depend_on_time() const;
+    bool has_loads() const;
 
     /**
      * Call @p visit at every quadrature point of every cell of this rank:
@@ -117,12 +115,9 @@ namespace nsfd
                                    const std::vector<double> &nodal) const;
     double volume(unsigned int body) const;
     dealii::Point<dim> centre(unsigned int body) const;
-    unsigned long long global_cell(const unsigned int body) const
-    {
-      return global_cell_[body];
-    }
+    unsigned long long global_cell(unsigned int body) const;
     unsigned long long n_global_cells() const { return n_global_cells_; }
-    bool simplices() const { return simplices_; }
+    bool simplices() const;
 
     /** c_p of a material, and the shortest crossing time over all cells. */
     double pressure_wave_speed(unsigned int material) const;
@@ -139,31 +134,13 @@ namespace nsfd
     }
 
   private:
-    struct Shape; // tables of one class
-    void build_bodies(const dealii::Triangulation<dim, dim> &,
-                      const std::vector<unsigned int> &materials);
-    void build_points(const dealii::Triangulation<dim, dim> &,
-                      const MeshGroups<dim> &,
-                      const std::vector<unsigned int> &materials);
-
-    const Communicator &communicator_;
     const SceneInput &input_;
-    std::unique_ptr<dealii::FiniteElement<dim, dim>> element_;
-    bool simplices_ = false;
-    Bodies bodies_;
+    std::unique_ptr<const Cells<dim>> cells_;
     InterfacePoints<dim> points_;
     std::vector<PointOrigin> origins_;
-    std::vector<std::unique_ptr<Shape>> shapes_; // per class
-    std::vector<std::vector<dealii::Point<dim>>> corners_;
-    std::vector<std::size_t> first_node_;
-    std::vector<unsigned long long> global_cell_;
+    std::unique_ptr<const Loads<dim>> loads_;
     unsigned long long n_global_cells_ = 0;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;
     std::vector<unsigned int> driven_;
-    bool loads_depend_on_time_ = false, has_loads_ = false;
-    struct FaceLoad {
-      unsigned int body, face, boundary;
-    };
-    std::vector<FaceLoad> face_loads_;
   };
 } // namespace nsfd

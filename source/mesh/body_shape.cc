@@ -1,0 +1,224 @@
+#include "body_shape.h"
+
+#include "elasticity.h"
+#include "interface_quadrature.h"
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/mesh/cell_geometry.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe.h>
+
+#include <algorithm>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    Quadrature<dim> cell_quadrature(const ReferenceCell &cell,
+                                    const unsigned int n)
+    {
+      if (cell.is_simplex())
+        return QGaussSimplex<dim>(n);
+      return QGauss<dim>(n);
+    }
+
+    /** Volume over the largest face, the lowest height of a simplex. */
+    template <int dim>
+    double height(const BodyShape<dim> &shape)
+    {
+      double largest_face = 0.;
+      for (unsigned int f = 0; f < shape.reference.n_faces(); ++f)
+        largest_face = std::max(
+            largest_face,
+            FaceGeometry<dim>(shape.reference, shape.corners, f).measure());
+      return shape.volume / largest_face *
+             (shape.reference.is_simplex() ? dim : 1);
+    }
+
+    /** Velocity = translation of the centre + rotation, lengths scaled. */
+    template <int dim>
+    Block rigid_modes(const BodyShape<dim> &shape, const double size)
+    {
+      Block modes(shape.n_nodes * dim, dim == 2 ? 3 : 6);
+      for (unsigned int i = 0; i < shape.n_nodes; ++i) {
+        const Tensor<1, dim> r = (shape.nodes[i] - shape.centre) / size;
+        for (unsigned int c = 0; c < dim; ++c)
+          modes(i * dim + c, c) = 1.;
+        if constexpr (dim == 2) {
+          modes(i * dim, 2) = -r[1];
+          modes(i * dim + 1, 2) = r[0];
+        } else
+          for (unsigned int a = 0; a < 3; ++a) {
+            Tensor<1, 3> e;
+            e[a] = 1.;
+            const auto w = cross_product_3d(e, r);
+            for (unsigned int c = 0; c < 3; ++c)
+              modes(i * dim + c, 3 + a) = w[c];
+          }
+      }
+      return modes;
+    }
+
+    /** To the unknowns of a rigid body, from the blocks of its nodes. */
+    template <int dim>
+    void make_rigid(const double size, BodyShape<dim> &shape, BodyClass &body)
+    {
+      shape.modes = rigid_modes(shape, size);
+      const unsigned int n = shape.modes.cols;
+      const Block nodal_mass = body.mass;
+      const Block RT = shape.modes.transposed();
+      body.mass = product(RT, product(nodal_mass, shape.modes));
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < i; ++j)
+          body.mass(j, i) = body.mass(i, j) =
+              (body.mass(i, j) + body.mass(j, i)) / 2.;
+      body.trace = product(body.trace, shape.modes);
+      body.n_dofs = n;
+      // (R^T M R)^{-1} R^T M
+      Block identity(n, n);
+      for (unsigned int i = 0; i < n; ++i)
+        identity(i, i) = 1.;
+      shape.projection =
+          product(gram(forward_solve(cholesky(body.mass), identity)),
+                  product(RT, nodal_mass));
+    }
+  } // namespace
+
+  template <int dim>
+  void ClassBuilder<dim>::build(const ReferenceCell &reference,
+                                const std::vector<Point<dim>> &corners,
+                                const double size, const unsigned int material,
+                                BodyShape<dim> &shape, BodyClass &body) const
+  {
+    shape.reference = reference;
+    shape.corners = corners;
+    set_tables(shape);
+    body.material = material;
+    body.rigid = input_.materials[material].rigid;
+    body.mass = mass(shape, material);
+    body.trace = trace(shape);
+    body.n_slots = unsigned(shape.slot_positions.size());
+    body.n_dofs = shape.n_nodes * dim;
+    if (body.rigid)
+      make_rigid(size, shape, body);
+    else
+      body.stiffness = stiffness(shape, material);
+  }
+
+  template <int dim>
+  void ClassBuilder<dim>::set_tables(BodyShape<dim> &shape) const
+  {
+    const auto &reference = shape.reference;
+    const unsigned int n = element_.n_dofs_per_cell();
+    shape.n_nodes = n;
+    for (const auto &support : element_.get_unit_support_points())
+      shape.nodes.push_back(map_point(reference, shape.corners, support));
+    for (unsigned int v = 0; v < shape.corners.size(); ++v)
+      for (unsigned int i = 0; i < n; ++i)
+        shape.corner_values.push_back(
+            element_.shape_value(i, reference.template vertex<dim>(v)));
+
+    const auto quadrature =
+        cell_quadrature<dim>(reference, input_.discretization.degree + 1);
+    for (unsigned int q = 0; q < quadrature.size(); ++q) {
+      const Point<dim> xi = quadrature.point(q);
+      const auto J = jacobian(reference, shape.corners, xi);
+      const auto inverse = invert(J);
+      shape.positions.push_back(map_point(reference, shape.corners, xi));
+      shape.JxW.push_back(determinant(J) * quadrature.weight(q));
+      shape.volume += shape.JxW.back();
+      shape.centre += shape.JxW.back() * shape.positions.back();
+      for (unsigned int i = 0; i < n; ++i) {
+        shape.values.push_back(element_.shape_value(i, xi));
+        const auto g = element_.shape_grad(i, xi);
+        Tensor<1, dim> physical;
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = 0; b < dim; ++b)
+            physical[a] += inverse[b][a] * g[b];
+        shape.gradients.push_back(physical);
+      }
+    }
+    shape.centre /= shape.volume;
+    shape.height = height(shape);
+  }
+
+  template <int dim>
+  Block ClassBuilder<dim>::mass(const BodyShape<dim> &shape,
+                                const unsigned int material) const
+  {
+    const unsigned int n = shape.n_nodes;
+    Block scalar(n, n);
+    for (unsigned int q = 0; q < shape.JxW.size(); ++q)
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          scalar(i, input_.discretization.lumped_mass ? i : j) +=
+              input_.materials[material].density * shape.JxW[q] *
+              shape.values[q * n + i] * shape.values[q * n + j];
+    Block mass(n * dim, n * dim);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int c = 0; c < dim; ++c)
+          mass(i * dim + c, j * dim + c) =
+              i == j ? scalar(i, i) : (scalar(i, j) + scalar(j, i)) / 2.;
+    return mass;
+  }
+
+  /** lambda (div)(div) + mu (grad + grad^T) : grad */
+  template <int dim>
+  Block ClassBuilder<dim>::stiffness(const BodyShape<dim> &shape,
+                                     const unsigned int material) const
+  {
+    const LinearElasticity<dim> elasticity(input_.materials[material],
+                                           input_.plane_stress);
+    const double lambda = elasticity.lambda, mu = elasticity.mu;
+    const unsigned int n = shape.n_nodes;
+    Block stiffness(n * dim, n * dim);
+    for (unsigned int q = 0; q < shape.JxW.size(); ++q)
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j <= i; ++j) {
+          const auto &gi = shape.gradients[q * n + i];
+          const auto &gj = shape.gradients[q * n + j];
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = 0; d < dim; ++d)
+              stiffness(i * dim + c, j * dim + d) +=
+                  shape.JxW[q] * (lambda * gi[c] * gj[d] + mu * gi[d] * gj[c] +
+                                  (c == d ? mu * (gi * gj) : 0.));
+        }
+    // symmetric to the last bit: the upper half is a copy of the lower one
+    for (unsigned int i = 0; i < n * dim; ++i)
+      for (unsigned int j = 0; j < i; ++j)
+        stiffness(j, i) = stiffness(i, j);
+    return stiffness;
+  }
+
+  template <int dim>
+  Block ClassBuilder<dim>::trace(BodyShape<dim> &shape) const
+  {
+    const unsigned int n = shape.n_nodes;
+    std::vector<double> values;
+    for (unsigned int f = 0; f < shape.reference.n_faces(); ++f) {
+      const FaceGeometry<dim> face(shape.reference, shape.corners, f);
+      const auto quadrature =
+          interface_quadrature<dim>(input_.discretization, face.is_triangle());
+      for (const auto &xi : quadrature.get_points()) {
+        shape.slot_positions.push_back(face.position(xi));
+        for (unsigned int i = 0; i < n; ++i)
+          values.push_back(element_.shape_value(i, face.in_reference_cell(xi)));
+      }
+    }
+    const unsigned int n_slots = unsigned(shape.slot_positions.size());
+    Block trace(n_slots * dim, n * dim);
+    for (unsigned int s = 0; s < n_slots; ++s)
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          trace(s * dim + c, i * dim + c) = values[s * n + i];
+    return trace;
+  }
+
+  template class ClassBuilder<2>;
+  template class ClassBuilder<3>;
+} // namespace nsfd

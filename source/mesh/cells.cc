@@ -1,0 +1,92 @@
+#include "cells.h"
+
+#include "nsfd/input/scene_input.h"
+
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Corners relative to the first one, as multiples of a power of two. */
+    template <int dim>
+    struct RoundedCorners {
+      explicit RoundedCorners(const std::vector<Point<dim>> &corners)
+          : relative(corners.size())
+      {
+        for (const auto &corner : corners)
+          for (unsigned int c = 0; c < dim; ++c)
+            size = std::max(size, std::abs(corner[c] - corners[0][c]));
+        int exponent;
+        std::frexp(size, &exponent);
+        const double unit = std::ldexp(1., exponent - 42);
+        key = {static_cast<long long>(corners.size()), exponent};
+        for (unsigned int v = 0; v < corners.size(); ++v)
+          for (unsigned int c = 0; c < dim; ++c) {
+            const long long n =
+                std::llround((corners[v][c] - corners[0][c]) / unit);
+            key.push_back(n);
+            relative[v][c] = double(n) * unit;
+          }
+      }
+
+      double size = 0.;
+      std::vector<long long> key; ///< equal for congruent cells
+      std::vector<Point<dim>> relative;
+    };
+  } // namespace
+
+  template <int dim>
+  Cells<dim>::Cells(const Triangulation<dim> &triangulation,
+                    const std::vector<unsigned int> &materials,
+                    const SceneInput &input)
+  {
+    const unsigned int degree = input.discretization.degree;
+    if (triangulation.all_reference_cells_are_hyper_cube())
+      element = std::make_unique<FE_DGQ<dim>>(degree);
+    else
+      element = std::make_unique<FE_SimplexDGP<dim>>(degree);
+    const ClassBuilder<dim> builder(*element, input);
+
+    using Key = std::pair<unsigned int, std::vector<long long>>;
+    std::map<Key, unsigned int> class_by_key;
+    first_node.push_back(0);
+    bodies.first_dof.push_back(0);
+    bodies.first_slot.push_back(0);
+    for (const auto &cell : triangulation.active_cell_iterators()) {
+      if (!cell->is_locally_owned())
+        continue;
+      const unsigned int material = materials[cell->active_cell_index()];
+      auto &own_corners = corners.emplace_back();
+      for (const unsigned int v : cell->vertex_indices())
+        own_corners.push_back(cell->vertex(v));
+      const RoundedCorners<dim> rounded(own_corners);
+      const auto [entry, is_new] = class_by_key.emplace(
+          Key(material, rounded.key), unsigned(shapes.size()));
+      const unsigned int k = entry->second;
+      if (is_new)
+        builder.build(cell->reference_cell(), rounded.relative, rounded.size,
+                      material, shapes.emplace_back(),
+                      bodies.classes.emplace_back());
+
+      BodyClass &body = bodies.classes[k];
+      body.bodies.push_back(unsigned(bodies.class_of.size()));
+      bodies.class_of.push_back(k);
+      bodies.first_dof.push_back(bodies.first_dof.back() + body.n_dofs);
+      bodies.first_slot.push_back(bodies.first_slot.back() + body.n_slots);
+      first_node.push_back(first_node.back() + shapes[k].n_nodes);
+      global_cell.push_back(cell->global_active_cell_index());
+    }
+  }
+
+  template struct Cells<2>;
+  template struct Cells<3>;
+} // namespace nsfd

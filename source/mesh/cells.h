@@ -1,0 +1,51 @@
+#pragma once
+
+#include "body_shape.h"
+
+#include <deal.II/fe/fe.h>
+
+#include <memory>
+#include <vector>
+
+namespace dealii
+{
+  template <int dim, int spacedim>
+  class Triangulation;
+} // namespace dealii
+
+namespace nsfd
+{
+  /** The cells of this rank: bodies, their classes, places and nodes. */
+  template <int dim>
+  struct Cells {
+    /**
+     * @p materials by active_cell_index. Shapes are rounded to 2^-42 of their
+     * size before they are compared and before anything is computed from them.
+     */
+    Cells(const dealii::Triangulation<dim, dim> &triangulation,
+          const std::vector<unsigned int> &materials, const SceneInput &input);
+
+    std::unique_ptr<dealii::FiniteElement<dim, dim>> element;
+    Bodies bodies;                      ///< without points
+    std::vector<BodyShape<dim>> shapes; ///< per class
+    std::vector<std::vector<dealii::Point<dim>>> corners;
+    std::vector<std::size_t> first_node; ///< size n + 1
+    std::vector<unsigned long long> global_cell;
+
+    const BodyShape<dim> &shape(const std::size_t body) const
+    {
+      return shapes[bodies.class_of[body]];
+    }
+    const BodyClass &body_class(const std::size_t body) const
+    {
+      return bodies.classes[bodies.class_of[body]];
+    }
+    /** From a place relative to corner 0. */
+    dealii::Point<dim> place(const std::size_t body,
+                             const dealii::Point<dim> &relative) const
+    {
+      return corners[body][0] + dealii::Tensor<1, dim>(relative);
+    }
+    std::size_t n_nodal() const { return first_node.back() * dim; }
+  };
+} // namespace nsfd

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+
+namespace nsfd
+{
+  struct MaterialInput;
+
+  /** Isotropic linear elasticity: plane strain or stress, or in space. */
+  template <int dim>
+  class LinearElasticity
+  {
+  public:
+    /** @p plane_stress counts in two dimensions only. */
+    LinearElasticity(const MaterialInput &material, bool plane_stress);
+
+    double lambda, mu; ///< as they act in the plane
+
+    /** xx, yy, zz, xy, xz, yz from a gradient [component][direction]. */
+    std::array<double, 6> stress(const double *gradient) const;
+
+    double pressure_wave_speed() const;
+    double shear_wave_speed() const;
+
+  private:
+    double young_, poisson_, density_;
+    bool plane_stress_;
+  };
+} // namespace nsfd

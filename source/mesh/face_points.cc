@@ -1,0 +1,343 @@
+#include "face_points.h"
+
+#include "interface_quadrature.h"
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/mesh/cell_geometry.h"
+#include "nsfd/mesh/mesh_builder.h"
+
+#include <deal.II/grid/cell_id.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    std::uint64_t hash(const std::string &text)
+    {
+      std::uint64_t value = 1469598103934665603ull;
+      for (const unsigned char c : text)
+        value = (value ^ c) * 1099511628211ull;
+      // spread: neighbouring cells differ in a few characters only
+      value ^= value >> 31;
+      value *= 0x9e3779b97f4a7c15ull;
+      value ^= value >> 29;
+      return value;
+    }
+
+    /** A face with its points, before all of them are put into flat arrays. */
+    template <int dim>
+    struct NewFace {
+      using Frame = std::array<Tensor<1, dim>, dim>;
+
+      typename InterfacePoints<dim>::Face face;
+      PointOrigin origin;
+      std::vector<Point<dim>> positions;
+      std::vector<Frame> frames;
+      std::vector<double> weights;
+      bool owned = true;
+
+      void set_frame(const Frame &frame)
+      {
+        std::fill(frames.begin(), frames.end(), frame);
+      }
+    };
+
+    /** Goes through the faces of the cells of this rank. */
+    template <int dim>
+    class FaceCollector
+    {
+    public:
+      using Cell = typename Triangulation<dim>::active_cell_iterator;
+
+      FaceCollector(const Triangulation<dim> &triangulation,
+                    const MeshGroups<dim> &groups,
+                    const std::vector<unsigned int> &materials,
+                    const std::vector<unsigned int> &driven,
+                    const SceneInput &input);
+
+      std::vector<NewFace<dim>> faces; ///< those of this rank first
+
+    private:
+      NewFace<dim> make_face(const Cell &cell, unsigned int face_no,
+                             PointOrigin origin) const;
+      void add_boundary(const Cell &cell, unsigned int face_no);
+      void add_interior(const Cell &cell, unsigned int face_no);
+      unsigned int block_of(const Cell &first, const Cell &second,
+                            const Point<dim> &centre) const;
+
+      const MeshGroups<dim> &groups_;
+      const std::vector<unsigned int> &materials_, &driven_;
+      const SceneInput &input_;
+      std::vector<int> body_of_; ///< by active cell index, -1 if not ours
+    };
+
+    template <int dim>
+    FaceCollector<dim>::FaceCollector(
+        const Triangulation<dim> &triangulation, const MeshGroups<dim> &groups,
+        const std::vector<unsigned int> &materials,
+        const std::vector<unsigned int> &driven, const SceneInput &input)
+        : groups_(groups), materials_(materials), driven_(driven),
+          input_(input), body_of_(triangulation.n_active_cells(), -1)
+    {
+      int n_bodies = 0;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          body_of_[cell->active_cell_index()] = n_bodies++;
+      for (const auto &cell : triangulation.active_cell_iterators()) {
+        if (!cell->is_locally_owned())
+          continue;
+        for (const unsigned int f : cell->face_indices()) {
+          if (cell->face(f)->at_boundary())
+            add_boundary(cell, f);
+          else
+            add_interior(cell, f);
+        }
+      }
+      std::stable_partition(faces.begin(), faces.end(),
+                            [](const auto &face) { return face.owned; });
+    }
+
+    template <int dim>
+    NewFace<dim> FaceCollector<dim>::make_face(const Cell &cell,
+                                               const unsigned int f,
+                                               const PointOrigin origin) const
+    {
+      std::vector<Point<dim>> corners;
+      for (const unsigned int v : cell->vertex_indices())
+        corners.push_back(cell->vertex(v));
+      const FaceGeometry<dim> geometry(cell->reference_cell(), corners, f);
+      const auto quadrature = interface_quadrature<dim>(input_.discretization,
+                                                        geometry.is_triangle());
+      NewFace<dim> result;
+      result.origin = origin;
+      result.face.key = hash(
+          cell->id().to_string() + "/" + std::to_string(f) + "/" +
+          std::to_string(int(origin.kind)) + "/" +
+          std::to_string(
+              origin.kind == PointOrigin::Kind::interface ? 0 : origin.block));
+      const Point<dim> centre = mean(geometry.corners());
+      for (unsigned int c = 0; c < dim; ++c)
+        result.face.centre[c] = centre[c];
+      for (unsigned int q = 0; q < quadrature.size(); ++q) {
+        const auto xi = quadrature.point(q);
+        Tensor<1, dim> n = geometry.normal(xi);
+        const double measure = n.norm();
+        n /= measure;
+        result.positions.push_back(geometry.position(xi));
+        result.frames.push_back(local_frame<dim>(n));
+        result.weights.push_back(measure * quadrature.weight(q));
+      }
+      return result;
+    }
+
+    template <int dim>
+    void FaceCollector<dim>::add_boundary(const Cell &cell,
+                                          const unsigned int f)
+    {
+      const auto add = [&](NewFace<dim> face) {
+        face.face.boundary = true;
+        face.face.bodies = {{-1, body_of_[cell->active_cell_index()]}};
+        faces.push_back(std::move(face));
+      };
+      for (const unsigned int b : driven_) {
+        if (!groups_.holds_boundary_face(input_.boundaries[b].where, cell, f))
+          continue;
+        auto face = make_face(cell, f, {PointOrigin::Kind::motion, b});
+        typename NewFace<dim>::Frame axes; // rows of a support are x, y, z
+        for (unsigned int i = 0; i < dim; ++i)
+          axes[i][i] = 1.;
+        face.set_frame(axes);
+        add(std::move(face));
+      }
+      for (unsigned int b = 0; b < input_.obstacles.size(); ++b) {
+        const auto &obstacle = input_.obstacles[b];
+        if (!groups_.holds_boundary_face(obstacle.where, cell, f))
+          continue;
+        auto face = make_face(cell, f, {PointOrigin::Kind::obstacle, b});
+        Tensor<1, dim> n;
+        for (unsigned int c = 0; c < dim; ++c)
+          n[c] = obstacle.normal[c];
+        face.set_frame(local_frame<dim>(n / n.norm()));
+        add(std::move(face));
+      }
+    }
+
+    template <int dim>
+    void FaceCollector<dim>::add_interior(const Cell &cell,
+                                          const unsigned int f)
+    {
+      const Cell neighbor(cell->neighbor(f));
+      const bool first = cell->id() < neighbor->id();
+      const bool local = neighbor->is_locally_owned();
+      if (!first && local)
+        return; // made from the other side
+      const Cell &cell_1 = first ? cell : neighbor,
+                 &cell_2 = first ? neighbor : cell;
+      Point<dim> centre;
+      for (const unsigned int v : cell->face(f)->vertex_indices())
+        centre +=
+            cell->face(f)->vertex(v) / double(cell->face(f)->n_vertices());
+      auto face = make_face(
+          cell_1, first ? f : cell->neighbor_face_no(f),
+          {PointOrigin::Kind::interface, block_of(cell_1, cell_2, centre)});
+      face.face.bodies = {{body_of_[cell_1->active_cell_index()],
+                           body_of_[cell_2->active_cell_index()]}};
+      face.face.cells = {{cell_1->global_active_cell_index(),
+                          cell_2->global_active_cell_index()}};
+      face.owned = first;
+      if (!local)
+        face.face.neighbor_rank = int(neighbor->subdomain_id());
+      faces.push_back(std::move(face));
+    }
+
+    /** The first one that holds. */
+    template <int dim>
+    unsigned int FaceCollector<dim>::block_of(const Cell &first,
+                                              const Cell &second,
+                                              const Point<dim> &centre) const
+    {
+      const auto material = [&](const Cell &cell) -> const std::string & {
+        return input_.materials[materials_[cell->active_cell_index()]].name;
+      };
+      for (unsigned int b = 0; b < input_.interfaces.size(); ++b)
+        if (groups_.holds_interior_face(
+                input_.interfaces[b].where, centre, material(first),
+                material(second),
+                {{first->material_id(), second->material_id()}}))
+          return b;
+      throw std::runtime_error(
+          "no Interface block holds for the face at (" +
+          std::to_string(centre[0]) + ", " + std::to_string(centre[1]) +
+          (dim == 3 ? ", " + std::to_string(centre[dim - 1]) : "") +
+          "): add a last block with `set where = all`");
+    }
+
+    /** Points of shared faces by rank, in an order that both ranks know. */
+    template <int dim>
+    void set_neighbors(InterfacePoints<dim> &points)
+    {
+      std::map<int, std::vector<std::size_t>> shared; // rank -> faces
+      for (std::size_t f = 0; f < points.faces.size(); ++f)
+        if (points.faces[f].neighbor_rank >= 0)
+          shared[points.faces[f].neighbor_rank].push_back(f);
+      for (auto &[rank, list] : shared) {
+        std::sort(list.begin(), list.end(),
+                  [&](const std::size_t a, const std::size_t b) {
+                    return points.faces[a].key < points.faces[b].key;
+                  });
+        typename InterfacePoints<dim>::Neighbor neighbor;
+        neighbor.rank = rank;
+        for (const std::size_t f : list)
+          for (unsigned int q = 0; q < points.faces[f].count; ++q) {
+            neighbor.points.push_back(points.faces[f].first + q);
+            neighbor.side.push_back(points.faces[f].bodies[0] >= 0 ? 0 : 1);
+          }
+        points.neighbors.push_back(std::move(neighbor));
+      }
+    }
+  } // namespace
+
+  template <int dim>
+  FacePoints<dim> make_face_points(const Triangulation<dim> &triangulation,
+                                   const MeshGroups<dim> &groups,
+                                   const std::vector<unsigned int> &materials,
+                                   const std::vector<unsigned int> &driven,
+                                   const SceneInput &input)
+  {
+    FaceCollector<dim> collector(triangulation, groups, materials, driven,
+                                 input);
+    FacePoints<dim> result;
+    auto &points = result.points;
+    for (auto &face : collector.faces) {
+      const unsigned int f = unsigned(points.faces.size());
+      face.face.first = unsigned(points.n_points);
+      face.face.count = unsigned(face.positions.size());
+      points.n_points += face.positions.size();
+      if (face.owned)
+        points.n_owned = points.n_points;
+      for (unsigned int q = 0; q < face.positions.size(); ++q) {
+        for (unsigned int c = 0; c < dim; ++c)
+          points.position.push_back(face.positions[q][c]);
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int c = 0; c < dim; ++c)
+            points.frame.push_back(face.frames[q][i][c]);
+        points.weight.push_back(face.weights[q]);
+        points.face_of.push_back(f);
+        result.origins.push_back(face.origin);
+      }
+      points.faces.push_back(face.face);
+    }
+    set_neighbors(points);
+    return result;
+  }
+
+  template <int dim>
+  void fill_slots(const InterfacePoints<dim> &points, Cells<dim> &cells)
+  {
+    Bodies &bodies = cells.bodies;
+    const auto n = unsigned(points.n_points);
+    bodies.slot_point.assign(bodies.first_slot.back(), n);
+    bodies.slot_sign.assign(bodies.first_slot.back(), 1);
+    // the nearest one; a slot at a corner belongs to two faces: take a free one
+    const auto slot_of = [&](const std::size_t b, const unsigned int i) {
+      const auto &shape = cells.shape(b);
+      const double tolerance = 1e-7 * shape.corners.back().norm();
+      std::size_t best = 0;
+      double distance = std::numeric_limits<double>::max();
+      for (std::size_t s = 0; s < shape.slot_positions.size(); ++s) {
+        double d = 0.;
+        for (unsigned int c = 0; c < dim; ++c) {
+          const double x = cells.corners[b][0][c] + shape.slot_positions[s][c] -
+                           points.position[i * dim + c];
+          d += x * x;
+        }
+        const bool taken = bodies.slot_point[bodies.first_slot[b] + s] < n;
+        if (d < distance - tolerance * tolerance ||
+            (d < distance + tolerance * tolerance && !taken &&
+             bodies.slot_point[bodies.first_slot[b] + best] < n)) {
+          distance = d;
+          best = s;
+        }
+      }
+      AssertThrow(std::sqrt(distance) < 100. * tolerance,
+                  ExcMessage("a face point has no place on its cell"));
+      return bodies.first_slot[b] + best;
+    };
+
+    for (const auto &face : points.faces)
+      for (unsigned int side = 0; side < 2; ++side) {
+        if (face.bodies[side] < 0)
+          continue;
+        for (unsigned int i = face.first; i < face.first + face.count; ++i) {
+          const std::size_t slot = slot_of(face.bodies[side], i);
+          if (bodies.slot_point[slot] < n) {
+            bodies.extra_points.emplace_back(slot, i);
+            AssertThrow(side == 1 && face.boundary,
+                        ExcMessage("two interface points on one slot"));
+          } else {
+            bodies.slot_point[slot] = i;
+            bodies.slot_sign[slot] = side == 1 ? 1 : -1;
+          }
+        }
+      }
+    std::sort(bodies.extra_points.begin(), bodies.extra_points.end());
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template FacePoints<dim> make_face_points(                                   \
+      const Triangulation<dim> &, const MeshGroups<dim> &,                     \
+      const std::vector<unsigned int> &, const std::vector<unsigned int> &,    \
+      const SceneInput &);                                                     \
+  template void fill_slots(const InterfacePoints<dim> &, Cells<dim> &)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
+} // namespace nsfd
