@@ -1,0 +1,74 @@
+#pragma once
+
+#include "nsfd/mesh/discretization.h"
+#include "nsfd/output/run_record.h"
+#include "nsfd/time/state.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  template <int dim>
+  class FieldOutput;
+  template <int dim>
+  class Fragments;
+  class HistoryFile;
+  class Progress;
+
+  /**
+   * Make an output directory ours: what an earlier run has written is removed,
+   * everything else stays. False with a message on standard error if it holds
+   * files and @p force was not given.
+   */
+  bool claim_directory(const std::string &directory, bool force);
+
+  /** Everything that a run writes, and what it says while it runs. */
+  template <int dim>
+  class RunOutput
+  {
+  public:
+    /** Starts all files in the directory of the input. */
+    RunOutput(const SceneInput &input, const RunInfo &info, bool quiet,
+              const Discretization<dim> &discretization,
+              const Communicator &communicator);
+    ~RunOutput();
+
+    /** The initial state, for the report only. */
+    void start(const HistoryRow &row);
+
+    /** An accepted step: history.csv, progress, the curves of the report. */
+    void record(const HistoryRow &row);
+
+    /** Fields and pictures if they are due; at the end always. Collective. */
+    void write_if_due(const State &state, double time_step,
+                      const Fragments<dim> &fragments, bool last = false);
+
+    /** The progress line ends here. */
+    void end_progress();
+
+    /** summary.json and the report; nothing except on rank 0. */
+    void write_summary(const Summary &summary) const;
+
+    /** CPU seconds spent on fields and pictures. */
+    double cpu() const { return cpu_; }
+
+  private:
+    bool is_due(const State &state) const;
+    void keep(const HistoryRow &row);
+
+    const SceneInput &input_;
+    const RunInfo info_;
+    const Communicator &communicator_;
+    std::vector<std::string> driven_;
+    std::unique_ptr<HistoryFile> history_file_;
+    std::unique_ptr<Progress> progress_;
+    std::unique_ptr<FieldOutput<dim>> fields_;
+    std::vector<HistoryRow> history_;
+    unsigned int history_stride_ = 1;
+    std::vector<Snapshot> snapshots_;
+    double next_fields_ = 0., cpu_ = 0.;
+    bool fields_current_ = false;
+  };
+} // namespace nsfd

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "nsfd/mesh/discretization.h"
+#include "nsfd/scene/verification_case.h"
+#include "nsfd/time/state.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Shows the states of a run to its verification case: averages of the cells
+   * of all ranks after every step where the case wants them, and at the end
+   * the errors of the fields it knows.
+   */
+  template <int dim>
+  class CaseObserver
+  {
+  public:
+    CaseObserver(VerificationCase &verification,
+                 const Discretization<dim> &discretization,
+                 const Communicator &communicator);
+
+    /** Collective. */
+    void observe(const State &state, const HistoryRow &row);
+
+    /** Relative errors at the time of @p state. Collective. */
+    void finish(const State &state, std::map<std::string, double> &errors);
+
+  private:
+    std::vector<CellState> gather_cells(const State &state) const;
+    void field_errors(const State &state,
+                      std::map<std::string, double> &errors) const;
+
+    VerificationCase &case_;
+    const Discretization<dim> &discretization_;
+    const Communicator &communicator_;
+  };
+} // namespace nsfd

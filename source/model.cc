@@ -1,0 +1,128 @@
+#include "model.h"
+
+#include <deal.II/grid/tria.h>
+
+#include <iostream>
+
+namespace nsfd
+{
+  void print_problems(const Communicator &communicator, const SceneInput &input,
+                      const char *kind,
+                      const std::vector<std::string> &problems)
+  {
+    if (!communicator.is_root())
+      return;
+    for (const auto &problem : problems)
+      std::cerr << input.file << ": " << kind << ": " << problem << "\n";
+  }
+
+  template <int dim>
+  bool Model<dim>::build(const SceneInput &input,
+                         const Communicator &communicator)
+  {
+    std::vector<std::string> problems;
+    build_mesh_parts(input, communicator, problems);
+    if (problems.empty()) {
+      find_unused_blocks(input, communicator, problems);
+      build_control(input, problems);
+    }
+    if (!problems.empty()) {
+      print_problems(communicator, input, "error", problems);
+      return false;
+    }
+    build_dynamics(input, communicator);
+    method =
+        input.solver.method == "auto" ? "dual newton" : input.solver.method;
+    solver = SolverRegistry<dim>::instance().create(method);
+    stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
+                                                *dynamics, *solver);
+    return true;
+  }
+
+  template <int dim>
+  void Model<dim>::build_mesh_parts(const SceneInput &input,
+                                    const Communicator &communicator,
+                                    std::vector<std::string> &problems)
+  {
+    triangulation = build_mesh<dim>(input, communicator.mpi(), problems);
+    if (!problems.empty())
+      return;
+    groups = std::make_unique<MeshGroups<dim>>(input, *triangulation);
+    std::vector<std::string> warnings;
+    const auto materials = material_indices<dim>(input, *groups, *triangulation,
+                                                 problems, warnings);
+    print_problems(communicator, input, "warning", warnings);
+    if (!problems.empty())
+      return;
+    try {
+      discretization = std::make_unique<Discretization<dim>>(
+          communicator, *triangulation, *groups, materials, input);
+    } catch (const std::runtime_error &error) {
+      problems.push_back(error.what());
+    }
+  }
+
+  /** Blocks that hold nowhere are mistakes. */
+  template <int dim>
+  void Model<dim>::find_unused_blocks(const SceneInput &input,
+                                      const Communicator &communicator,
+                                      std::vector<std::string> &problems) const
+  {
+    const auto check = [&](const std::string &name, const Where &where) {
+      bool any = false;
+      for (const auto &cell : triangulation->active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int f : cell->face_indices())
+            any = any || groups->holds_boundary_face(where, cell, f);
+      if (!communicator.any(any))
+        problems.push_back(name + ": no boundary face of the mesh is there" +
+                           groups->missing(where));
+    };
+    for (const auto &boundary : input.boundaries)
+      check("Boundary: " + boundary.name, boundary.where);
+    for (const auto &obstacle : input.obstacles)
+      check("Obstacle: " + obstacle.name, obstacle.where);
+  }
+
+  template <int dim>
+  void Model<dim>::build_control(const SceneInput &input,
+                                 std::vector<std::string> &problems)
+  {
+    double base = input.time.step;
+    if (input.time.step_kind != StepKind::time) {
+      const double crossing = discretization->crossing_time();
+      if (crossing == 0.) {
+        problems.push_back("Time/step: all bodies are rigid, there is no "
+                           "crossing time; write the step as a time");
+        return;
+      }
+      base *= crossing;
+    }
+    control = std::make_unique<StepControl>(input.time.end, base,
+                                            input.time.maximum_halvings);
+  }
+
+  /** Short steps: face blocks; long ones: a global matrix. */
+  template <int dim>
+  void Model<dim>::build_dynamics(const SceneInput &input,
+                                  const Communicator &communicator)
+  {
+    const auto &bodies = discretization->bodies();
+    const auto &points = discretization->points();
+    const double crossing = discretization->crossing_time();
+    path = input.solver.path;
+    if (path == "auto")
+      path = crossing > 0. && control->base_step() > 5. * crossing
+                 ? "global"
+                 : "element-wise";
+    if (path == "global")
+      dynamics = make_sparse_dynamics<dim>(
+          communicator, bodies, points,
+          input.solver.linear_solver == "cg" ? "cg" : "direct");
+    else
+      dynamics = make_elementwise_dynamics<dim>(communicator, bodies, points);
+  }
+
+  template struct Model<2>;
+  template struct Model<3>;
+} // namespace nsfd

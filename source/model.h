@@ -1,0 +1,50 @@
+#pragma once
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/mesh/mesh_builder.h"
+#include "nsfd/time/moreau_jean.h"
+#include "nsfd/time/step_control.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /** Sentences to standard error, as `FILE: KIND: SENTENCE`; rank 0 only. */
+  void print_problems(const Communicator &communicator, const SceneInput &input,
+                      const char *kind,
+                      const std::vector<std::string> &problems);
+
+  /** The parts that a scene names, in the order in which they are built. */
+  template <int dim>
+  struct Model {
+    std::unique_ptr<dealii::Triangulation<dim>> triangulation;
+    std::unique_ptr<MeshGroups<dim>> groups;
+    std::unique_ptr<Discretization<dim>> discretization;
+    std::unique_ptr<StepControl> control;
+    std::string path; ///< of the linear algebra: element-wise or global
+    std::unique_ptr<Dynamics<dim>> dynamics;
+    std::string method; ///< name of the nonsmooth solver
+    std::unique_ptr<NonsmoothSolver<dim>> solver;
+    std::unique_ptr<MoreauJean<dim>> stepper;
+
+    /**
+     * False with messages on standard error if the input does not fit the
+     * mesh. Collective.
+     */
+    bool build(const SceneInput &input, const Communicator &communicator);
+
+  private:
+    void build_mesh_parts(const SceneInput &input,
+                          const Communicator &communicator,
+                          std::vector<std::string> &problems);
+    void build_control(const SceneInput &input,
+                       std::vector<std::string> &problems);
+    void build_dynamics(const SceneInput &input,
+                        const Communicator &communicator);
+    void find_unused_blocks(const SceneInput &input,
+                            const Communicator &communicator,
+                            std::vector<std::string> &problems) const;
+  };
+} // namespace nsfd

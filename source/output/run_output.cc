@@ -1,0 +1,170 @@
+#include "nsfd/output/run_output.h"
+
+#include "nsfd/base/stopwatch.h"
+#include "nsfd/input/scene_input.h"
+#include "nsfd/output/field_output.h"
+#include "nsfd/output/history_file.h"
+#include "nsfd/output/progress.h"
+#include "nsfd/output/report.h"
+#include "nsfd/output/summary_file.h"
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+namespace nsfd
+{
+  bool claim_directory(const std::string &directory, const bool force)
+  {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (fs::exists(directory, error) && !fs::is_empty(directory, error)) {
+      if (!force) {
+        std::cerr << "the output directory `" << directory
+                  << "` exists already: nothing was run.\n"
+                  << "  write --force to replace it, or --output DIR\n";
+        return false;
+      }
+      // replace what a run has written, leave everything else
+      for (const auto &entry : fs::directory_iterator(directory)) {
+        const std::string extension = entry.path().extension().string();
+        for (const char *ours :
+             {".vtu", ".pvtu", ".pvd", ".csv", ".json", ".svg", ".html"})
+          if (extension == ours)
+            fs::remove(entry.path(), error);
+      }
+    }
+    fs::create_directories(directory, error);
+    if (error) {
+      std::cerr << "cannot create the output directory `" << directory
+                << "`: " << error.message() << "\n";
+      return false;
+    }
+    return true;
+  }
+
+  template <int dim>
+  RunOutput<dim>::RunOutput(const SceneInput &input, const RunInfo &info,
+                            const bool quiet,
+                            const Discretization<dim> &discretization,
+                            const Communicator &communicator)
+      : input_(input), info_(info), communicator_(communicator)
+  {
+    const std::string &directory = input.output.directory;
+    for (const unsigned int b : discretization.driven_boundaries())
+      driven_.push_back(input.boundaries[b].name);
+    if (communicator.is_root()) {
+      write_file_atomically(directory + "/parameters.prm", input.echo);
+      write_run_info(directory + "/run.json", info);
+      history_file_ = std::make_unique<HistoryFile>(directory + "/history.csv",
+                                                    driven_, dim);
+      progress_ = std::make_unique<Progress>(std::cout, input.time.end,
+                                             Progress::mode_for_stdout(quiet));
+    }
+    if (input.output.fields || input.output.report)
+      fields_ = std::make_unique<FieldOutput<dim>>(directory, discretization,
+                                                   communicator);
+  }
+
+  template <int dim>
+  RunOutput<dim>::~RunOutput() = default;
+
+  template <int dim>
+  void RunOutput<dim>::start(const HistoryRow &row)
+  {
+    history_.push_back(row);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::record(const HistoryRow &row)
+  {
+    if (history_file_)
+      history_file_->write(row);
+    if (progress_)
+      progress_->step(row);
+    keep(row);
+  }
+
+  /** The report draws at most some ten thousand rows. */
+  template <int dim>
+  void RunOutput<dim>::keep(const HistoryRow &row)
+  {
+    if (row.step % history_stride_ == 0)
+      history_.push_back(row);
+    if (history_.size() > 20000) {
+      history_stride_ *= 2;
+      std::vector<HistoryRow> thinned;
+      for (auto &kept : history_)
+        if (kept.step % history_stride_ == 0)
+          thinned.push_back(std::move(kept));
+      history_.swap(thinned);
+    }
+  }
+
+  template <int dim>
+  bool RunOutput<dim>::is_due(const State &state) const
+  {
+    const auto &output = input_.output;
+    return state.step == 0 ||
+           (output.fields_every > 0. &&
+            state.time >= next_fields_ * (1. - 1e-12)) ||
+           (output.fields_every_steps > 0 &&
+            state.step % output.fields_every_steps == 0);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::write_if_due(const State &state, const double time_step,
+                                    const Fragments<dim> &fragments,
+                                    const bool last)
+  {
+    const Stopwatch watch(cpu_);
+    const auto &output = input_.output;
+    const bool due = last || is_due(state);
+    if (due && !(last && fields_current_)) {
+      if (output.fields_every > 0.)
+        next_fields_ =
+            (std::floor(state.time / output.fields_every * (1. + 1e-12)) + 1.) *
+            output.fields_every;
+      if (output.fields)
+        fields_->write(state, time_step, fragments);
+      if (output.report) {
+        snapshots_.push_back(fields_->snapshot(state, fragments));
+        if (snapshots_.size() > 24) // keep every second one
+          for (std::size_t k = 1; k < snapshots_.size(); ++k)
+            snapshots_.erase(snapshots_.begin() + long(k));
+      }
+    }
+    fields_current_ = due;
+  }
+
+  template <int dim>
+  void RunOutput<dim>::end_progress()
+  {
+    if (progress_)
+      progress_->finish();
+  }
+
+  template <int dim>
+  void RunOutput<dim>::write_summary(const Summary &summary) const
+  {
+    if (!communicator_.is_root())
+      return;
+    const std::string &directory = input_.output.directory;
+    nsfd::write_summary(directory + "/summary.json", summary);
+    if (!input_.output.report)
+      return;
+    Report report;
+    report.title = input_.title;
+    report.description = input_.description;
+    report.info = info_;
+    report.summary = summary;
+    report.history = history_;
+    report.reaction_names = driven_;
+    report.snapshots = snapshots_;
+    report.parameters = input_.echo;
+    write_report(directory + "/report.html", report);
+  }
+
+  template class RunOutput<2>;
+  template class RunOutput<3>;
+} // namespace nsfd

@@ -1,0 +1,169 @@
+#include "nsfd/scene/case_observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** What all ranks have, on all ranks. */
+    std::vector<double> gather_all(const Communicator &communicator,
+                                   const std::vector<double> &mine)
+    {
+      std::vector<int> counts(communicator.size()),
+          offsets(communicator.size(), 0);
+      const int count = int(mine.size());
+      MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT,
+                    communicator.mpi());
+      for (std::size_t r = 1; r < counts.size(); ++r)
+        offsets[r] = offsets[r - 1] + counts[r - 1];
+      std::vector<double> all(offsets.back() + counts.back());
+      MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(),
+                     offsets.data(), MPI_DOUBLE, communicator.mpi());
+      return all;
+    }
+
+    double relative(const double error, const double reference)
+    {
+      return reference > 0. ? error / reference : error;
+    }
+  } // namespace
+
+  template <int dim>
+  CaseObserver<dim>::CaseObserver(VerificationCase &verification,
+                                  const Discretization<dim> &discretization,
+                                  const Communicator &communicator)
+      : case_(verification), discretization_(discretization),
+        communicator_(communicator)
+  {
+  }
+
+  template <int dim>
+  void CaseObserver<dim>::observe(const State &state, const HistoryRow &row)
+  {
+    StepView view;
+    view.time = state.time;
+    view.time_step = row.time_step;
+    view.row = &row;
+    std::vector<CellState> cells;
+    if (case_.wants_cells()) {
+      cells = gather_cells(state);
+      view.cells = &cells;
+    }
+    case_.observe(view);
+  }
+
+  template <int dim>
+  void CaseObserver<dim>::finish(const State &state,
+                                 std::map<std::string, double> &errors)
+  {
+    if (case_.has_fields())
+      field_errors(state, errors);
+    case_.finish(errors);
+  }
+
+  template <int dim>
+  std::vector<CellState>
+  CaseObserver<dim>::gather_cells(const State &state) const
+  {
+    // centre, u, v, stress, volume
+    constexpr unsigned int width = 16;
+    const std::size_t n = discretization_.bodies().size();
+    std::vector<double> mine(n * width, 0.);
+    for (std::size_t b = 0; b < n; ++b) {
+      for (unsigned int c = 0; c < dim; ++c)
+        mine[b * width + c] = discretization_.centre(unsigned(b))[c];
+      mine[b * width + 15] = discretization_.volume(unsigned(b));
+    }
+    const auto average = [&](const std::vector<double> &unknowns,
+                             const unsigned int at, const bool stress) {
+      discretization_.visit_quadrature(
+          discretization_.to_nodal(unknowns),
+          [&](const unsigned int b, const dealii::Point<dim> &,
+              const double JxW, const double *value, const double *gradient) {
+            const double share = JxW / discretization_.volume(b);
+            for (unsigned int c = 0; c < dim; ++c)
+              mine[b * width + at + c] += share * value[c];
+            if (stress) {
+              const auto sigma = discretization_.stress(b, gradient);
+              for (unsigned int c = 0; c < 6; ++c)
+                mine[b * width + 9 + c] += share * sigma[c];
+            }
+          });
+    };
+    average(state.displacement, 3, true);
+    average(state.velocity, 6, false);
+    const std::vector<double> all = gather_all(communicator_, mine);
+    std::vector<CellState> cells(all.size() / width);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const double *in = all.data() + k * width;
+      CellState &cell = cells[k];
+      std::copy_n(in, 3, cell.centre.begin());
+      std::copy_n(in + 3, 3, cell.displacement.begin());
+      std::copy_n(in + 6, 3, cell.velocity.begin());
+      std::copy_n(in + 9, 6, cell.stress.begin());
+      cell.volume = in[15];
+    }
+    // the numbers of cells depend on the ranks, their places do not
+    std::sort(cells.begin(), cells.end(),
+              [](const CellState &a, const CellState &b) {
+                return a.centre < b.centre;
+              });
+    return cells;
+  }
+
+  template <int dim>
+  void
+  CaseObserver<dim>::field_errors(const State &state,
+                                  std::map<std::string, double> &errors) const
+  {
+    const std::size_t n = discretization_.bodies().size();
+    // per body: error and reference of u (L2), v (L2, L1), stress (L2)
+    std::vector<double> terms(8 * n, 0.);
+    const auto visit = [&](const std::vector<double> &unknowns,
+                           const bool velocity) {
+      discretization_.visit_quadrature(
+          discretization_.to_nodal(unknowns),
+          [&](const unsigned int b, const dealii::Point<dim> &x,
+              const double JxW, const double *value, const double *gradient) {
+            std::array<double, 3> position{};
+            for (unsigned int c = 0; c < dim; ++c)
+              position[c] = x[c];
+            const auto reference =
+                velocity ? case_.velocity(position, state.time)
+                         : case_.displacement(position, state.time);
+            const unsigned int row = velocity ? 2 : 0;
+            for (unsigned int c = 0; c < dim; ++c) {
+              const double error = value[c] - reference[c];
+              terms[row * n + b] += JxW * error * error;
+              terms[(row + 1) * n + b] += JxW * reference[c] * reference[c];
+              if (velocity) {
+                terms[4 * n + b] += JxW * std::abs(error);
+                terms[5 * n + b] += JxW * std::abs(reference[c]);
+              }
+            }
+            if (!velocity && case_.has_stress()) {
+              const auto sigma = discretization_.stress(b, gradient);
+              const auto known = case_.stress(position, state.time);
+              for (unsigned int c = 0; c < 6; ++c) {
+                terms[6 * n + b] +=
+                    JxW * (sigma[c] - known[c]) * (sigma[c] - known[c]);
+                terms[7 * n + b] += JxW * known[c] * known[c];
+              }
+            }
+          });
+    };
+    visit(state.displacement, false);
+    visit(state.velocity, true);
+    const auto s = communicator_.sums(terms.data(), 8, n);
+    errors["displacement_L2"] = std::sqrt(relative(s[0], s[1]));
+    errors["velocity_L2"] = std::sqrt(relative(s[2], s[3]));
+    errors["velocity_L1"] = relative(s[4], s[5]);
+    if (case_.has_stress())
+      errors["stress_L2"] = std::sqrt(relative(s[6], s[7]));
+  }
+
+  template class CaseObserver<2>;
+  template class CaseObserver<3>;
+} // namespace nsfd
