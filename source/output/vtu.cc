@@ -1,7 +1,7 @@
 #include "nsfd/output/vtu.h"
 
+#include "nsfd/output/markup.h"
 #include "nsfd/output/summary_file.h"
-#include "nsfd/output/svg.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/output/engineering.h"
+#include "nsfd/output/markup.h"
 #include "nsfd/output/run_record.h"
 
 #include <array>
@@ -8,25 +10,7 @@
 
 namespace nsfd
 {
-  /** Text as the content or an attribute of HTML and XML. */
-  std::string escape_markup(const std::string &text);
-
-  /** Values are divided by `factor` and then read in `unit` ("µJ/m"). */
-  struct UnitScale {
-    double factor = 1.;
-    std::string unit;
-  };
-
-  /**
-   * The engineering prefix that brings @p largest between 1 and 1000. Units
-   * that start with a power ("m²", "m^3") get the power of the prefix, times
-   * ("s") no prefix above 1, "" none at all.
-   */
-  UnitScale engineering_scale(double largest, const std::string &unit);
-
-  /** "5.00 µJ/m": @p digits significant digits; "n/a" for NaN. */
-  std::string engineering(double value, const std::string &unit,
-                          unsigned int digits = 3);
+  class AxisMap;
 
   /** Whether a picture is a file of its own or part of a page. */
   enum class SvgUse { file, page };
@@ -89,6 +73,9 @@ namespace nsfd
       Colour colour;
       bool dashed;
     };
+
+    bool set_axes(AxisMap &x_axis, AxisMap &y_axis) const;
+    std::string legend(double &y) const;
 
     std::string title_;
     Axis x_, y_;
