@@ -5,7 +5,7 @@
 
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/command_line.h"
-#include "nsfd/output/field_output.h"
+#include "nsfd/output/fragments.h"
 #include "nsfd/output/run_output.h"
 #include "nsfd/scene/case_observer.h"
 #include "nsfd/scene/check.h"

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "nsfd/base/communicator.h"
+
+#include <mpi.h>
+
+#include <numeric>
+#include <type_traits>
+#include <vector>
+
+namespace nsfd
+{
+  /** The entries of all ranks on rank 0, rank by rank. Collective. */
+  template <typename T>
+  std::vector<T> gather(const Communicator &communicator,
+                        const std::vector<T> &own, std::vector<int> &n_per_rank)
+  {
+    static_assert(std::is_trivially_copyable<T>::value);
+    const int n = int(own.size());
+    n_per_rank.assign(communicator.size(), 0);
+    MPI_Gather(&n, 1, MPI_INT, n_per_rank.data(), 1, MPI_INT, 0,
+               communicator.mpi());
+    std::vector<int> first(n_per_rank.size(), 0);
+    std::partial_sum(n_per_rank.begin(), n_per_rank.end() - 1,
+                     first.begin() + 1);
+    std::vector<T> all(communicator.is_root() ? first.back() + n_per_rank.back()
+                                              : 0);
+    MPI_Datatype type;
+    MPI_Type_contiguous(sizeof(T), MPI_BYTE, &type);
+    MPI_Type_commit(&type);
+    MPI_Gatherv(own.data(), n, type, all.data(), n_per_rank.data(),
+                first.data(), type, 0, communicator.mpi());
+    MPI_Type_free(&type);
+    return all;
+  }
+
+  template <typename T>
+  std::vector<T> gather(const Communicator &communicator,
+                        const std::vector<T> &own)
+  {
+    std::vector<int> n_per_rank;
+    return gather(communicator, own, n_per_rank);
+  }
+} // namespace nsfd
