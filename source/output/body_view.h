@@ -46,7 +46,7 @@ namespace nsfd
     double size() const;
   };
 
-  /** 0.7 to 1 by the angle to the light, the same for both sides. */
+  /** 0.62 to 1.02 by the angle to the light, the same for both sides. */
   double shade(const std::vector<Vector3> &corners);
 
   /** Finds the cell edges on both sides of a face by its undeformed ends. */
