@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace nsfd
 {
@@ -172,17 +171,6 @@ namespace nsfd
                                const unsigned int refinements,
                                std::vector<std::string> &problems)
   {
-    static const std::map<std::string, int> dimensions = {
-        {"rectangle", 2},          {"brick", 3},
-        {"notched plate", dim},    {"crossed triangles", 2},
-        {"diagonal triangles", 2}, {"tetrahedra", 3}};
-    if (dimensions.at(input.type) != dim) {
-      problems.push_back(fmt::format("`{}` is a mesh of {} dimensions, the "
-                                     "scene has {}",
-                                     input.type, dimensions.at(input.type),
-                                     dim));
-      return {};
-    }
     MeshInput refined = input;
     refined.refinements = refinements;
     if (!box_has_extent<dim>(refined, problems))
