@@ -190,7 +190,8 @@ namespace nsfd
       StepReport report;
       // the one place that catches StepRejected and shortens the step
       try {
-        report = model_.stepper->advance(state_, h, next);
+        report = model_.stepper->advance(state_, h, next,
+                                         !model_.control->can_halve());
       } catch (const StepRejected &rejected) {
         ++rejected_;
         if (control.halve())

@@ -57,7 +57,8 @@ namespace nsfd
 
   template <int dim>
   StepReport
-  MoreauJean<dim>::advance(const State &old, const double h, State &next)
+  MoreauJean<dim>::advance(const State &old, const double h, State &next,
+                           const bool last_attempt)
   {
     {
       const Stopwatch watch(timings_.assembly);
@@ -79,7 +80,12 @@ namespace nsfd
     next.impulse = old.impulse;
     {
       const Stopwatch watch(timings_.solve);
-      report.solver = solve(energy_scale, next.impulse, evaluation);
+      SolverControl control;
+      control.tolerance = input_.solver.tolerance;
+      control.maximum_iterations = input_.solver.maximum_iterations;
+      if (last_attempt)
+        control.idle_rounds = control.maximum_iterations;
+      report.solver = solve(control, energy_scale, next.impulse, evaluation);
     }
     if (!report.solver.converged)
       throw StepRejected(fmt::format(
@@ -135,13 +141,11 @@ namespace nsfd
 
   /** Again as long as extrinsic points reach their strength. */
   template <int dim>
-  SolverReport MoreauJean<dim>::solve(const double energy_scale,
+  SolverReport MoreauJean<dim>::solve(const SolverControl &control,
+                                      const double energy_scale,
                                       std::vector<double> &impulse,
                                       LawEvaluation<dim> &evaluation)
   {
-    SolverControl control;
-    control.tolerance = input_.solver.tolerance;
-    control.maximum_iterations = input_.solver.maximum_iterations;
     SolverReport report;
     for (unsigned int round = 0;; ++round) {
       const SolverReport part = solver_.solve(

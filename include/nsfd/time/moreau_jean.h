@@ -51,9 +51,11 @@ namespace nsfd
 
     /**
      * From @p old to @p next = t + h. @throws StepRejected if the nonsmooth
-     * problem was not solved to the tolerance.
+     * problem was not solved to the tolerance; after the @p last_attempt no
+     * shorter step follows, so the solver tries all it can.
      */
-    StepReport advance(const State &old, double time_step, State &next);
+    StepReport advance(const State &old, double time_step, State &next,
+                       bool last_attempt = false);
 
     /** Largest step with one solution, from design bound; inf without damage. */
     double unique_step(const State &state) const;
@@ -79,7 +81,8 @@ namespace nsfd
   private:
     void set_loads(double time);
     void move_freely(const State &old);
-    SolverReport solve(double energy_scale,
+    SolverReport solve(const SolverControl &control,
+                       double energy_scale,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation);
     void move(const State &old, const LawEvaluation<dim> &evaluation,

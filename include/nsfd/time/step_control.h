@@ -23,6 +23,7 @@ namespace nsfd
 
     /** The step was taken. */
     void accept();
+    bool can_halve() const { return level_ < maximum_level_; }
     /** One level down. False if the ladder ends here. */
     bool halve();
     /** Down until step() <= @p limit, as far as the ladder goes. */

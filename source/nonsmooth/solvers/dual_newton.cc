@@ -50,7 +50,8 @@ namespace nsfd
 
       bool differentiate(const Work &work, const Vector &impulse);
       void symmetric_direction(const Work &work, double tolerance, Vector &dP);
-      void coupled_direction(const Work &work, double tolerance, Vector &dP);
+      void coupled_direction(const Work &work, double tolerance, double shift,
+                             Vector &dP);
       bool line_search(const Work &work, const Vector &direction,
                        Vector &impulse);
       double majorant(const Work &work, const std::size_t k) const
@@ -170,10 +171,16 @@ namespace nsfd
       }
     }
 
-    /** GMRES for (I - J (W - R)) dP = -Phi, preconditioned from the right. */
+    /**
+     * GMRES for (I - J (W + shift R - R)) dP = -Phi, preconditioned from the
+     * right. Faces that stick all around an edge make W singular, and the
+     * system without a shift may have no solution; with a shift, impulses move
+     * along the null space until one of these faces lets go.
+     */
     template <int dim>
     void DualNewton<dim>::coupled_direction(const Work &work,
                                             const double tolerance,
+                                            const double shift,
                                             Vector &dP)
     {
       const auto &communicator = work.dynamics.communicator();
@@ -194,7 +201,7 @@ namespace nsfd
         Ap_.resize(work.n);
         work.dynamics.apply_delassus(in.data(), Ap_.data());
         for (std::size_t k = 0; k < work.n; ++k)
-          Ap_[k] -= majorant(work, k) * in[k];
+          Ap_[k] -= (1. - shift) * majorant(work, k) * in[k];
         for (std::size_t i = 0; i < coupled_.size(); ++i)
           for (unsigned int c = 0; c < dim; ++c) {
             const std::size_t k = i * dim + c;
@@ -380,7 +387,7 @@ namespace nsfd
       evaluation.update(impulse);
       unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
       double best_error = std::numeric_limits<double>::infinity(),
-             best_of_round = best_error;
+             best_of_round = best_error, shift = 0.;
       const auto remember = [&] {
         if (evaluation.error < best_error) {
           best_error = evaluation.error;
@@ -397,7 +404,7 @@ namespace nsfd
           1e-2, std::max({before, 0.1 * control.tolerance / before, 1e-12}));
         const bool coupled = differentiate(work, impulse);
         if (coupled)
-          coupled_direction(work, forcing, dP);
+          coupled_direction(work, forcing, shift, dP);
         else
           symmetric_direction(work, forcing, dP);
         trial = impulse;
@@ -414,6 +421,7 @@ namespace nsfd
           remember();
           continue;
         }
+        shift = 1e-3;
         evaluation.solutions = solutions;
         evaluation.defect = defect;
         evaluation.velocity = velocity;
