@@ -165,6 +165,29 @@ namespace end_to_end
     }
   }
 
+  // The plane exactly at the block, where the gap of a resting contact is the
+  // round-off of the solver: the contact must be kept in every step.
+  TEST(Solvers, RestingContactIsKept)
+  {
+    for (const std::string name : {"incline", "stop"})
+      for (unsigned int i = 0; i < 3; ++i)
+        for (const std::string tolerance : {"1e-8", "1e-10"}) {
+          const Workspace workspace;
+          const Result result =
+              solve(workspace, name, {"Obstacle: plane/point=0, 0"},
+                    choices[i], tolerance);
+          ASSERT_TRUE(result.completed());
+          for (const char *const error :
+               name == "incline"
+                   ? std::array{"position", "velocity", "normal_reaction"}
+                   : std::array{"distance", "friction_work", "stop_time"})
+            expect_below(result.directory.filename().string() + ", " +
+                             tolerance + ": " + error,
+                         result.error(error), 1e-5,
+                         "a lost contact costs a step of 0.01 or more");
+        }
+  }
+
   // Rows joined rigidly all around leave W singular: impulses may grow along
   // its null space, but never so far that the step is wrong.
   TEST(Solvers, GlobalPathClosesTheLedgerNextToRigidRows)
