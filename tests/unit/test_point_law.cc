@@ -253,6 +253,10 @@ namespace
        {{"stiffness", "5"},
         {"adhesion energy", "0.8"},
         {"tangential stiffness", "9"}}},
+      {"geubelle-baylor",
+       {{"strength", "2"},
+        {"critical opening", "0.6"},
+        {"initial strength parameter", "0.9"}}},
   };
 
   PointKind initial_kind(const CohesiveLaw &law)
