@@ -257,6 +257,10 @@ namespace
        {{"strength", "2"},
         {"critical opening", "0.6"},
         {"initial strength parameter", "0.9"}}},
+      {"trapezoid",
+       {{"strength", "2"},
+        {"critical opening", "0.6"},
+        {"tangential critical opening", "0.9"}}},
   };
 
   PointKind initial_kind(const CohesiveLaw &law)
