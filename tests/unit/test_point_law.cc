@@ -261,6 +261,8 @@ namespace
        {{"strength", "2"},
         {"critical opening", "0.6"},
         {"tangential critical opening", "0.9"}}},
+      {"ppr-extrinsic",
+       {{"strength", "2"}, {"critical opening", "0.6"}, {"alpha", "3.5"}}},
   };
 
   PointKind initial_kind(const CohesiveLaw &law)
