@@ -94,6 +94,24 @@ namespace nsfd
     return result;
   }
 
+  std::vector<SourceText> SourceText::split(const char separator) const
+  {
+    std::vector<SourceText> result;
+    std::size_t begin = 0;
+    int depth = 0;
+    for (std::size_t i = 0; i <= text_.size(); ++i) {
+      if (i < text_.size() && text_[i] == '(')
+        ++depth;
+      if (i < text_.size() && text_[i] == ')')
+        --depth;
+      if (i == text_.size() || (text_[i] == separator && depth <= 0)) {
+        result.push_back(part(begin, i - begin));
+        begin = i + 1;
+      }
+    }
+    return result;
+  }
+
   void SourceText::append(const SourceText &next)
   {
     if (next.empty())

@@ -66,26 +66,6 @@ namespace nsfd
       return value.empty() ? "" : "write for example: " + value;
     }
 
-    /** Parts between the commas that stand outside of brackets. */
-    std::vector<SourceText> split_list(const SourceText &value)
-    {
-      std::vector<SourceText> result;
-      std::size_t begin = 0;
-      int depth = 0;
-      const std::string &text = value.text();
-      for (std::size_t i = 0; i <= text.size(); ++i) {
-        if (i < text.size() && text[i] == '(')
-          ++depth;
-        if (i < text.size() && text[i] == ')')
-          --depth;
-        if (i == text.size() || (text[i] == ',' && depth <= 0)) {
-          result.push_back(value.part(begin, i - begin));
-          begin = i + 1;
-        }
-      }
-      return result;
-    }
-
     std::string join(const std::vector<std::string> &words)
     {
       std::string result;
@@ -160,7 +140,7 @@ namespace nsfd
     const auto value = raw(name, default_text, text, examples);
     if (!value)
       return {};
-    const std::vector<SourceText> parts = split_list(*value);
+    const std::vector<SourceText> parts = value->split(',');
     if (parts.size() == count)
       return parts;
     errors_.error(value->location(),

@@ -35,6 +35,9 @@ namespace nsfd
     SourceText part(std::size_t offset,
                     std::size_t length = std::string::npos) const;
 
+    /** Parts between the separators that stand outside of brackets. */
+    std::vector<SourceText> split(char separator) const;
+
     /** Join the next line with one blank in between. */
     void append(const SourceText &next);
 
