@@ -85,7 +85,7 @@ namespace nsfd
     /** G = I(infinity) in J/m^2. */
     virtual double toughness() const = 0;
 
-    /** max |T'| over the softening branch, in Pa/m. */
+    /** max |T'| over the softening branch, in Pa/m; infinity at a jump. */
     virtual double steepest_softening() const = 0;
   };
 
