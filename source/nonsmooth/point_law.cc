@@ -524,8 +524,11 @@ namespace nsfd
       solve_at(secant_for<dim>(problem, i, opening), opening);
       return solution.opening - opening;
     };
-    if (kind == PointKind::rigid)
+    if (kind == PointKind::rigid) {
+      if (high == 0.) // friction alone holds it
+        return held;
       low = 1e-9 * high;
+    }
     double a = low, b = high, f_a = excess(a), f_b = excess(b);
     // a spring that is crossed (u and u' on both sides) may push further
     for (unsigned int k = 0; k < 60 && f_b > 0.; ++k)

@@ -949,7 +949,7 @@ namespace
     const double p = 7., mu = 0.5, R_max = 2.;
     for (const double exponent : {0., 1., 2.}) {
       const double limit = R_max + (exponent == 0. ? mu * p : 0.);
-      for (const double factor : {0.1, 0.9, 0.999, 1.001, 1.5, 4.}) {
+      for (const double factor : {0.1, 0.5, 0.9, 0.999, 1.001, 1.5, 4.}) {
         OnePoint<2> point(interaction_of(camacho_ortiz(), mu, exponent),
                           PointKind::rigid, CohesionRule::exact, 0.5);
         point.prepare();
