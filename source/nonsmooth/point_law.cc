@@ -397,6 +397,37 @@ namespace nsfd
       }
       return f_low == 0. ? low : 0.5 * (low + high);
     }
+
+    /**
+     * Where a law jumps, friction sets in at once, and the root of the local
+     * problem can be the jump itself: with a secant and a threshold between
+     * those of its two sides the step ends at just this opening.
+     */
+    template <int dim>
+    void solve_between(const OneStepProblem<dim> &problem,
+                       const std::size_t i,
+                       const FrozenPoint before,
+                       const FrozenPoint after,
+                       const double opening,
+                       const std::array<double, dim> &local,
+                       const double majorant_normal,
+                       const double majorant_tangential,
+                       LocalSolution<dim> &solution)
+    {
+      const auto excess = [&](const double share) {
+        solution.frozen = {
+          before.secant + share * (after.secant - before.secant),
+          before.threshold + share * (after.threshold - before.threshold)};
+        solve_normal<dim>(problem, i, solution.frozen.secant, local[0],
+                          majorant_normal, solution);
+        solve_tangential<dim>(problem, i, solution.frozen.secant,
+                              solution.frozen.threshold, local,
+                              majorant_tangential, solution);
+        return end_opening<dim>(problem, i, solution.velocity) - opening;
+      };
+      const double f_before = excess(0.), f_after = excess(1.);
+      excess(bracketed_root(excess, 0., 1., f_before, f_after));
+    }
   } // namespace
 
   template <int dim>
@@ -545,7 +576,13 @@ namespace nsfd
     }
     const double root =
       f_b >= 0. ? b : bracketed_root(excess, a, b, f_a, f_b);
-    excess(root);
+    if (std::abs(excess(root)) > 1e-9 * root) {
+      excess(root * (1. - 1e-15));
+      const FrozenPoint before = solution.frozen;
+      excess(root * (1. + 1e-15));
+      solve_between<dim>(problem, i, before, solution.frozen, root, local,
+                         majorant_normal, majorant_tangential, solution);
+    }
     solution.opening = root;
     solution.damages = true;
     return solution;
@@ -704,7 +741,9 @@ namespace nsfd
       return result;
     const double opening = effective_opening<dim>(interaction, jump);
     result.opening_max = std::max(d_m, opening);
-    traction(secant_for<dim>(problem, i, opening));
+    traction(problem.rule == CohesionRule::exact
+               ? secant_for<dim>(problem, i, opening)
+               : frozen.secant);
 
     const bool was_rigid = kind == PointKind::rigid;
     const double b_old = was_rigid ? 0. : secant_at(interaction, f, d_m),

@@ -249,9 +249,7 @@ namespace
       interaction.law = {std::shared_ptr<void>(), &law}; // not owned
       interaction.stiffness_ratio = law.stiffness_ratio();
       interaction.shear_weight = law.shear_weight();
-      // without friction where beta jumps: kappa would jump with it
-      interaction.friction =
-          std::isinf(law.steepest_softening()) ? 0. : number(0., 1.);
+      interaction.friction = number(0., 1.);
       problem.interactions = {interaction};
       const double f = number(0.6, 1.4);
       problem.strength_factor = {f};
