@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 namespace nsfd
@@ -149,6 +150,25 @@ namespace nsfd
                               parts.size() == 1 ? "" : "s", count),
                   "write one value per direction, with commas in between");
     return {};
+  }
+
+  std::string SectionReader::file(const std::string &name,
+                                  const std::string &text,
+                                  const std::string &example_text)
+  {
+    namespace fs = std::filesystem;
+    const ParameterEntry *entry = section_.find(name);
+    fs::path path;
+    if (entry != nullptr && !entry->value.empty()) {
+      path = (fs::path(entry->value.location().source).parent_path() /
+              entry->value.text())
+                 .lexically_normal();
+      // the first declaration counts
+      section_.declare(
+          {name, fs::absolute(path).lexically_normal().string(), text});
+    }
+    raw(name, "", text, example_text);
+    return path.string();
   }
 
   bool SectionReader::optional(const std::string &name, const std::string &text)

@@ -278,6 +278,46 @@ end
     }
   }
 
+  // A file that the scene names is found from anywhere.
+  TEST(CommandLine, EchoFindsTheCurve)
+  {
+    const Workspace workspace;
+    const fs::path folder = workspace.path() / "scenes";
+    fs::create_directories(folder / "curves");
+    write_text(folder / "curves" / "falling.csv", "0, 300 MPa\n3 nm, 0\n");
+    write_text(folder / "steep.csv", "0, 300 MPa\n2 nm, 0\n");
+    std::string text = read_text(scene("midplane"));
+    for (const char *entry : {"strength ", "toughness"}) {
+      const std::size_t begin = text.find("  set " + std::string(entry));
+      text.erase(begin, text.find('\n', begin) + 1 - begin);
+    }
+    const std::string law = "camacho-ortiz";
+    text.replace(text.find(law), law.size(),
+                 "tabulated\n  set curve = curves/falling.csv");
+    text.erase(text.find("subsection Verification"));
+    write_text(folder / "pull.prm", text);
+
+    const auto echo = [](const Result &result) {
+      return entry(result.directory / "parameters.prm", "curve");
+    };
+    const Launch launch{folder / "pull.prm", {"Mesh/cells=4, 4"}};
+    const Result original = good_run(workspace, "original", launch);
+    ASSERT_TRUE(original.completed());
+    EXPECT_EQ(echo(original), (folder / "curves" / "falling.csv").string());
+    const Result again =
+        good_run(workspace, "again", {original.directory / "parameters.prm"});
+    ASSERT_TRUE(again.completed());
+    EXPECT_TRUE(original.history_text == again.history_text);
+    EXPECT_EQ(echo(again), echo(original));
+
+    // from the command line: where the program runs
+    Launch other = launch;
+    other.set.push_back("Interface: midline/curve=scenes/steep.csv");
+    const Result steep = good_run(workspace, "steep", other);
+    ASSERT_TRUE(steep.completed());
+    EXPECT_EQ(echo(steep), (folder / "steep.csv").string());
+  }
+
   TEST(CommandLine, RunsAreRepeatable)
   {
     const Workspace workspace;

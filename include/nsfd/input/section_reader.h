@@ -93,6 +93,15 @@ namespace nsfd
                                   const std::string &example_text = "");
 
     /**
+     * Path of a file that must be given: relative to the folder of the
+     * parameter file that names it, from --set to where the program runs. The
+     * echo has it in full and can be run from anywhere. Empty (and reported)
+     * if it is not given.
+     */
+    std::string file(const std::string &name, const std::string &text,
+                     const std::string &example_text);
+
+    /**
      * Declare an entry that has no default and may be left out. True if the
      * file gives it: then it is to be read by one of the calls above.
      */

@@ -53,9 +53,8 @@ namespace nsfd
             text.location(),
             fmt::format("`{}` is not a point of the curve", text.text()),
             "write opening and traction as in: " + example);
-      const double opening =
-          reader.number_in(parts[0], "opening", "0.2 um", units::length,
-                           Range::non_negative());
+      const double opening = reader.number_in(
+          parts[0], "opening", "0.2 um", units::length, Range::non_negative());
       const double traction =
           reader.number_in(parts[1], "traction", "3 MPa", units::pressure,
                            Range::non_negative());
@@ -79,11 +78,11 @@ namespace nsfd
             line.find_first_of("0123456789") == std::string::npos;
         may_be_header = false;
         if (!is_header)
-          read_point(reader,
-                     SourceText(line, {curve.name, number, 0,
-                                       static_cast<unsigned int>(line.size()),
-                                       line}),
-                     ',', "0.2 um, 3 MPa", curve);
+          read_point(
+              reader,
+              SourceText(line, {curve.name, number, 0,
+                                static_cast<unsigned int>(line.size()), line}),
+              ',', "0.2 um, 3 MPa", curve);
       }
     }
 
@@ -113,15 +112,9 @@ namespace nsfd
       }
       if (reader.optional("curve", file_text)) {
         curve.entry = "curve";
-        const auto value = reader.raw("curve", "", file_text);
-        if (!value)
+        curve.name = reader.file("curve", file_text, "curve.csv");
+        if (curve.name.empty())
           return {};
-        // --set has no folder: relative to where the program runs
-        curve.name =
-            (std::filesystem::path(value->location().source).parent_path() /
-             value->text())
-                .lexically_normal()
-                .string();
         std::error_code ignored;
         std::ifstream stream(curve.name, std::ios::binary);
         if (stream && !std::filesystem::is_directory(curve.name, ignored))
