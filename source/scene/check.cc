@@ -171,12 +171,17 @@ namespace nsfd
       const double unique =
         1. / std::sqrt(input.time.theta * chi * law.steepest_softening() *
                        lambda);
-      out << fmt::format(
-        "             one solution per step is sure below {:.3g} = {:.3g} "
-        "crossings while a point softens ({})\n",
-        unique, crossing > 0. ? unique / crossing : 0.,
-        step <= unique ? "this step is below" :
-                         "this step is above: counted, or write `step = auto`");
+      if (unique > 0.)
+        out << fmt::format(
+          "             one solution per step is sure below {:.3g} = {:.3g} "
+          "crossings while a point softens ({})\n",
+          unique, crossing > 0. ? unique / crossing : 0.,
+          step <= unique ?
+            "this step is below" :
+            "this step is above: counted, or write `step = auto`");
+      else
+        out << "             softens infinitely fast: one solution per step is "
+               "sure for no step; steps in which it softens are counted\n";
       if (!law.extrinsic()) {
         const double ratio = law.normal_stiffness() * L / stiffest;
         const double Z = mesh.interface_density;

@@ -132,7 +132,8 @@ namespace nsfd
           !(law.extrinsic() && state.opening_max[i] > 0.))
         continue;
       const double factor = ratio(problem, i, 1.);
-      if (factor > 0.)
+      // no step is short enough for a traction that jumps
+      if (factor > 0. && std::isfinite(factor))
         result = std::min(result, 1. / std::sqrt(factor));
     }
     return dynamics_.communicator().min(result);

@@ -235,4 +235,65 @@ end
         EXPECT_TRUE(std::isfinite(value)) << name;
     EXPECT_LT(result.number("final_time"), 5.1e-9);
   }
+
+  // Tractions that jump, or fall infinitely fast at separation: no step is
+  // below the uniqueness bound. They do not shorten `step = auto`; the steps
+  // in which they soften are counted.
+  TEST(Extremes, InfiniteSofteningDoesNotShortenSteps)
+  {
+    const Workspace workspace;
+    const std::string pull = R"(# pull.prm - two cells are pulled apart.
+set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 20 um, 10 um
+  set cells        = 2, 1
+end
+subsection Material: bulk
+  set Young modulus = 135 GPa
+  set Poisson ratio = 0.32
+  set density       = 7800 kg/m^3
+end
+subsection Interface: middle
+  set where     = abs(x - 10 um) < 1 nm
+  set strength  = 300 MPa
+  set toughness = 0.5 J/m^2
+)";
+    const std::string rest = R"(end
+subsection Boundary: left
+  set velocity x = -2 m/s
+end
+subsection Boundary: right
+  set velocity x = 2 m/s
+end
+subsection Time
+  set end  = 40 ns
+  set step = auto
+end
+)";
+    for (const auto &[name, entries] : std::map<std::string, std::string>{
+             {"brittle", "  set law = brittle\n"},
+             {"dugdale", "  set law = dugdale\n"},
+             {"ppr", "  set law = ppr-extrinsic\n  set alpha = 1.5\n"}}) {
+      SCOPED_TRACE(name);
+      const fs::path file = workspace.path() / (name + ".prm");
+      write_text(file, pull + entries + rest);
+      const Outcome check = nsfd(workspace, {file.string(), "--check"});
+      EXPECT_EQ(check.exit_code, 0) << check.err;
+      EXPECT_NE(check.out.find("softens infinitely fast"), std::string::npos)
+          << check.out;
+      EXPECT_EQ(check.out.find("sure below"), std::string::npos) << check.out;
+
+      const Result result = good_run(workspace, name, {file});
+      ASSERT_TRUE(result.completed());
+      EXPECT_NEAR(result.dissipated("damage"), 5e-6,
+                  5e-6 * 1e-6); // G times height
+      const auto &time = result.history["time"];
+      ASSERT_GT(time.size(), 10u);
+      EXPECT_EQ(result.counter("rejected_steps"), 0.);
+      for (std::size_t i = 1; i + 1 < time.size(); ++i)
+        EXPECT_NEAR(time[i + 1] - time[i], time[1] - time[0], 1e-9 * time[1]);
+      EXPECT_GE(result.counter("steps_beyond_uniqueness"), 1.);
+    }
+  }
 } // namespace end_to_end

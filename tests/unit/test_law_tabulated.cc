@@ -139,10 +139,11 @@ namespace
   {
     const auto from_file =
         tabulated("0, 0\n0.3 um, 3 MPa\n1 um, 2.5 MPa\n2 um, 0\n");
-    expect_same(*make_law("tabulated",
-                          {{"points", "0 : 0, 0.3 um: 3 MPa, \\\n"
-                                      "    max(1 um, 0.5 um) : 2.5e6, 2e-6:0"}}),
-                *from_file);
+    expect_same(
+        *make_law("tabulated",
+                  {{"points", "0 : 0, 0.3 um: 3 MPa, \\\n"
+                              "    max(1 um, 0.5 um) : 2.5e6, 2e-6:0"}}),
+        *from_file);
 
     // the place is that of the point, on whichever line
     const LawEntries grows{
