@@ -1,5 +1,7 @@
 #include "nsfd/input/command_line.h"
+#include "nsfd/input/read_law.h"
 #include "nsfd/input/read_scene.h"
+#include "nsfd/law_path/run_law.h"
 #include "nsfd/simulation.h"
 
 #include <deal.II/base/exceptions.h>
@@ -7,30 +9,53 @@
 
 #include <iostream>
 
-int main(int argc, char **argv)
+namespace
 {
   using namespace nsfd;
+
+  /** The complete file of a scene or a law, or what is wrong with it. */
+  int print_parameters(const CommandLine &command)
+  {
+    InputErrors errors;
+    std::string echo;
+    if (command.law) {
+      if (const auto law = read_law(command.file, command.overrides(), errors))
+        echo = law->echo;
+    } else if (const auto scene =
+                   read_scene(command.file, command.overrides(), errors))
+      echo = scene->echo;
+    std::cerr << errors.report();
+    std::cout << echo;
+    return errors.has_errors() ? exit_code::bad_input : exit_code::done;
+  }
+
+  /** One process is enough; all end with its exit code. */
+  int run_law_on_root(const CommandLine &command, const bool root)
+  {
+    int code = root ? run_law(command) : exit_code::done;
+    MPI_Bcast(&code, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    return code;
+  }
+} // namespace
+
+int main(int argc, char **argv)
+{
   CommandLine command;
   if (const auto code =
         parse_command_line(argc, argv, command, std::cout, std::cerr))
     return *code;
 
   // what needs no bodies needs no MPI
-  if (command.print_parameters) {
-    InputErrors errors;
-    const auto input = read_scene(command.file, command.overrides(), errors);
-    std::cerr << errors.report();
-    if (!input)
-      return exit_code::bad_input;
-    std::cout << input->echo;
-    return exit_code::done;
-  }
+  if (command.print_parameters)
+    return print_parameters(command);
 
   dealii::deal_II_exceptions::disable_abort_on_exception();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool root =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   try {
+    if (command.law)
+      return run_law_on_root(command, root);
     InputErrors errors;
     const auto input = read_scene(command.file, command.overrides(), errors);
     if (root)

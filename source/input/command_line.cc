@@ -24,6 +24,7 @@ namespace nsfd
         "nsfd - nonsmooth fracture dynamics\n"
         "  nsfd FILE.prm             run a scene\n"
         "  nsfd FILE.prm --check     only say whether it would run\n"
+        "  nsfd law NAME             drive one point of a cohesive law\n"
         "  nsfd --help               all options\n";
 
     /** Options without a value, and what they switch on. */
@@ -38,9 +39,9 @@ namespace nsfd
     {
       for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        if (i == 1 && (word == "study" || word == "solve" || word == "law"))
+        if (i == 1 && (word == "study" || word == "solve"))
           return fmt::format("`nsfd {}` is not there yet: only single scenes "
-                             "can be run",
+                             "and `nsfd law` can be run",
                              word);
         if (word.compare(0, 8, "--resume") == 0)
           return "--resume is not there yet: there are no checkpoints";
@@ -111,11 +112,16 @@ namespace nsfd
     if (!missing.empty())
       return fail(err, missing, "");
 
+    if (argv[1] == std::string("law"))
+      return parse_law_command_line(argc - 1, argv + 1, command_line, out, err);
+
     CLI::App app("Nonsmooth fracture dynamics: every cell is a body, faces "
                  "carry cohesion, contact and friction.",
                  "nsfd");
     app.set_help_flag();
     app.allow_extras();
+    app.footer("Or: nsfd law NAME, drive one interface point along a path; "
+               "nsfd law --help says more.");
     bool help = false, list = false, version = false;
     app.add_option("FILE.prm", command_line.file, "the scene to run");
     // one value per --set: further words are not its own

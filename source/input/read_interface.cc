@@ -61,9 +61,7 @@ namespace nsfd
 
     void read_contact(SectionReader &reader, InterfaceInput &input)
     {
-      input.friction =
-          reader.number("friction", "0", units::none, Range::non_negative(),
-                        "coefficient of Coulomb friction");
+      input.friction = read_friction(reader);
       input.restitution =
           reader.number("restitution", "0", units::none, Range::closed(0., 1.),
                         "of Newton's impact law, where beta = 0");
@@ -71,9 +69,7 @@ namespace nsfd
 
     void read_damage_start(SectionReader &reader, InterfaceInput &input)
     {
-      input.friction_exponent = reader.number(
-          "friction exponent", "1", units::none, Range::non_negative(),
-          "s of kappa = (1 - beta)^s; 0: full friction always");
+      input.friction_exponent = read_friction_exponent(reader);
       input.broken = read_initial_expression(
           reader, "broken", "false", units::none,
           "true, or an expression: open at t = 0 where it is not 0");
@@ -113,19 +109,10 @@ namespace nsfd
                                           : IntactFaces::spring;
     }
 
-    /** The entries that the law itself asks for. */
-    void read_cohesive_law(SectionReader &reader, InterfaceInput &input)
+    /** The law, and what only cohesive laws have besides it. */
+    void read_cohesive_block(SectionReader &reader, InterfaceInput &input)
     {
-      const unsigned int n_before = reader.errors().n_errors();
-      try {
-        input.law =
-            CohesiveLawRegistry::instance().create(input.law_name, reader);
-      } catch (const std::exception &exception) {
-        // numbers that stand in for wrong ones need not make a law
-        if (reader.errors().n_errors() == n_before)
-          reader.error("law", fmt::format("law = {}: {}", input.law_name,
-                                          exception.what()));
-      }
+      input.law = read_cohesive_law(reader, input.law_name);
       input.strength_scatter = reader.number(
           "strength scatter", "0", units::none, {0., 1., false, true},
           "relative half width of uniform random strengths");
@@ -172,7 +159,7 @@ namespace nsfd
       if (input.law_name == "elastic")
         read_springs(reader, input);
       else
-        read_cohesive_law(reader, input);
+        read_cohesive_block(reader, input);
       read_contact(reader, input);
       read_damage_start(reader, input);
       input.intact = read_intact_faces(reader, input);
@@ -181,6 +168,34 @@ namespace nsfd
   } // namespace
 
   std::vector<NamedText> known_plain_laws() { return plain_laws; }
+
+  std::shared_ptr<const CohesiveLaw> read_cohesive_law(SectionReader &reader,
+                                                       const std::string &name)
+  {
+    const unsigned int n_before = reader.errors().n_errors();
+    try {
+      return CohesiveLawRegistry::instance().create(name, reader);
+    } catch (const std::exception &exception) {
+      // numbers that stand in for wrong ones need not make a law
+      if (reader.errors().n_errors() == n_before)
+        reader.error("law",
+                     fmt::format("law = {}: {}", name, exception.what()));
+    }
+    return nullptr;
+  }
+
+  double read_friction(SectionReader &reader)
+  {
+    return reader.number("friction", "0", units::none, Range::non_negative(),
+                         "coefficient of Coulomb friction");
+  }
+
+  double read_friction_exponent(SectionReader &reader)
+  {
+    return reader.number("friction exponent", "1", units::none,
+                         Range::non_negative(),
+                         "s of kappa = (1 - beta)^s; 0: full friction always");
+  }
 
   void read_interfaces(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene)

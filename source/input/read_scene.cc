@@ -50,7 +50,11 @@ namespace nsfd
               section.location(),
               fmt::format("section `{}` needs a name", kind),
               fmt::format("write for example: subsection {}: first", kind));
-      } else if (contains(missing_sections, kind))
+      } else if (kind == "Path")
+        errors.error(section.location(),
+                     "section `Path` is for one point, not for a scene",
+                     "run it with: nsfd law FILE.prm");
+      else if (contains(missing_sections, kind))
         errors.error(section.location(),
                      fmt::format("section `{}` is not there yet", kind),
                      "remove this section");

@@ -26,6 +26,19 @@ namespace nsfd
   void read_interfaces(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene);
 
+  /**
+   * A registered law with the entries that it asks for; null, and reported, if
+   * they do not make one.
+   */
+  std::shared_ptr<const CohesiveLaw>
+  read_cohesive_law(SectionReader &reader, const std::string &name);
+
+  /** s of kappa = (1 - beta)^s. */
+  double read_friction_exponent(SectionReader &reader);
+
+  /** mu. */
+  double read_friction(SectionReader &reader);
+
   /** Boundary and Obstacle blocks, Loads. */
   void read_boundaries(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene);

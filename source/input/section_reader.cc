@@ -248,6 +248,20 @@ namespace nsfd
     return result;
   }
 
+  std::vector<double> SectionReader::number_list(const std::string &name,
+                                                 const Unit unit,
+                                                 const Range range,
+                                                 const std::string &text)
+  {
+    std::vector<double> result;
+    if (!optional(name, text))
+      return result;
+    if (const auto value = raw(name, "", text, example_value(name, "", unit)))
+      for (const SourceText &part : value->split(','))
+        result.push_back(number_in(part, name, "", unit, range));
+    return result;
+  }
+
   std::optional<unsigned int>
   SectionReader::integer_in(const SourceText &value, const std::string &name,
                             const std::string &example_text,

@@ -24,6 +24,8 @@ namespace end_to_end
     };
 
     const std::string stop_scene = scene("stop").string();
+    const std::string paper_figure =
+        (fs::path(NSFD_SOURCE_DIR) / "prm" / "paper" / "figure_03.prm").string();
 
     const std::vector<Call> calls = {
         {"nothing", {}, 2, "nsfd FILE.prm"},
@@ -31,7 +33,26 @@ namespace end_to_end
         {"unknown_option_after_file", {stop_scene, "--fast"}, 2, "--fast"},
         {"study", {"study", stop_scene}, 2, "not there yet"},
         {"solve", {"solve", "problem.hdf5"}, 2, "not there yet"},
-        {"law", {"law", "tvergaard"}, 2, "not there yet"},
+        {"law_without_a_name", {"law"}, 2, "no law is named"},
+        {"law_option", {"law", "tvergaard", "--pth", "shear"}, 2, "`--path`"},
+        {"two_laws", {"law", "tvergaard", "rcc"}, 2, "one law too many"},
+        {"law_set", {"law", "rcc", "--set", "friction"}, 2, "no `=`"},
+        {"law_unknown", {"law", "tvergard"}, 1, "`tvergaard`"},
+        {"law_of_a_missing_file", {"law", "none.prm"}, 1, "none.prm"},
+        {"law_of_a_scene", {"law", stop_scene}, 1, "no section `Mesh`"},
+        {"law_entry", {"law", "rcc", "--set", "stifness=1"}, 1, "`stiffness`"},
+        {"law_path", {"law", "rcc", "--path", "opnening"}, 1, "`opening`"},
+        {"law_path_file", {"law", "rcc", "--path", "no.csv"}, 1, "no.csv"},
+        {"law_file_as_a_scene",
+         {paper_figure, "--check"},
+         1,
+         "nsfd law FILE.prm"},
+        {"law_check", {"law", "rcc", "--check"}, 0, "nothing is run"},
+        {"law_help", {"law", "--help"}, 0, "shear cycle"},
+        {"law_print_parameters",
+         {"law", "rcc", "--print-parameters"},
+         0,
+         "# Adhesion energy w = G"},
         {"resume", {stop_scene, "--resume"}, 2, "not there yet"},
         {"resume_directory", {"--resume=output/stop"}, 2, "not there yet"},
         {"two_files", {stop_scene, stop_scene}, 2, "one file too many"},
@@ -128,12 +149,11 @@ end
   {
     const Workspace workspace;
     const std::string help = nsfd(workspace, {"--help"}).out;
-    for (const char *word :
-         {"--resume", "nsfd study", "nsfd solve", "nsfd law"})
+    for (const char *word : {"--resume", "nsfd study", "nsfd solve"})
       EXPECT_EQ(help.find(word), std::string::npos) << word;
     for (const char *word :
          {"--set", "--output", "--force", "--check", "--print-parameters",
-          "--list", "--version", "--help", "--quiet"})
+          "--list", "--version", "--help", "--quiet", "nsfd law"})
       EXPECT_NE(help.find(word), std::string::npos) << word;
   }
 

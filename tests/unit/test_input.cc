@@ -814,7 +814,8 @@ end
     fails({"a.prm", "--set", "theta"}, "there is no `=`");
     fails({"study", "a.prm"}, "`nsfd study` is not there yet");
     fails({"solve", "a.hdf5"}, "`nsfd solve` is not there yet");
-    fails({"law", "rcc"}, "`nsfd law` is not there yet");
+    fails({"law"}, "no law is named");
+    fails({"law", "rcc", "--stpes=3"}, "did you mean `--steps`?");
     fails({"a.prm", "--resume"}, "--resume is not there yet");
     fails({"a.prm", "--force=maybe"}, "--force");
   }

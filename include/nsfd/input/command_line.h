@@ -14,8 +14,9 @@ namespace nsfd
                   stopped = 4, internal_error = 5;
   }
 
-  /** A run that was asked for: `nsfd FILE.prm` and its options. */
+  /** What was asked for: `nsfd FILE.prm` or `nsfd law NAME`, and options. */
   struct CommandLine {
+    bool law = false; ///< `file` is a law, or the file of one
     std::string file;
     std::vector<std::string> set; ///< Section/name=value, as given
     std::string output;           ///< empty: what the file says
@@ -38,6 +39,12 @@ namespace nsfd
   std::optional<int> parse_command_line(int argc, const char *const *argv,
                                         CommandLine &command_line,
                                         std::ostream &out, std::ostream &err);
+
+  /** The same for the arguments after `nsfd law`, see law_command_line.cc. */
+  std::optional<int> parse_law_command_line(int argc, const char *const *argv,
+                                            CommandLine &command_line,
+                                            std::ostream &out,
+                                            std::ostream &err);
 
   /** The names that a parameter file may write, with their texts. */
   void print_list(std::ostream &out);

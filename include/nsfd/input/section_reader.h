@@ -79,6 +79,9 @@ namespace nsfd
                                        const std::string &default_text,
                                        unsigned int lower, unsigned int count,
                                        const std::string &text);
+    /** As many numbers as the file gives; none if it does not. */
+    std::vector<double> number_list(const std::string &name, Unit unit,
+                                    Range range, const std::string &text);
     Expression expression(const std::string &name,
                           const std::string &default_text, Unit unit,
                           const std::string &text);
