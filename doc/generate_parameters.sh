@@ -116,6 +116,16 @@ subsection Time
 end
 END
 
+# Section Path of `nsfd law`, with options.
+path_of() {
+  printf '```\n'
+  ./nsfd law tvergaard "$@" --print-parameters |
+    awk '/^subsection Path$/ { inside = 1 }
+         inside { print }
+         /^end/ { inside = 0 }'
+  printf '```\n'
+}
+
 # The sections of scene $1 whose first line matches $2.
 sections() {
   ./nsfd "$1" --print-parameters >"$scratch/all"
@@ -195,6 +205,47 @@ END
 END
   sections "$scratch/generator.prm" 'Mesh'
   cat <<'END'
+
+## One point: `nsfd law FILE.prm`
+
+A file for `nsfd law` has Interface blocks (law, its entries, `friction`,
+`friction exponent`), a section `Path`, and may have Constants and `Output`
+(`directory`). Every block is driven along the same path; a named path is in
+units of the final opening and slip of each law (in an endless tail, where 99 %
+of the toughness is gone). `nsfd law NAME --print-parameters` prints such a file
+and `prm/paper` has some. On the command line `--path`, `--opening`, `--slip`,
+`--reaction`, `--steps` and `--rule` stand for entries of `Path`, and `--set
+name=value` for one of the law.
+
+`curve.csv` has a row per step, in SI: `path` (number of the mark and fraction,
+or `t`), `opening`, `slip`, `beta`, tractions `cohesive_normal`,
+`cohesive_tangential`, `contact` (pressure), `friction`, energies per area
+`stored`, `damage`, `friction_work` and the `work` of all tractions as the
+cohesion rule counts it. Where a traction turns without motion, a place has two
+rows.
+
+A named path, with contact:
+
+END
+  path_of --path shear
+  cat <<'END'
+
+A list of marks, straight lines in between:
+
+END
+  path_of --opening '0, 1 um, 0, 0, 0, 3 um' \
+    --reaction '0, 0, 0, 1 MPa, 0, 0'
+  cat <<'END'
+
+Formulas of `t`, which goes from 0 to 1:
+
+END
+  path_of --path formula --opening '1 um * sin(pi * t)'
+  cat <<'END'
+
+Marks from the rows of a CSV file (`--path FILE.csv`): `set type = file` and
+`set file = FILE.csv`, with a header naming some of the columns `opening`,
+`slip`, `reaction`, and numbers in SI.
 
 ## Exact values: `prm/verification/midplane.prm`
 
