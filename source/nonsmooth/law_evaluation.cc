@@ -46,9 +46,12 @@ namespace nsfd
   {
     ++law_calls;
     for (std::size_t i = 0; i < problem_.n_points; ++i) {
-      solutions[i] = solve_point<dim>(problem_, i, local_velocity(impulse, i),
-                                      majorant(i, 0), majorant(i, 1),
-                                      solutions[i].opening);
+      const auto local = local_velocity(impulse, i);
+      solutions[i] =
+        is_frozen(i) ? solve_frozen_point<dim>(problem_, i, (*frozen_)[i], local,
+                                          majorant(i, 0), majorant(i, 1)) :
+                  solve_point<dim>(problem_, i, local, majorant(i, 0),
+                                   majorant(i, 1), solutions[i].opening);
       for (unsigned int c = 0; c < dim; ++c)
         defect[i * dim + c] =
           impulse[i * dim + c] - solutions[i].impulse[c];

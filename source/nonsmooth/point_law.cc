@@ -774,7 +774,32 @@ namespace nsfd
     return result;
   }
 
+  template <int dim>
+  FrozenPoint frozen_state(const OneStepProblem<dim> &problem,
+                           const std::size_t i,
+                           const double opening,
+                           const double contact_impulse)
+  {
+    FrozenPoint frozen;
+    switch (problem.kind[i]) {
+    case PointKind::prescribed: frozen.secant = infinity; return frozen;
+    case PointKind::free: break;
+    case PointKind::elastic:
+      frozen.secant =
+        problem.interactions[problem.interaction[i]].normal_stiffness;
+      break;
+    case PointKind::rigid: return frozen; // has no secant before it opens
+    case PointKind::cohesive:
+      frozen.secant = secant_for<dim>(problem, i, opening);
+      break;
+    }
+    frozen.threshold = threshold_for<dim>(problem, i, opening, contact_impulse);
+    return frozen;
+  }
+
 #define INSTANTIATE(dim)                                                       \
+  template FrozenPoint frozen_state<dim>(const OneStepProblem<dim> &,          \
+                                         std::size_t, double, double);         \
   template struct OneStepProblem<dim>;                                         \
   template LocalSolution<dim> solve_point<dim>(                                \
     const OneStepProblem<dim> &, std::size_t,                                  \

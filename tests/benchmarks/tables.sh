@@ -4,6 +4,7 @@
 #   sh tests/benchmarks/tables.sh orders   L2 error of the standing mode
 #   sh tests/benchmarks/tables.sh cost     fracture everywhere, time by part
 #   sh tests/benchmarks/tables.sh paths    element-wise against global path
+#   sh tests/benchmarks/tables.sh procedures  three ways to update damage
 # Run from the top of a built checkout. Times depend on the machine, counts do
 # not.
 set -eu
@@ -75,7 +76,32 @@ paths)
     done
     echo "$row"
   done ;;
+procedures)
+  echo "| scene | solver | Newton | Krylov | sweeps | ms | rejected | damage | friction |"
+  echo "|---|---|---|---|---|---|---|---|---|"
+  for scene in quickstart verification/midplane verification/dcb_dynamic \
+    verification/stop benchmarks/fracture_everywhere; do
+    case $scene in
+    quickstart) set -- --set "Time/end=80 us" ;;
+    */midplane) set -- --set "Mesh/cells=10, 10" --set "Time/step=0.3 crossings" ;;
+    */fracture_everywhere)
+      set -- --set "Mesh/cells=20, 20" --set "Time/step=0.1 crossings" \
+        --set "Time/end=38 ns" --set "Interface: all/stiffness=5.67e18 Pa/m" ;;
+    *) set -- ;;
+    esac
+    for solver in "fixed point" anderson "dual newton" "gauss seidel"; do
+      run "prm/$scene.prm" "$@" --set "Solver/method=$solver" \
+        --set "Output/report=false"
+      awk -v n="$scene" -v m="$solver" -v s="$(value steps)" \
+        -v i="$(value newton)" -v k="$(value krylov)" \
+        -v g="$(value gauss_seidel_sweeps)" -v r="$(value rejected_steps)" \
+        -v t="$(value 'nonsmooth solve')" -v d="$(value damage)" \
+        -v f="$(value friction)" 'BEGIN {
+        printf "| %s | %s | %.1f | %.1f | %.1f | %.2f | %d | %.9g | %.9g |\n",
+          n, m, i / s, k / s, g / s, 1e3 * t / s, r, d, f }'
+    done
+  done ;;
 *)
-  echo "usage: sh $0 solver | orders | cost | paths" >&2
+  echo "usage: sh $0 solver | orders | cost | paths | procedures" >&2
   exit 2 ;;
 esac

@@ -51,6 +51,11 @@ namespace end_to_end
           {"ratio", 1e-3, "errors of both ways cancel"},
           {"slowness", 1e-3, "sqrt(1 + 1/21)", 1.02353},
           {"damage", 0., "strength out of reach"}}},
+        {"dcb_dynamic",
+         {{"crack_speed", 5e-3, "string model, process length 0.04 l_0"},
+          {"arrest_length", 1e-2, "one cell of 0.01, process length 0.04"},
+          {"damage", 2e-2, "growth of (n - 1) l_0, G each"},
+          {"kinetic", 5e-3, "at rest but for waves of a process length"}}},
         {"escape",
          {{"escaped", 0., "v_0 > sqrt(2 A G / m)"},
           {"final_speed", 1e-9, "exact rule: G at every step"}}},
@@ -328,6 +333,31 @@ namespace end_to_end
                              return "step_" + std::to_string(info.index);
                            });
 
+  // The energy decides how fast a crack runs, not the shape of the law.
+  TEST(Scenes, LawsOfEqualToughnessRunAtEqualSpeed)
+  {
+    const Workspace workspace;
+    std::map<std::string, double> speed;
+    for (const std::vector<std::string> &law :
+         {std::vector<std::string>{"Interface: plane/law=camacho-ortiz"},
+          {"Interface: plane/law=ppr-extrinsic", "Interface: plane/alpha=3"}}) {
+      std::vector<std::string> set = {"Mesh/cells=120, 24", "Time/end=12",
+                                      "Verification/steady from=6",
+                                      "Output/fields=false"};
+      set.insert(set.end(), law.begin(), law.end());
+      const Result result =
+          good_run(workspace, "strip, " + law[0].substr(18),
+                   {scene("strip"), set});
+      ASSERT_TRUE(result.completed());
+      speed[law[0]] = result.error("speed_over_rayleigh");
+      expect_below(law[0] + ": speed over Rayleigh speed", speed[law[0]], 1.);
+      EXPECT_GT(speed[law[0]], 0.85);
+    }
+    expect_below("difference of the speeds",
+                 std::abs(speed.begin()->second / speed.rbegin()->second - 1.),
+                 0.02, "equal toughness");
+  }
+
   // What the opening texts of the scenes say about other settings.
   struct Variant {
     std::string name, scene;
@@ -343,6 +373,18 @@ namespace end_to_end
        {"Time/step=0.1 ms"},
        {{"displacement_eta", 2e-3, "order 1: a tenth of 7.7e-3 on average"},
         {"rest", 1e-8, "finite rest state"}}},
+      {"slow_crack",
+       "dcb_dynamic",
+       {"Constants/n=1.5", "Mesh/upper corner=2, 3 * H", "Mesh/cells=200, 3",
+        "Time/end=2.8"},
+       {{"crack_speed", 2e-2, "string model, process length 0.04 l_0"},
+        {"arrest_length", 2e-2, "one cell of 0.01, process length 0.04"}}},
+      {"fast_crack",
+       "dcb_dynamic",
+       {"Constants/n=3", "Mesh/upper corner=3.5, 3 * H", "Mesh/cells=350, 3",
+        "Time/end=4.4"},
+       {{"crack_speed", 2e-2, "string model, process length 0.04 l_0"},
+        {"arrest_length", 2e-2, "one cell of 0.01, process length 0.04"}}},
       {"steeper_than_friction",
        "incline",
        {"Obstacle: plane/friction=0.5773497"},

@@ -165,6 +165,44 @@ namespace end_to_end
     }
   }
 
+  // The three procedures for damage and friction: a fixed point around the
+  // contact solve (plain and accelerated), Newton, Gauss-Seidel.
+  TEST(Solvers, ProceduresAgree)
+  {
+    struct Scene {
+      std::string name;
+      std::vector<std::string> set;
+      double bound;
+    };
+    const Scene scenes[] = {
+        {"midplane",
+         {"Mesh/cells=10, 10", "Time/step=0.1 crossings"},
+         1e-6},
+        {"../quickstart", {"Time/end=70 us"}, 1e-6},
+        {"stop", {}, 1e-8},
+        {"step_load", {}, 1e-7}};
+    for (const Scene &row : scenes) {
+      const Workspace workspace;
+      const Result reference = solve(workspace, row.name, row.set, choices[0]);
+      ASSERT_TRUE(reference.completed());
+      for (const char *const method : {"fixed point", "anderson"}) {
+        const Result other = solve(workspace, row.name, row.set,
+                                   {method, "element-wise"});
+        ASSERT_TRUE(other.completed());
+        expect_below(row.name + ", " + method + ": damage",
+                     std::abs(other.dissipated("damage") -
+                              reference.dissipated("damage")) /
+                         std::max(reference.dissipated("damage"), 1e-300),
+                     row.bound);
+        expect_below(row.name + ", " + method + ": friction",
+                     std::abs(other.dissipated("friction") -
+                              reference.dissipated("friction")) /
+                         std::max(reference.dissipated("friction"), 1e-300),
+                     row.bound);
+      }
+    }
+  }
+
   // The plane exactly at the block, where the gap of a resting contact is the
   // round-off of the solver: the contact must be kept in every step.
   TEST(Solvers, RestingContactIsKept)

@@ -442,6 +442,9 @@ end
   struct Expected {
     bool same_velocities = true;
     double least_friction = 0., least_damage = 0.; ///< share of the energy
+    /// friction that is not unique: fixed points on its threshold may cycle,
+    /// and must say so
+    bool fixed_points_may_fail = false;
   };
 
   /**
@@ -468,6 +471,11 @@ end
         Vector P(problem.n_points * dim, 0.);
         const auto report = solver->solve(problem, *scene.dynamics, scale,
                                           control, P, evaluation);
+        if (expected.fixed_points_may_fail && !report.converged &&
+            (name == "fixed point" || name == "anderson")) {
+          EXPECT_GT(report.residual, control.tolerance);
+          continue;
+        }
         ASSERT_TRUE(report.converged)
             << name << ", step " << step << ", residual " << report.residual;
 
@@ -536,8 +544,8 @@ end
   {
     // Two points per face: the share of each is free, so is the friction it
     // allows, and solutions differ in velocity by up to a few percent.
-    solve_along<2>(pile, {}, 30, {false, 0.05, 0.});
-    solve_along<3>(cube_pile, {}, 8, {false, 0.01, 0.});
+    solve_along<2>(pile, {}, 30, {false, 0.05, 0., true});
+    solve_along<3>(cube_pile, {}, 8, {false, 0.01, 0., true});
   }
 
   TEST(Solvers, RunsAgree)

@@ -83,6 +83,17 @@ namespace nsfd
                   const FrozenPoint &frozen,
                   const std::array<double, dim> &impulse);
 
+  /**
+   * The secant state of a cohesive, free or elastic point whose effective
+   * opening is @p opening at the end of the step, under the contact impulse
+   * @p contact_impulse: what a fixed point on damage and friction updates.
+   */
+  template <int dim>
+  FrozenPoint frozen_state(const OneStepProblem<dim> &problem,
+                           std::size_t point,
+                           double opening,
+                           double contact_impulse);
+
   /** Cohesive traction densities and energies of a point over a step. */
   template <int dim>
   struct PointEnergies

@@ -38,6 +38,18 @@ namespace nsfd
     /** Recompute U = U_free + W P and everything that follows. */
     void update(const std::vector<double> &impulse);
 
+    /**
+     * From now on the laws with damage and friction thresholds as given (one
+     * per point, kept by the caller), except for points that are rigid before
+     * the step: a convex problem but for those. Null: the full laws.
+     */
+    void freeze(const std::vector<FrozenPoint> *frozen) { frozen_ = frozen; }
+    bool is_frozen() const { return frozen_ != nullptr; }
+    bool is_frozen(const std::size_t point) const
+    {
+      return frozen_ && problem_.kind[point] != PointKind::rigid;
+    }
+
     /** The same when W P is known already. */
     void update_laws(const std::vector<double> &impulse);
 
@@ -62,6 +74,7 @@ namespace nsfd
     const Dynamics<dim> &dynamics_;
     double floor_;
     std::vector<double> terms_;
+    const std::vector<FrozenPoint> *frozen_ = nullptr;
   };
 
   /**

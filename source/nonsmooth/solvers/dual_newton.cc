@@ -83,7 +83,8 @@ namespace nsfd
         const auto s = frozen_slopes<dim>(problem, i, solution.frozen,
                                           solution, R_N, R_T);
         std::copy(s.begin(), s.end(), slopes_.begin() + i * dim);
-        if (!solution.damages && solution.frozen.threshold == 0.)
+        if (work.evaluation.is_frozen(i) ||
+            (!solution.damages && solution.frozen.threshold == 0.))
           continue;
         // difference quotients of the local solve, friction and damage in it
         coupled_[i] = 1;
@@ -435,6 +436,12 @@ namespace nsfd
         // thresholds that change only after sweeps have not helped.
         if (moved && (coupled ? stalled >= 4 && stalled % 5 != 4 :
                                 stalled % 5 != 4)) {
+          ++stalled;
+          continue;
+        }
+        if (evaluation.is_frozen()) { // sweeps know the full laws only
+          if (!moved)
+            break;
           ++stalled;
           continue;
         }
