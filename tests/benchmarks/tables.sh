@@ -4,6 +4,7 @@
 #   sh tests/benchmarks/tables.sh orders   L2 error of the standing mode
 #   sh tests/benchmarks/tables.sh cost     fracture everywhere, time by part
 #   sh tests/benchmarks/tables.sh paths    element-wise against global path
+#   sh tests/benchmarks/tables.sh crack    crack that runs and stops
 #   sh tests/benchmarks/tables.sh procedures  three ways to update damage
 # Run from the top of a built checkout. Times depend on the machine, counts do
 # not.
@@ -17,6 +18,10 @@ run() { # run FILE [options]: leaves $out/run/summary.json
 }
 value() { # value KEY: a number from the summary
   sed -n "s/^ *\"$1\": *\([-0-9.e+]*\),*$/\1/p" "$out/run/summary.json" | head -n 1
+}
+
+error() { # error KEY: the same among the errors, which come after the energies
+  sed -n "/\"errors\"/,/}/s/^ *\"$1\": *\([-0-9.e+]*\),*$/\1/p" "$out/run/summary.json"
 }
 
 case "${1:-}" in
@@ -76,6 +81,21 @@ paths)
     done
     echo "$row"
   done ;;
+crack)
+  echo "| process length | cells in it | speed | arrest length | tip path | kinetic left | CPU s |"
+  echo "|---|---|---|---|---|---|---|"
+  for length in 0.16 0.08 0.04 0.02; do
+    for density in 2 4 8; do
+      cells=$(awk "BEGIN { print int(2.5 * $density / $length) }")
+      run prm/verification/dcb_dynamic.prm --set "Constants/ell=$length" \
+        --set "Mesh/cells=$cells, 3" --set "Output/fields=false" \
+        --set "Time/step=$(awk "BEGIN { print 1.25 / $cells }")" \
+        --set "Output/report=false"
+      echo "| $length | $density | $(error crack_speed) |" \
+        "$(error arrest_length) | $(error tip_path) | $(error kinetic) |" \
+        "$(value 'nonsmooth solve') |"
+    done
+  done ;;
 procedures)
   echo "| scene | solver | Newton | Krylov | sweeps | ms | rejected | damage | friction |"
   echo "|---|---|---|---|---|---|---|---|---|"
@@ -102,6 +122,6 @@ procedures)
     done
   done ;;
 *)
-  echo "usage: sh $0 solver | orders | cost | paths | procedures" >&2
+  echo "usage: sh $0 solver | orders | cost | paths | crack | procedures" >&2
   exit 2 ;;
 esac

@@ -68,6 +68,8 @@ namespace nsfd
         sums_.tt += t * t;
         sums_.ta += t * growth_;
       }
+      path_error_ += view.time_step * std::abs(growth_ - exact_growth(t));
+      path_ += view.time_step * exact_growth(t);
       time_ = t;
     }
 
@@ -77,6 +79,8 @@ namespace nsfd
       if (variance > 0.)
         errors["crack_speed"] = relative_error(
             (sums_.n * sums_.ta - sums_.t * sums_.a) / variance, speed_);
+      if (path_ > 0.)
+        errors["tip_path"] = path_error_ / path_; // L1 in time
       if (time_ > arrest_time_) {
         errors["arrest_length"] =
             relative_error(length_ + growth_, overload_ * length_);
@@ -87,11 +91,16 @@ namespace nsfd
     }
 
   private:
+    double exact_growth(const double t) const
+    {
+      return speed_ * std::min(t, arrest_time_);
+    }
+
     double length_ = 0., overload_ = 0., toughness_ = 0.;
     unsigned int planes_ = 1;
     double speed_ = 0., arrest_time_ = 0.;
     double growth_ = 0., damage_ = 0., kinetic_ = 0., initial_energy_ = 0.,
-           time_ = 0.;
+           time_ = 0., path_error_ = 0., path_ = 0.;
     struct {
       double n = 0., t = 0., a = 0., tt = 0., ta = 0.;
     } sums_; // least squares of the growth over time
