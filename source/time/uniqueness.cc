@@ -12,28 +12,38 @@ namespace nsfd
 {
   namespace
   {
-    /** Largest eigenvalue of a small symmetric positive semi-definite block. */
+    /**
+     * Largest eigenvalue of a small symmetric positive semi-definite block by
+     * power iteration. Bodies are symmetric and their highest modes are not:
+     * the start must not be nearly orthogonal to them.
+     */
     double largest_eigenvalue(const std::vector<double> &A,
                               const unsigned int n)
     {
       std::vector<double> x(n), y(n);
       for (unsigned int i = 0; i < n; ++i)
-        x[i] = 1. + 0.1 * i;
+        x[i] = std::sin(1. + 7.3 * i * i);
       double value = 0.;
-      for (unsigned int k = 0; k < 60; ++k) {
+      for (unsigned int k = 0; k < 2000; ++k) {
         double norm = 0.;
-        for (unsigned int i = 0; i < n; ++i) {
-          y[i] = 0.;
-          for (unsigned int j = 0; j < n; ++j)
-            y[i] += A[i * n + j] * x[j];
-          norm += y[i] * y[i];
-        }
+        for (const double v : x)
+          norm += v * v;
         norm = std::sqrt(norm);
         if (norm == 0.)
           return 0.;
-        value = norm;
-        for (unsigned int i = 0; i < n; ++i)
-          x[i] = y[i] / norm;
+        double next = 0.;
+        for (unsigned int i = 0; i < n; ++i) {
+          y[i] = 0.;
+          for (unsigned int j = 0; j < n; ++j)
+            y[i] += A[i * n + j] * (x[j] / norm);
+          next += y[i] * y[i];
+        }
+        next = std::sqrt(next);
+        x.swap(y);
+        // the norm never falls
+        if (k > 20 && next <= value * (1. + 1e-9))
+          return next;
+        value = next;
       }
       return value;
     }
