@@ -77,8 +77,9 @@ namespace nsfd
         return exit_code::bad_input;
       if (options_.check)
         return print_check<dim>(input_, *model_.triangulation,
-                                *model_.discretization,
-                                model_.control->base_step(), communicator_);
+                                *model_.discretization, *model_.stepper,
+                                *model_.dynamics, model_.control->base_step(),
+                                communicator_);
       bool ours = true;
       if (communicator_.is_root())
         ours = claim_directory(input_.output.directory, options_.force);

@@ -3,7 +3,10 @@
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
+#include "nsfd/scene/advice.h"
+#include "nsfd/time/moreau_jean.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -26,9 +29,9 @@ namespace nsfd
           const double value = expression.at(x, t);
           if (!std::isfinite(value)) {
             problems.push_back(fmt::format(
-              "{} = {} is {} at ({:.4g}, {:.4g}{}), t = {:.4g}", name,
-              expression.text(), value, x[0], x[1],
-              dim == 3 ? fmt::format(", {:.4g}", x[dim - 1]) : "", t));
+                "{} = {} is {} at ({:.4g}, {:.4g}{}), t = {:.4g}", name,
+                expression.text(), value, x[0], x[1],
+                dim == 3 ? fmt::format(", {:.4g}", x[dim - 1]) : "", t));
             return false;
           }
         }
@@ -46,8 +49,8 @@ namespace nsfd
             for (std::size_t b = 0; b < discretization.bodies().size(); ++b)
               if (discretization.material_of(unsigned(b)) == m &&
                   !try_at(*expression,
-                          "Material: " + input.materials[m].name + "/" +
-                            entry + axis[c],
+                          "Material: " + input.materials[m].name + "/" + entry +
+                              axis[c],
                           discretization.centre(unsigned(b))))
                 break;
       std::vector<char> failed(input.boundaries.size(), 0);
@@ -61,14 +64,306 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             for (const auto *motion :
                  {&boundary.velocity[c], &boundary.displacement[c]})
-              if (*motion && !try_at(**motion,
-                                     "Boundary: " + boundary.name +
-                                       "/motion " + axis[c],
-                                     x))
+              if (*motion &&
+                  !try_at(**motion,
+                          "Boundary: " + boundary.name + "/motion " + axis[c],
+                          x))
                 failed[origin.block] = 1;
         }
       }
       return problems;
+    }
+
+    constexpr double points_wanted = 2.5; // per cohesive length, (49)
+    constexpr double share_wanted = 0.9;  // of the modulus, while intact
+    constexpr unsigned int most_points = 10;
+
+    void line(const char *name, const std::string &text)
+    {
+      std::cout << fmt::format("    {:<12} {}\n", name, text);
+    }
+    void change(const std::string &text) { line("", "change: " + text); }
+
+    /** What the advice on all interfaces is computed from. */
+    template <int dim>
+    struct Advisor {
+      const SceneInput &input;
+      const MeshReport mesh;
+      const std::vector<FaceFamily> families;
+      const double step, crossing, diagonal;
+      /// steps with one solution, per block: 0 if there is none
+      std::vector<double> unique_steps = {};
+      double contraction = 0., contraction_step = 0.;
+      /// the stiffest elastic material around decides
+      double young = 0., poisson = 0., plane_young = 0.;
+
+      void choose_material();
+      void print_interface(unsigned int b) const;
+      void print_resolution(const CohesiveLaw &law) const;
+      void print_bounds(const CohesiveLaw &law, double Z) const;
+      void print_jumps(const CohesiveLaw &law) const;
+      void print_step(const CohesiveLaw &law, double unique) const;
+      void print_stiffness() const;
+      void print_contraction() const;
+      std::string in_crossings(double h) const;
+    };
+
+    template <int dim>
+    void Advisor<dim>::choose_material()
+    {
+      for (const auto &material : input.materials)
+        if (!material.rigid && material.young > young) {
+          young = material.young;
+          poisson = material.poisson;
+        }
+      plane_young = dim == 2 && !input.plane_stress
+                        ? young / (1. - poisson * poisson)
+                        : young;
+    }
+
+    template <int dim>
+    std::string Advisor<dim>::in_crossings(const double h) const
+    {
+      return crossing > 0.
+                 ? fmt::format("{:.3g} = {:.3g} crossings", h, h / crossing)
+                 : fmt::format("{:.3g}", h);
+    }
+
+    template <int dim>
+    void Advisor<dim>::print_interface(const unsigned int b) const
+    {
+      const auto &block = input.interfaces[b];
+      const auto &law = *block.law;
+      std::cout << fmt::format(
+          "  interface  {}: {}, strength {:.4g}, toughness {:.4g}", block.name,
+          block.law_name, law.strength(), law.toughness());
+      if (!law.extrinsic())
+        std::cout << fmt::format(", C_N {:.4g}", law.normal_stiffness());
+      std::cout << "\n";
+      if (young > 0.) {
+        print_resolution(law);
+        if (!law.extrinsic() && families[b].density > 0.)
+          print_bounds(law, families[b].density);
+        print_jumps(law);
+      }
+      print_step(law, unique_steps[b]);
+    }
+
+    /** (49)-(52). */
+    template <int dim>
+    void Advisor<dim>::print_resolution(const CohesiveLaw &law) const
+    {
+      const double length = cohesive_length(young, poisson, law);
+      const double edges = length / mesh.largest_edge;
+      const unsigned int per_edge = input.discretization.interface_points;
+      const double points = edges * per_edge;
+      const bool is_resolved = points >= points_wanted;
+      line("resolution",
+           fmt::format(
+               "cohesive length {:.3g} = {:.3g} edges = {:.3g} points{}",
+               length, edges, points,
+               is_resolved
+                   ? ": resolved"
+                   : fmt::format("; it takes {} points", points_wanted)));
+      if (is_resolved)
+        return;
+      line("",
+           "the fracture energy is right, stresses at a crack front are not");
+      const double needed = std::ceil(points_wanted / edges);
+      std::string text;
+      if (needed <= most_points)
+        text = fmt::format("`set interface points = {:g}`, or ", needed);
+      change(text +
+             fmt::format("edges of {:.3g}, or a strength of {:.3g} at "
+                         "this toughness",
+                         length * per_edge / points_wanted,
+                         law.strength() * std::sqrt(points / points_wanted)));
+    }
+
+    /** (53) and (80) as an exact rule, (54) for any law. */
+    template <int dim>
+    void Advisor<dim>::print_bounds(const CohesiveLaw &law,
+                                    const double Z) const
+    {
+      const double C_N = law.normal_stiffness();
+      const double needed = smallest_stiffness(
+          plane_young, Z, dim, law.stiffness_ratio(), share_wanted);
+      const unsigned int points = input.discretization.interface_points;
+      const auto bounds =
+          stiffness_bounds(needed, young, poisson, law, mesh.largest_edge,
+                           points, points_wanted);
+      line("C_N L/E",
+           fmt::format("{:.3g} (L = {:.3g}, the longest edge); both at this "
+                       "toughness and shape:",
+                       C_N * mesh.largest_edge / young, mesh.largest_edge));
+      line("", fmt::format("at least {:.3g} leaves {} of the modulus, at most "
+                           "{:.3g} resolves the cohesive length",
+                           bounds.lower, share_wanted, bounds.upper));
+      if (C_N < needed && std::isfinite(needed))
+        change(fmt::format("a stiffness of {:.4g}, so a strength of {:.4g}",
+                           needed, law.strength() * std::sqrt(needed / C_N)));
+      if (!bounds.conflict())
+        return;
+      line("", "conflict on any mesh: faces stiff enough to be invisible are "
+               "too strong to be resolved");
+      const double enough = std::ceil(points * bounds.lower / bounds.upper);
+      if (enough <= most_points)
+        change(fmt::format("`set interface points = {:g}` ends it", enough));
+      else
+        line("",
+             fmt::format("by {} points on an edge; it takes {:g}. Extrinsic "
+                         "laws on named faces add no compliance",
+                         points, enough));
+    }
+
+    /** (42), with the diagonal of the mesh as the bar. */
+    template <int dim>
+    void Advisor<dim>::print_jumps(const CohesiveLaw &law) const
+    {
+      const double slope = law.steepest_softening();
+      if (!std::isfinite(slope)) {
+        line("jumps", "softens infinitely fast: quasi-static solutions jump "
+                      "in a body of any size");
+        return;
+      }
+      const double length = young / slope, ratio = diagonal / length;
+      line("jumps",
+           fmt::format(
+               "max |R'| is {:.3g} E/L (42), L = {:.3g} the diagonal: {}",
+               ratio, diagonal,
+               ratio < 1. ? "no quasi-static solution jumps"
+                          : "quasi-static solutions jump,"));
+      if (ratio >= 1.)
+        line("",
+             fmt::format("what they release becomes motion; in bodies below "
+                         "{:.3g} they do not",
+                         length));
+    }
+
+    template <int dim>
+    void Advisor<dim>::print_step(const CohesiveLaw &law,
+                                  const double unique) const
+    {
+      if (!std::isfinite(law.steepest_softening())) {
+        line("step", "softens infinitely fast: one solution is certain for no "
+                     "step; steps in which it softens are counted");
+        return;
+      }
+      if (!(unique > 0.))
+        return;
+      line("step", fmt::format("one solution is sure below {} while a point "
+                               "softens: this step is {}",
+                               in_crossings(unique),
+                               step <= unique ? "below" : "above;"));
+      if (step <= unique)
+        return;
+      if (input.time.step_kind == StepKind::automatic)
+        line("", "`step = auto` shortens it where a point softens");
+      else {
+        line("", "such steps are counted (steps_beyond_uniqueness)");
+        change(fmt::format(
+            "`set step = auto`, or `set step = {}`",
+            crossing > 0. && input.time.step_kind != StepKind::time
+                ? fmt::format("{:.2g} crossings", 0.7 * unique / crossing)
+                : fmt::format("{:.2g}", 0.7 * unique)));
+      }
+    }
+
+    /** By uniform stress along each axis over all blocks. */
+    template <int dim>
+    void Advisor<dim>::print_stiffness() const
+    {
+      std::string text;
+      bool any = false;
+      double density = 0.;
+      for (unsigned int b = 0; b < input.interfaces.size(); ++b)
+        if (std::isfinite(intact_stiffness(input.interfaces[b])[0]))
+          density += families[b].density;
+      for (unsigned int a = 0; a < dim; ++a) {
+        double compliance = 0.;
+        for (unsigned int b = 0; b < input.interfaces.size(); ++b) {
+          const auto C = intact_stiffness(input.interfaces[b]);
+          compliance += families[b].compliance(a, C[0], C[1]);
+        }
+        any = any || compliance > 0.;
+        text += fmt::format("{}{:.4g} along {}", a ? ", " : "",
+                            1. / (1. + plane_young * compliance), "xyz"[a]);
+      }
+      if (any)
+        std::cout << fmt::format(
+            "  stiffness  intact faces ({:.4g} of area per "
+            "volume) leave E_eff/E = {}\n",
+            density, text);
+    }
+
+    /** (38). */
+    template <int dim>
+    void Advisor<dim>::print_contraction() const
+    {
+      if (!(contraction > 0.))
+        return;
+      std::cout << fmt::format(
+          "  softening  on all faces at once: flexibility times slope (38) is "
+          "{:.3g} at this step",
+          contraction);
+      std::cout << (contraction < 1.
+                        ? ", a contraction\n"
+                        : fmt::format(",\n             1 at {}\n",
+                                      in_crossings(contraction_step)));
+    }
+
+    /** The step with contraction number 1; W grows where the step shrinks. */
+    template <int dim>
+    double step_of_contraction(const SceneInput &input,
+                               const OneStepProblem<dim> &problem,
+                               const State &softening, Dynamics<dim> &dynamics,
+                               double h, double number)
+    {
+      for (unsigned int k = 0; k < 6 && std::abs(number - 1.) > 0.01; ++k) {
+        h /= std::sqrt(number);
+        number = contraction_number(input, problem, softening, dynamics, h);
+      }
+      return h;
+    }
+
+    template <int dim>
+    void print_mesh(const SceneInput &input, const MeshReport &mesh,
+                    const Discretization<dim> &discretization,
+                    const std::array<double, 3> &counts, const double step)
+    {
+      auto &out = std::cout;
+      out << fmt::format(
+          "  mesh       {} cells, edges {:.4g} to {:.4g}, angles "
+          "{:.3g} to {:.3g} degrees, volume {:.6g}\n",
+          mesh.n_cells, mesh.smallest_edge, mesh.largest_edge,
+          mesh.smallest_angle, mesh.largest_angle, mesh.volume);
+      out << fmt::format("  bodies     {} of {} different shapes, {} unknowns, "
+                         "{} face points, {}\n",
+                         mesh.n_cells, counts[0], counts[1], counts[2],
+                         discretization.element().get_name());
+      for (unsigned int m = 0; m < input.materials.size(); ++m) {
+        const auto &material = input.materials[m];
+        if (material.rigid)
+          out << fmt::format("  material   {}: rigid\n", material.name);
+        else
+          out << fmt::format("  material   {}: c_p {:.6g}, c_s {:.6g} m/s\n",
+                             material.name,
+                             discretization.pressure_wave_speed(m),
+                             discretization.shear_wave_speed(m));
+      }
+      const double crossing = discretization.crossing_time();
+      const auto n_steps = std::llround(input.time.end / step);
+      if (crossing > 0.)
+        out << fmt::format("  step       {:.4g} = {:.3g} crossings of the "
+                           "smallest cell (one is {:.4g}), {} steps\n",
+                           step, step / crossing, crossing, n_steps);
+      else
+        out << fmt::format("  step       {:.4g}, {} steps\n", step, n_steps);
+      if (step > 1.01 * crossing && crossing > 0.)
+        out << "             waves cross more than a cell per step: they are "
+               "damped or late\n"
+               "             change: `set step = 0.5 crossings`, unless the "
+               "motion is slow\n";
     }
   } // namespace
 
@@ -76,8 +371,8 @@ namespace nsfd
   int print_check(const SceneInput &input,
                   const dealii::Triangulation<dim> &triangulation,
                   const Discretization<dim> &discretization,
-                  const double step,
-                  const Communicator &communicator)
+                  const MoreauJean<dim> &stepper, Dynamics<dim> &dynamics,
+                  const double step, const Communicator &communicator)
   {
     const MeshReport mesh = mesh_report<dim>(triangulation);
     const auto problems = evaluate_expressions(input, discretization);
@@ -92,120 +387,61 @@ namespace nsfd
     for (const auto &problem : problems)
       std::cerr << input.file << ": error: " << problem << "\n";
     if (!finite)
-      std::cerr << input.file
-                << ": error: a load is not a finite number at the start or the end\n";
-    const auto dofs = communicator.sum_integer(discretization.bodies().n_dofs());
-    const auto n_points =
-      communicator.sum_integer(discretization.points().n_owned);
-    const auto classes =
-      communicator.max(double(discretization.bodies().classes.size()));
+      std::cerr
+          << input.file
+          << ": error: a load is not a finite number at the start or the end\n";
+    const std::array<double, 3> counts = {
+        {communicator.max(double(discretization.bodies().classes.size())),
+         double(communicator.sum_integer(discretization.bodies().n_dofs())),
+         double(communicator.sum_integer(discretization.points().n_owned))}};
+
+    Advisor<dim> advisor{
+        input,
+        mesh,
+        face_families(input, discretization, mesh.volume, communicator),
+        step,
+        discretization.crossing_time(),
+        discretization.extent()};
+    advisor.choose_material();
+    if (!bad) {
+      const State state = stepper.initial_state();
+      for (int b = 0; b < int(input.interfaces.size()); ++b) {
+        const double unique =
+            stepper.unique_step(all_softening(state, discretization, input, b));
+        advisor.unique_steps.push_back(std::isfinite(unique) ? unique : 0.);
+      }
+      const State softening = all_softening(state, discretization, input);
+      advisor.contraction = contraction_number(input, stepper.problem(),
+                                               softening, dynamics, step);
+      if (advisor.contraction >= 1.)
+        advisor.contraction_step =
+            step_of_contraction(input, stepper.problem(), softening, dynamics,
+                                step, advisor.contraction);
+    }
     if (!communicator.is_root())
       return bad ? exit_code::bad_input : exit_code::done;
 
-    auto &out = std::cout;
-    out << fmt::format("{}: checked, nothing is run\n", input.file);
-    out << fmt::format("  mesh       {} cells, edges {:.4g} to {:.4g}, angles "
-                       "{:.3g} to {:.3g} degrees, volume {:.6g}\n",
-                       mesh.n_cells, mesh.smallest_edge, mesh.largest_edge,
-                       mesh.smallest_angle, mesh.largest_angle, mesh.volume);
-    out << fmt::format("  bodies     {} of {} different shapes, {} unknowns, {} "
-                       "face points, {}\n",
-                       mesh.n_cells, classes, dofs, n_points,
-                       discretization.element().get_name());
-    const double crossing = discretization.crossing_time();
-    for (unsigned int m = 0; m < input.materials.size(); ++m) {
-      const auto &material = input.materials[m];
-      if (material.rigid)
-        out << fmt::format("  material   {}: rigid\n", material.name);
-      else
-        out << fmt::format("  material   {}: c_p {:.6g}, c_s {:.6g} m/s\n",
-                           material.name, discretization.pressure_wave_speed(m),
-                           discretization.shear_wave_speed(m));
+    std::cout << fmt::format("{}: checked, nothing is run\n", input.file);
+    print_mesh(input, mesh, discretization, counts, step);
+    if (bad) {
+      std::cout << "  not runnable: see the errors above\n";
+      return exit_code::bad_input;
     }
-    if (crossing > 0.)
-      out << fmt::format("  step       {:.4g} = {:.3g} crossings of the "
-                         "smallest cell (one is {:.4g}), {} steps\n",
-                         step, step / crossing, crossing,
-                         std::llround(input.time.end / step));
-    else
-      out << fmt::format("  step       {:.4g}, {} steps\n", step,
-                         std::llround(input.time.end / step));
-
-    // the stiffest elastic material around decides for each law
-    double stiffest = 0., density = 0., poisson = 0.;
-    for (const auto &material : input.materials)
-      if (!material.rigid && material.young > stiffest) {
-        stiffest = material.young;
-        density = material.density;
-        poisson = material.poisson;
-      }
-    const double L = mesh.smallest_height;
-    for (const auto &block : input.interfaces) {
-      if (!block.law || stiffest == 0.)
-        continue;
-      const auto &law = *block.law;
-      const double zeta = std::isfinite(law.final_opening())
-                            ? law.toughness() /
-                                (law.strength() * law.final_opening())
-                            : 0.5;
-      const double mean = zeta * law.strength();
-      const double length = M_PI / 8. * stiffest / (1. - poisson * poisson) *
-                            law.toughness() / (mean * mean);
-      out << fmt::format(
-        "  interface  {}: {}, strength {:.4g}, toughness {:.4g}\n", block.name,
-        block.law_name, law.strength(), law.toughness());
-      const double per_point = input.discretization.interface_points;
-      out << fmt::format(
-        "             cohesive length {:.3g} = {:.3g} cells = {:.3g} points "
-        "({})\n",
-        length, length / L, length / L * per_point,
-        length / L * per_point >= 2.5
-          ? "resolved"
-          : "below 2.5: refine, raise the degree or lower the strength");
-      // one cell each side, mass only; scalar estimate
-      const double chi =
-        input.time.cohesion_rule == CohesionRule::exact ? 0.5 : 1.;
-      const unsigned int p = input.discretization.degree;
-      const double lambda =
-        2. * (p + 1.) * (p + 1.) / (density * L); // both sides
-      const double unique =
-        1. / std::sqrt(input.time.theta * chi * law.steepest_softening() *
-                       lambda);
-      if (unique > 0.)
-        out << fmt::format(
-          "             one solution per step is sure below {:.3g} = {:.3g} "
-          "crossings while a point softens ({})\n",
-          unique, crossing > 0. ? unique / crossing : 0.,
-          step <= unique ?
-            "this step is below" :
-            "this step is above: counted, or write `step = auto`");
-      else
-        out << "             softens infinitely fast: one solution per step is "
-               "sure for no step; steps in which it softens are counted\n";
-      if (!law.extrinsic()) {
-        const double ratio = law.normal_stiffness() * L / stiffest;
-        const double Z = mesh.interface_density;
-        const double f =
-          dim == 2 ? 3. / 8. + 1. / (8. * law.stiffness_ratio())
-                   : 1. / 5. + 2. / (15. * law.stiffness_ratio());
-        const double share =
-          1. / (1. + stiffest * Z * f / law.normal_stiffness());
-        out << fmt::format("             C_N L/E = {:.4g}: about {:.3g} of the "
-                           "stiffness is left while intact\n",
-                           ratio, share);
-      }
-    }
-    if (bad)
-      out << "  not runnable: see the errors above\n";
-    return bad ? exit_code::bad_input : exit_code::done;
+    if (advisor.young > 0.)
+      advisor.print_stiffness();
+    for (unsigned int b = 0; b < input.interfaces.size(); ++b)
+      if (input.interfaces[b].law)
+        advisor.print_interface(b);
+    advisor.print_contraction();
+    return exit_code::done;
   }
 
   template int print_check<2>(const SceneInput &,
                               const dealii::Triangulation<2> &,
-                              const Discretization<2> &, double,
-                              const Communicator &);
+                              const Discretization<2> &, const MoreauJean<2> &,
+                              Dynamics<2> &, double, const Communicator &);
   template int print_check<3>(const SceneInput &,
                               const dealii::Triangulation<3> &,
-                              const Discretization<3> &, double,
-                              const Communicator &);
+                              const Discretization<3> &, const MoreauJean<3> &,
+                              Dynamics<3> &, double, const Communicator &);
 } // namespace nsfd

@@ -26,6 +26,9 @@ namespace end_to_end
     const std::string stop_scene = scene("stop").string();
     const std::string paper_figure =
         (fs::path(NSFD_SOURCE_DIR) / "prm" / "paper" / "figure_03.prm").string();
+    const std::string fracture_scene =
+        (quickstart().parent_path() / "benchmarks/fracture_everywhere.prm")
+            .string();
 
     const std::vector<Call> calls = {
         {"nothing", {}, 2, "nsfd FILE.prm"},
@@ -68,6 +71,11 @@ namespace end_to_end
          1,
          "set twice"},
         {"check", {stop_scene, "--check"}, 0, "nothing is run"},
+        // C L/E = 21, law (19), quads of degree 1: 0.123 crossings
+        {"check_advice",
+         {fracture_scene, "--check"},
+         0,
+         "0.123 crossings while a point softens: this step is above"},
         {"list", {"--list"}, 0, "camacho-ortiz"},
         {"help", {"--help"}, 0, "--check"},
         {"version", {"--version"}, 0, "nsfd "},
