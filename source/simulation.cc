@@ -37,6 +37,8 @@ namespace nsfd
       void open_output();
       void start();
       int step_to_the_end();
+      void choose_step();
+      bool must_redo(const StepReport &report, const State &next);
       bool advance(State &next, std::string &failure);
       void record(const StepReport &report, double time_step);
       void finish(const std::string &failure);
@@ -56,7 +58,8 @@ namespace nsfd
       State state_;
       Summary summary_;
       double start_wall_, last_step_ = 0.;
-      unsigned int rejected_ = 0, beyond_unique_ = 0;
+      unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
+      double redo_until_ = 0., redo_step_ = 0.;
       std::map<std::string, unsigned int> switches_;
     };
 
@@ -160,11 +163,8 @@ namespace nsfd
           finish(fmt::format("stopped on request at t = {:.6g}", state_.time));
           return exit_code::stopped;
         }
-        if (input_.time.step_kind == StepKind::automatic) {
-          const double limit = 0.7 * model_.stepper->unique_step(state_);
-          model_.control->limit(limit);
-          model_.control->set_ceiling(limit);
-        }
+        if (input_.time.step_kind == StepKind::automatic)
+          choose_step();
         std::string failure;
         if (!advance(next, failure)) {
           if (communicator_.is_root())
@@ -177,6 +177,42 @@ namespace nsfd
       }
       finish("");
       return exit_code::done;
+    }
+
+    /** Down the ladder at once where points soften, up one level per step. */
+    template <int dim>
+    void Simulation<dim>::choose_step()
+    {
+      auto &control = *model_.control;
+      double limit =
+          model_.stepper->automatic_step(state_, control.base_step());
+      if (control.time() < redo_until_)
+        limit = std::min(limit, redo_step_);
+      control.limit(limit);
+      control.set_ceiling(limit);
+    }
+
+    /**
+     * `step = auto`: a point came to soften in a step that is too long for it.
+     * True if the step is to be taken again, with shorter ones to its end.
+     */
+    template <int dim>
+    bool Simulation<dim>::must_redo(const StepReport &report,
+                                    const State &next)
+    {
+      auto &control = *model_.control;
+      if (input_.time.step_kind != StepKind::automatic ||
+          !report.beyond_unique || !control.can_halve())
+        return false;
+      const double h = control.step();
+      const double unique = model_.stepper->unique_step(state_, next);
+      if (h < unique)
+        return false; // by laws alone that no step is short enough for
+      redo_until_ = control.time() + h * (1. - 1e-9);
+      redo_step_ = MoreauJean<dim>::bound_share * unique;
+      control.limit(redo_step_);
+      ++redone_;
+      return true;
     }
 
     /**
@@ -202,6 +238,8 @@ namespace nsfd
                               input_.time.maximum_halvings);
         return false;
       }
+      if (must_redo(report, next))
+        return true;
       control.accept();
       next.time = control.time();
       std::swap(state_, next);
@@ -292,6 +330,7 @@ namespace nsfd
       c["load_assemblies"] = double(stepper.load_assemblies);
       c["activation_rounds"] = double(stepper.activation_rounds);
       c["rejected_steps"] = rejected_;
+      c["redone_steps"] = redone_;
       c["steps_beyond_uniqueness"] = beyond_unique_;
       c["penetration_excess"] = state_.penetration_excess;
       count_points(c);
@@ -350,10 +389,11 @@ namespace nsfd
           s.penetration_max, s.penetration_bound);
       std::cout << fmt::format(
           "  per step: {:.3g} ms, Newton {:.2f}, Krylov {:.1f}, sweeps {:.1f}; "
-          "rejected {}, beyond uniqueness {}\n",
+          "rejected {}, redone {}, beyond uniqueness {}\n",
           1e3 * (t.assembly + t.solve + t.update + t.ledger) / steps,
           double(stepper.newton) / steps, double(stepper.krylov) / steps,
-          double(stepper.sweeps) / steps, rejected_, beyond_unique_);
+          double(stepper.sweeps) / steps, rejected_, redone_,
+          beyond_unique_);
       std::cout << "  time:";
       for (const auto &[name, seconds] : s.timings)
         std::cout << fmt::format(" {} {:.3g} s;", name, seconds);

@@ -257,15 +257,20 @@ namespace nsfd
                                step <= unique ? "below" : "above;"));
       if (step <= unique)
         return;
-      if (input.time.step_kind == StepKind::automatic)
+      const double safe = MoreauJean<dim>::bound_share * unique;
+      if (input.time.step_kind == StepKind::automatic) {
         line("", "`step = auto` shortens it where a point softens");
-      else {
+        const double halvings = std::ceil(std::log2(step / safe));
+        if (halvings > input.time.maximum_halvings)
+          change(fmt::format("`set maximum halvings = {:g}`, which it takes",
+                             halvings));
+      } else {
         line("", "such steps are counted (steps_beyond_uniqueness)");
-        change(fmt::format(
-            "`set step = auto`, or `set step = {}`",
-            crossing > 0. && input.time.step_kind != StepKind::time
-                ? fmt::format("{:.2g} crossings", 0.7 * unique / crossing)
-                : fmt::format("{:.2g}", 0.7 * unique)));
+        change(
+            fmt::format("`set step = auto`, or `set step = {}`",
+                        crossing > 0. && input.time.step_kind != StepKind::time
+                            ? fmt::format("{:.2g} crossings", safe / crossing)
+                            : fmt::format("{:.2g}", safe)));
       }
     }
 

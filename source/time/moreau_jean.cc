@@ -50,6 +50,20 @@ namespace nsfd
   }
 
   template <int dim>
+  double MoreauJean<dim>::unique_step(const State &old,
+                                      const State &next) const
+  {
+    return uniqueness_->largest_step(problem_, old, next);
+  }
+
+  template <int dim>
+  double MoreauJean<dim>::automatic_step(const State &state,
+                                         const double time_step) const
+  {
+    return uniqueness_->next_step(problem_, state, time_step, bound_share);
+  }
+
+  template <int dim>
   const std::vector<double> &MoreauJean<dim>::reactions() const
   {
     return ledger_->reactions();

@@ -64,6 +64,51 @@ namespace nsfd
               W(slots[i / dim] * dim + i % dim, slots[j / dim] * dim + j % dim);
       return largest_eigenvalue(A, n);
     }
+    /** Active and at its peak or past it. */
+    template <int dim>
+    bool softens(const OneStepProblem<dim> &problem, const State &state,
+                 const std::size_t i)
+    {
+      if (state.kind[i] != PointKind::cohesive)
+        return false;
+      const auto &law = *problem.interactions[problem.interaction[i]].law;
+      return law.extrinsic() ||
+             problem.strength_factor[i] * state.opening_max[i] >=
+                 law.peak_opening();
+    }
+
+    /**
+     * Until u + t U has the opening at which the point softens (on): its peak,
+     * or the largest so far. Infinite if not before the time @p end.
+     */
+    template <int dim>
+    double time_to_soften(const OneStepProblem<dim> &problem,
+                          const State &state, const std::size_t i,
+                          const double end)
+    {
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      const double opening = std::max(state.opening_max[i] * (1. - 1e-6),
+                                      interaction.law->peak_opening() /
+                                          problem.strength_factor[i]);
+      const auto reaches = [&](const double t) {
+        double square = 0.;
+        for (unsigned int c = 0; c < dim; ++c) {
+          const double u = state.jump[i * dim + c] +
+                           t * state.relative_velocity[i * dim + c];
+          square +=
+              c == 0 ? (u > 0. ? u * u : 0.) : interaction.shear_weight * u * u;
+        }
+        return square >= opening * opening;
+      };
+      if (!reaches(end))
+        return std::numeric_limits<double>::infinity();
+      double low = 0., high = end;
+      for (unsigned int k = 0; k < 12; ++k) {
+        const double middle = 0.5 * (low + high);
+        (reaches(middle) ? high : low) = middle;
+      }
+      return low;
+    }
   } // namespace
 
   template <int dim>
@@ -128,23 +173,62 @@ namespace nsfd
            flexibility_[dynamics_.points().face_of[point]];
   }
 
+  /** Of one point; infinite if no step is short enough: the traction jumps. */
+  template <int dim>
+  double UniquenessBound<dim>::bound(const OneStepProblem<dim> &problem,
+                                     const std::size_t point) const
+  {
+    const double factor = ratio(problem, point, 1.);
+    return factor > 0. && std::isfinite(factor)
+               ? 1. / std::sqrt(factor)
+               : std::numeric_limits<double>::infinity();
+  }
+
   template <int dim>
   double UniquenessBound<dim>::largest_step(const OneStepProblem<dim> &problem,
                                             const State &state) const
   {
     double result = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < problem.n_owned; ++i)
+      if (softens(problem, state, i))
+        result = std::min(result, bound(problem, i));
+    return dynamics_.communicator().min(result);
+  }
+
+  template <int dim>
+  double UniquenessBound<dim>::largest_step(const OneStepProblem<dim> &problem,
+                                            const State &old,
+                                            const State &next) const
+  {
+    double result = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < problem.n_owned; ++i) {
+      if (next.opening_max[i] <= old.opening_max[i] ||
+          (old.kind[i] != PointKind::cohesive &&
+           old.kind[i] != PointKind::rigid))
+        continue;
+      const auto &law = *problem.interactions[problem.interaction[i]].law;
+      if (problem.strength_factor[i] * next.opening_max[i] >=
+          law.peak_opening())
+        result = std::min(result, bound(problem, i));
+    }
+    return dynamics_.communicator().min(result);
+  }
+
+  template <int dim>
+  double UniquenessBound<dim>::next_step(const OneStepProblem<dim> &problem,
+                                         const State &state,
+                                         const double h,
+                                         const double share) const
+  {
+    double result = h;
     for (std::size_t i = 0; i < problem.n_owned; ++i) {
       if (state.kind[i] != PointKind::cohesive)
         continue;
-      const auto &law = *problem.interactions[problem.interaction[i]].law;
-      if (problem.strength_factor[i] * state.opening_max[i] <
-              law.peak_opening() &&
-          !(law.extrinsic() && state.opening_max[i] > 0.))
+      const double allowed = share * bound(problem, i);
+      if (allowed >= result)
         continue;
-      const double factor = ratio(problem, i, 1.);
-      // no step is short enough for a traction that jumps
-      if (factor > 0. && std::isfinite(factor))
-        result = std::min(result, 1. / std::sqrt(factor));
+      const double wait = time_to_soften(problem, state, i, 2. * result);
+      result = std::min(result, std::max(allowed, 0.5 * wait));
     }
     return dynamics_.communicator().min(result);
   }

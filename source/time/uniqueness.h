@@ -36,8 +36,21 @@ namespace nsfd
     double largest_step(const OneStepProblem<dim> &problem,
                         const State &state) const;
 
+    /** By the points that softened between @p old and @p next. Collective. */
+    double largest_step(const OneStepProblem<dim> &problem, const State &old,
+                        const State &next) const;
+
+    /**
+     * The step to take next, at most @p time_step. A point that its velocity
+     * carries to where it softens, or softens on, allows @p share of its bound,
+     * or half of the time until then if that is longer. Collective.
+     */
+    double next_step(const OneStepProblem<dim> &problem, const State &state,
+                     double time_step, double share) const;
+
   private:
     void set_flexibility();
+    double bound(const OneStepProblem<dim> &problem, std::size_t point) const;
 
     const Dynamics<dim> &dynamics_;
     double theta_, chi_;

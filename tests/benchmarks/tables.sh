@@ -6,6 +6,7 @@
 #   sh tests/benchmarks/tables.sh paths    element-wise against global path
 #   sh tests/benchmarks/tables.sh crack    crack that runs and stops
 #   sh tests/benchmarks/tables.sh procedures  three ways to update damage
+#   sh tests/benchmarks/tables.sh auto     step = auto against fixed steps
 # Run from the top of a built checkout. Times depend on the machine, counts do
 # not.
 set -eu
@@ -121,7 +122,27 @@ procedures)
           n, m, i / s, k / s, g / s, 1e3 * t / s, r, d, f }'
     done
   done ;;
+auto)
+  echo "| scene | step | steps | rejected | redone | beyond uniqueness | CPU s |"
+  echo "|---|---|---|---|---|---|---|"
+  rows() { # rows NAME "STEPS" [options]
+    name=$1
+    steps=$2
+    shift 2
+    for step in auto $steps; do
+      [ "$step" = auto ] || step="$step crossings"
+      run "prm/$name.prm" "$@" --set "Time/step=$step" \
+        --set Output/fields=false --set Output/report=false
+      awk -v f="$(basename "$name")" -v h="$step" -v n="$(value steps)" \
+        -v r="$(value rejected_steps)" -v d="$(value redone_steps)" \
+        -v b="$(value steps_beyond_uniqueness)" -v t="$(value cpu_seconds)" \
+        'BEGIN { printf "| `%s` | %s | %d | %d | %d | %d | %.1f |\n", f, h, n, r, d, b, t }'
+    done
+  }
+  rows quickstart "0.5 0.25 0.16"
+  rows benchmarks/fracture_everywhere "0.5 0.25 0.12" \
+    --set "Mesh/cells=20, 20" --set "Interface: all/stiffness=5.67e18" ;;
 *)
-  echo "usage: sh $0 solver | orders | cost | paths | crack | procedures" >&2
+  echo "usage: sh $0 solver | orders | cost | paths | crack | procedures | auto" >&2
   exit 2 ;;
 esac

@@ -296,4 +296,52 @@ end
       EXPECT_GE(result.counter("steps_beyond_uniqueness"), 1.);
     }
   }
+
+  // An extrinsic face lets go in a step far above its bound, which nothing
+  // announces: with `step = auto` that step is taken again in shorter ones.
+  TEST(Extremes, AutomaticStepsAreRedoneWhereAFaceLetsGo)
+  {
+    const Workspace workspace;
+    const fs::path file = workspace.path() / "pull.prm";
+    write_text(file, R"(# pull.prm - two cells are pulled apart.
+set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 20 um, 10 um
+  set cells        = 2, 1
+end
+subsection Material: bulk
+  set Young modulus = 135 GPa
+  set Poisson ratio = 0.32
+  set density       = 7800 kg/m^3
+end
+subsection Interface: middle
+  set where     = abs(x - 10 um) < 1 nm
+  set law       = camacho-ortiz
+  set strength  = 300 MPa
+  set toughness = 0.1 J/m^2
+end
+subsection Boundary: left
+  set velocity x = -2 m/s
+end
+subsection Boundary: right
+  set velocity x = 2 m/s
+end
+subsection Time
+  set end  = 40 ns
+  set step = auto
+end
+)");
+    const Result result = good_run(workspace, "auto", {file});
+    ASSERT_TRUE(result.completed());
+    EXPECT_NEAR(result.dissipated("damage"), 1e-6, 1e-6 * 1e-6);
+    EXPECT_EQ(result.counter("steps_beyond_uniqueness"), 0.);
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+    EXPECT_EQ(result.counter("redone_steps"), 1.);
+    // short until the face is broken, long again soon after
+    const auto &steps = result.history["time_step"];
+    const double shortest = *std::min_element(steps.begin(), steps.end());
+    EXPECT_LT(shortest, 0.26 * steps.front());
+    EXPECT_EQ(steps.back(), steps.front());
+  }
 } // namespace end_to_end

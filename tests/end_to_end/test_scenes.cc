@@ -296,6 +296,27 @@ namespace end_to_end
               result.number("penetration_bound"));
   }
 
+  // Short steps only while a face softens: each of them has one solution, and
+  // then none is rejected.
+  TEST(Scenes, QuickstartWithAutomaticSteps)
+  {
+    const Workspace workspace;
+    const Result result = good_run(
+        workspace, "auto",
+        {quickstart(), {"Time/step=auto", "Output/fields=false"}});
+    ASSERT_TRUE(result.completed());
+    expect_sound_history(result);
+    EXPECT_EQ(result.counter("steps_beyond_uniqueness"), 0.);
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+    EXPECT_GE(result.number("fragments"), 2);
+    // 1/2 crossing before the crack, 1/8 while it runs
+    const auto &steps = result.history["time_step"];
+    const double longest = *std::max_element(steps.begin(), steps.end());
+    EXPECT_EQ(steps.front(), longest);
+    EXPECT_DOUBLE_EQ(*std::min_element(steps.begin(), steps.end()),
+                     longest / 4.);
+  }
+
   // A separation takes G at any step; with a fine one it also comes in time.
   class MidplaneStepTest : public testing::TestWithParam<double>
   {

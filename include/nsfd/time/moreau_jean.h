@@ -57,8 +57,17 @@ namespace nsfd
     StepReport advance(const State &old, double time_step, State &next,
                        bool last_attempt = false);
 
-    /** Largest step with one solution, from design bound; inf without damage. */
+    /**
+     * Up to which a step has one solution, by the points that soften at
+     * @p state; infinite if there is none.
+     */
     double unique_step(const State &state) const;
+    /** The same by the points that softened between two states. */
+    double unique_step(const State &old, const State &next) const;
+    /** Share of unique_step() that `step = auto` takes. */
+    static constexpr double bound_share = 0.95;
+    /** What `step = auto` takes from @p state, at most @p time_step. */
+    double automatic_step(const State &state, double time_step) const;
 
     /** Force on each driven boundary during the last step, dim per boundary. */
     const std::vector<double> &reactions() const;
