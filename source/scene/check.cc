@@ -142,7 +142,9 @@ namespace nsfd
       std::cout << "\n";
       if (young > 0.) {
         print_resolution(law);
-        if (!law.extrinsic() && families[b].density > 0.)
+        // the compliance of some named faces belongs to the scene
+        if (!law.extrinsic() &&
+            families[b].density > 0.5 * mesh.interface_density)
           print_bounds(law, families[b].density);
         print_jumps(law);
       }

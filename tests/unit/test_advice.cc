@@ -219,6 +219,22 @@ TEST(Advice, RelaxationThreshold)
   }
 }
 
+// A step that carries the mass past the peak is flagged above the threshold.
+TEST(Advice, StepsAboveTheThresholdAreFlagged)
+{
+  for (const double share : {0.5, 0.98, 1.02, 1.5}) {
+    Scene<2> scene(relaxation, {"Material: mass/initial velocity x=6 m/s"});
+    bool flagged = false, softened = false;
+    const auto &law = *scene.stepper->problem().interactions[0].law;
+    while (scene.state.opening_max[0] < law.peak_opening()) {
+      flagged = scene.advance(share * 3.1062e-6).beyond_unique;
+      softened = scene.state.opening_max[0] > law.peak_opening();
+    }
+    EXPECT_TRUE(softened);
+    EXPECT_EQ(flagged, share > 1.) << share;
+  }
+}
+
 // The bound by bodies is never less strict than all faces at once.
 TEST(Advice, BoundByBodiesIsOnTheSafeSide)
 {
