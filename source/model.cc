@@ -1,5 +1,7 @@
 #include "model.h"
 
+#include "nsfd/interface/point_factors.h"
+
 #include <deal.II/grid/tria.h>
 
 #include <iostream>
@@ -24,6 +26,7 @@ namespace nsfd
     build_mesh_parts(input, communicator, problems);
     if (problems.empty()) {
       find_unused_blocks(input, communicator, problems);
+      check_point_factors(input, *discretization, communicator, problems);
       build_control(input, problems);
     }
     if (!problems.empty()) {

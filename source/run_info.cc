@@ -55,7 +55,8 @@ namespace nsfd
                          material.rigid ? "rigid" : "linear elastic");
     for (const auto &block : input.interfaces) {
       parts.emplace_back("interface " + block.name, block.law_name);
-      if (block.strength_scatter > 0.)
+      if (block.strength_scatter.is_random() ||
+          block.toughness_scatter.is_random())
         info.seeds.push_back(block.seed);
     }
     for (const unsigned int b : model.discretization->driven_boundaries())

@@ -15,6 +15,12 @@ namespace nsfd
         {"contact", "unilateral contact and Coulomb friction only"},
     };
 
+    /** Entries of strength and toughness, which only cohesive laws have. */
+    const std::vector<std::string> factor_entries = {
+        "strength factor",  "toughness factor",  "scatter",
+        "strength scatter", "toughness scatter", "strength modulus",
+        "toughness modulus"};
+
     /** The law of a block, checked; empty if nothing more can be read. */
     std::string read_law_name(SectionReader &reader)
     {
@@ -109,16 +115,68 @@ namespace nsfd
                                           : IntactFaces::spring;
     }
 
+    Expression read_factor(SectionReader &reader, const std::string &what)
+    {
+      const std::string name = what + " factor";
+      Expression factor = read_initial_expression(
+          reader, name, "1", units::none,
+          "times the " + what + ", of x, y, z; the shape of the law stays");
+      if (factor.is_constant() && !(factor(0., 0., 0.) > 0.))
+        reader.error(
+            name, fmt::format("{} = {} must be positive", name, factor.text()));
+      return factor;
+    }
+
+    Scatter read_scatter(SectionReader &reader, const std::string &what,
+                         const bool weibull)
+    {
+      const std::string width = what + " scatter", modulus = what + " modulus";
+      if (!weibull) {
+        reader.refuse({modulus}, "the scatter is uniform: write scatter = "
+                                 "weibull, or `" +
+                                     width + "`");
+        const double half_width =
+            reader.number(width, "0", units::none, {0., 1., false, true},
+                          "relative half width of random factors");
+        return half_width > 0. ? Scatter{Scatter::Kind::uniform, half_width}
+                               : Scatter{};
+      }
+      reader.refuse({width}, "the scatter is weibull: write `" + modulus + "`");
+      const std::string text =
+          "Weibull modulus of random factors of mean 1; default: no scatter";
+      if (!reader.optional(modulus, text))
+        return {};
+      return {Scatter::Kind::weibull,
+              reader.number(modulus, "", units::none,
+                            {1., std::numeric_limits<double>::infinity()},
+                            text)};
+    }
+
+    /** Strength and toughness from point to point. */
+    void read_point_factors(SectionReader &reader, InterfaceInput &input)
+    {
+      input.strength_factor = read_factor(reader, "strength");
+      input.toughness_factor = read_factor(reader, "toughness");
+      const bool weibull =
+          reader.choice("scatter", "uniform", {"uniform", "weibull"},
+                        "uniform or weibull: distribution of random "
+                        "factors, by the position") == "weibull";
+      if (weibull && !reader.has("strength modulus") &&
+          !reader.has("toughness modulus"))
+        reader.error("scatter", "scatter = weibull without a modulus",
+                     "write `strength modulus`, `toughness modulus` or both");
+      input.strength_scatter = read_scatter(reader, "strength", weibull);
+      input.toughness_scatter = read_scatter(reader, "toughness", weibull);
+      input.seed = reader.integer("seed", "1", 0,
+                                  std::numeric_limits<unsigned int>::max(),
+                                  "of the scatter");
+    }
+
     /** The law, and what only cohesive laws have besides it. */
     void read_cohesive_block(SectionReader &reader, InterfaceInput &input)
     {
       input.law = read_cohesive_law(reader, input.law_name);
-      input.strength_scatter = reader.number(
-          "strength scatter", "0", units::none, {0., 1., false, true},
-          "relative half width of uniform random strengths");
-      input.seed = reader.integer("seed", "1", 0,
-                                  std::numeric_limits<unsigned int>::max(),
-                                  "of the scatter");
+      read_point_factors(reader, input);
 
       if (input.law && input.law->extrinsic() &&
           input.where.kind == Where::Kind::all)
@@ -144,21 +202,25 @@ namespace nsfd
       if (input.law_name.empty())
         return input;
       if (input.law_name == "rigid") {
+        const std::string reason = "faces of the law `rigid` never open";
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
-                       "intact faces", "strength scatter"},
-                      "faces of the law `rigid` never open");
+                       "intact faces"},
+                      reason);
+        reader.refuse(factor_entries, reason);
         return input;
       }
       if (input.law_name == "contact") {
         read_contact(reader, input);
-        reader.refuse(
-            {"friction exponent", "broken", "intact faces", "strength scatter"},
-            "faces of the law `contact` carry no cohesion");
+        const std::string reason =
+            "faces of the law `contact` carry no cohesion";
+        reader.refuse({"friction exponent", "broken", "intact faces"}, reason);
+        reader.refuse(factor_entries, reason);
         return input;
       }
-      if (input.law_name == "elastic")
+      if (input.law_name == "elastic") {
         read_springs(reader, input);
-      else
+        reader.refuse(factor_entries, "the springs of `elastic` never break");
+      } else
         read_cohesive_block(reader, input);
       read_contact(reader, input);
       read_damage_start(reader, input);

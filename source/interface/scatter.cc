@@ -1,5 +1,6 @@
 #include "nsfd/interface/scatter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -31,15 +32,31 @@ namespace nsfd
     }
   } // namespace
 
-  double scatter_uniform(const unsigned int seed,
-                         const std::array<double, 3> &x_scaled,
-                         const double half_width)
+  double Scatter::factor(const double chance) const
   {
-    std::uint64_t hash = mix(seed);
+    switch (kind) {
+    case Kind::none:
+      return 1.;
+    case Kind::uniform:
+      return 1. + parameter * (2. * chance - 1.);
+    case Kind::weibull: {
+      // never 0: numbers are multiples of 2^-53, this is the middle of the
+      // interval that rounds to them
+      const double quantile = -std::log1p(-std::max(chance, 0x1p-54));
+      return std::pow(quantile, 1. / parameter) /
+             std::tgamma(1. + 1. / parameter);
+    }
+    }
+    return 1.;
+  }
+
+  double scatter_number(const ScatterOf what, const unsigned int seed,
+                        const std::array<double, 3> &x_scaled)
+  {
+    // seeds have 32 bits: those of the other quantity start above them
+    std::uint64_t hash = mix(seed + (std::uint64_t(what) << 32));
     for (const double x : x_scaled)
       hash = mix(hash ^ box(x));
-
-    const double r = (hash >> 11) * 0x1p-53; // [0, 1)
-    return 1. + half_width * (2. * r - 1.);
+    return (hash >> 11) * 0x1p-53;
   }
 } // namespace nsfd

@@ -192,11 +192,21 @@ namespace nsfd
         problem.interactions[problem.interaction[i]], jump);
     }
 
-    double secant_at(const Interaction &interaction,
-                     const double factor,
-                     const double opening)
+    /** Strength and opening factors of a point: T(d) = a T_0(l d). */
+    struct Scaling
     {
-      return factor * factor * interaction.law->secant(factor * opening);
+      double a, l;
+
+      double secant(const CohesiveLaw &law, const double opening) const
+      {
+        return a * l * law.secant(l * opening);
+      }
+    };
+
+    template <int dim>
+    Scaling scaling_of(const OneStepProblem<dim> &problem, const std::size_t i)
+    {
+      return {problem.strength_factor[i], problem.opening_factor[i]};
     }
 
     /**
@@ -211,27 +221,28 @@ namespace nsfd
     {
       const auto &interaction =
         problem.interactions[problem.interaction[i]];
-      const double f = problem.strength_factor[i],
-                   d_m = problem.opening_max[i];
+      const auto &law = *interaction.law;
+      const Scaling scaling = scaling_of<dim>(problem, i);
+      const double d_m = problem.opening_max[i];
       if (opening <= d_m)
-        return secant_at(interaction, f, d_m);
+        return scaling.secant(law, d_m);
       if (problem.rule != CohesionRule::exact)
-        return secant_at(interaction, f, opening);
+        return scaling.secant(law, opening);
       const double d =
         effective_opening<dim>(interaction, &problem.jump_old[i * dim]);
       // d <= d_m but for round-off, which must not reach a small difference
       const bool unloads = d < d_m * (1. - 2e-15);
       const double start = unloads ? d_m : std::max(d, d_m);
       if (opening <= start)
-        return secant_at(interaction, f, start);
+        return scaling.secant(law, start);
       const double unloaded =
-        unloads ? secant_at(interaction, f, d_m) * (d_m - d) * (d_m + d) : 0.;
-      // mean traction times the way: the way must not suffer from scaling by f
-      const double a = f * start, b = f * opening;
-      const double mean =
-        b > a ? interaction.law->energy_increment(a, b) / (b - a)
-              : interaction.law->traction(a);
-      return (unloaded + 2. * f * mean * (opening - start)) /
+        unloads ? scaling.secant(law, d_m) * (d_m - d) * (d_m + d) : 0.;
+      // mean traction times the way: the way must not suffer from the scaling
+      const double s0 = scaling.l * start, s1 = scaling.l * opening;
+      const double mean = s1 > s0
+                            ? law.energy_increment(s0, s1) / (s1 - s0)
+                            : law.traction(s0);
+      return (unloaded + 2. * scaling.a * mean * (opening - start)) /
              ((opening - d) * (opening + d));
     }
 
@@ -249,8 +260,8 @@ namespace nsfd
       // a rigid point that lets go in this step is damaged already
       const double beta =
         problem.kind[i] == PointKind::rigid
-          ? interaction.law->beta(problem.strength_factor[i] * end)
-          : beta_of(interaction, problem.kind[i], problem.strength_factor[i],
+          ? interaction.law->beta(problem.opening_factor[i] * end)
+          : beta_of(interaction, problem.kind[i], problem.opening_factor[i],
                     end);
       return interaction.friction *
              kappa(beta, interaction.friction_exponent) *
@@ -438,10 +449,11 @@ namespace nsfd
     mask.assign(n, 0);
     contact.assign(n, 0);
     interaction.assign(n, 0);
-    for (auto *array :
-         {&weight, &strength_factor, &opening_max, &compression_stiffness,
-          &target, &majorant_normal, &majorant_tangential})
+    for (auto *array : {&weight, &opening_max, &compression_stiffness, &target,
+                        &majorant_normal, &majorant_tangential})
       array->assign(n, 0.);
+    for (auto *array : {&strength_factor, &opening_factor})
+      array->assign(n, 1.);
     for (auto *array : {&free_velocity, &given_velocity, &jump_old, &jump_free,
                         &sliding_offset})
       array->assign(n * dim, 0.);
@@ -459,13 +471,13 @@ namespace nsfd
 
   double beta_of(const Interaction &interaction,
                  const PointKind kind,
-                 const double strength_factor,
+                 const double opening_factor,
                  const double opening_max)
   {
     switch (kind) {
     case PointKind::free: return 0.;
     case PointKind::cohesive:
-      return interaction.law->beta(strength_factor * opening_max);
+      return interaction.law->beta(opening_factor * opening_max);
     default: return 1.;
     }
   }
@@ -698,8 +710,8 @@ namespace nsfd
     if (kind == PointKind::prescribed)
       return result;
     const auto &interaction = problem.interactions[problem.interaction[i]];
-    const double f = problem.strength_factor[i],
-                 compression = problem.compression_stiffness[i];
+    const Scaling scaling = scaling_of<dim>(problem, i);
+    const double compression = problem.compression_stiffness[i];
     double jump[dim];
     const double *old = &problem.jump_old[i * dim];
     for (unsigned int c = 0; c < dim; ++c)
@@ -746,14 +758,15 @@ namespace nsfd
                : frozen.secant);
 
     const bool was_rigid = kind == PointKind::rigid;
-    const double b_old = was_rigid ? 0. : secant_at(interaction, f, d_m),
-                 b_new = secant_at(interaction, f, result.opening_max);
-    result.beta = law.beta(f * result.opening_max);
+    const double b_old = was_rigid ? 0. : scaling.secant(law, d_m),
+                 b_new = scaling.secant(law, result.opening_max);
+    result.beta = law.beta(scaling.l * result.opening_max);
     result.stored = spring_energy(b_new, jump);
     result.stored_old = was_rigid ? 0. : spring_energy(b_old, old);
     if (result.opening_max > d_m) {
-      const double released = law.energy_increment(f * d_m,
-                                                   f * result.opening_max);
+      const double released =
+        scaling.a / scaling.l *
+        law.energy_increment(scaling.l * d_m, scaling.l * result.opening_max);
       if (law.has_potential())
         result.damage =
           std::max(0., released - (b_new * square(result.opening_max) -
@@ -761,7 +774,7 @@ namespace nsfd
                                     2.);
       else {
         // no potential: the mean driving force times the loss of beta
-        const double C = f * f * law.normal_stiffness();
+        const double C = scaling.a * scaling.l * law.normal_stiffness();
         result.damage = std::max(
           0., (b_old - b_new) / C *
                 (spring_energy(C, old) + spring_energy(C, jump)) / 2.);

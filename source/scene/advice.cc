@@ -150,11 +150,12 @@ namespace nsfd
                                .law->steepest_softening();
       if (!std::isfinite(slope))
         continue;
-      const double f = problem.strength_factor[i];
+      const double scaled = // of a T(a d / g)
+          problem.strength_factor[i] * problem.opening_factor[i] * slope;
       for (unsigned int c = 0; c < dim; ++c) {
         scale[i * dim + c] =
-            h * f *
-            std::sqrt(input.time.theta * chi * slope * points.weight[i]);
+            h *
+            std::sqrt(input.time.theta * chi * scaled * points.weight[i]);
         // any direction, the same on both ranks of a shared face
         const auto &face = points.faces[points.face_of[i]];
         x[i * dim + c] =

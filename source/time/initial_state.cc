@@ -58,14 +58,14 @@ namespace nsfd
         state.kind[i] = PointKind::cohesive;
         state.two_sided[i] = block.intact == IntactFaces::spring;
         const auto &interaction = problem.interactions[problem.interaction[i]];
-        const double f = problem.strength_factor[i];
+        const double factor = problem.opening_factor[i];
         // below the elastic limit there is nothing to remember
         // (just below, so that round-off does not damage it)
         state.opening_max[i] =
-            std::max((1. - 1e-14) * block.law->elastic_limit() / f,
+            std::max((1. - 1e-14) * block.law->elastic_limit() / factor,
                      effective_opening<dim>(interaction, &state.jump[i * dim]));
         state.beta[i] =
-            beta_of(interaction, state.kind[i], f, state.opening_max[i]);
+            beta_of(interaction, state.kind[i], factor, state.opening_max[i]);
       }
     }
 
@@ -80,10 +80,11 @@ namespace nsfd
             state.kind[i] != PointKind::cohesive)
           continue;
         const auto &interaction = problem.interactions[problem.interaction[i]];
-        const double f = problem.strength_factor[i];
+        const double l = problem.opening_factor[i];
         const double b =
             interaction.law
-                ? f * f * interaction.law->secant(f * state.opening_max[i])
+                ? problem.strength_factor[i] * l *
+                      interaction.law->secant(l * state.opening_max[i])
                 : interaction.normal_stiffness;
         const double *u = &state.jump[i * dim];
         double slip = 0.;

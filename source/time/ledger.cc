@@ -213,7 +213,7 @@ namespace nsfd
       // a softening point in a step above the uniqueness bound
       const auto &law = *problem_.interactions[problem_.interaction[i]].law;
       if (solution.damages &&
-          problem_.strength_factor[i] * energies.opening_max >=
+          problem_.opening_factor[i] * energies.opening_max >=
               law.peak_opening())
         beyond_unique |=
             uniqueness_.ratio(problem_, i, problem_.time_step) >= 1.;

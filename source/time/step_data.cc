@@ -1,7 +1,7 @@
 #include "step_data.h"
 
 #include "nsfd/input/scene_input.h"
-#include "nsfd/interface/scatter.h"
+#include "nsfd/interface/point_factors.h"
 #include "nsfd/time/state.h"
 
 #include <algorithm>
@@ -36,19 +36,6 @@ namespace nsfd
       interaction.friction = obstacle.friction;
       interaction.restitution = obstacle.restitution;
       return interaction;
-    }
-
-    /** Random, by the position alone. */
-    template <int dim>
-    double strength_factor(const InterfaceInput &block, const double *position,
-                           const double extent)
-    {
-      if (!(block.strength_scatter > 0.))
-        return 1.;
-      std::array<double, 3> scaled{};
-      for (unsigned int c = 0; c < dim; ++c)
-        scaled[c] = position[c] / extent;
-      return scatter_uniform(block.seed, scaled, block.strength_scatter);
     }
 
     /** U_N that contact allows, without the forecast. */
@@ -95,10 +82,11 @@ namespace nsfd
       if (old.kind[i] == PointKind::prescribed)
         problem.mask[i] = all_components;
       else if (old.two_sided[i]) {
-        const double f = problem.strength_factor[i];
         problem.compression_stiffness[i] =
-            interaction.law ? f * f * interaction.law->normal_stiffness()
-                            : interaction.normal_stiffness;
+            interaction.law
+                ? problem.strength_factor[i] * problem.opening_factor[i] *
+                      interaction.law->normal_stiffness()
+                : interaction.normal_stiffness;
       } else {
         // A closed point must not open by what the solver left of its position;
         // one without restitution stays a candidate as long as it rests.
@@ -193,16 +181,18 @@ namespace nsfd
       problem.interactions.push_back(interaction_of(obstacle));
     problem.interactions.emplace_back();
 
-    problem.strength_factor.assign(points.n_points, 1.);
     for (std::size_t i = 0; i < points.n_points; ++i) {
       const PointOrigin origin = discretization.origins()[i];
       switch (origin.kind) {
-      case PointOrigin::Kind::interface:
+      case PointOrigin::Kind::interface: {
         problem.interaction[i] = origin.block;
-        problem.strength_factor[i] = strength_factor<dim>(
+        const PointFactors factors = point_factors<dim>(
             input.interfaces[origin.block], &points.position[i * dim],
             discretization.extent());
+        problem.strength_factor[i] = factors.strength;
+        problem.opening_factor[i] = factors.strength / factors.toughness;
         break;
+      }
       case PointOrigin::Kind::obstacle:
         problem.interaction[i] =
             unsigned(input.interfaces.size()) + origin.block;

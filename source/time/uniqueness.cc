@@ -73,7 +73,7 @@ namespace nsfd
         return false;
       const auto &law = *problem.interactions[problem.interaction[i]].law;
       return law.extrinsic() ||
-             problem.strength_factor[i] * state.opening_max[i] >=
+             problem.opening_factor[i] * state.opening_max[i] >=
                  law.peak_opening();
     }
 
@@ -89,7 +89,7 @@ namespace nsfd
       const auto &interaction = problem.interactions[problem.interaction[i]];
       const double opening = std::max(state.opening_max[i] * (1. - 1e-6),
                                       interaction.law->peak_opening() /
-                                          problem.strength_factor[i]);
+                                          problem.opening_factor[i]);
       const auto reaches = [&](const double t) {
         double square = 0.;
         for (unsigned int c = 0; c < dim; ++c) {
@@ -168,8 +168,8 @@ namespace nsfd
                                      const double h) const
   {
     const auto &law = *problem.interactions[problem.interaction[point]].law;
-    const double f = problem.strength_factor[point];
-    return h * h * theta_ * chi_ * f * f * law.steepest_softening() *
+    return h * h * theta_ * chi_ * problem.strength_factor[point] *
+           problem.opening_factor[point] * law.steepest_softening() *
            flexibility_[dynamics_.points().face_of[point]];
   }
 
@@ -207,7 +207,7 @@ namespace nsfd
            old.kind[i] != PointKind::rigid))
         continue;
       const auto &law = *problem.interactions[problem.interaction[i]].law;
-      if (problem.strength_factor[i] * next.opening_max[i] >=
+      if (problem.opening_factor[i] * next.opening_max[i] >=
           law.peak_opening())
         result = std::min(result, bound(problem, i));
     }

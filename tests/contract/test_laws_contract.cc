@@ -233,6 +233,7 @@ namespace
   public:
     OneStepProblem<2> problem;
     double beta = 1., dissipated = 0.;
+    double toughness;          ///< of the law times the factor of the point
     PointEnergies<2> energies; ///< of the last step
 
     RandomPoint(const CohesiveLaw &law, const CohesionRule rule,
@@ -251,10 +252,12 @@ namespace
       interaction.shear_weight = law.shear_weight();
       interaction.friction = number(0., 1.);
       problem.interactions = {interaction};
-      const double f = number(0.6, 1.4);
-      problem.strength_factor = {f};
+      const double a = number(0.6, 1.4), g = number(0.5, 1.5);
+      problem.strength_factor = {a};
+      problem.opening_factor = {a / g};
+      toughness = g * law.toughness();
       problem.kind = {law.extrinsic() ? PointKind::rigid : PointKind::cohesive};
-      problem.opening_max = {(1. - 1e-14) * law.elastic_limit() / f};
+      problem.opening_max = {(1. - 1e-14) * law.elastic_limit() * g / a};
       two_sided_ = !law.extrinsic() && number(0., 1.) < 0.5;
       for (double *R : {&R_[0], &R_[1]})
         *R = std::pow(10., number(-5., -1.)) * end_of_softening(law) /
@@ -295,14 +298,16 @@ namespace
 
     void prepare()
     {
-      const double theta = problem.theta, f = problem.strength_factor[0];
+      const double theta = problem.theta;
       for (unsigned int c = 0; c < 2; ++c) {
         problem.jump_old[c] = jump_[c];
         problem.jump_free[c] =
             jump_[c] + problem.time_step * (1. - theta) * velocity_[c];
       }
       problem.compression_stiffness[0] =
-          two_sided_ ? f * f * law_.normal_stiffness() : 0.;
+          two_sided_ ? problem.strength_factor[0] * problem.opening_factor[0] *
+                           law_.normal_stiffness()
+                     : 0.;
       problem.contact[0] = !two_sided_ && jump_[0] <= 0.;
       problem.target[0] =
           velocity_[0] <= 0. ? 0. : -(1. - theta) / theta * velocity_[0];
@@ -427,14 +432,94 @@ namespace
         ASSERT_EQ(point.beta, 0.) << "path " << path;
       }
       if (law.has_potential()) {
-        ASSERT_NEAR(point.dissipated + point.energies.stored, law.toughness(),
-                    1e-11 * law.toughness())
+        ASSERT_NEAR(point.dissipated + point.energies.stored, point.toughness,
+                    1e-11 * point.toughness)
             << "path " << path;
       }
     }
     if (!std::isinf(law.steepest_softening())) {
       EXPECT_GT(damaged, 1000u);
     }
+  }
+
+  /**
+   * A point with a times the strength and g times the toughness, opened from
+   * closed by @p opening in one step. The majorant is so small that nothing
+   * changes the opening.
+   */
+  struct GradedPoint {
+    double traction; ///< pulls back
+    double work;     ///< of the traction
+    double spent;    ///< stored and dissipated
+  };
+  GradedPoint open_graded_point(const CohesiveLaw &law, const CohesionRule rule,
+                                const double a, const double g,
+                                const double opening)
+  {
+    OneStepProblem<2> problem;
+    problem.resize(1);
+    problem.n_owned = 1;
+    problem.time_step = 0.02;
+    problem.theta = 1.;
+    problem.rule = rule;
+    problem.weight = {0.3};
+    Interaction interaction;
+    interaction.law = {std::shared_ptr<void>(), &law}; // not owned
+    interaction.stiffness_ratio = law.stiffness_ratio();
+    interaction.shear_weight = law.shear_weight();
+    problem.interactions = {interaction};
+    problem.kind = {law.extrinsic() ? PointKind::rigid : PointKind::cohesive};
+    problem.strength_factor = {a};
+    problem.opening_factor = {a / g};
+    const double R = 1e-14 * opening / (law.strength() * 0.3 * 0.02 * 0.02);
+    const auto solution = solve_point<2>(
+        problem, 0, {{opening / problem.time_step, 0.}}, R, R, 0.);
+    const auto energies =
+        point_energies<2>(problem, 0, solution.velocity, solution.frozen);
+    return {-solution.impulse[0] / (0.3 * 0.02),
+            energies.cohesive_traction[0] * opening,
+            energies.damage + energies.stored};
+  }
+
+  // Strength a R_max at the opening scaled by g / a, toughness g G: exact for
+  // one point, to the 1e-14 that the majorant moves it.
+  void factors_scale_strength_and_toughness(const CohesiveLaw &law)
+  {
+    const double end = end_of_softening(law), R_max = law.strength(),
+                 G = law.toughness();
+    for (const double a : {1., 0.3, 2.5})
+      for (const double g : {1., 0.2, 3.}) {
+        SCOPED_TRACE("a = " + std::to_string(a) + ", g = " + std::to_string(g));
+        const double scale = g / a;
+        const auto traction = [&](const double d) {
+          return open_graded_point(law, CohesionRule::end_point, a, g,
+                                   d * scale)
+              .traction;
+        };
+        double largest = 0.;
+        for (unsigned int i = 1; i <= 300; ++i) {
+          const double d = 1.2 * end * i / 300.;
+          const double T = traction(d);
+          // next to a jump or an infinite slope round-off of d is amplified
+          if (!kink_between(law, d * (1. - 1e-9), d * (1. + 1e-9))) {
+            ASSERT_NEAR(T, a * law.traction(d), 1e-10 * a * R_max)
+                << "d = " << d;
+          }
+          largest = std::max(largest, T);
+        }
+        EXPECT_LE(largest, a * R_max * (1. + 1e-12));
+        // extrinsic laws have their peak at once
+        const double peak =
+            law.extrinsic() ? 1e-12 * end : law.peak_opening() * (1. - 1e-12);
+        EXPECT_NEAR(traction(peak), a * R_max, 1e-10 * a * R_max);
+        // the exact rule in one step: its work is the area under the curve
+        const auto open = open_graded_point(law, CohesionRule::exact, a, g,
+                                            1e9 * end * scale);
+        EXPECT_NEAR(open.work, g * G, 1e-11 * g * G);
+        if (law.has_potential()) {
+          EXPECT_NEAR(open.spent, g * G, 1e-11 * g * G);
+        }
+      }
   }
 
   /** Every registered law, with each of the examples it registers. */
@@ -481,6 +566,11 @@ namespace
   TEST(LawsContract, PotentialMeansIndependenceOfThePath)
   {
     expect_for_all_laws(potential_means_independence_of_the_path);
+  }
+
+  TEST(LawsContract, FactorsScaleStrengthAndToughness)
+  {
+    expect_for_all_laws(factors_scale_strength_and_toughness);
   }
 
   TEST(LawsContract, RandomPaths) { expect_for_all_laws(random_paths); }

@@ -545,7 +545,9 @@ subsection Interface: weak
   set toughness = 10 J/m^2
   set friction exponent = 0
   set broken = x < 0.7 mm
+  set strength factor = 1 + x / (4 * L)
   set strength scatter = 0.1
+  set toughness scatter = 0.2
   set seed = 7
 end
 subsection Boundary: left
@@ -603,6 +605,12 @@ end
     EXPECT_EQ(scene->interfaces[2].friction_exponent, 0.);
     EXPECT_TRUE(scene->interfaces[2].has_broken);
     EXPECT_EQ(scene->interfaces[2].seed, 7u);
+    EXPECT_GT(scene->interfaces[2].strength_factor(1., 0., 0.), 1.);
+    EXPECT_EQ(scene->interfaces[2].toughness_factor(1., 0., 0.), 1.);
+    EXPECT_EQ(scene->interfaces[2].strength_scatter.kind,
+              Scatter::Kind::uniform);
+    EXPECT_EQ(scene->interfaces[2].strength_scatter.parameter, 0.1);
+    EXPECT_EQ(scene->interfaces[2].toughness_scatter.parameter, 0.2);
     EXPECT_EQ(scene->boundaries[0].where.kind, Where::Kind::side);
     EXPECT_EQ(scene->boundaries[0].where.name, "left");
     EXPECT_TRUE(scene->boundaries[0].velocity[0].has_value());

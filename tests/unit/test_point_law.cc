@@ -72,7 +72,8 @@ namespace
 
     OnePoint(const Interaction &interaction, const PointKind kind,
              const CohesionRule rule, const double theta = 1.,
-             const double strength_factor = 1.)
+             const double strength_factor = 1.,
+             const double toughness_factor = 1.)
     {
       problem.resize(1);
       problem.n_owned = 1;
@@ -83,9 +84,10 @@ namespace
       problem.kind = {kind};
       problem.weight = {0.3};
       problem.strength_factor = {strength_factor};
+      problem.opening_factor = {strength_factor / toughness_factor};
       if (interaction.law && !interaction.law->extrinsic())
         problem.opening_max = {interaction.law->elastic_limit() /
-                               strength_factor};
+                               problem.opening_factor[0]};
       set_majorants(0.01, 0.02);
     }
 
@@ -94,7 +96,7 @@ namespace
     double weight_step() const { return problem.weight[0] * problem.time_step; }
     double beta() const
     {
-      return beta_of(interaction(), problem.kind[0], problem.strength_factor[0],
+      return beta_of(interaction(), problem.kind[0], problem.opening_factor[0],
                      problem.opening_max[0]);
     }
 
@@ -123,7 +125,7 @@ namespace
       problem.compression_stiffness[0] = !two_sided ? 0.
                                          : interaction().law
                                              ? problem.strength_factor[0] *
-                                                   problem.strength_factor[0] *
+                                                   problem.opening_factor[0] *
                                                    law().normal_stiffness()
                                              : interaction().normal_stiffness;
     }
@@ -637,7 +639,7 @@ namespace
         return;
       OnePoint<dim> point(interaction_of(law, friction, path % 3),
                           initial_kind(*law), rule, theta,
-                          0.6 + 0.8 * unit(random));
+                          0.6 + 0.8 * unit(random), 0.5 + unit(random));
       point.two_sided = !law->extrinsic() && path % 2 == 0;
       point.set_majorants(std::pow(10., -3. * unit(random)),
                           std::pow(10., -3. * unit(random)));
@@ -724,7 +726,7 @@ namespace
         const double beta =
             problem.kind[0] == PointKind::free
                 ? 0.
-                : point.law().beta(problem.strength_factor[0] * opening);
+                : point.law().beta(problem.opening_factor[0] * opening);
         return interaction.friction *
                kappa(beta, interaction.friction_exponent) *
                solution.contact_impulse;
@@ -787,7 +789,9 @@ namespace
         return;
       ++damaging;
       // b between beta_{k+1} C and beta_k C
-      const double f = problem.strength_factor[0], b = solution.frozen.secant;
+      const double l = problem.opening_factor[0],
+                   al = problem.strength_factor[0] * l,
+                   b = solution.frozen.secant;
       const auto &law = point.law();
       // 1e-15 G: round-off of a difference of energies far apart
       const double d = effective_opening<dim>(point.interaction(),
@@ -795,10 +799,9 @@ namespace
                    round_off = 1e-12 * b +
                                1e-15 * law.toughness() /
                                    ((e.opening_max - d) * (e.opening_max + d));
-      EXPECT_GE(b, f * f * law.secant(f * e.opening_max) - round_off);
+      EXPECT_GE(b, al * law.secant(l * e.opening_max) - round_off);
       if (problem.kind[0] != PointKind::rigid) {
-        EXPECT_LE(b,
-                  f * f * law.secant(f * problem.opening_max[0]) + round_off);
+        EXPECT_LE(b, al * law.secant(l * problem.opening_max[0]) + round_off);
       }
     };
     for (const auto &entry : potentials)

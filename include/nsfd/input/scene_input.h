@@ -2,6 +2,7 @@
 
 #include "nsfd/input/expression.h"
 #include "nsfd/interface/cohesive_law.h"
+#include "nsfd/interface/scatter.h"
 
 #include <array>
 #include <memory>
@@ -96,7 +97,9 @@ namespace nsfd
     std::shared_ptr<const CohesiveLaw> law;
     /// for `elastic`: C_N, C_T in Pa/m
     double normal_stiffness = 0., tangential_stiffness = 0.;
-    double strength_scatter = 0.; ///< relative half width, uniform, 0..1
+    /// for cohesive laws: strength and toughness over those of the law
+    Expression strength_factor{1.}, toughness_factor{1.}; ///< of x, y, z
+    Scatter strength_scatter, toughness_scatter;
     unsigned int seed = 1;
     double friction = 0.;
     /// kappa = (1-beta)^exponent; 0 means kappa = 1

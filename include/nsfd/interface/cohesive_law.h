@@ -25,8 +25,9 @@ namespace nsfd
    * history (the largest opening) is kept by the caller. They accept any
    * d >= 0, also far beyond separation, and return finite values.
    *
-   * A point whose strength is scaled by f keeps its toughness: it evaluates
-   * f T(f d), so its stiffness is f^2 C_N. The caller does this scaling.
+   * A point with a times the strength and g times the toughness evaluates
+   * a T(a d / g): the shape stays, openings scale with g / a and the stiffness
+   * with a^2 / g. The caller does this scaling.
    */
   class CohesiveLaw
   {

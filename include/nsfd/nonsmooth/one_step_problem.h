@@ -63,7 +63,8 @@ namespace nsfd
     std::vector<std::uint8_t> contact;      ///< forecast active
     std::vector<unsigned int> interaction;  ///< index into interactions
     std::vector<double> weight;             ///< w
-    std::vector<double> strength_factor;    ///< f, see CohesiveLaw
+    std::vector<double> strength_factor;    ///< a, see CohesiveLaw; else 1
+    std::vector<double> opening_factor;     ///< a / g, see CohesiveLaw; else 1
     std::vector<double> opening_max;        ///< d_m, largest effective opening
     std::vector<double> compression_stiffness; ///< two-sided while intact, else 0
     std::vector<double> target;             ///< U_N >= target where in contact

@@ -120,5 +120,5 @@ namespace nsfd
 
   /** beta of a point from its largest opening. */
   double beta_of(const Interaction &interaction, PointKind kind,
-                 double strength_factor, double opening_max);
+                 double opening_factor, double opening_max);
 } // namespace nsfd

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  class Communicator;
+  struct InterfaceInput;
+  struct SceneInput;
+  template <int dim>
+  class Discretization;
+
+  /** Strength and toughness of a point over those of its law. */
+  struct PointFactors {
+    double strength = 1., toughness = 1.;
+  };
+
+  /**
+   * Graded by the expressions of the block, scattered by the position alone.
+   * @p extent is the size of the mesh.
+   */
+  template <int dim>
+  PointFactors point_factors(const InterfaceInput &block,
+                             const double *position, double extent);
+
+  /** A sentence for every expression that is not positive. Collective. */
+  template <int dim>
+  void check_point_factors(const SceneInput &input,
+                           const Discretization<dim> &discretization,
+                           const Communicator &communicator,
+                           std::vector<std::string> &problems);
+} // namespace nsfd
