@@ -59,6 +59,9 @@ namespace nsfd
           block.toughness_scatter.is_random())
         info.seeds.push_back(block.seed);
     }
+    for (const auto &block : input.interfaces)
+      if (block.crack_pressure)
+        parts.emplace_back("crack pressure", block.name);
     for (const unsigned int b : model.discretization->driven_boundaries())
       parts.emplace_back("motion", input.boundaries[b].name);
     for (const auto &obstacle : input.obstacles)

@@ -291,6 +291,8 @@ namespace nsfd
       s.energy = state_.energy;
       s.penetration_max = state_.penetration;
       s.positive_friction_work = state_.positive_friction_work;
+      if (!state_.pressure.empty())
+        s.pressure_work = state_.pressure_work;
       s.rigid_drift_max = state_.rigid_drift;
       s.fragments = fragments_->count();
       double bound = 0.;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -172,6 +173,22 @@ namespace nsfd
                                   "of the scatter");
     }
 
+    void read_crack_pressure(SectionReader &reader, InterfaceInput &input)
+    {
+      const std::string name = "crack pressure",
+                        text = "Pa, of x, y, z, t: pushes the lips of broken "
+                               "points apart";
+      if (!reader.optional(name, text))
+        return;
+      input.crack_pressure = reader.expression(name, "", units::pressure, text);
+      if (!input.law)
+        return;
+      const bool has_tail = std::isinf(input.law->final_opening());
+      input.pressure_threshold = reader.number(
+          "pressure threshold", has_tail ? "0.001" : "0", units::none,
+          {0., 1., false, true}, "beta up to which a point counts as broken");
+    }
+
     /** The law, and what only cohesive laws have besides it. */
     void read_cohesive_block(SectionReader &reader, InterfaceInput &input)
     {
@@ -204,13 +221,14 @@ namespace nsfd
       if (input.law_name == "rigid") {
         const std::string reason = "faces of the law `rigid` never open";
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
-                       "intact faces"},
+                       "intact faces", "crack pressure", "pressure threshold"},
                       reason);
         reader.refuse(factor_entries, reason);
         return input;
       }
       if (input.law_name == "contact") {
         read_contact(reader, input);
+        read_crack_pressure(reader, input);
         const std::string reason =
             "faces of the law `contact` carry no cohesion";
         reader.refuse({"friction exponent", "broken", "intact faces"}, reason);
@@ -225,6 +243,7 @@ namespace nsfd
       read_contact(reader, input);
       read_damage_start(reader, input);
       input.intact = read_intact_faces(reader, input);
+      read_crack_pressure(reader, input);
       return input;
     }
   } // namespace

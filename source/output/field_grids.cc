@@ -142,6 +142,9 @@ namespace nsfd
               traction[c] +=
                   P[r] * frame[r * dim + c] / (points.weight[i] * time_step_);
           }
+        if (!state_.pressure.empty()) // the whole reaction: contact and fluid
+          for (unsigned int c = 0; c < dim; ++c)
+            traction[c] += state_.pressure[i] * frame[c];
         const PointOrigin origin = discretization_.origins()[i];
         return Values{{state_.beta[i], u[0], jump[0], jump[1], jump[2],
                        traction[0], traction[1], traction[2], state_.slip[i],

@@ -146,7 +146,10 @@ namespace nsfd
         physics.add(units.broken, engineering(broken, units.area, 4),
                     s.dimension == 3 ? "" : "area per metre of depth");
       physics.add("fragments", count(s.fragments));
-      physics.add("work of loads", energy(e.work));
+      physics.add("work of loads", energy(e.work),
+                  s.pressure_work ? "of it pressure in cracks: " +
+                                        energy(*s.pressure_work)
+                                  : "");
       physics.add("simulated time", engineering(s.final_time, "s", 4));
       physics.add_group("dissipated by");
       for (const auto &line : dissipated_lines()) {

@@ -81,6 +81,8 @@ namespace nsfd
         {"viscous", number(e.viscous)}, {"plastic", number(e.plastic)},
         {"impact", number(e.impact)},   {"numerical", number(e.numerical)}};
     json["work"] = number(e.work);
+    if (summary.pressure_work)
+      json["crack_pressure_work"] = number(*summary.pressure_work);
     json["ledger_defect_max"] = number(summary.ledger_defect_max);
     json["residual_max"] = number(summary.residual_max);
     json["penetration_max"] = number(summary.penetration_max);

@@ -290,6 +290,19 @@ namespace nsfd
     return dynamics_.communicator().sums(terms.data(), n_body_rows, n);
   }
 
+  /** w h p U_theta,N of the pressure in cracks. */
+  template <int dim>
+  double Ledger<dim>::pressure_work(const OneStepProblem<dim> &problem,
+                                    const State &old, const State &next) const
+  {
+    std::vector<double> terms(problem.n_owned);
+    for (std::size_t i = 0; i < problem.n_owned; ++i)
+      terms[i] = problem.weight[i] * problem.time_step * next.pressure[i] *
+                 (theta_ * next.relative_velocity[i * dim] +
+                  (1. - theta_) * old.relative_velocity[i * dim]);
+    return dynamics_.communicator().sum(terms);
+  }
+
   template <int dim>
   void Ledger<dim>::book(const OneStepProblem<dim> &problem,
                          const LawEvaluation<dim> &evaluation,
@@ -319,6 +332,12 @@ namespace nsfd
     energy.numerical +=
         sums[numerical] + body[theta_mass] + body[theta_stiffness];
     energy.work += sums[motion] + body[loads];
+    next.pressure_work = old.pressure_work;
+    if (!next.pressure.empty()) {
+      const double work = pressure_work(problem, old, next);
+      energy.work += work;
+      next.pressure_work += work;
+    }
     next.broken_area = old.broken_area + sums[broken];
     next.positive_friction_work =
         old.positive_friction_work + sums[positive_friction];

@@ -38,6 +38,8 @@ namespace nsfd
     const std::vector<double> &reactions() const { return reactions_; }
 
   private:
+    double pressure_work(const OneStepProblem<dim> &problem, const State &old,
+                         const State &next) const;
     std::vector<double> book_bodies(const std::vector<double> &forces,
                                     double time_step, const State &old,
                                     const State &next) const;

@@ -1,6 +1,7 @@
 #include "nsfd/time/moreau_jean.h"
 
 #include "activation.h"
+#include "crack_pressure.h"
 #include "initial_state.h"
 #include "ledger.h"
 #include "step_data.h"
@@ -28,6 +29,7 @@ namespace nsfd
     , uniqueness_(std::make_unique<UniquenessBound<dim>>(input, dynamics))
     , ledger_(std::make_unique<Ledger<dim>>(input, discretization, dynamics,
                                             *uniqueness_))
+    , crack_pressure_(CrackPressure<dim>::make(input, discretization))
     , forces_(discretization.bodies().n_dofs(), 0.)
   {
     for (const auto &block : input.interfaces)
@@ -79,7 +81,10 @@ namespace nsfd
       dynamics_.reinit(h, input_.time.theta);
       set_step(input_, discretization_, dynamics_, old, h, problem_);
       set_loads(old.time + input_.time.theta * h);
-      move_freely(old);
+      if (crack_pressure_)
+        crack_pressure_->evaluate(old, old.time + input_.time.theta * h,
+                                  next.pressure);
+      move_freely(old, next.pressure);
     }
     // kinetic energies before the impulses: the scale of round-off
     dynamics_.apply(Dynamics<dim>::Operator::mass, v_free_.data(),
@@ -132,9 +137,13 @@ namespace nsfd
     ++counters_.load_assemblies;
   }
 
-  /** v_free = v_k + M_hat^{-1} h (F - K (q_k + h theta v_k)), U_free. */
+  /**
+   * v_free = v_k + M_hat^{-1} h (F - K (q_k + h theta v_k)), U_free; pressure
+   * in cracks is a part of F.
+   */
   template <int dim>
-  void MoreauJean<dim>::move_freely(const State &old)
+  void MoreauJean<dim>::move_freely(const State &old,
+                                    const std::vector<double> &pressure)
   {
     const double h = problem_.time_step, theta = problem_.theta;
     const std::size_t n_dofs = old.velocity.size();
@@ -150,6 +159,9 @@ namespace nsfd
                     v_free_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)
       v_free_[i] += old.velocity[i];
+    if (crack_pressure_)
+      dynamics_.add_velocity_change(
+        crack_pressure_->impulse(pressure, h).data(), v_free_.data());
     dynamics_.relative_velocity(v_free_.data(), problem_.free_velocity.data());
   }
 

@@ -58,6 +58,13 @@ namespace end_to_end
         {"step_load", {}, {}},
         {"stop", {}, {}},
         {"bar_wall_in_space", column, column, "bar_wall"},
+        {"midplane_pressure",
+         {"Mesh/cells=10, 10",
+          "Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"},
+         {"Mesh/cells=10, 10", "Time/end=4 ns", "Solver/tolerance=1e-11",
+          "Interface: midline/broken=y < 5 um",
+          "Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"},
+         "midplane"},
         // damage, contact and friction together, and sweeps where Newton stalls
         {"quickstart",
          {"Mesh/cells=12, 9", "Time/step=0.4 us", "Constants/turn=60 us",

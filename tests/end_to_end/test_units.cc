@@ -110,7 +110,7 @@ namespace end_to_end
           "Interface: springs/tangential stiffness={4e12 stiffness}",
           "Time/end={2e-3 time}"},
          1e-9},
-        // damage, contact, friction, scattered strengths
+        // damage, contact, friction, scattered strengths, crack pressure
         {"quickstart",
          {"Mesh/cells=12, 9", "Constants/pull={4 velocity}",
           "Constants/push={4 velocity}", "Constants/rub={2 velocity}",
@@ -123,6 +123,7 @@ namespace end_to_end
           "Material: PMMA/density={1190 density}",
           "Interface: all/stiffness={2.72e13 stiffness}",
           "Interface: all/toughness={350 toughness}",
+          "Interface: all/crack pressure={1e5 stress} * (1 + y / {1 length})",
           "Boundary: top/velocity x=if(t < turn, 0, rub)",
           "Boundary: bottom/velocity x=if(t < turn, 0, -rub)",
           "Time/step={0.4e-6 time}", "Time/end={100e-6 time}"},

@@ -190,6 +190,10 @@ namespace
           "ledger_defect_max", "residual_max", "penetration_max", "counters",
           "errors", "fragments", "failure", "timings"})
       EXPECT_TRUE(json.contains(key)) << key;
+    EXPECT_FALSE(json.contains("crack_pressure_work")) << "no such part";
+    summary.pressure_work = 0.5;
+    write_summary(path, summary);
+    EXPECT_EQ(nlohmann::json::parse(read(path))["crack_pressure_work"], 0.5);
     for (const char *key : {"kinetic", "elastic", "cohesive"})
       EXPECT_TRUE(json["energy"].contains(key)) << key;
     for (const char *key :

@@ -108,6 +108,9 @@ namespace nsfd
     bool has_broken = false;
     Expression broken; ///< points where it is not zero start at beta = 0
     IntactFaces intact = IntactFaces::spring;
+    /// Pa, of x, y, z, t: on the lips of points with beta <= threshold
+    std::optional<Expression> crack_pressure;
+    double pressure_threshold = 0.;
   };
 
   struct BoundaryInput

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,7 +11,8 @@ namespace nsfd
 {
   /**
    * The energy lines of a run, in J (J/m of depth in two dimensions). `work`
-   * is the work of loads and prescribed motion since t = 0; the dissipated
+   * is the work of loads (pressure in cracks is one) and prescribed motion
+   * since t = 0; the dissipated
    * lines are sums since t = 0. Closed ledger: kinetic + elastic + cohesive
    * + dissipated lines - initial energy - work = 0.
    */
@@ -52,6 +54,7 @@ namespace nsfd
     double ledger_defect_max = 0., residual_max = 0., penetration_max = 0.,
            penetration_bound = 0., positive_friction_work = 0.,
            rigid_drift_max = 0.;
+    std::optional<double> pressure_work; ///< in cracks, if the scene has one
     unsigned int fragments = 1;
     std::map<std::string, double> counters;
     std::map<std::string, double> errors;

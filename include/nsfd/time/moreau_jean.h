@@ -11,6 +11,8 @@ namespace nsfd
 {
   struct SceneInput;
   template <int dim>
+  class CrackPressure;
+  template <int dim>
   class Ledger;
   template <int dim>
   class UniquenessBound;
@@ -89,7 +91,7 @@ namespace nsfd
 
   private:
     void set_loads(double time);
-    void move_freely(const State &old);
+    void move_freely(const State &old, const std::vector<double> &pressure);
     SolverReport solve(const SolverControl &control,
                        double energy_scale,
                        std::vector<double> &impulse,
@@ -105,6 +107,7 @@ namespace nsfd
     OneStepProblem<dim> problem_;
     std::unique_ptr<UniquenessBound<dim>> uniqueness_;
     std::unique_ptr<Ledger<dim>> ledger_;
+    std::unique_ptr<CrackPressure<dim>> crack_pressure_; ///< or null
     bool has_extrinsic_ = false;
     std::vector<double> forces_, v_free_, work_;
     bool forces_known_ = false;

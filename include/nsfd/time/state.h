@@ -27,9 +27,12 @@ namespace nsfd
     std::vector<PointKind> kind;
     std::vector<std::uint8_t> two_sided; ///< intact spring, also in compression
     std::vector<std::uint8_t> contact;   ///< contact impulse in the last step
+    std::vector<double> pressure; ///< in cracks in the last step, Pa; empty if
+                                  ///< the scene has none
     EnergyLines energy;                  ///< dissipated lines and work: sums
     double initial_energy = 0., largest_energy = 0.;
     double penetration = 0., penetration_excess = 0., rigid_drift = 0.,
-           positive_friction_work = 0., broken_area = 0.;
+           positive_friction_work = 0., broken_area = 0.,
+           pressure_work = 0.; ///< of cracks, a part of the work
   };
 } // namespace nsfd
