@@ -293,6 +293,7 @@ namespace nsfd
       s.positive_friction_work = state_.positive_friction_work;
       if (!state_.pressure.empty())
         s.pressure_work = state_.pressure_work;
+      s.viscous_traction_max = state_.viscous_traction;
       s.rigid_drift_max = state_.rigid_drift;
       s.fragments = fragments_->count();
       double bound = 0.;

@@ -75,6 +75,7 @@ namespace nsfd
         {units::pressure, "a pressure", "135 GPa"},
         {units::energy_per_area, "an energy per area", "0.5 J/m^2"},
         {units::stiffness_per_area, "a pressure per length", "10 GPa/um"},
+        {units::viscosity_per_length, "a pressure per velocity", "1 MPa*s/m"},
         {{1, 1, -2}, "a force", ""},
         {{1, 2, -2}, "an energy", ""},
         {{0, 0, -1}, "a frequency", ""},

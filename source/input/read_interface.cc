@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -16,11 +15,11 @@ namespace nsfd
         {"contact", "unilateral contact and Coulomb friction only"},
     };
 
-    /** Entries of strength and toughness, which only cohesive laws have. */
-    const std::vector<std::string> factor_entries = {
-        "strength factor",  "toughness factor",  "scatter",
-        "strength scatter", "toughness scatter", "strength modulus",
-        "toughness modulus"};
+    /** Entries that all cohesive laws have, and only they. */
+    const std::vector<std::string> cohesive_entries = {
+        "opening viscosity", "strength factor",  "toughness factor",
+        "scatter",           "strength scatter", "toughness scatter",
+        "strength modulus",  "toughness modulus"};
 
     /** The law of a block, checked; empty if nothing more can be read. */
     std::string read_law_name(SectionReader &reader)
@@ -183,10 +182,10 @@ namespace nsfd
       input.crack_pressure = reader.expression(name, "", units::pressure, text);
       if (!input.law)
         return;
-      const bool has_tail = std::isinf(input.law->final_opening());
       input.pressure_threshold = reader.number(
-          "pressure threshold", has_tail ? "0.001" : "0", units::none,
-          {0., 1., false, true}, "beta up to which a point counts as broken");
+          "pressure threshold", fmt::format("{}", input.broken_beta()),
+          units::none, {0., 1., false, true},
+          "beta up to which a point counts as broken");
     }
 
     /** The law, and what only cohesive laws have besides it. */
@@ -194,6 +193,10 @@ namespace nsfd
     {
       input.law = read_cohesive_law(reader, input.law_name);
       read_point_factors(reader, input);
+      input.opening_viscosity =
+          reader.number("opening viscosity", "0", units::viscosity_per_length,
+                        Range::non_negative(),
+                        "Pa s/m: traction over opening speed until broken");
 
       if (input.law && input.law->extrinsic() &&
           input.where.kind == Where::Kind::all)
@@ -223,7 +226,7 @@ namespace nsfd
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
                        "intact faces", "crack pressure", "pressure threshold"},
                       reason);
-        reader.refuse(factor_entries, reason);
+        reader.refuse(cohesive_entries, reason);
         return input;
       }
       if (input.law_name == "contact") {
@@ -232,12 +235,12 @@ namespace nsfd
         const std::string reason =
             "faces of the law `contact` carry no cohesion";
         reader.refuse({"friction exponent", "broken", "intact faces"}, reason);
-        reader.refuse(factor_entries, reason);
+        reader.refuse(cohesive_entries, reason);
         return input;
       }
       if (input.law_name == "elastic") {
         read_springs(reader, input);
-        reader.refuse(factor_entries, "the springs of `elastic` never break");
+        reader.refuse(cohesive_entries, "the springs of `elastic` never break");
       } else
         read_cohesive_block(reader, input);
       read_contact(reader, input);

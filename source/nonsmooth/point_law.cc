@@ -121,6 +121,60 @@ namespace nsfd
       }
     };
 
+    /**
+     * The spring and a traction eta <U_theta>_+ = c <U - U_0>_+ next to it,
+     * with c = eta theta and U_0 = -U_k (1-theta)/theta.
+     */
+    struct NormalLaw
+    {
+      NormalSpring spring;
+      double viscosity, start; // c, U_0
+
+      /** No velocity is asked for by @p traction: all up to U_0 have it. */
+      bool is_flat(const double traction) const
+      {
+        return spring.tension == 0. && spring.compression == 0. &&
+               (viscosity == 0. || traction <= 0.);
+      }
+
+      bool drags(const double velocity) const
+      {
+        return viscosity > 0. && velocity > start;
+      }
+
+      double at(const double velocity) const
+      {
+        return drags(velocity)
+                 ? spring.at(velocity) + viscosity * (velocity - start)
+                 : spring.at(velocity);
+      }
+
+      double derivative(const double velocity) const
+      {
+        return drags(velocity) ? spring.derivative(velocity) + viscosity
+                               : spring.derivative(velocity);
+      }
+
+      /** U - U_loc + a R(U) = 0, a >= 0. */
+      double solve(const double local, const double a) const
+      {
+        if (viscosity == 0. || start - local + a * spring.at(start) >= 0.)
+          return spring.solve(local, a);
+        const double share = a * viscosity, factor = 1. + share;
+        return spring.solve((local + share * start) / factor, a / factor);
+      }
+
+      /** U with R(U) = traction. */
+      double inverse(const double traction) const
+      {
+        if (viscosity == 0.)
+          return spring.inverse(traction);
+        return traction > spring.at(start)
+                 ? spring.solve(start + traction / viscosity, 1. / viscosity)
+                 : spring.inverse(traction);
+      }
+    };
+
     /** Tangential cohesive traction b tau (y0 + s U_T), per component. */
     struct TangentialSpring
     {
@@ -149,6 +203,19 @@ namespace nsfd
               velocity_slope(problem),
               old,
               problem.rule == CohesionRule::exact};
+    }
+
+    template <int dim>
+    NormalLaw normal_law(const OneStepProblem<dim> &problem,
+                         const std::size_t i,
+                         const double secant)
+    {
+      const NormalSpring spring = normal_spring<dim>(problem, i, secant);
+      if (problem.viscosity.empty() || problem.viscosity[i] == 0.)
+        return {spring, 0., 0.};
+      return {spring, problem.viscosity[i] * problem.theta,
+              (problem.jump_old[i * dim] - problem.jump_free[i * dim]) /
+                (problem.time_step * problem.theta)};
     }
 
     /** y0 of the tangential spring R_T = b tau (y0 + s U_T). */
@@ -276,20 +343,20 @@ namespace nsfd
                       const double majorant,
                       LocalSolution<dim> &solution)
     {
-      const NormalSpring spring = normal_spring<dim>(problem, i, secant);
+      const NormalLaw law = normal_law<dim>(problem, i, secant);
       const double wh = problem.weight[i] * problem.time_step;
-      double U = spring.solve(local, majorant * wh);
+      double U = law.solve(local, majorant * wh);
       solution.contact_impulse = 0.;
       if (problem.contact[i] && U < problem.target[i]) {
         U = problem.target[i];
         solution.impulse[0] = (U - local) / majorant;
-        solution.contact_impulse = solution.impulse[0] + wh * spring.at(U);
+        solution.contact_impulse = solution.impulse[0] + wh * law.at(U);
         solution.status = PointStatus::stick;
       } else {
         // a stiff spring: its traction is a difference of large jumps
-        solution.impulse[0] = majorant * wh * spring.derivative(U) > 1.
+        solution.impulse[0] = majorant * wh * law.derivative(U) > 1.
                                 ? (U - local) / majorant
-                                : -wh * spring.at(U);
+                                : -wh * law.at(U);
         solution.status = PointStatus::open;
       }
       solution.velocity[0] = U;
@@ -624,7 +691,7 @@ namespace nsfd
     const double wh = problem.weight[i] * problem.time_step;
     if (solution.status == PointStatus::open) {
       const double k =
-        wh * normal_spring<dim>(problem, i, frozen.secant)
+        wh * normal_law<dim>(problem, i, frozen.secant)
                .derivative(solution.velocity[0]);
       slopes[0] = k / (1. + majorant_normal * k);
     } else
@@ -669,13 +736,14 @@ namespace nsfd
     if (std::isinf(frozen.secant))
       return velocity;
     const double wh = problem.weight[i] * problem.time_step;
-    const NormalSpring normal = normal_spring<dim>(problem, i, frozen.secant);
+    const NormalLaw normal = normal_law<dim>(problem, i, frozen.secant);
     const double target =
       problem.contact[i] ? problem.target[i] : -infinity;
-    if (normal.tension == 0. && normal.compression == 0.)
-      velocity[0] = problem.contact[i] ? target : 0.;
+    const double traction = -impulse[0] / wh;
+    if (normal.is_flat(traction))
+      velocity[0] = problem.contact[i] ? target : normal.start;
     else
-      velocity[0] = std::max(target, normal.inverse(-impulse[0] / wh));
+      velocity[0] = std::max(target, normal.inverse(traction));
 
     const TangentialSpring spring =
       tangential_spring<dim>(problem, i, frozen.secant);
@@ -731,8 +799,15 @@ namespace nsfd
              2.;
     };
     const auto traction = [&](const double b) {
-      const NormalSpring normal = normal_spring<dim>(problem, i, b);
+      const NormalLaw normal = normal_law<dim>(problem, i, b);
       result.cohesive_traction[0] = normal.at(velocity[0]);
+      // eta <U_theta>_+ U_theta h
+      if (normal.drags(velocity[0])) {
+        const double speed = problem.theta * (velocity[0] - normal.start);
+        result.viscous_traction = problem.viscosity[i] * speed;
+        result.viscous =
+          result.viscous_traction * speed * problem.time_step;
+      }
       const TangentialSpring spring = tangential_spring<dim>(problem, i, b);
       for (unsigned int c = 1; c < dim; ++c)
         result.cohesive_traction[c] =

@@ -184,6 +184,10 @@ namespace nsfd
             within(s.penetration_max <= s.penetration_bound * (1. + 1e-9)));
       else
         certificate.add("penetration", engineering(s.penetration_max, "m"));
+      if (s.viscous_traction_max)
+        certificate.add("largest viscous traction",
+                        engineering(*s.viscous_traction_max, "Pa", 4),
+                        "added to the strength of the law");
       if (s.positive_friction_work != 0.)
         certificate.add("positive friction work",
                         energy(s.positive_friction_work),

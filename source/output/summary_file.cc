@@ -83,6 +83,8 @@ namespace nsfd
     json["work"] = number(e.work);
     if (summary.pressure_work)
       json["crack_pressure_work"] = number(*summary.pressure_work);
+    if (summary.viscous_traction_max)
+      json["viscous_traction_max"] = number(*summary.viscous_traction_max);
     json["ledger_defect_max"] = number(summary.ledger_defect_max);
     json["residual_max"] = number(summary.residual_max);
     json["penetration_max"] = number(summary.penetration_max);

@@ -23,9 +23,9 @@ namespace nsfd
       impact,
       numerical,
       motion,
-      broken
+      broken,
+      viscous ///< only where a point of the scene has a viscosity
     };
-    constexpr unsigned int n_point_rows = 8;
 
     /** All points of one step, one after the other. */
     template <int dim>
@@ -41,9 +41,10 @@ namespace nsfd
       void book(std::size_t point);
 
       std::size_t n_owned;
-      std::vector<double> terms;     ///< rows of n_owned
+      unsigned int n_rows;
+      std::vector<double> terms;     ///< n_rows of n_owned
       std::vector<double> reactions; ///< the same, dim rows per boundary
-      double penetration = 0., excess = 0., drift = 0.;
+      double penetration = 0., excess = 0., drift = 0., viscous_traction = 0.;
       unsigned int active = 0;
       bool beyond_unique = false;
 
@@ -75,7 +76,9 @@ namespace nsfd
                               const OneStepProblem<dim> &problem,
                               const LawEvaluation<dim> &evaluation,
                               const State &old, State &next)
-        : n_owned(problem.n_owned), terms(n_point_rows * n_owned, 0.),
+        : n_owned(problem.n_owned),
+          n_rows(problem.viscosity.empty() ? viscous : viscous + 1),
+          terms(n_rows * n_owned, 0.),
           reactions(discretization.driven_boundaries().size() * dim * n_owned,
                     0.),
           discretization_(discretization), uniqueness_(uniqueness),
@@ -187,11 +190,15 @@ namespace nsfd
       put(stored, i, w * energies.stored);
       put(damage, i, dissipated);
       // -w h R.U_theta = -w (d psi + d D + N)
-      put(numerical, i,
-          -cohesive_work -
-              w * (energies.stored + energies.overlap_released -
-                   energies.stored_old) -
-              dissipated);
+      double spent = w * (energies.stored + energies.overlap_released -
+                          energies.stored_old);
+      if (energies.viscous > 0.) {
+        put(viscous, i, w * energies.viscous);
+        spent += w * energies.viscous;
+        viscous_traction =
+            std::max(viscous_traction, energies.viscous_traction);
+      }
+      put(numerical, i, -cohesive_work - spent - dissipated);
       put(numerical, i, w * energies.overlap_released);
     }
 
@@ -316,7 +323,7 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_points; ++i)
       points.book(i);
     const auto sums =
-        communicator.sums(points.terms.data(), n_point_rows, points.n_owned);
+        communicator.sums(points.terms.data(), points.n_rows, points.n_owned);
     if (!reactions_.empty())
       reactions_ = communicator.sums(points.reactions.data(), reactions_.size(),
                                      points.n_owned);
@@ -329,6 +336,12 @@ namespace nsfd
     energy.damage += sums[damage];
     energy.friction += sums[friction];
     energy.impact += sums[impact];
+    if (!problem.viscosity.empty()) {
+      energy.viscous += sums[viscous];
+      next.viscous_traction =
+          std::max(old.viscous_traction.value_or(0.),
+                   communicator.max(points.viscous_traction));
+    }
     energy.numerical +=
         sums[numerical] + body[theta_mass] + body[theta_stiffness];
     energy.work += sums[motion] + body[loads];
@@ -351,9 +364,10 @@ namespace nsfd
     report.active = unsigned(communicator.sum_integer(points.active));
     report.beyond_unique = communicator.any(points.beyond_unique);
 
-    next.largest_energy = std::max(
-        {old.largest_energy, energy.kinetic, energy.elastic, energy.cohesive,
-         std::abs(energy.work), energy.damage, energy.impact, energy.friction});
+    next.largest_energy =
+        std::max({old.largest_energy, energy.kinetic, energy.elastic,
+                  energy.cohesive, std::abs(energy.work), energy.damage,
+                  energy.impact, energy.friction, energy.viscous});
     const double defect = energy.kinetic + energy.elastic + energy.cohesive +
                           energy.damage + energy.friction + energy.viscous +
                           energy.plastic + energy.impact + energy.numerical -

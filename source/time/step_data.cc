@@ -38,6 +38,14 @@ namespace nsfd
       return interaction;
     }
 
+    bool has_opening_viscosity(const SceneInput &input)
+    {
+      return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                         [](const InterfaceInput &block) {
+                           return block.opening_viscosity > 0.;
+                         });
+    }
+
     /** U_N that contact allows, without the forecast. */
     double contact_target(const TimeInput &time, const double restitution,
                           const double u_N, const double U_N,
@@ -104,6 +112,22 @@ namespace nsfd
           problem.sliding_offset[i * dim + c] =
               (1. - time.theta) / time.theta *
               old.relative_velocity[i * dim + c];
+    }
+
+    /** Of points that were not broken before the step. */
+    template <int dim>
+    void set_viscosity(const SceneInput &input,
+                       const Discretization<dim> &discretization,
+                       const State &old, OneStepProblem<dim> &problem)
+    {
+      for (std::size_t i = 0; i < problem.viscosity.size(); ++i) {
+        const PointOrigin origin = discretization.origins()[i];
+        if (origin.kind != PointOrigin::Kind::interface)
+          continue;
+        const auto &block = input.interfaces[origin.block];
+        problem.viscosity[i] =
+            old.beta[i] > block.broken_beta() ? block.opening_viscosity : 0.;
+      }
     }
 
     /** Velocities of driven boundaries at the end of the step. */
@@ -181,6 +205,8 @@ namespace nsfd
       problem.interactions.push_back(interaction_of(obstacle));
     problem.interactions.emplace_back();
 
+    if (has_opening_viscosity(input))
+      problem.viscosity.assign(points.n_points, 0.);
     for (std::size_t i = 0; i < points.n_points; ++i) {
       const PointOrigin origin = discretization.origins()[i];
       switch (origin.kind) {
@@ -220,6 +246,7 @@ namespace nsfd
           old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
     for (std::size_t i = 0; i < problem.n_points; ++i)
       set_point(input.time, discretization.extent(), old, i, problem);
+    set_viscosity(input, discretization, old, problem);
     set_motion(input, discretization, old, problem);
     set_majorants(dynamics, problem);
   }

@@ -258,6 +258,9 @@ namespace
       toughness = g * law.toughness();
       problem.kind = {law.extrinsic() ? PointKind::rigid : PointKind::cohesive};
       problem.opening_max = {(1. - 1e-14) * law.elastic_limit() * g / a};
+      if (number(0., 1.) < 0.3)
+        problem.viscosity = {number(0., 0.2) * law.strength() /
+                             end_of_softening(law)};
       two_sided_ = !law.extrinsic() && number(0., 1.) < 0.5;
       for (double *R : {&R_[0], &R_[1]})
         *R = std::pow(10., number(-5., -1.)) * end_of_softening(law) /
@@ -341,8 +344,10 @@ namespace
         problem.kind[0] = PointKind::cohesive;
       if (problem.kind[0] == PointKind::cohesive && beta < 1.)
         two_sided_ = false;
-      if (problem.kind[0] == PointKind::cohesive && beta == 0.)
+      if (problem.kind[0] == PointKind::cohesive && beta == 0.) {
         problem.kind[0] = PointKind::free;
+        problem.viscosity.clear();
+      }
     }
 
     /** They make the velocity, and are cohesion, contact and friction. */
@@ -398,7 +403,7 @@ namespace
       }
       ASSERT_NEAR(work,
                   energies.stored + energies.overlap_released -
-                      energies.stored_old + energies.damage,
+                      energies.stored_old + energies.damage + energies.viscous,
                   1e-11 * size);
     }
   };

@@ -46,6 +46,7 @@ namespace end_to_end
          {"Mesh/cells=10, 10", "Interface: midline/scatter=weibull",
           "Interface: midline/strength modulus=8",
           "Interface: midline/toughness modulus=5",
+          "Interface: midline/opening viscosity=5 MPa*s/m",
           "Interface: midline/toughness factor=1 + 0.3 * sin(y / 1 um)"},
          {"Mesh/cells=10, 10", "Interface: midline/scatter=weibull",
           "Interface: midline/strength modulus=8", "Time/end=4 ns",

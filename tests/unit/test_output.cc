@@ -190,10 +190,14 @@ namespace
           "ledger_defect_max", "residual_max", "penetration_max", "counters",
           "errors", "fragments", "failure", "timings"})
       EXPECT_TRUE(json.contains(key)) << key;
-    EXPECT_FALSE(json.contains("crack_pressure_work")) << "no such part";
+    for (const char *key : {"crack_pressure_work", "viscous_traction_max"})
+      EXPECT_FALSE(json.contains(key)) << "no such part";
     summary.pressure_work = 0.5;
+    summary.viscous_traction_max = 3.;
     write_summary(path, summary);
-    EXPECT_EQ(nlohmann::json::parse(read(path))["crack_pressure_work"], 0.5);
+    const auto more = nlohmann::json::parse(read(path));
+    EXPECT_EQ(more["crack_pressure_work"], 0.5);
+    EXPECT_EQ(more["viscous_traction_max"], 3.);
     for (const char *key : {"kinetic", "elastic", "cohesive"})
       EXPECT_TRUE(json["energy"].contains(key)) << key;
     for (const char *key :

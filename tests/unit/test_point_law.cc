@@ -150,8 +150,10 @@ namespace
         problem.kind[0] = PointKind::cohesive;
       if (problem.kind[0] == PointKind::cohesive) {
         two_sided = two_sided && energies.beta == 1.;
-        if (energies.beta <= 0.)
+        if (energies.beta <= 0.) {
           problem.kind[0] = PointKind::free;
+          problem.viscosity.clear();
+        }
       }
     }
 
@@ -570,6 +572,66 @@ namespace
     }
   }
 
+  // --- viscosity
+
+  TEST(PointLaw, ViscosityAtConstantSpeed)
+  {
+    // opened to Delta with the speed v: G + eta v Delta, whatever the steps
+    for (const auto &entry : potentials) {
+      std::shared_ptr<const CohesiveLaw> law =
+          make_law(entry.name, entry.entries);
+      if (!std::isfinite(law->final_opening()))
+        continue;
+      SCOPED_TRACE(entry.name);
+      const double G = law->toughness(), Delta = law->final_opening();
+      for (const double theta : {0.5, 1.})
+        for (const unsigned int n : {1u, 7u, 60u}) {
+          OnePoint<2> point(interaction_of(law), initial_kind(*law),
+                            CohesionRule::exact, theta);
+          const double v = Delta / (n * point.problem.time_step),
+                       eta = 0.3 * law->strength() / v;
+          point.problem.viscosity = {eta};
+          double work = 0., damage = 0., viscous = 0.;
+          for (unsigned int k = 1; k <= n; ++k) {
+            const double old = point.jump[0];
+            // a little too far: the last step must not miss separation
+            point.drive({{k * Delta / n * (1. + 1e-13), 0.}});
+            work += point.energies.cohesive_traction[0] * (point.jump[0] - old);
+            damage += point.energies.damage;
+            viscous += point.energies.viscous;
+          }
+          const double dragged = eta * v * Delta;
+          EXPECT_NEAR(work, G + dragged, 1e-11 * (G + dragged));
+          EXPECT_NEAR(damage, G, 1e-11 * G);
+          EXPECT_NEAR(viscous, dragged, 1e-11 * dragged);
+          EXPECT_EQ(point.problem.kind[0], PointKind::free);
+        }
+    }
+  }
+
+  TEST(PointLaw, ViscosityShiftsThePeak)
+  {
+    // by eta v, only while the point opens
+    OnePoint<2> point(interaction_of(tvergaard()), PointKind::cohesive,
+                      CohesionRule::end_point);
+    point.problem.viscosity = {0.05};
+    const double peak = point.law().peak_opening(),
+                 v = peak / 4. / point.problem.time_step;
+    for (unsigned int k = 1; k <= 4; ++k) {
+      const auto solution = point.drive({{k * peak / 4., 0.}});
+      EXPECT_NEAR(point.pull(solution)[0],
+                  point.law().traction(k * peak / 4.) + 0.05 * v, 1e-12);
+      EXPECT_NEAR(point.energies.viscous_traction, 0.05 * v, 1e-12);
+    }
+    const auto closing = point.drive({{0.5 * peak, 0.}});
+    EXPECT_NEAR(point.pull(closing)[0], 0.5 * point.law().strength(), 1e-12);
+    EXPECT_EQ(point.energies.viscous, 0.);
+    // nor against slip
+    const auto slipping = point.drive({{0.5 * peak, 0.1 * peak}});
+    EXPECT_NEAR(point.energies.viscous, 0., 1e-20);
+    EXPECT_NEAR(point.pull(slipping)[0], 0.5 * point.law().strength(), 1e-12);
+  }
+
   // --- friction
 
   TEST(PointLaw, NoFrictionNoTangentialImpulse)
@@ -641,6 +703,9 @@ namespace
                           initial_kind(*law), rule, theta,
                           0.6 + 0.8 * unit(random), 0.5 + unit(random));
       point.two_sided = !law->extrinsic() && path % 2 == 0;
+      if (path % 5 == 4) // against the spring in a step of 0.02
+        point.problem.viscosity = {0.2 * unit(random) * law->strength() /
+                                   range};
       point.set_majorants(std::pow(10., -3. * unit(random)),
                           std::pow(10., -3. * unit(random)));
       for (unsigned int step = 0; step < 25; ++step) {
@@ -760,7 +825,7 @@ namespace
 
   TEST(PointLaw, ExactRuleClosesTheEnergy)
   {
-    unsigned int damaging = 0, released = 0;
+    unsigned int damaging = 0, released = 0, dragged = 0;
     const auto check = [&](auto &point, const auto &local,
                            const auto &solution) {
       constexpr unsigned int dim =
@@ -778,8 +843,12 @@ namespace
         size += std::abs(e.cohesive_traction[c] * change);
       }
       // the change of an energy is a difference: relative to the larger one
-      EXPECT_NEAR(work, e.stored + e.overlap_released - e.stored_old + e.damage,
+      EXPECT_NEAR(work,
+                  e.stored + e.overlap_released - e.stored_old + e.damage +
+                      e.viscous,
                   1e-12 * size);
+      EXPECT_GE(e.viscous, 0.);
+      dragged += e.viscous > 0.;
       EXPECT_GE(e.damage, 0.);
       EXPECT_LE(e.beta, point.beta()) << "damage healed";
       if (problem.kind[0] == PointKind::rigid && !solution.damages)
@@ -812,6 +881,7 @@ namespace
     // the paths have met what they are for
     EXPECT_GT(damaging, 1000u);
     EXPECT_GT(released, 10u);
+    EXPECT_GT(dragged, 100u);
   }
 
   TEST(PointLaw, ClosesTheEnergyInTinySteps)
@@ -1040,51 +1110,57 @@ namespace
   std::vector<FrozenCase<dim>> frozen_cases()
   {
     std::vector<FrozenCase<dim>> result;
-    for (const CohesionRule rule : rules)
-      for (const double theta : {0.5, 1.}) {
-        const auto add = [&](const std::string &name, const double old_N,
-                             const double local_N, const bool contact,
-                             const double secant, const double threshold,
-                             const bool two_sided, const double slip,
-                             const bool closed, const bool slides) {
-          FrozenCase<dim> item{
-              name + ", rule " + std::to_string(int(rule)) + ", theta " +
-                  std::to_string(theta),
-              OnePoint<dim>(spring(5., 0.7), PointKind::cohesive, rule, theta),
-              {secant, 0.},
-              {},
-              closed,
-              slides};
-          auto &point = item.point;
-          point.problem.interactions[0].law = michel_suquet();
-          point.problem.interactions[0].stiffness_ratio = 0.7;
-          point.problem.interactions[0].shear_weight = 0.7;
-          point.set_majorants(0.4, 0.9);
-          point.two_sided = two_sided;
-          point.jump[0] = old_N;
-          point.old_velocity[0] = 2.;
-          point.prepare();
-          point.problem.contact[0] = contact;
-          point.problem.target[0] = -1.5;
-          item.frozen.threshold = threshold * point.weight_step();
-          item.local[0] = local_N;
-          item.local[1] = slip;
-          result.push_back(item);
-        };
-        add("open and opening", 0.3, 8., false, 3., 0., false, 4., false, true);
-        add("intact in compression", -0.3, -8., false, 5., 0., true, 4., false,
-            true);
-        add("opens in the step", -0.05, 40., false, 5., 0., true, 4., false,
-            true);
-        add("closes in the step", 0.05, -40., false, 5., 0., true, 4., false,
-            true);
-        add("sticks in contact", 0.02, -40., true, 3., 50., false, 4., true,
-            false);
-        add("slides in contact", 0.02, -40., true, 3., 1., false, 40., true,
-            true);
-        add("slides without cohesion", 0.02, -40., true, 0., 1., false, 40.,
-            true, true);
-      }
+    for (const double viscosity : {0., 0.05})
+      for (const CohesionRule rule : rules)
+        for (const double theta : {0.5, 1.}) {
+          const auto add = [&](const std::string &name, const double old_N,
+                               const double local_N, const bool contact,
+                               const double secant, const double threshold,
+                               const bool two_sided, const double slip,
+                               const bool closed, const bool slides) {
+            FrozenCase<dim> item{name + ", rule " + std::to_string(int(rule)) +
+                                     ", theta " + std::to_string(theta) +
+                                     ", viscosity " + std::to_string(viscosity),
+                                 OnePoint<dim>(spring(5., 0.7),
+                                               PointKind::cohesive, rule,
+                                               theta),
+                                 {secant, 0.},
+                                 {},
+                                 closed,
+                                 slides};
+            auto &point = item.point;
+            point.problem.interactions[0].law = michel_suquet();
+            point.problem.interactions[0].stiffness_ratio = 0.7;
+            point.problem.interactions[0].shear_weight = 0.7;
+            point.set_majorants(0.4, 0.9);
+            point.two_sided = two_sided;
+            point.jump[0] = old_N;
+            point.old_velocity[0] = viscosity > 0. ? 1.7 : 2.; // off its kink
+            if (viscosity > 0.)
+              point.problem.viscosity = {viscosity};
+            point.prepare();
+            point.problem.contact[0] = contact;
+            point.problem.target[0] = -1.5;
+            item.frozen.threshold = threshold * point.weight_step();
+            item.local[0] = local_N;
+            item.local[1] = slip;
+            result.push_back(item);
+          };
+          add("open and opening", 0.3, 8., false, 3., 0., false, 4., false,
+              true);
+          add("intact in compression", -0.3, -8., false, 5., 0., true, 4.,
+              false, true);
+          add("opens in the step", -0.05, 40., false, 5., 0., true, 4., false,
+              true);
+          add("closes in the step", 0.05, -40., false, 5., 0., true, 4., false,
+              true);
+          add("sticks in contact", 0.02, -40., true, 3., 50., false, 4., true,
+              false);
+          add("slides in contact", 0.02, -40., true, 3., 1., false, 40., true,
+              true);
+          add("slides without cohesion", 0.02, -40., true, 0., 1., false, 40.,
+              true, true);
+        }
     return result;
   }
 

@@ -5,6 +5,7 @@
 #include "nsfd/interface/scatter.h"
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,9 +109,15 @@ namespace nsfd
     bool has_broken = false;
     Expression broken; ///< points where it is not zero start at beta = 0
     IntactFaces intact = IntactFaces::spring;
+    double opening_viscosity = 0.; ///< eta in Pa s/m, while beta > 0
     /// Pa, of x, y, z, t: on the lips of points with beta <= threshold
     std::optional<Expression> crack_pressure;
     double pressure_threshold = 0.;
+    /// beta up to which a point is broken: above 0 for laws with a tail
+    double broken_beta() const
+    {
+      return law && std::isinf(law->final_opening()) ? 1e-3 : 0.;
+    }
   };
 
   struct BoundaryInput

@@ -67,6 +67,8 @@ namespace nsfd
     std::vector<double> opening_factor;     ///< a / g, see CohesiveLaw; else 1
     std::vector<double> opening_max;        ///< d_m, largest effective opening
     std::vector<double> compression_stiffness; ///< two-sided while intact, else 0
+    std::vector<double> viscosity; ///< eta of the opening, Pa s/m; empty if
+                                   ///< no point has one
     std::vector<double> target;             ///< U_N >= target where in contact
 
     // per point and component

@@ -98,11 +98,13 @@ namespace nsfd
   template <int dim>
   struct PointEnergies
   {
-    std::array<double, dim> cohesive_traction{}; ///< R_coh in Pa
+    std::array<double, dim> cohesive_traction{}; ///< R_coh, with viscosity, Pa
+    double viscous_traction = 0.; ///< its viscous part
     double opening_max = 0., beta = 1.;          ///< after the step
     double stored = 0.;          ///< after the step, J/m^2, overlap included
     double stored_old = 0.;      ///< before
     double damage = 0.;          ///< dissipated in the step, J/m^2
+    double viscous = 0.;         ///< dissipated by viscosity, J/m^2
     double overlap_released = 0.; ///< spring energy dropped at first damage
   };
 

@@ -55,6 +55,8 @@ namespace nsfd
            penetration_bound = 0., positive_friction_work = 0.,
            rigid_drift_max = 0.;
     std::optional<double> pressure_work; ///< in cracks, if the scene has one
+    /// largest viscous traction, if the scene has one: what R_max is shifted by
+    std::optional<double> viscous_traction_max;
     unsigned int fragments = 1;
     std::map<std::string, double> counters;
     std::map<std::string, double> errors;

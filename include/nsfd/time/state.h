@@ -4,6 +4,7 @@
 #include "nsfd/output/run_record.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace nsfd
@@ -29,6 +30,7 @@ namespace nsfd
     std::vector<std::uint8_t> contact;   ///< contact impulse in the last step
     std::vector<double> pressure; ///< in cracks in the last step, Pa; empty if
                                   ///< the scene has none
+    std::optional<double> viscous_traction; ///< largest so far, Pa; if any
     EnergyLines energy;                  ///< dissipated lines and work: sums
     double initial_energy = 0., largest_energy = 0.;
     double penetration = 0., penetration_excess = 0., rigid_drift = 0.,
