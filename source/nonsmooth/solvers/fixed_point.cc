@@ -63,10 +63,10 @@ namespace nsfd
       LawEvaluation<dim> &evaluation;
       SolverReport &report;
 
-      std::vector<FrozenPoint> frozen;
-      Vector length; // d_0 of a point
+      std::vector<FrozenPoint> frozen{};
+      Vector length{}; // d_0 of a point
       double scale = 0.; // s_0
-      Vector best;
+      Vector best{};
       double best_error = std::numeric_limits<double>::infinity();
       unsigned int idle = 0, rounds = 0;
       bool finished = false;
