@@ -59,6 +59,7 @@ namespace nsfd
       Summary summary_;
       double start_wall_, last_step_ = 0.;
       unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
+      unsigned int attempts_ = 0; // at the present step, all rejected
       double redo_until_ = 0., redo_step_ = 0.;
       std::map<std::string, unsigned int> switches_;
     };
@@ -225,12 +226,17 @@ namespace nsfd
       auto &control = *model_.control;
       const double h = control.step();
       StepReport report;
+      // A shorter step is the cure for a step with several solutions, but not
+      // for every hard one: each further attempt may cost twice as much.
+      const unsigned int doublings = control.can_halve() ? attempts_ : 10;
       // the one place that catches StepRejected and shortens the step
       try {
-        report = model_.stepper->advance(state_, h, next,
-                                         !model_.control->can_halve());
+        report = model_.stepper->advance(
+          state_, h, next,
+          SolverControl().idle_rounds << std::min(doublings, 10u));
       } catch (const StepRejected &rejected) {
         ++rejected_;
+        ++attempts_;
         if (control.halve())
           return true;
         failure = std::string(rejected.what()) +
@@ -240,6 +246,7 @@ namespace nsfd
       }
       if (must_redo(report, next))
         return true;
+      attempts_ = 0;
       control.accept();
       next.time = control.time();
       std::swap(state_, next);

@@ -74,7 +74,7 @@ namespace nsfd
   template <int dim>
   StepReport
   MoreauJean<dim>::advance(const State &old, const double h, State &next,
-                           const bool last_attempt)
+                           const unsigned int idle_rounds)
   {
     {
       const Stopwatch watch(timings_.assembly);
@@ -102,8 +102,7 @@ namespace nsfd
       SolverControl control;
       control.tolerance = input_.solver.tolerance;
       control.maximum_iterations = input_.solver.maximum_iterations;
-      if (last_attempt)
-        control.idle_rounds = control.maximum_iterations;
+      control.idle_rounds = idle_rounds;
       report.solver = solve(control, energy_scale, next.impulse, evaluation);
     }
     if (!report.solver.converged)

@@ -53,11 +53,12 @@ namespace nsfd
 
     /**
      * From @p old to @p next = t + h. @throws StepRejected if the nonsmooth
-     * problem was not solved to the tolerance; after the @p last_attempt no
-     * shorter step follows, so the solver tries all it can.
+     * problem was not solved to the tolerance. @p idle_rounds as in
+     * SolverControl: how soon the solver may give up.
      */
     StepReport advance(const State &old, double time_step, State &next,
-                       bool last_attempt = false);
+                       unsigned int idle_rounds =
+                         SolverControl().idle_rounds);
 
     /**
      * Up to which a step has one solution, by the points that soften at
