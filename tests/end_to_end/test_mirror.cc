@@ -36,6 +36,19 @@ namespace end_to_end
          {},
          false,
          1e-8},
+        // the same one of three planes
+        {"spall_square",
+         {"Mesh/cells=200, 1", "Interface: plane/toughness=10"},
+         {"Interface: plane/where=min(abs(x - 0.85 m), abs(x - 0.9 m), "
+          "abs(x - 0.95 m)) < 1 mm"},
+         {"Interface: plane/where=min(abs(x - 0.15 m), abs(x - 0.1 m), "
+          "abs(x - 0.05 m)) < 1 mm"},
+         {},
+         {"Boundary: left\n  set traction x = if(t < l/c, sigma, 0)",
+          "Boundary: right\n  set traction x = if(t < l/c, -sigma, 0)"},
+         {},
+         false,
+         1e-8},
         // the scene is its own mirror image: hold one side instead
         {"patch_blocks",
          {},
