@@ -22,34 +22,10 @@ namespace nsfd
   public:
     explicit Brittle(SectionReader &reader)
     {
-      const bool has_stiffness = reader.has("stiffness"),
-                 has_strength = reader.has("strength"),
-                 has_toughness = reader.has("toughness");
-      double C = 1., R_max = 1., G = 0.5;
-      if (has_stiffness)
-        C = reader.number("stiffness", "", units::stiffness_per_area,
-                          Range::positive(), "Normal stiffness C_N");
-      if (has_strength)
-        R_max = reader.number("strength", "", units::pressure,
-                              Range::positive(), "Largest traction R_max");
-      if (has_toughness)
-        G = reader.number("toughness", "", units::energy_per_area,
-                          Range::positive(), "Fracture energy G");
-
-      if (has_stiffness && has_strength && has_toughness)
-        reader.error("toughness",
-                     "`stiffness`, `strength` and `toughness` are tied by "
-                     "G = R_max^2 / (2 C) and cannot all be given",
-                     "remove one of the three");
-      else if (has_stiffness + has_strength + has_toughness < 2)
-        reader.error("strength",
-                     "the law brittle needs two of `stiffness`, `strength` and "
-                     "`toughness`",
-                     "add the missing ones");
-
-      stiffness_ = has_stiffness ? C : 0.5 * R_max * (R_max / G);
-      elastic_limit_ =
-          has_strength ? R_max / stiffness_ : std::sqrt(2. * G / stiffness_);
+      const auto peak = laws::read_elastic_peak(reader, "brittle", 0.5,
+                                                "G = R_max^2 / (2 C)");
+      stiffness_ = peak.stiffness;
+      elastic_limit_ = peak.opening;
       stiffness_ratio_ = laws::read_stiffness_ratio(reader, stiffness_);
     }
 

@@ -2,6 +2,7 @@
 
 #include "nsfd/input/section_reader.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -64,6 +65,44 @@ namespace nsfd::laws
         strength = G / (zeta * *critical_opening);
     }
   };
+
+  /** C_N and the opening d_0 at the peak, of a law with G = zeta R_max^2 / C. */
+  struct ElasticPeak {
+    double stiffness, opening;
+  };
+
+  /**
+   * From two of stiffness, strength and toughness; @p relation says
+   * G = @p zeta R_max^2 / C in words.
+   */
+  inline ElasticPeak read_elastic_peak(SectionReader &reader,
+                                       const std::string &law,
+                                       const double zeta,
+                                       const std::string &relation)
+  {
+    const auto stiffness =
+        given(reader, "stiffness", units::stiffness_per_area,
+              "Normal stiffness C_N");
+    const auto strength =
+        given(reader, "strength", units::pressure, "Largest traction R_max");
+    const auto toughness = given(reader, "toughness", units::energy_per_area,
+                                 "Fracture energy G");
+    const int n_given = stiffness.has_value() + strength.has_value() +
+                        toughness.has_value();
+    if (n_given == 3)
+      reader.error("toughness",
+                   "`stiffness`, `strength` and `toughness` are tied by " +
+                       relation + " and cannot all be given",
+                   "remove one of the three");
+    if (n_given < 2)
+      reader.error("strength",
+                   "the law " + law +
+                       " needs two of `stiffness`, `strength` and `toughness`",
+                   "add the missing ones");
+    const double R_max = strength.value_or(1.), G = toughness.value_or(1.),
+                 C = stiffness ? *stiffness : zeta * (R_max / G) * R_max;
+    return {C, strength ? R_max / C : std::sqrt(G / C / zeta)};
+  }
 
   /** delta_N / delta_T of d = |(u_N, u_T delta_N / delta_T)|. */
   inline double read_opening_ratio(SectionReader &reader,

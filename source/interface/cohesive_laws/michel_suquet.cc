@@ -1,4 +1,4 @@
-#include "nsfd/input/section_reader.h"
+#include "law_input.h"
 #include "nsfd/interface/cohesive_law.h"
 
 #include <cmath>
@@ -29,42 +29,12 @@ namespace nsfd
   public:
     explicit MichelSuquet(SectionReader &reader)
     {
-      const bool has_stiffness = reader.has("stiffness");
-      const bool has_strength = reader.has("strength");
-      const bool has_toughness = reader.has("toughness");
-
-      double C = 1., R_max = 1., G = 1.;
-      if (has_stiffness)
-        C = reader.number("stiffness", "", units::stiffness_per_area,
-                          Range::positive(), "Normal stiffness C_N");
-      if (has_strength)
-        R_max = reader.number("strength", "", units::pressure,
-                              Range::positive(), "Largest traction R_max");
-      if (has_toughness)
-        G = reader.number("toughness", "", units::energy_per_area,
-                          Range::positive(), "Fracture energy G");
-
-      if (has_stiffness && has_strength && has_toughness)
-        reader.error("toughness",
-                     "`stiffness`, `strength` and `toughness` are tied by "
-                     "G = (9/2 - 4 ln 2) R_max^2 / C and cannot all be given",
-                     "remove one of the three");
-      if (has_stiffness + has_strength + has_toughness < 2)
-        reader.error("strength",
-                     "the law michel-suquet needs two of `stiffness`, "
-                     "`strength` and `toughness`",
-                     "add the missing ones");
-
-      stiffness_ = has_stiffness ? C : energy_factor * (R_max / G) * R_max;
-      elastic_limit_ = has_strength ? R_max / stiffness_
-                                    : std::sqrt(G / stiffness_ / energy_factor);
-      const std::string text = "Stiffness C_T in shear; default C_N";
-      stiffness_ratio_ = reader.optional("tangential stiffness", text)
-                             ? reader.number("tangential stiffness", "",
-                                             units::stiffness_per_area,
-                                             Range::positive(), text) /
-                                   stiffness_
-                             : 1.;
+      const auto peak =
+          laws::read_elastic_peak(reader, "michel-suquet", energy_factor,
+                                  "G = (9/2 - 4 ln 2) R_max^2 / C");
+      stiffness_ = peak.stiffness;
+      elastic_limit_ = peak.opening;
+      stiffness_ratio_ = laws::read_stiffness_ratio(reader, stiffness_);
     }
 
     bool extrinsic() const override { return false; }
