@@ -1,6 +1,7 @@
 #include "nsfd/input/command_line.h"
 
 #include "nsfd/input/input_errors.h"
+#include "refuse_word.h"
 #include "nsfd/input/read_scene.h"
 
 #include <CLI/CLI.hpp>
@@ -52,25 +53,14 @@ namespace nsfd
     int fail(std::ostream &err, const std::string &message,
              const std::string &advice)
     {
-      err << "nsfd: " << message << "\n";
-      if (!advice.empty())
-        err << "  " << advice << "\n";
-      return exit_code::wrong_usage;
+      return refuse(err, "nsfd", message, advice);
     }
 
     /** Arguments that no option has taken. */
     int fail_at(std::ostream &err, const std::string &word, const CLI::App &app)
     {
-      const std::string option = word.substr(0, word.find('='));
-      if (option.empty() || option[0] != '-')
-        return fail(err, fmt::format("`{}` is one file too many", word),
-                    "run one scene at a time");
-      std::vector<std::string> known;
-      for (const CLI::Option *other : app.get_options())
-        for (const std::string &name : other->get_lnames())
-          known.push_back("--" + name);
-      return fail(err, fmt::format("there is no option `{}`", option),
-                  did_you_mean(option, known, "`nsfd --help` prints them all"));
+      return refuse_word(err, "nsfd", word, app, "file",
+                         "run one scene at a time");
     }
   } // namespace
 

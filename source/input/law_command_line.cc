@@ -1,5 +1,6 @@
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/input_errors.h"
+#include "refuse_word.h"
 #include "nsfd/law_path/path.h"
 
 #include <CLI/CLI.hpp>
@@ -14,26 +15,15 @@ namespace nsfd
     int fail(std::ostream &err, const std::string &message,
              const std::string &advice)
     {
-      err << "nsfd law: " << message << "\n";
-      if (!advice.empty())
-        err << "  " << advice << "\n";
-      return exit_code::wrong_usage;
+      return refuse(err, "nsfd law", message, advice);
     }
 
+    /** Arguments that no option has taken. */
     int fail_at(std::ostream &err, const std::string &word, const CLI::App &app)
     {
-      const std::string option = word.substr(0, word.find('='));
-      if (option.empty() || option[0] != '-')
-        return fail(err, fmt::format("`{}` is one law too many", word),
-                    "drive one law at a time, or write a file with several "
-                    "Interface blocks");
-      std::vector<std::string> known;
-      for (const CLI::Option *other : app.get_options())
-        for (const std::string &name : other->get_lnames())
-          known.push_back("--" + name);
-      return fail(
-          err, fmt::format("there is no option `{}`", option),
-          did_you_mean(option, known, "`nsfd law --help` prints them all"));
+      return refuse_word(err, "nsfd law", word, app, "law",
+                         "drive one law at a time, or write a file with several "
+                         "Interface blocks");
     }
 
     std::string paths_text()
