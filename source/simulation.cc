@@ -228,12 +228,12 @@ namespace nsfd
       StepReport report;
       // A shorter step is the cure for a step with several solutions, but not
       // for every hard one: each further attempt may cost twice as much.
-      const unsigned int doublings = control.can_halve() ? attempts_ : 10;
+      const unsigned int doublings = control.can_halve() ? std::min(attempts_, 10u) : 10;
       // the one place that catches StepRejected and shortens the step
       try {
         report = model_.stepper->advance(
           state_, h, next,
-          SolverControl().idle_rounds << std::min(doublings, 10u));
+          SolverControl().idle_rounds << doublings);
       } catch (const StepRejected &rejected) {
         ++rejected_;
         ++attempts_;

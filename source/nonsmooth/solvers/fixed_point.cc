@@ -172,18 +172,13 @@ namespace nsfd
       const auto &communicator = dynamics.communicator();
       for (const auto &solution : evaluation.solutions)
         round.scale = std::max(round.scale, solution.frozen.threshold);
-      round.scale = communicator.max(round.scale);
       for (const double P : impulse)
         round.scale = std::max(round.scale, std::abs(P));
       round.scale = communicator.max(round.scale);
 
       if (round.judge()) {
         Vector x = round.unknowns();
-        if (anderson_ == 0) {
-          do
-            round.apply(x);
-          while (round.judge());
-        } else {
+        if (anderson_ > 0) {
           using Distributed =
             dealii::LinearAlgebra::distributed::Vector<double>;
           const std::size_t n = 2 * problem.n_owned;
@@ -229,17 +224,16 @@ namespace nsfd
             round.idle = round.rounds = 0;
             round.finished = false;
           }
-          while (!round.finished) {
-            round.apply(x);
-            round.judge();
-          }
+        }
+        while (!round.finished) {
+          round.apply(x);
+          round.judge();
         }
       }
       if (evaluation.error > round.best_error) {
         impulse = round.best;
         evaluation.update(impulse);
       }
-      report.sweeps = 0;
       report.residual = evaluation.error;
       report.converged = evaluation.error <= control.tolerance;
       return report;
