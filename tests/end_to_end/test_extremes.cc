@@ -236,13 +236,10 @@ end
     EXPECT_LT(result.number("final_time"), 5.1e-9);
   }
 
-  // Tractions that jump, or fall infinitely fast at separation: no step is
-  // below the uniqueness bound. They do not shorten `step = auto`; the steps
-  // in which they soften are counted.
-  TEST(Extremes, InfiniteSofteningDoesNotShortenSteps)
+  /** Two cells pulled apart at a face with the law of @p entries. */
+  std::string pull(const std::string &entries, const std::string &toughness)
   {
-    const Workspace workspace;
-    const std::string pull = R"(# pull.prm - two cells are pulled apart.
+    return R"(# pull.prm - two cells are pulled apart.
 set dimension = 2
 subsection Mesh
   set type         = rectangle
@@ -257,9 +254,8 @@ end
 subsection Interface: middle
   set where     = abs(x - 10 um) < 1 nm
   set strength  = 300 MPa
-  set toughness = 0.5 J/m^2
-)";
-    const std::string rest = R"(end
+  set toughness = )" +
+           toughness + "\n" + entries + R"(end
 subsection Boundary: left
   set velocity x = -2 m/s
 end
@@ -271,13 +267,21 @@ subsection Time
   set step = auto
 end
 )";
+  }
+
+  // Tractions that jump, or fall infinitely fast at separation: no step is
+  // below the uniqueness bound. They do not shorten `step = auto`; the steps
+  // in which they soften are counted.
+  TEST(Extremes, InfiniteSofteningDoesNotShortenSteps)
+  {
+    const Workspace workspace;
     for (const auto &[name, entries] : std::map<std::string, std::string>{
              {"brittle", "  set law = brittle\n"},
              {"dugdale", "  set law = dugdale\n"},
              {"ppr", "  set law = ppr-extrinsic\n  set alpha = 1.5\n"}}) {
       SCOPED_TRACE(name);
       const fs::path file = workspace.path() / (name + ".prm");
-      write_text(file, pull + entries + rest);
+      write_text(file, pull(entries, "0.5 J/m^2"));
       const Outcome check = nsfd(workspace, {file.string(), "--check"});
       EXPECT_EQ(check.exit_code, 0) << check.err;
       EXPECT_NE(check.out.find("softens infinitely fast"), std::string::npos)
@@ -303,35 +307,7 @@ end
   {
     const Workspace workspace;
     const fs::path file = workspace.path() / "pull.prm";
-    write_text(file, R"(# pull.prm - two cells are pulled apart.
-set dimension = 2
-subsection Mesh
-  set type         = rectangle
-  set upper corner = 20 um, 10 um
-  set cells        = 2, 1
-end
-subsection Material: bulk
-  set Young modulus = 135 GPa
-  set Poisson ratio = 0.32
-  set density       = 7800 kg/m^3
-end
-subsection Interface: middle
-  set where     = abs(x - 10 um) < 1 nm
-  set law       = camacho-ortiz
-  set strength  = 300 MPa
-  set toughness = 0.1 J/m^2
-end
-subsection Boundary: left
-  set velocity x = -2 m/s
-end
-subsection Boundary: right
-  set velocity x = 2 m/s
-end
-subsection Time
-  set end  = 40 ns
-  set step = auto
-end
-)");
+    write_text(file, pull("  set law = camacho-ortiz\n", "0.1 J/m^2"));
     const Result result = good_run(workspace, "auto", {file});
     ASSERT_TRUE(result.completed());
     EXPECT_NEAR(result.dissipated("damage"), 1e-6, 1e-6 * 1e-6);

@@ -1,5 +1,6 @@
 #include "make_law.h"
 #include "make_scene.h"
+#include "relaxation_scene.h"
 
 #include "nsfd/scene/advice.h"
 
@@ -161,49 +162,11 @@ TEST(Advice, SlopesOfTheLaws)
   EXPECT_TRUE(std::isinf(slope("dugdale", RG)));
 }
 
-namespace
-{
-  /** One cell of 1 mm without stiffness on a cohesive face of a heavy one. */
-  const std::string relaxation = R"(set dimension = 2
-subsection Mesh
-  set type         = rectangle
-  set upper corner = 2 mm, 1 mm
-  set cells        = 2, 1
-end
-subsection Discretization
-  set mass                 = lumped
-  set interface quadrature = gauss lobatto
-end
-subsection Material: anvil
-  set where         = x < 1 mm
-  set Young modulus = 1e-9
-  set Poisson ratio = 0
-  set density       = 2.5e15
-end
-subsection Material: mass
-  set Young modulus = 1e-9
-  set Poisson ratio = 0
-  set density       = 2500
-end
-subsection Interface: middle
-  set law       = michel-suquet
-  set strength  = 1 MPa
-  set toughness = 10 J/m^2
-end
-subsection Time
-  set end   = 1 ms
-  set step  = 1 us
-  set theta = 1
-  set cohesion rule = end point
-end
-)";
-} // namespace
-
 // (48): M/(S theta h^2) > max |R'| = 1.29556e11 Pa/m with M/S = rho L/2
 TEST(Advice, RelaxationThreshold)
 {
   for (const bool exact : {false, true}) {
-    Scene<2> scene(relaxation,
+    Scene<2> scene(relaxation_scene,
                    exact ? std::vector<std::string>{"Time/cohesion rule=exact"}
                          : std::vector<std::string>{});
     const State soft =
@@ -223,7 +186,7 @@ TEST(Advice, RelaxationThreshold)
 TEST(Advice, StepsAboveTheThresholdAreFlagged)
 {
   for (const double share : {0.5, 0.98, 1.02, 1.5}) {
-    Scene<2> scene(relaxation, {"Material: mass/initial velocity x=6 m/s"});
+    Scene<2> scene(relaxation_scene, {"Material: mass/initial velocity x=6 m/s"});
     bool flagged = false, softened = false;
     const auto &law = *scene.stepper->problem().interactions[0].law;
     while (scene.state.opening_max[0] < law.peak_opening()) {

@@ -1,3 +1,4 @@
+#include "breaking_plate.h"
 #include "make_scene.h"
 
 #include <gtest/gtest.h>
@@ -203,39 +204,14 @@ end
     TEST(CrackPressure, ClosesTheLedger)
     {
       // elastic cells that break, rub and are blown apart, in space and time
-      const std::string text = R"(# plate - breaks under pressure.
-set dimension = 2
-subsection Mesh
-  set lower corner = 0, 0
-  set upper corner = 2, 1
-  set cells        = 6, 3
-  set distortion   = 0.2
-end
-subsection Material: plate
-  set Young modulus      = 100
-  set Poisson ratio      = 0.3
-  set density            = 1
-  set initial velocity x = 0.8 * sin(4 * x)
-end
-subsection Interface: all
-  set law              = michel-suquet
-  set stiffness        = 2000
-  set strength         = 4
-  set strength scatter = 0.3
-  set friction         = 0.4
-  set broken           = abs(y - 1/3) < 0.05 && x < 1.5
-  set crack pressure   = (1 + x) * sin(9 * t)
-end
-subsection Time
-  set end  = 1
-  set step = 0.2 crossings
-end
-)";
       for (const std::string path : {"element-wise", "global"})
         for (const std::string theta : {"0.5", "0.7"}) {
           SCOPED_TRACE(path + ", theta " + theta);
-          test::Scene<2> scene(text,
-                               {"Solver/path=" + path, "Time/theta=" + theta});
+          test::Scene<2> scene(
+              test::breaking_plate,
+              {"Interface: all/broken=abs(y - 1/3) < 0.05 && x < 1.5",
+               "Interface: all/crack pressure=(1 + x) * sin(9 * t)",
+               "Solver/path=" + path, "Time/theta=" + theta});
           double defect = 0.;
           for (unsigned int k = 0; k < 60; ++k) {
             scene.advance_halving();

@@ -1,3 +1,4 @@
+#include "breaking_plate.h"
 #include "make_scene.h"
 
 #include <gtest/gtest.h>
@@ -103,41 +104,15 @@ end
 
     TEST(OpeningViscosity, ClosesTheLedger)
     {
-      const std::string text = R"(# plate - breaks and rubs.
-set dimension = 2
-subsection Mesh
-  set lower corner = 0, 0
-  set upper corner = 2, 1
-  set cells        = 6, 3
-  set distortion   = 0.2
-end
-subsection Material: plate
-  set Young modulus      = 100
-  set Poisson ratio      = 0.3
-  set density            = 1
-  set initial velocity x = 0.8 * sin(4 * x)
-end
-subsection Interface: all
-  set law               = michel-suquet
-  set stiffness         = 2000
-  set strength          = 4
-  set strength scatter  = 0.3
-  set friction          = 0.4
-  set opening viscosity = 2
-end
-subsection Time
-  set end  = 1
-  set step = 0.2 crossings
-end
-)";
       for (const std::string path : {"element-wise", "global"})
         for (const std::string solver : {"dual newton", "gauss seidel"})
           for (const std::string theta : {"0.5", "0.7"}) {
             SCOPED_TRACE(path + ", " + solver + ", theta " + theta);
-            test::Scene<2> scene(text, {"Solver/path=" + path,
-                                        "Solver/method=" + solver,
-                                        "Solver/maximum iterations=1000",
-                                        "Time/theta=" + theta});
+            test::Scene<2> scene(
+                test::breaking_plate,
+                {"Interface: all/opening viscosity=2", "Solver/path=" + path,
+                 "Solver/method=" + solver, "Solver/maximum iterations=1000",
+                 "Time/theta=" + theta});
             double defect = 0., viscous = 0.;
             for (unsigned int k = 0; k < 40; ++k) {
               scene.advance_halving();

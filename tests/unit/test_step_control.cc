@@ -1,4 +1,5 @@
 #include "make_scene.h"
+#include "relaxation_scene.h"
 
 #include "nsfd/time/step_control.h"
 
@@ -56,47 +57,9 @@ TEST(StepControl, TheLadderEnds)
   EXPECT_FALSE(control.halve());
 }
 
-namespace
-{
-  /** A cell of mass rho L/2 per area, bound 3.1062e-6 s: test_advice.cc. */
-  const std::string two_cells = R"(set dimension = 2
-subsection Mesh
-  set type         = rectangle
-  set upper corner = 2 mm, 1 mm
-  set cells        = 2, 1
-end
-subsection Discretization
-  set mass                 = lumped
-  set interface quadrature = gauss lobatto
-end
-subsection Material: anvil
-  set where         = x < 1 mm
-  set Young modulus = 1e-9
-  set Poisson ratio = 0
-  set density       = 2.5e15
-end
-subsection Material: mass
-  set Young modulus = 1e-9
-  set Poisson ratio = 0
-  set density       = 2500
-end
-subsection Interface: middle
-  set law       = michel-suquet
-  set strength  = 1 MPa
-  set toughness = 10 J/m^2
-end
-subsection Time
-  set end           = 1 ms
-  set step          = 10 us
-  set theta         = 1
-  set cohesion rule = end point
-end
-)";
-} // namespace
-
 TEST(AutomaticStep, IsShortWherePointsSoften)
 {
-  Scene<2> scene(two_cells);
+  Scene<2> scene(relaxation_scene, {"Time/step=10 us"});
   State state = scene.state;
   const double h = 10e-6, bound = 3.1062e-6, share = 0.95 * bound;
   const double peak =
