@@ -1,4 +1,5 @@
 #include "case_input.h"
+#include "line_fit.h"
 
 #include "nsfd/input/section_reader.h"
 
@@ -62,11 +63,7 @@ namespace nsfd
         kinetic_ = energy.kinetic;
       // away from start and arrest, which take a process length
       if (t >= 0.2 * arrest_time_ && t <= 0.8 * arrest_time_) {
-        sums_.n += 1.;
-        sums_.t += t;
-        sums_.a += growth_;
-        sums_.tt += t * t;
-        sums_.ta += t * growth_;
+        fit_.add(t, growth_);
       }
       path_error_ += view.time_step * std::abs(growth_ - exact_growth(t));
       path_ += view.time_step * exact_growth(t);
@@ -75,10 +72,8 @@ namespace nsfd
 
     void finish(std::map<std::string, double> &errors) const override
     {
-      const double variance = sums_.n * sums_.tt - sums_.t * sums_.t;
-      if (variance > 0.)
-        errors["crack_speed"] = relative_error(
-            (sums_.n * sums_.ta - sums_.t * sums_.a) / variance, speed_);
+      if (const auto slope = fit_.slope())
+        errors["crack_speed"] = relative_error(*slope, speed_);
       if (path_ > 0.)
         errors["tip_path"] = path_error_ / path_; // L1 in time
       if (time_ > arrest_time_) {
@@ -101,9 +96,7 @@ namespace nsfd
     double speed_ = 0., arrest_time_ = 0.;
     double growth_ = 0., damage_ = 0., kinetic_ = 0., initial_energy_ = 0.,
            time_ = 0., path_error_ = 0., path_ = 0.;
-    struct {
-      double n = 0., t = 0., a = 0., tt = 0., ta = 0.;
-    } sums_; // least squares of the growth over time
+    LineFit fit_; // crack length over time
   };
 
   NSFD_REGISTER(VerificationRegistry, PeeledStrip, "peeled strip",

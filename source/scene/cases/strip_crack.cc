@@ -1,4 +1,5 @@
 #include "case_input.h"
+#include "line_fit.h"
 
 #include "nsfd/input/section_reader.h"
 
@@ -38,26 +39,18 @@ namespace nsfd
       const double t = view.time, a = view.row->broken_area;
       if (t < start_)
         return;
-      sums_.n += 1.;
-      sums_.t += t;
-      sums_.a += a;
-      sums_.tt += t * t;
-      sums_.ta += t * a;
+      fit_.add(t, a);
     }
 
     void finish(std::map<std::string, double> &errors) const override
     {
-      const double variance = sums_.n * sums_.tt - sums_.t * sums_.t;
-      if (variance > 0.)
-        errors["speed_over_rayleigh"] =
-            (sums_.n * sums_.ta - sums_.t * sums_.a) / variance / rayleigh_;
+      if (const auto slope = fit_.slope())
+        errors["speed_over_rayleigh"] = *slope / rayleigh_;
     }
 
   private:
     double start_ = 0., rayleigh_ = 0.;
-    struct {
-      double n = 0., t = 0., a = 0., tt = 0., ta = 0.;
-    } sums_; // least squares of the crack length over time
+    LineFit fit_; // crack length over time
 
     /** Root of 4 a_d a_s = (1 + a_s^2)^2 below the shear speed. */
     static double rayleigh_speed(const MaterialInput &material)
