@@ -118,6 +118,7 @@ namespace nsfd
       obstacle.restitution =
           reader.number("restitution", "0", units::none, Range::closed(0., 1.),
                         "of Newton's impact law");
+      obstacle.sliding = read_sliding(reader, obstacle.friction);
       return obstacle;
     }
   } // namespace

@@ -122,23 +122,6 @@ namespace nsfd
           return value.second;
       return values.front().second;
     }
-
-    void check_cohesion_rule(ParameterFile &file, InputErrors &errors,
-                             const SceneInput &scene)
-    {
-      if (scene.time.cohesion_rule != CohesionRule::exact)
-        return;
-      for (const InterfaceInput &interface : scene.interfaces)
-        if (interface.law && !interface.law->has_potential())
-          SectionReader(file.open("Interface: " + interface.name), errors)
-              .error(
-                  "law",
-                  fmt::format("law = {} has no potential with these numbers, "
-                              "which cohesion rule = exact needs",
-                              interface.law_name),
-                  "write cohesion rule = end point in section Time, or make "
-                  "C_T / C_N the square of the weight of the slip");
-    }
   } // namespace
 
   std::vector<NamedText> known_solvers()
@@ -187,7 +170,6 @@ namespace nsfd
         "what friction opposes: velocity or increment");
     time.maximum_halvings = reader.integer("maximum halvings", "10", 0, 60,
                                            "of a step that cannot be solved");
-    check_cohesion_rule(file, errors, scene);
   }
 
   void read_solver(ParameterFile &file, InputErrors &errors, SceneInput &scene)

@@ -17,9 +17,10 @@ namespace nsfd
 
     /** Entries that all cohesive laws have, and only they. */
     const std::vector<std::string> cohesive_entries = {
-        "opening viscosity", "strength factor",  "toughness factor",
-        "scatter",           "strength scatter", "toughness scatter",
-        "strength modulus",  "toughness modulus"};
+        "opening viscosity", "viscous limit",    "strength factor",
+        "toughness factor",  "scatter",          "strength scatter",
+        "toughness scatter", "strength modulus", "toughness modulus",
+        "unloading"};
 
     /** The law of a block, checked; empty if nothing more can be read. */
     std::string read_law_name(SectionReader &reader)
@@ -71,6 +72,23 @@ namespace nsfd
       input.restitution =
           reader.number("restitution", "0", units::none, Range::closed(0., 1.),
                         "of Newton's impact law, where beta = 0");
+      input.sliding = read_sliding(reader, input.friction);
+    }
+
+    void read_viscosity(SectionReader &reader, InterfaceInput &input)
+    {
+      input.opening_viscosity =
+          reader.number("opening viscosity", "0", units::viscosity_per_length,
+                        Range::non_negative(),
+                        "Pa s/m: traction over opening speed until broken");
+      const std::string limit = "viscous limit",
+                        text = "Pa: traction that it does not exceed, "
+                               "eta v / (1 + eta v / limit); default: none";
+      if (input.opening_viscosity == 0.)
+        reader.refuse({limit}, "there is no `opening viscosity`");
+      else if (reader.optional(limit, text))
+        input.viscous_limit = reader.number(limit, "", units::pressure,
+                                            Range::positive(), text);
     }
 
     void read_damage_start(SectionReader &reader, InterfaceInput &input)
@@ -193,10 +211,8 @@ namespace nsfd
     {
       input.law = read_cohesive_law(reader, input.law_name);
       read_point_factors(reader, input);
-      input.opening_viscosity =
-          reader.number("opening viscosity", "0", units::viscosity_per_length,
-                        Range::non_negative(),
-                        "Pa s/m: traction over opening speed until broken");
+      read_viscosity(reader, input);
+      input.plateau = read_plateau(reader, input.law.get(), input.law_name);
 
       if (input.law && input.law->extrinsic() &&
           input.where.kind == Where::Kind::all)
@@ -224,7 +240,8 @@ namespace nsfd
       if (input.law_name == "rigid") {
         const std::string reason = "faces of the law `rigid` never open";
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
-                       "intact faces", "crack pressure", "pressure threshold"},
+                       "intact faces", "crack pressure", "pressure threshold",
+                       "dilatancy", "dilatancy saturation", "wear coefficient"},
                       reason);
         reader.refuse(cohesive_entries, reason);
         return input;
@@ -272,6 +289,47 @@ namespace nsfd
   {
     return reader.number("friction", "0", units::none, Range::non_negative(),
                          "coefficient of Coulomb friction");
+  }
+
+  bool read_plateau(SectionReader &reader, const CohesiveLaw *law,
+                    const std::string &law_name)
+  {
+    const std::string name = "unloading";
+    if (law && !law->extrinsic()) {
+      reader.refuse({name}, fmt::format("the law {} is intrinsic and closes "
+                                        "on its secant",
+                                        law_name));
+      return false;
+    }
+    return reader.choice(name, "secant", {"secant", "plateau"},
+                         "extrinsic laws: secant to the origin, or plateau "
+                         "(the traction stays while it closes)") == "plateau";
+  }
+
+  SlidingInput read_sliding(SectionReader &reader, const double friction)
+  {
+    SlidingInput sliding;
+    sliding.dilatancy =
+        reader.number("dilatancy", "0", units::none, Range::non_negative(),
+                      "tan(psi): sliding by s opens the contact by s tan(psi)");
+    const std::string name = "dilatancy saturation",
+                      text = "m: largest opening by dilatancy; default: none";
+    if (sliding.dilatancy == 0.)
+      reader.refuse({name}, "there is no `dilatancy`");
+    else if (reader.optional(name, text))
+      sliding.saturation =
+          reader.number(name, "", units::length, Range::positive(), text);
+    if (sliding.dilatancy > friction)
+      reader.error("dilatancy",
+                   fmt::format("dilatancy = {:g} is above friction = {:g}: "
+                               "sliding would give energy",
+                               sliding.dilatancy, friction),
+                   "write at most the friction coefficient, which counts the "
+                   "climb");
+    sliding.wear = reader.number(
+        "wear coefficient", "0", units::wear_coefficient, Range::non_negative(),
+        "k in 1/Pa of Archard's law: the gap grows by k p_N |U_T|");
+    return sliding;
   }
 
   double read_friction_exponent(SectionReader &reader)

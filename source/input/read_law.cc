@@ -84,11 +84,13 @@ namespace nsfd
       const auto law = read_cohesive_law(reader, curve.law_name);
       const double friction = read_friction(reader);
       const double exponent = read_friction_exponent(reader);
+      const bool plateau = read_plateau(reader, law.get(), curve.law_name);
       reader.refuse({"where", "restitution", "broken", "intact faces",
                      "strength scatter", "seed"},
                     "`nsfd law` drives one point, there are no faces");
       if (law)
         curve.interaction = interaction_of(law, friction, exponent);
+      curve.interaction.plateau = plateau;
       return curve;
     }
 

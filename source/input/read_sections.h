@@ -38,6 +38,9 @@ namespace nsfd
 
   /** mu. */
   double read_friction(SectionReader &reader);
+  bool read_plateau(SectionReader &reader, const CohesiveLaw *law,
+                    const std::string &law_name);
+  SlidingInput read_sliding(SectionReader &reader, double friction);
 
   /** Boundary and Obstacle blocks, Loads. */
   void read_boundaries(ParameterFile &file, InputErrors &errors,

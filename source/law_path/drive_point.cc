@@ -37,6 +37,8 @@ namespace nsfd
         problem_.strength_factor = {1.};
         if (!law_.extrinsic())
           problem_.opening_max = {law_.elastic_limit()};
+        if (law_.mixed())
+          problem_.slip_max = {0.};
       }
 
       const CurveRow &row() const { return row_; }
@@ -79,13 +81,13 @@ namespace nsfd
         // the traction at this end of the step is known, hence the local
         // velocity that leads there, and the solve says whether it does
         PointEnergies<2> energies =
-            point_energies<2>(problem_, 0, U, {secant_at(at), 0.});
+            point_energies<2>(problem_, 0, U, {secant_at(at)});
         const double s = bound(energies.beta, at.reaction);
         const double friction =
             U[1] != 0. ? sign(U[1]) * s : std::clamp(row_.friction, -s, s);
         const Vector P = {at.reaction - energies.cohesive_traction[0],
                           -energies.cohesive_traction[1] - friction};
-        const LocalSolution<2> solution = solve(U, P, energies.opening_max);
+        const LocalSolution<2> solution = solve(U, P, energies.history);
         const Vector arrived = solution.velocity;
         if (arrived != U)
           energies = point_energies<2>(problem_, 0, arrived, solution.frozen);
@@ -123,14 +125,15 @@ namespace nsfd
       }
 
       /** Of a point that has moved to a mark. */
-      double secant_at(const PathMark &mark) const
+      Secant secant_at(const PathMark &mark) const
       {
-        if (problem_.kind[0] == PointKind::free)
-          return 0.;
         const double jump[] = {mark.opening, mark.slip};
-        return law_.secant(
-            std::max(problem_.opening_max[0],
-                     effective_opening<2>(problem_.interactions[0], jump)));
+        OneStepProblem<2> open = problem_;
+        if (open.kind[0] == PointKind::rigid)
+          open.kind[0] = PointKind::cohesive;
+        return frozen_state<2>(open, 0,
+                               reach_of<2>(problem_.interactions[0], jump), 0.)
+            .secant;
       }
 
       void prepare(const Vector &U, const double reaction)
@@ -147,7 +150,7 @@ namespace nsfd
        * close as the majorant is soft.
        */
       LocalSolution<2> solve(const Vector &U, const Vector &P,
-                             const double opening) const
+                             const Reach &reach) const
       {
         const double size =
             std::max(std::hypot(U[0], U[1]), 1e-6 * opening_scale(law_));
@@ -160,7 +163,7 @@ namespace nsfd
         for (const double softness : {1e-3, 1e-6, 1e-9}) {
           const double R = softness * size / traction;
           LocalSolution<2> solution = solve_point<2>(
-              problem_, 0, {U[0] - R * P[0], U[1] - R * P[1]}, R, R, opening);
+              problem_, 0, {U[0] - R * P[0], U[1] - R * P[1]}, R, R, reach);
           error = std::hypot(solution.velocity[0] - U[0],
                              solution.velocity[1] - U[1]);
           if (error <= 1e-12 * size)
@@ -183,7 +186,9 @@ namespace nsfd
 
       void change_kind(const PointEnergies<2> &energies, const bool damages)
       {
-        problem_.opening_max[0] = energies.opening_max;
+        problem_.opening_max[0] = energies.history.opening;
+        if (law_.mixed())
+          problem_.slip_max[0] = energies.history.slip;
         if (problem_.kind[0] == PointKind::rigid && damages)
           problem_.kind[0] = PointKind::cohesive;
         if (problem_.kind[0] == PointKind::cohesive && energies.beta <= 0.)

@@ -19,7 +19,9 @@ namespace nsfd
   {
     // local solves start from the opening without any change
     for (std::size_t i = 0; i < problem.n_points; ++i)
-      solutions[i].opening = problem.opening_max[i];
+      solutions[i].reach.opening = problem.opening_max[i];
+    for (std::size_t i = 0; i < problem.slip_max.size(); ++i)
+      solutions[i].reach.slip = problem.slip_max[i];
   }
 
   template <int dim>
@@ -51,7 +53,7 @@ namespace nsfd
         is_frozen(i) ? solve_frozen_point<dim>(problem_, i, (*frozen_)[i], local,
                                           majorant(i, 0), majorant(i, 1)) :
                   solve_point<dim>(problem_, i, local, majorant(i, 0),
-                                   majorant(i, 1), solutions[i].opening);
+                                   majorant(i, 1), solutions[i].reach);
       for (unsigned int c = 0; c < dim; ++c)
         defect[i * dim + c] =
           impulse[i * dim + c] - solutions[i].impulse[c];

@@ -1,5 +1,7 @@
 #include "activation.h"
 
+#include "nsfd/nonsmooth/point_law.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -106,8 +108,8 @@ namespace nsfd
     for (const std::size_t i : candidates) {
       const auto &interaction = problem.interactions[problem.interaction[i]];
       if (effective_impulse<dim>(interaction, &least[i * dim]) >
-          problem.weight[i] * problem.time_step * problem.strength_factor[i] *
-              interaction.law->strength()) {
+          problem.weight[i] * problem.time_step *
+              point_strength<dim>(problem, i)) {
         problem.kind[i] = PointKind::rigid;
         problem.mask[i] = 0;
         any = true;

@@ -1,5 +1,7 @@
 #include "initial_state.h"
 
+#include "step_data.h"
+
 #include "nsfd/input/scene_input.h"
 #include "nsfd/nonsmooth/point_law.h"
 
@@ -61,11 +63,13 @@ namespace nsfd
         const double factor = problem.opening_factor[i];
         // below the elastic limit there is nothing to remember
         // (just below, so that round-off does not damage it)
-        state.opening_max[i] =
-            std::max((1. - 1e-14) * block.law->elastic_limit() / factor,
-                     effective_opening<dim>(interaction, &state.jump[i * dim]));
-        state.beta[i] =
-            beta_of(interaction, state.kind[i], factor, state.opening_max[i]);
+        Reach history = reach_of<dim>(interaction, &state.jump[i * dim]);
+        history.opening = std::max(
+            (1. - 1e-14) * block.law->elastic_limit() / factor, history.opening);
+        state.opening_max[i] = history.opening;
+        if (!state.slip_max.empty())
+          state.slip_max[i] = history.slip;
+        state.beta[i] = beta_of(interaction, state.kind[i], factor, history);
       }
     }
 
@@ -74,26 +78,16 @@ namespace nsfd
     std::vector<double> stored_energy(const OneStepProblem<dim> &problem,
                                       const State &state)
     {
+      OneStepProblem<dim> start = problem;
+      start.kind = state.kind;
+      start.jump_old = state.jump;
+      start.opening_max = state.opening_max;
+      start.slip_max = state.slip_max;
       std::vector<double> stored(problem.n_owned, 0.);
       for (std::size_t i = 0; i < problem.n_owned; ++i) {
-        if (state.kind[i] != PointKind::elastic &&
-            state.kind[i] != PointKind::cohesive)
-          continue;
-        const auto &interaction = problem.interactions[problem.interaction[i]];
-        const double l = problem.opening_factor[i];
-        const double b =
-            interaction.law
-                ? problem.strength_factor[i] * l *
-                      interaction.law->secant(l * state.opening_max[i])
-                : interaction.normal_stiffness;
-        const double *u = &state.jump[i * dim];
-        double slip = 0.;
-        for (unsigned int c = 1; c < dim; ++c)
-          slip += u[c] * u[c];
-        const double normal =
-            u[0] > 0. || state.two_sided[i] ? u[0] * u[0] : 0.;
-        stored[i] = problem.weight[i] * b *
-                    (normal + interaction.stiffness_ratio * slip) / 2.;
+        if (state.two_sided[i])
+          start.compression_stiffness[i] = intact_stiffness<dim>(problem, i);
+        stored[i] = problem.weight[i] * stored_energy<dim>(start, i);
       }
       return stored;
     }
@@ -131,8 +125,15 @@ namespace nsfd
                                state.relative_velocity.data());
     state.impulse.assign(n * dim, 0.);
     state.opening_max.assign(n, 0.);
+    for (const auto &block : input.interfaces)
+      if (block.law && block.law->mixed())
+        state.slip_max.assign(n, 0.);
     state.beta.assign(n, 1.);
     state.slip.assign(n, 0.);
+    if (has_sliding_lift(input))
+      for (auto *array : {&state.dilated, &state.worn, &state.dilation_speed,
+                          &state.wear_speed})
+        array->assign(n, 0.);
     state.penetration_bound.assign(n, 0.);
     state.kind.assign(n, PointKind::prescribed);
     state.two_sided.assign(n, 0);

@@ -59,6 +59,7 @@ namespace nsfd
       void book_prescribed(std::size_t i, const Vector &U_theta);
       void book_law(std::size_t i, const Vector &U_theta,
                     const PointEnergies<dim> &energies);
+      double book_lift(std::size_t i);
       void remember(std::size_t i, const PointEnergies<dim> &energies);
       void book_penetration(std::size_t i, const Vector &U_theta);
 
@@ -85,11 +86,16 @@ namespace nsfd
           problem_(problem), evaluation_(evaluation), old_(old), next_(next)
     {
       next.opening_max = old.opening_max;
+      next.slip_max = old.slip_max;
       next.beta = old.beta;
       next.kind = old.kind;
       next.two_sided = old.two_sided;
       next.slip = old.slip;
       next.penetration_bound = old.penetration_bound;
+      next.dilated = old.dilated;
+      next.worn = old.worn;
+      next.dilation_speed.assign(old.dilated.size(), 0.);
+      next.wear_speed.assign(old.dilated.size(), 0.);
       next.contact.assign(problem.n_points, 0);
     }
 
@@ -162,15 +168,17 @@ namespace nsfd
         put(numerical, i, -residual);
       } else {
         const bool closed = solution.contact_impulse > 0.;
+        const double lift = closed ? book_lift(i) : 0.;
         if (closed)
-          put(impact, i, -contact[0] * U_theta[0]);
+          put(impact, i, -contact[0] * (U_theta[0] - lift));
         else
           residual += contact[0] * U_theta[0];
         double rubbing = 0.;
         for (unsigned int c = 1; c < dim; ++c)
           rubbing += contact[c] * U_theta[c];
-        if (solution.frozen.threshold > 0.) {
-          put(friction, i, -rubbing);
+        if (solution.frozen.threshold > 0. || lift != 0.) {
+          // climbing takes from what rubs, wear adds to it
+          put(friction, i, -rubbing - contact[0] * lift);
           put(positive_friction, i, rubbing > 0. ? rubbing : 0.);
         } else
           residual += rubbing;
@@ -202,12 +210,38 @@ namespace nsfd
       put(numerical, i, w * energies.overlap_released);
     }
 
+    /**
+     * Dilatancy and wear of a closed point, moved by the theta rule as the
+     * jump is. @return the mean speed of the lift
+     */
+    template <int dim>
+    double PointBook<dim>::book_lift(const std::size_t i)
+    {
+      if (next_.dilated.empty())
+        return 0.;
+      const double h = problem_.time_step, theta = problem_.theta;
+      const auto &solution = evaluation_.solutions[i];
+      const double speed = sliding_speed<dim>(problem_, i, solution.velocity);
+      const double up = std::min(problem_.dilatancy[i] * speed,
+                                 problem_.lift_left[i] / (h * theta));
+      next_.dilation_speed[i] = up;
+      next_.wear_speed[i] = up - solution.frozen.lift;
+      const double mean_up = theta * up + (1. - theta) * old_.dilation_speed[i],
+                   mean_wear = theta * next_.wear_speed[i] +
+                               (1. - theta) * old_.wear_speed[i];
+      next_.dilated[i] += h * mean_up;
+      next_.worn[i] += h * mean_wear;
+      return mean_up - mean_wear;
+    }
+
     template <int dim>
     void PointBook<dim>::remember(const std::size_t i,
                                   const PointEnergies<dim> &energies)
     {
       const auto &solution = evaluation_.solutions[i];
-      next_.opening_max[i] = energies.opening_max;
+      next_.opening_max[i] = energies.history.opening;
+      if (!next_.slip_max.empty())
+        next_.slip_max[i] = energies.history.slip;
       if (problem_.kind[i] == PointKind::rigid && solution.damages)
         next_.kind[i] = PointKind::cohesive;
       if (next_.kind[i] != PointKind::cohesive)
@@ -220,8 +254,7 @@ namespace nsfd
       // a softening point in a step above the uniqueness bound
       const auto &law = *problem_.interactions[problem_.interaction[i]].law;
       if (solution.damages &&
-          problem_.opening_factor[i] * energies.opening_max >=
-              law.peak_opening())
+          past_peak(law, problem_.opening_factor[i], energies.history))
         beyond_unique |=
             uniqueness_.ratio(problem_, i, problem_.time_step) >= 1.;
       // newly broken surface; tails count once they carry a thousandth
@@ -240,7 +273,9 @@ namespace nsfd
       if (next_.two_sided[i])
         return;
       const double h = problem_.time_step;
-      const double depth = -next_.jump[i * dim];
+      const double depth =
+          (next_.dilated.empty() ? 0. : next_.dilated[i] - next_.worn[i]) -
+          next_.jump[i * dim];
       double &bound = next_.penetration_bound[i];
       if (old_.two_sided[i])
         bound = std::max(bound, depth);

@@ -1,6 +1,7 @@
 #include "step_data.h"
 
 #include "nsfd/input/scene_input.h"
+#include "nsfd/interface/friction_weight.h"
 #include "nsfd/interface/point_factors.h"
 #include "nsfd/time/state.h"
 
@@ -18,6 +19,9 @@ namespace nsfd
       interaction.friction = block.friction;
       interaction.friction_exponent = block.friction_exponent;
       interaction.restitution = block.restitution;
+      interaction.plateau = block.plateau;
+      interaction.viscous_limit = block.viscous_limit;
+      interaction.wear = block.sliding.wear;
       if (block.law) {
         interaction.stiffness_ratio = block.law->stiffness_ratio();
         interaction.shear_weight = block.law->shear_weight();
@@ -35,6 +39,7 @@ namespace nsfd
       Interaction interaction;
       interaction.friction = obstacle.friction;
       interaction.restitution = obstacle.restitution;
+      interaction.wear = obstacle.sliding.wear;
       return interaction;
     }
 
@@ -46,7 +51,10 @@ namespace nsfd
                          });
     }
 
-    /** U_N that contact allows, without the forecast. */
+    /**
+     * U_N that contact allows, without the forecast; everything relative to
+     * where sliding has lifted the contact.
+     */
     double contact_target(const TimeInput &time, const double restitution,
                           const double u_N, const double U_N,
                           const double jump_free, const double h)
@@ -70,8 +78,13 @@ namespace nsfd
     {
       constexpr auto all_components = std::uint8_t((1u << dim) - 1u);
       const double h = problem.time_step;
-      const double u_N = old.jump[i * dim],
-                   U_N = old.relative_velocity[i * dim];
+      double lift = 0., lift_speed = 0.;
+      if (!old.dilated.empty()) {
+        lift = old.dilated[i] - old.worn[i];
+        lift_speed = old.dilation_speed[i] - old.wear_speed[i];
+      }
+      const double u_N = old.jump[i * dim] - lift,
+                   U_N = old.relative_velocity[i * dim] - lift_speed;
       const auto &interaction = problem.interactions[problem.interaction[i]];
       problem.contact[i] = 0;
       problem.mask[i] = 0;
@@ -90,11 +103,7 @@ namespace nsfd
       if (old.kind[i] == PointKind::prescribed)
         problem.mask[i] = all_components;
       else if (old.two_sided[i]) {
-        problem.compression_stiffness[i] =
-            interaction.law
-                ? problem.strength_factor[i] * problem.opening_factor[i] *
-                      interaction.law->normal_stiffness()
-                : interaction.normal_stiffness;
+        problem.compression_stiffness[i] = intact_stiffness<dim>(problem, i);
       } else {
         // A closed point must not open by what the solver left of its position;
         // one without restitution stays a candidate as long as it rests.
@@ -105,7 +114,10 @@ namespace nsfd
         const double e =
             old.kind[i] == PointKind::free ? interaction.restitution : 0.;
         problem.target[i] =
-            contact_target(time, e, u_N, U_N, problem.jump_free[i * dim], h);
+            contact_target(time, e, u_N, U_N,
+                           problem.jump_free[i * dim] - lift -
+                               h * (1. - time.theta) * lift_speed,
+                           h);
       }
       if (time.sliding == Sliding::increment)
         for (unsigned int c = 1; c < dim; ++c)
@@ -127,6 +139,43 @@ namespace nsfd
         const auto &block = input.interfaces[origin.block];
         problem.viscosity[i] =
             old.beta[i] > block.broken_beta() ? block.opening_viscosity : 0.;
+      }
+    }
+
+    const SlidingInput *sliding_of(const SceneInput &input,
+                                   const PointOrigin &origin)
+    {
+      switch (origin.kind) {
+      case PointOrigin::Kind::interface:
+        return &input.interfaces[origin.block].sliding;
+      case PointOrigin::Kind::obstacle:
+        return &input.obstacles[origin.block].sliding;
+      default:
+        return nullptr;
+      }
+    }
+
+    /** As much as friction is there already: kappa(beta). */
+    template <int dim>
+    void set_dilatancy(const SceneInput &input,
+                       const Discretization<dim> &discretization,
+                       const State &old, OneStepProblem<dim> &problem)
+    {
+      for (std::size_t i = 0; i < problem.dilatancy.size(); ++i) {
+        const SlidingInput *sliding =
+            sliding_of(input, discretization.origins()[i]);
+        if (sliding == nullptr || sliding->dilatancy == 0.)
+          continue;
+        const auto &interaction = problem.interactions[problem.interaction[i]];
+        problem.lift_left[i] =
+            std::max(0., sliding->saturation - old.dilated[i] -
+                             problem.time_step * (1. - problem.theta) *
+                                 old.dilation_speed[i]);
+        problem.dilatancy[i] =
+            problem.lift_left[i] > 0.
+                ? sliding->dilatancy *
+                      kappa(old.beta[i], interaction.friction_exponent)
+                : 0.;
       }
     }
 
@@ -186,6 +235,25 @@ namespace nsfd
     }
   } // namespace
 
+  bool has_sliding_lift(const SceneInput &input)
+  {
+    const auto lifts = [](const auto &block) { return block.sliding.lifts(); };
+    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                       lifts) ||
+           std::any_of(input.obstacles.begin(), input.obstacles.end(), lifts);
+  }
+
+  template <int dim>
+  double intact_stiffness(const OneStepProblem<dim> &problem,
+                          const std::size_t i)
+  {
+    const auto &interaction = problem.interactions[problem.interaction[i]];
+    return interaction.law
+               ? problem.strength_factor[i] * problem.opening_factor[i] *
+                     interaction.law->normal_stiffness()
+               : interaction.normal_stiffness;
+  }
+
   template <int dim>
   OneStepProblem<dim> constant_data(const SceneInput &input,
                                     const Discretization<dim> &discretization)
@@ -207,6 +275,10 @@ namespace nsfd
 
     if (has_opening_viscosity(input))
       problem.viscosity.assign(points.n_points, 0.);
+    if (has_sliding_lift(input)) {
+      problem.dilatancy.assign(points.n_points, 0.);
+      problem.lift_left.assign(points.n_points, 0.);
+    }
     for (std::size_t i = 0; i < points.n_points; ++i) {
       const PointOrigin origin = discretization.origins()[i];
       switch (origin.kind) {
@@ -240,6 +312,7 @@ namespace nsfd
     problem.time_step = h;
     problem.kind = old.kind;
     problem.opening_max = old.opening_max;
+    problem.slip_max = old.slip_max;
     problem.jump_old = old.jump;
     for (std::size_t k = 0; k < old.jump.size(); ++k)
       problem.jump_free[k] =
@@ -247,10 +320,13 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_points; ++i)
       set_point(input.time, discretization.extent(), old, i, problem);
     set_viscosity(input, discretization, old, problem);
+    set_dilatancy(input, discretization, old, problem);
     set_motion(input, discretization, old, problem);
     set_majorants(dynamics, problem);
   }
 
+  template double intact_stiffness(const OneStepProblem<2> &, std::size_t);
+  template double intact_stiffness(const OneStepProblem<3> &, std::size_t);
   template OneStepProblem<2> constant_data(const SceneInput &,
                                            const Discretization<2> &);
   template OneStepProblem<3> constant_data(const SceneInput &,

@@ -9,6 +9,14 @@ namespace nsfd
   struct SceneInput;
   struct State;
 
+  /** C_N of a point before damage, in Pa/m. */
+  template <int dim>
+  double intact_stiffness(const OneStepProblem<dim> &problem,
+                          std::size_t point);
+
+  /** Dilatancy or wear somewhere. */
+  bool has_sliding_lift(const SceneInput &input);
+
   /** The part of the data that no step changes. */
   template <int dim>
   OneStepProblem<dim> constant_data(const SceneInput &input,

@@ -1,6 +1,7 @@
 #include "uniqueness.h"
 
 #include "nsfd/input/scene_input.h"
+#include "nsfd/nonsmooth/point_law.h"
 #include "nsfd/time/state.h"
 
 #include <algorithm>
@@ -64,6 +65,13 @@ namespace nsfd
               W(slots[i / dim] * dim + i % dim, slots[j / dim] * dim + j % dim);
       return largest_eigenvalue(A, n);
     }
+
+    Reach history_of(const State &state, const std::size_t i)
+    {
+      return {state.opening_max[i],
+              state.slip_max.empty() ? 0. : state.slip_max[i]};
+    }
+
     /** Active and at its peak or past it. */
     template <int dim>
     bool softens(const OneStepProblem<dim> &problem, const State &state,
@@ -73,8 +81,7 @@ namespace nsfd
         return false;
       const auto &law = *problem.interactions[problem.interaction[i]].law;
       return law.extrinsic() ||
-             problem.opening_factor[i] * state.opening_max[i] >=
-                 law.peak_opening();
+             past_peak(law, problem.opening_factor[i], history_of(state, i));
     }
 
     /**
@@ -168,8 +175,12 @@ namespace nsfd
                                      const double h) const
   {
     const auto &law = *problem.interactions[problem.interaction[point]].law;
+    const double slope =
+        law.mixed() ? std::max(law.steepest_softening(),
+                               law.mixed()->steepest_shear_softening())
+                    : law.steepest_softening();
     return h * h * theta_ * chi_ * problem.strength_factor[point] *
-           problem.opening_factor[point] * law.steepest_softening() *
+           problem.opening_factor[point] * slope *
            flexibility_[dynamics_.points().face_of[point]];
   }
 
@@ -202,13 +213,13 @@ namespace nsfd
   {
     double result = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < problem.n_owned; ++i) {
-      if (next.opening_max[i] <= old.opening_max[i] ||
+      const Reach before = history_of(old, i), after = history_of(next, i);
+      if ((after.opening <= before.opening && after.slip <= before.slip) ||
           (old.kind[i] != PointKind::cohesive &&
            old.kind[i] != PointKind::rigid))
         continue;
       const auto &law = *problem.interactions[problem.interaction[i]].law;
-      if (problem.opening_factor[i] * next.opening_max[i] >=
-          law.peak_opening())
+      if (past_peak(law, problem.opening_factor[i], after))
         result = std::min(result, bound(problem, i));
     }
     return dynamics_.communicator().min(result);

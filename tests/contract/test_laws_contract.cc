@@ -209,6 +209,8 @@ namespace
   // without, they do not.
   void potential_means_independence_of_the_path(const CohesiveLaw &law)
   {
+    if (law.mixed())
+      return; // its own functions are those of pure opening
     const double end =
         std::min(end_of_softening(law), 3. * law.toughness() / law.strength());
     const double N = 0.4 * end, T = 0.4 * end / std::sqrt(law.shear_weight());
@@ -258,6 +260,8 @@ namespace
       toughness = g * law.toughness();
       problem.kind = {law.extrinsic() ? PointKind::rigid : PointKind::cohesive};
       problem.opening_max = {(1. - 1e-14) * law.elastic_limit() * g / a};
+      if (law.mixed())
+        problem.slip_max = {0.};
       if (number(0., 1.) < 0.3)
         problem.viscosity = {number(0., 0.2) * law.strength() /
                              end_of_softening(law)};
@@ -299,6 +303,12 @@ namespace
       return std::uniform_real_distribution<double>(lower, upper)(random_);
     }
 
+    Reach history() const
+    {
+      return {problem.opening_max[0],
+              law_.mixed() ? problem.slip_max[0] : 0.};
+    }
+
     void prepare()
     {
       const double theta = problem.theta;
@@ -318,8 +328,8 @@ namespace
 
     void finish(const std::array<double, 2> &local)
     {
-      const auto solution = solve_point<2>(problem, 0, local, R_[0], R_[1],
-                                           problem.opening_max[0]);
+      const auto solution =
+          solve_point<2>(problem, 0, local, R_[0], R_[1], history());
       energies =
           point_energies<2>(problem, 0, solution.velocity, solution.frozen);
       for (unsigned int c = 0; c < 2; ++c)
@@ -339,7 +349,9 @@ namespace
         jump_[c] = problem.jump_free[c] +
                    problem.time_step * problem.theta * solution.velocity[c];
       velocity_ = solution.velocity;
-      problem.opening_max[0] = energies.opening_max;
+      problem.opening_max[0] = energies.history.opening;
+      if (law_.mixed())
+        problem.slip_max[0] = energies.history.slip;
       if (problem.kind[0] == PointKind::rigid && solution.damages)
         problem.kind[0] = PointKind::cohesive;
       if (problem.kind[0] == PointKind::cohesive && beta < 1.)
@@ -367,8 +379,8 @@ namespace
       // velocities come from jumps, whose round-off is divided by h theta, and
       // so do impulses, multiplied by the stiffness against R
       const double stiffness =
-          std::isfinite(solution.frozen.secant)
-              ? (R_[0] + R_[1]) * wh * solution.frozen.secant * h_theta
+          std::isfinite(solution.frozen.secant.normal)
+              ? (R_[0] + R_[1]) * wh * solution.frozen.secant.normal * h_theta
               : 0.;
       const double tolerance =
           1e-12 * size + 1e-14 * jump / h_theta * (1. + stiffness);
@@ -399,12 +411,14 @@ namespace
             problem.time_step * problem.theta * solution.velocity[c] -
             problem.jump_old[c];
         work += energies.cohesive_traction[c] * change;
-        size += std::abs(energies.cohesive_traction[c] * change);
+        // the change is a difference of jumps
+        size += std::abs(energies.cohesive_traction[c]) *
+                (std::abs(change) + 1e-5 * std::abs(problem.jump_old[c]));
       }
       ASSERT_NEAR(work,
                   energies.stored + energies.overlap_released -
                       energies.stored_old + energies.damage + energies.viscous,
-                  1e-11 * size);
+                  std::max(1e-11 * size, 1e-300)); // not of denormal numbers
     }
   };
 
@@ -417,7 +431,7 @@ namespace
     const double end = end_of_softening(law);
     unsigned int damaged = 0;
     for (unsigned int path = 0; path < 10000; ++path) {
-      const unsigned int rule = path % (law.has_potential() ? 3 : 2);
+      const unsigned int rule = path % 3;
       RandomPoint point(law,
                         rule == 0   ? CohesionRule::end_point
                         : rule == 1 ? CohesionRule::end_velocity
@@ -476,9 +490,11 @@ namespace
     problem.kind = {law.extrinsic() ? PointKind::rigid : PointKind::cohesive};
     problem.strength_factor = {a};
     problem.opening_factor = {a / g};
+    if (law.mixed())
+      problem.slip_max = {0.};
     const double R = 1e-14 * opening / (law.strength() * 0.3 * 0.02 * 0.02);
     const auto solution = solve_point<2>(
-        problem, 0, {{opening / problem.time_step, 0.}}, R, R, 0.);
+        problem, 0, {{opening / problem.time_step, 0.}}, R, R, {});
     const auto energies =
         point_energies<2>(problem, 0, solution.velocity, solution.frozen);
     return {-solution.impulse[0] / (0.3 * 0.02),
@@ -490,6 +506,8 @@ namespace
   // one point, to the 1e-14 that the majorant moves it.
   void factors_scale_strength_and_toughness(const CohesiveLaw &law)
   {
+    if (law.rate_dependent())
+      return; // its traction is that of the envelope at rest only
     const double end = end_of_softening(law), R_max = law.strength(),
                  G = law.toughness();
     for (const double a : {1., 0.3, 2.5})

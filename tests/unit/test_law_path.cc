@@ -224,7 +224,9 @@ TEST(LawPath, TractionsAreOnTheEnvelope)
       const double expected = law.traction(reached) * row.opening / reached;
       EXPECT_NEAR(row.cohesive_normal, expected, 1e-12 * law.strength())
           << name << " at " << row.opening;
-      EXPECT_EQ(row.beta, law.beta(reached)) << name << " at " << row.opening;
+      EXPECT_EQ(row.beta, law.mixed() ? law.mixed()->beta(reached, 0.)
+                                      : law.beta(reached))
+          << name << " at " << row.opening;
     }
   }
 }
@@ -240,11 +242,13 @@ TEST(LawPath, EveryLawLosesItsToughness)
                    std::string("Path/cohesion rule=") + rule});
         ASSERT_TRUE(input);
         const CohesiveLaw &law = *input->curves[0].interaction.law;
+        if (law.mixed() && path.name != "opening")
+          continue; // other ways take other energies
         const double G = law.toughness();
         const Curve curve = drive(*input);
         const CurveRow &end = curve.back();
         const std::string where = name + ", " + path.name + ", " + rule;
-        ASSERT_TRUE(law.has_potential()) << where;
+        ASSERT_TRUE(law.has_potential() || law.mixed()) << where;
         if (std::isfinite(law.final_opening())) {
           EXPECT_NEAR(end.damage, G, 1e-10 * G) << where;
           EXPECT_EQ(end.stored, 0.) << where;
@@ -326,8 +330,13 @@ TEST(LawPath, RandomPaths)
             EXPECT_TRUE(std::isfinite(row.work + row.stored)) << where;
             EXPECT_LE(row.beta, last.beta) << where;
             EXPECT_GE(row.damage, last.damage) << where;
-            EXPECT_GE(row.friction_work, last.friction_work) << where;
-            EXPECT_LE(row.damage, law.toughness() * (1. + 1e-12)) << where;
+            // a place is reached to 1e-12 of the step, with two scalars 1e-6
+            EXPECT_GE(row.friction_work,
+                      last.friction_work - 1e-12 * law.toughness())
+                << where;
+            if (!law.mixed()) {
+              EXPECT_LE(row.damage, law.toughness() * (1. + 1e-12)) << where;
+            }
           }
         }
       }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -81,6 +82,16 @@ namespace nsfd
     std::array<Expression, 3> body_force; ///< N/m^3, of x, y, z, t
   };
 
+  /** What sliding does to the surfaces in contact. */
+  struct SlidingInput
+  {
+    double dilatancy = 0.; ///< tan(psi): u_N >= d(s), d(s) = s tan(psi)
+    double saturation = std::numeric_limits<double>::infinity(); ///< of d, m
+    double wear = 0.; ///< k of d(gap)/dt = k p_N |U_T|, 1/Pa
+
+    bool lifts() const { return dilatancy > 0. || wear > 0.; }
+  };
+
   enum class IntactFaces
   {
     spring,
@@ -109,7 +120,10 @@ namespace nsfd
     bool has_broken = false;
     Expression broken; ///< points where it is not zero start at beta = 0
     IntactFaces intact = IntactFaces::spring;
+    bool plateau = false; ///< extrinsic: T(d_m) also while closing, (5)
     double opening_viscosity = 0.; ///< eta in Pa s/m, while beta > 0
+    double viscous_limit = std::numeric_limits<double>::infinity(); ///< Pa
+    SlidingInput sliding;
     /// Pa, of x, y, z, t: on the lips of points with beta <= threshold
     std::optional<Expression> crack_pressure;
     double pressure_threshold = 0.;
@@ -140,6 +154,7 @@ namespace nsfd
     Where where;                          ///< boundary faces that may touch it
     std::array<double, 3> point{}, normal{}; ///< normal points out of the obstacle, unit length
     double friction = 0., restitution = 0.;
+    SlidingInput sliding;
   };
 
   enum class CohesionRule

@@ -10,8 +10,39 @@ namespace nsfd
   class SectionReader;
 
   /**
-   * A rate-independent cohesive law with one damage scalar, stated by its
-   * envelope: traction T(d) against the effective opening
+   * A law with two damage scalars: the largest opening x and the largest slip
+   * y, both in m, give a secant to each direction,
+   *
+   *   R = K_N(x, y) <u_N>_+ n + K_T(x, y) u_T.
+   *
+   * Neither secant grows with x or y, so that damage never gives energy back.
+   */
+  class MixedLaw
+  {
+  public:
+    virtual ~MixedLaw() = default;
+
+    /** K_N and K_T in Pa/m, finite at 0. */
+    virtual double normal_secant(double x, double y) const = 0;
+    virtual double tangential_secant(double x, double y) const = 0;
+
+    /** int K_N(x, y) x dx from @p x0 to @p x1 at the slip @p y, in J/m^2. */
+    virtual double normal_energy(double x0, double x1, double y) const = 0;
+    /** int K_T(x, y) y dy from @p y0 to @p y1 at the opening @p x. */
+    virtual double tangential_energy(double y0, double y1, double x) const = 0;
+
+    /** max |dT_T/dy| in pure shear, in Pa/m. */
+    virtual double steepest_shear_softening() const = 0;
+
+    /** Slip at the largest traction in pure shear, in m. */
+    virtual double peak_slip() const = 0;
+
+    /** What is left: the larger of both secants over those at 0. */
+    double beta(double x, double y) const;
+  };
+
+  /**
+   * A cohesive law with one damage scalar, stated by its envelope: traction T(d) against the effective opening
    *
    *   d^2 = <u_N>_+^2 + r^2 |u_T|^2,        r^2 = shear_weight().
    *
@@ -24,6 +55,10 @@ namespace nsfd
    * Lengths in m, tractions in Pa, energies in J/m^2. All functions are pure:
    * history (the largest opening) is kept by the caller. They accept any
    * d >= 0, also far beyond separation, and return finite values.
+   *
+   * A law may let its damage lag behind the opening (rate_dependent()), or
+   * have two damage scalars (mixed()): what it says here is then its envelope
+   * at rest, or its curve in pure opening.
    *
    * A point with a times the strength and g times the toughness evaluates
    * a T(a d / g): the shape stays, openings scale with g / a and the stiffness
@@ -48,7 +83,7 @@ namespace nsfd
 
     /**
      * The effective opening is the norm of the stored energy (r^2 = C_T/C_N),
-     * so that the law has a potential and the `exact` cohesion rule applies.
+     * so that the work to any opening does not depend on the way.
      */
     bool has_potential() const;
 
@@ -88,6 +123,18 @@ namespace nsfd
 
     /** max |T'| over the softening branch, in Pa/m; infinity at a jump. */
     virtual double steepest_softening() const = 0;
+
+    /** The law with two damage scalars that this is, or null. */
+    virtual const MixedLaw *mixed() const { return nullptr; }
+
+    /** Damage takes time: delayed_opening() and not the opening itself. */
+    virtual bool rate_dependent() const { return false; }
+
+    /**
+     * The opening d_m whose beta is reached after @p time seconds at the
+     * opening @p d > @p d_m, from that of @p d_m; between the two.
+     */
+    virtual double delayed_opening(double d_m, double d, double time) const;
   };
 
   /**

@@ -24,6 +24,10 @@ namespace nsfd
     double friction = 0.;         ///< mu
     double friction_exponent = 1.; ///< kappa = (1-beta)^s; 0: kappa = 1
     double restitution = 0.;       ///< e
+    bool plateau = false; ///< extrinsic, T(d_m) also while it closes: form (5)
+    double viscous_limit =
+      std::numeric_limits<double>::infinity(); ///< of viscous traction, Pa
+    double wear = 0.; ///< k of d(gap)/dt = k p_N |U_T|, 1/Pa
   };
 
   /** What a point is during one step: decided before it, data afterwards. */
@@ -65,10 +69,16 @@ namespace nsfd
     std::vector<double> weight;             ///< w
     std::vector<double> strength_factor;    ///< a, see CohesiveLaw; else 1
     std::vector<double> opening_factor;     ///< a / g, see CohesiveLaw; else 1
-    std::vector<double> opening_max;        ///< d_m, largest effective opening
+    std::vector<double> opening_max;        ///< d_m, largest effective opening,
+                                            ///< or the largest <u_N>_+
+    std::vector<double> slip_max; ///< largest |u_T| of laws with two damage
+                                  ///< scalars; empty if there are none
     std::vector<double> compression_stiffness; ///< two-sided while intact, else 0
     std::vector<double> viscosity; ///< eta of the opening, Pa s/m; empty if
                                    ///< no point has one
+    std::vector<double> dilatancy; ///< slope d'(s) of u_N >= d(s), while the
+                                   ///< surfaces slide; empty if nothing lifts
+    std::vector<double> lift_left; ///< until d(s) saturates, m; likewise
     std::vector<double> target;             ///< U_N >= target where in contact
 
     // per point and component

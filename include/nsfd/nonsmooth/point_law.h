@@ -2,6 +2,8 @@
 
 #include "nsfd/nonsmooth/one_step_problem.h"
 
+#include <cmath>
+
 namespace nsfd
 {
   /** Where a point ended in its local problem. */
@@ -13,11 +15,35 @@ namespace nsfd
     slide
   };
 
+  /**
+   * How far a point is open, in m: its effective opening, or, for laws with
+   * two damage scalars, <u_N>_+ and |u_T|.
+   */
+  struct Reach
+  {
+    double opening = 0., slip = 0.;
+  };
+
+  /** R_coh = normal <u*_N>_+ n + tangential u*_T, in Pa/m. */
+  struct Secant
+  {
+    double normal = 0., tangential = 0.;
+
+    static constexpr Secant rigid()
+    {
+      return {std::numeric_limits<double>::infinity(),
+              std::numeric_limits<double>::infinity()};
+    }
+  };
+
   /** The secant state of a point: fixes its law to a monotone one. */
   struct FrozenPoint
   {
-    double secant = 0.;     ///< b in Pa/m; infinity: rigid
-    double threshold = 0.;  ///< s, friction impulse bound
+    Secant secant;
+    double threshold = 0.; ///< s, friction impulse bound
+    double lift = 0.; ///< of the contact by sliding, m/s: U_N >= target + lift
+
+    bool is_rigid() const { return std::isinf(secant.normal); }
   };
 
   template <int dim>
@@ -25,9 +51,10 @@ namespace nsfd
   {
     std::array<double, dim> impulse{}, velocity{};
     FrozenPoint frozen;
-    double opening = 0.; ///< effective opening d' at the end of the step
+    Reach reach; ///< at the end of the step
     double contact_impulse = 0.; ///< P_c,N
-    bool damages = false;        ///< d' beyond d_m
+    bool damages = false;        ///< a largest reach grows
+    bool coupled = false; ///< the frozen part follows the local velocity
     PointStatus status = PointStatus::open;
   };
 
@@ -47,7 +74,7 @@ namespace nsfd
                                  const std::array<double, dim> &local_velocity,
                                  double majorant_normal,
                                  double majorant_tangential,
-                                 double opening_start);
+                                 const Reach &start);
 
   /** The same with damage and friction threshold frozen: a convex problem. */
   template <int dim>
@@ -58,6 +85,10 @@ namespace nsfd
                      const std::array<double, dim> &local_velocity,
                      double majorant_normal,
                      double majorant_tangential);
+
+  /** A secant state makes the law of the point convex. */
+  template <int dim>
+  bool has_frozen_law(const OneStepProblem<dim> &problem, std::size_t point);
 
   /**
    * -dP/dU_loc of solve_frozen_point() in the frame of the point: normal and
@@ -84,15 +115,23 @@ namespace nsfd
                   const std::array<double, dim> &impulse);
 
   /**
-   * The secant state of a cohesive, free or elastic point whose effective
-   * opening is @p opening at the end of the step, under the contact impulse
+   * The secant state of a cohesive, free or elastic point that is open to
+   * @p end at the end of the step, under the contact impulse
    * @p contact_impulse: what a fixed point on damage and friction updates.
    */
   template <int dim>
   FrozenPoint frozen_state(const OneStepProblem<dim> &problem,
                            std::size_t point,
-                           double opening,
+                           const Reach &end,
                            double contact_impulse);
+
+  /**
+   * The traction in Pa at which a rigid point lets go: R_max, or what the
+   * largest opening has left of it (plateau).
+   */
+  template <int dim>
+  double point_strength(const OneStepProblem<dim> &problem,
+                        std::size_t point);
 
   /** Cohesive traction densities and energies of a point over a step. */
   template <int dim>
@@ -100,7 +139,8 @@ namespace nsfd
   {
     std::array<double, dim> cohesive_traction{}; ///< R_coh, with viscosity, Pa
     double viscous_traction = 0.; ///< its viscous part
-    double opening_max = 0., beta = 1.;          ///< after the step
+    Reach history;    ///< largest reach after the step
+    double beta = 1.; ///< after the step
     double stored = 0.;          ///< after the step, J/m^2, overlap included
     double stored_old = 0.;      ///< before
     double damage = 0.;          ///< dissipated in the step, J/m^2
@@ -115,12 +155,29 @@ namespace nsfd
                  const std::array<double, dim> &velocity,
                  const FrozenPoint &frozen);
 
+  /** Stored at the start of the step, overlap included, in J/m^2. */
+  template <int dim>
+  double stored_energy(const OneStepProblem<dim> &problem, std::size_t point);
+
+  /** |U_T| as friction counts it, in m/s. */
+  template <int dim>
+  double sliding_speed(const OneStepProblem<dim> &problem, std::size_t point,
+                       const std::array<double, dim> &velocity);
+
   /** Effective opening sqrt(<u_N>_+^2 + r^2 |u_T|^2). */
   template <int dim>
   double effective_opening(const Interaction &interaction,
                            const double *jump);
 
-  /** beta of a point from its largest opening. */
+  /** The same, or opening and slip apart, as the law asks for. */
+  template <int dim>
+  Reach reach_of(const Interaction &interaction, const double *jump);
+
+  /** At the largest traction or beyond it; with two scalars, in one norm. */
+  bool past_peak(const CohesiveLaw &law, double opening_factor,
+                 const Reach &history);
+
+  /** beta of a point from its largest reach. */
   double beta_of(const Interaction &interaction, PointKind kind,
-                 double opening_factor, double opening_max);
+                 double opening_factor, const Reach &history);
 } // namespace nsfd

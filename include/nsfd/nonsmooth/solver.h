@@ -40,14 +40,15 @@ namespace nsfd
 
     /**
      * From now on the laws with damage and friction thresholds as given (one
-     * per point, kept by the caller), except for points that are rigid before
-     * the step: a convex problem but for those. Null: the full laws.
+     * per point, kept by the caller), except for points without a convex law:
+     * rigid before the step, on a plateau, or lifted by sliding. Null: the full
+     * laws.
      */
     void freeze(const std::vector<FrozenPoint> *frozen) { frozen_ = frozen; }
     bool is_frozen() const { return frozen_ != nullptr; }
     bool is_frozen(const std::size_t point) const
     {
-      return frozen_ && problem_.kind[point] != PointKind::rigid;
+      return frozen_ && has_frozen_law<dim>(problem_, point);
     }
 
     /** The same when W P is known already. */

@@ -22,8 +22,13 @@ namespace nsfd
     std::vector<double> relative_velocity; ///< U, m/s
     std::vector<double> impulse;           ///< P of the last step, warm start
     std::vector<double> opening_max;       ///< d_m, m
+    std::vector<double> slip_max; ///< largest |u_T| of laws with two damage
+                                  ///< scalars, m; empty if there are none
     std::vector<double> beta;
     std::vector<double> slip;              ///< accumulated |u_T| in contact
+    /// by sliding, m and m/s: contact is at u_N = dilated - worn; empty if the
+    /// scene has neither dilatancy nor wear
+    std::vector<double> dilated, worn, dilation_speed, wear_speed;
     std::vector<double> penetration_bound; ///< what u_N >= -bound allows, m
     std::vector<PointKind> kind;
     std::vector<std::uint8_t> two_sided; ///< intact spring, also in compression

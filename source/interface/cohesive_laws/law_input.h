@@ -22,14 +22,17 @@ namespace nsfd::laws
   /** What the file gives of G = zeta R_max d_c besides zeta. */
   struct Separation {
     std::optional<double> strength, toughness, critical_opening;
+    std::string opening_name;
 
-    explicit Separation(SectionReader &reader)
+    explicit Separation(
+        SectionReader &reader, const std::string &name = "critical opening",
+        const std::string &text = "Opening d_c at separation")
         : strength(given(reader, "strength", units::pressure,
                          "Largest traction R_max")),
           toughness(given(reader, "toughness", units::energy_per_area,
                           "Fracture energy G")),
-          critical_opening(given(reader, "critical opening", units::length,
-                                 "Opening d_c at separation"))
+          critical_opening(given(reader, name, units::length, text)),
+          opening_name(name)
     {
     }
 
@@ -48,15 +51,15 @@ namespace nsfd::laws
     {
       if (n_given() == 3)
         reader.error("toughness",
-                     "`strength`, `toughness` and `critical opening` are tied "
-                     "by " +
-                         relation + " and cannot all be given",
+                     "`strength`, `toughness` and `" + opening_name +
+                         "` are tied by " + relation +
+                         " and cannot all be given",
                      "remove one of the three");
       if (n_given() < 2)
         reader.error("strength",
                      "the law " + law +
-                         " needs two of `strength`, `toughness` and `critical "
-                         "opening`",
+                         " needs two of `strength`, `toughness` and `" +
+                         opening_name + "`",
                      "add the missing ones");
       const double G = toughness.value_or(1.);
       if (!critical_opening)

@@ -1,6 +1,7 @@
 #include "nsfd/input/section_reader.h"
 #include "nsfd/interface/cohesive_law.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -8,14 +9,16 @@
 namespace nsfd
 {
   /**
-   * Adhesion of Raous, Cangemi and Cocu, rate independent. Their intensity b
-   * minimises b^2 C d^2 / 2 - w b, so b = min(1, w / (C d^2)) with
+   * Adhesion of Raous, Cangemi and Cocu. Their intensity b minimises
+   * b^2 C d^2 / 2 - w b, so b = min(1, w / (C d^2)) at rest, with
    * C d^2 = C_N <u_N>_+^2 + C_T |u_T|^2, and the traction is b^2 C u. In the
    * form (4) of the report the damage is therefore beta = b^2:
    *
    *   T = C d up to u_0 = sqrt(w / C),   T = w^2 / (C d^3) beyond,   G = w,
    *
-   * half of it dissipated after the peak, in a tail without end.
+   * half of it dissipated after the peak, in a tail without end. With a
+   * viscosity eta the intensity follows eta db/dt = min(0, w - b C d^2), solved
+   * exactly over a step for the opening at its end.
    */
   class Rcc final : public CohesiveLaw
   {
@@ -35,6 +38,9 @@ namespace nsfd
                                    stiffness_
                              : 1.;
       elastic_limit_ = std::sqrt(adhesion_energy_ / stiffness_);
+      viscosity_ = reader.number("damage viscosity", "0",
+                                 units::damage_viscosity, Range::non_negative(),
+                                 "Of the intensity, J s/m^2; 0: none");
     }
 
     bool extrinsic() const override { return false; }
@@ -73,11 +79,25 @@ namespace nsfd
     double strength() const override { return stiffness_ * elastic_limit_; }
     double toughness() const override { return adhesion_energy_; }
 
+    bool rate_dependent() const override { return viscosity_ > 0.; }
+
+    double delayed_opening(const double d_m, const double d,
+                           const double time) const override
+    {
+      if (viscosity_ == 0. || d <= d_m)
+        return std::max(d_m, d);
+      const double rate = stiffness_ * d * d / viscosity_;
+      const double end = intensity(d);
+      const double b = end + (intensity(d_m) - end) * std::exp(-rate * time);
+      return std::clamp(elastic_limit_ / std::sqrt(b), d_m, d);
+    }
+
     /** Just after the peak. */
     double steepest_softening() const override { return 3. * stiffness_; }
 
   private:
     double stiffness_, adhesion_energy_, stiffness_ratio_, elastic_limit_;
+    double viscosity_;
 
     /** The authors' own beta, min(1, w / (C d^2)). */
     double intensity(const double d) const
@@ -91,8 +111,10 @@ namespace nsfd
 
   NSFD_REGISTER(CohesiveLawRegistry, Rcc, "rcc",
                 "Intrinsic adhesion of Raous, Cangemi and Cocu, endless tail; "
-                "from stiffness and adhesion energy",
+                "from stiffness and adhesion energy, viscous by choice",
                 "stiffness = 2e12; adhesion energy = 8 J/m^2",
                 "stiffness = 2e12; adhesion energy = 8 J/m^2; "
-                "tangential stiffness = 5e12");
+                "tangential stiffness = 5e12",
+                "stiffness = 2e12; adhesion energy = 8 J/m^2; "
+                "damage viscosity = 0.01");
 } // namespace nsfd

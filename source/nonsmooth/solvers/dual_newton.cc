@@ -84,7 +84,7 @@ namespace nsfd
                                           solution, R_N, R_T);
         std::copy(s.begin(), s.end(), slopes_.begin() + i * dim);
         if (work.evaluation.is_frozen(i) ||
-            (!solution.damages && solution.frozen.threshold == 0.))
+            !solution.coupled)
           continue;
         // difference quotients of the local solve, friction and damage in it
         coupled_[i] = 1;
@@ -101,7 +101,7 @@ namespace nsfd
           moved[c] += step;
           const double h = moved[c] - local[c];
           const auto other = solve_point<dim>(problem, i, moved, R_N, R_T,
-                                              solution.opening);
+                                              solution.reach);
           for (unsigned int d = 0; d < dim; ++d)
             jacobian_[(i * dim + d) * dim + c] =
               h > 0. ? (other.impulse[d] - solution.impulse[d]) / h : 0.;

@@ -50,7 +50,10 @@ namespace nsfd
       std::unique_ptr<NonsmoothSolver<dim>> inner_;
     };
 
-    /** One solve: unknowns are d' / d_0 and s / s_0 of every point. */
+    /**
+     * One solve: unknowns are the reach at the end of the step over d_0, and
+     * s / s_0, of every point.
+     */
     template <int dim>
     struct FixedPoint<dim>::Round
     {
@@ -87,14 +90,22 @@ namespace nsfd
         return !finished;
       }
 
+      static constexpr unsigned int stride = 3;
+
+      void set_reach(const Reach &reach, const std::size_t i, Vector &x) const
+      {
+        x[stride * i] = reach.opening / length[i];
+        x[stride * i + 1] = reach.slip / length[i];
+      }
+
       /** The unknowns that the present solution asks for. */
       Vector unknowns() const
       {
-        Vector x(2 * problem.n_points, 0.);
+        Vector x(stride * problem.n_points, 0.);
         for (std::size_t i = 0; i < problem.n_points; ++i) {
           const auto &solution = evaluation.solutions[i];
-          x[2 * i] = solution.opening / length[i];
-          x[2 * i + 1] =
+          set_reach(solution.reach, i, x);
+          x[stride * i + 2] =
             scale > 0. ? solution.frozen.threshold / scale : 0.;
         }
         return x;
@@ -105,8 +116,11 @@ namespace nsfd
       {
         for (std::size_t i = 0; i < problem.n_points; ++i) {
           frozen[i] = frozen_state<dim>(
-            problem, i, std::max(0., x[2 * i]) * length[i], 0.);
-          frozen[i].threshold = std::max(0., x[2 * i + 1]) * scale;
+            problem, i,
+            {std::max(0., x[stride * i]) * length[i],
+             std::max(0., x[stride * i + 1]) * length[i]},
+            0.);
+          frozen[i].threshold = std::max(0., x[stride * i + 2]) * scale;
         }
         SolverControl part = control;
         part.tolerance = std::max(0.1 * control.tolerance,
@@ -116,11 +130,11 @@ namespace nsfd
           problem, dynamics, energy_scale, part, impulse, evaluation);
         for (std::size_t i = 0; i < problem.n_points; ++i) {
           const auto &solution = evaluation.solutions[i];
-          x[2 * i] = solution.opening / length[i];
-          x[2 * i + 1] = 0.;
+          set_reach(solution.reach, i, x);
+          x[stride * i + 2] = 0.;
           if (scale > 0. && evaluation.is_frozen(i))
-            x[2 * i + 1] =
-              frozen_state<dim>(problem, i, solution.opening,
+            x[stride * i + 2] =
+              frozen_state<dim>(problem, i, solution.reach,
                                 solution.contact_impulse)
                 .threshold /
               scale;
@@ -136,14 +150,14 @@ namespace nsfd
       void complete(Vector &x) const
       {
         Vector first = x, second = x;
-        first.resize(2 * (problem.n_points + 1));
+        first.resize(stride * (problem.n_points + 1));
         second.resize(first.size());
-        dynamics.exchange({{first.data(), second.data()}}, 2);
+        dynamics.exchange({{first.data(), second.data()}}, stride);
         // what came in is on the side that this rank does not compute
         for (const auto &neighbor : dynamics.points().neighbors)
           for (std::size_t j = 0; j < neighbor.points.size(); ++j)
             if (const std::size_t i = neighbor.points[j]; i >= problem.n_owned)
-              for (std::size_t c = 2 * i; c < 2 * i + 2; ++c)
+              for (std::size_t c = stride * i; c < stride * (i + 1); ++c)
                 x[c] = (neighbor.side[j] == 0 ? second : first)[c];
       }
     };
@@ -181,7 +195,7 @@ namespace nsfd
         if (anderson_ > 0) {
           using Distributed =
             dealii::LinearAlgebra::distributed::Vector<double>;
-          const std::size_t n = 2 * problem.n_owned;
+          const std::size_t n = Round::stride * problem.n_owned;
           const dealii::IndexSet owned =
             dealii::Utilities::MPI::create_ascending_partitioning(
               communicator.mpi(), n)[communicator.rank()];

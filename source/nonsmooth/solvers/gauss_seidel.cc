@@ -164,7 +164,11 @@ namespace nsfd
       largest = std::max(largest, face.count);
     largest = unsigned(dynamics.communicator().max(largest));
 
-    std::vector<double> opening(problem.opening_max);
+    std::vector<Reach> reach(problem.n_points);
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      reach[i].opening = problem.opening_max[i];
+    for (std::size_t i = 0; i < problem.slip_max.size(); ++i)
+      reach[i].slip = problem.slip_max[i];
     const auto solve = [&](const std::size_t i) {
       const double *Q = points.frame.data() + i * dim * dim;
       std::array<double, dim> local;
@@ -179,8 +183,8 @@ namespace nsfd
       }
       const auto solution = solve_point<dim>(
         problem, i, local, problem.majorant_normal[i],
-        problem.majorant_tangential[i], opening[i]);
-      opening[i] = solution.opening;
+        problem.majorant_tangential[i], reach[i]);
+      reach[i] = solution.reach;
       double change[dim];
       bool changed = false;
       for (unsigned int k = 0; k < dim; ++k) {

@@ -10,6 +10,12 @@ namespace nsfd
    * Block that slides on a level plane until friction stops it: after
    * t_s = v_0 / (mu g), at the distance v_0^2 / (2 mu g); friction has then
    * taken all of the kinetic energy, and the velocity is exactly 0.
+   *
+   * With dilatancy tan(psi) = a the block is thrown up as it starts to slide,
+   * which leaves v_0 / (1 + mu a), and the climb presses it less: it stops at
+   * the same time after v_0^2 / (2 mu g (1 + mu a)), lifted by a times that.
+   * With wear k it sinks by k p times the distance, p = m g / A, as long as
+   * k p is small.
    */
   class Stop final : public VerificationCase
   {
@@ -35,6 +41,18 @@ namespace nsfd
       stop_time_ = speed_ / (plane.friction * pull);
       demand(input.time.end > stop_time_,
              "the run ends before the block stops");
+      const SlidingInput &sliding = plane.sliding;
+      demand(std::isinf(sliding.saturation) &&
+                 (sliding.dilatancy == 0. || sliding.wear == 0.),
+             "dilatancy without saturation, or wear, but not both");
+      const double height = extent(input, up.axis),
+                   p = input.materials[0].density * pull * height;
+      climb_ = sliding.dilatancy - sliding.wear * p;
+      exact_distance_ = 0.5 * speed_ * stop_time_ /
+                        (1. + plane.friction * sliding.dilatancy);
+      up_ = up.axis;
+      up_sign_ = up.sign;
+      lifts_ = sliding.lifts();
     }
 
     bool wants_cells() const override { return true; }
@@ -48,7 +66,9 @@ namespace nsfd
              speed_;
       }
       distance_ = u;
-      work_ = view.row->energy.friction;
+      lift_ = up_sign_ * mean(*view.cells, &CellState::displacement, up_);
+      const EnergyLines &e = view.row->energy;
+      work_ = e.friction + e.impact - e.work;
       if (view.row->step == 0)
         kinetic_ = view.row->energy.kinetic;
       // the last full step of sliding tells when the velocity passes 0
@@ -63,14 +83,19 @@ namespace nsfd
     void finish(std::map<std::string, double> &errors) const override
     {
       errors["stop_time"] = relative_error(measured_stop_, stop_time_);
-      errors["distance"] = relative_error(distance_, 0.5 * speed_ * stop_time_);
+      errors["distance"] = relative_error(distance_, exact_distance_);
       errors["friction_work"] = relative_error(work_, kinetic_);
+      if (lifts_)
+        errors["lift"] = relative_error(lift_, climb_ * exact_distance_);
       errors["velocity_after_stop"] = creep_ / speed_;
     }
 
   private:
     Vector velocity_{};
     double speed_ = 0., stop_time_ = 0.;
+    unsigned int up_ = 0;
+    double up_sign_ = 1., climb_ = 0., exact_distance_ = 0., lift_ = 0.;
+    bool lifts_ = false;
     double distance_ = 0., work_ = 0., kinetic_ = 0., measured_stop_ = 0.,
            creep_ = 0., old_ = 0.;
   };
