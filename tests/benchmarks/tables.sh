@@ -7,6 +7,8 @@
 #   sh tests/benchmarks/tables.sh crack    crack that runs and stops
 #   sh tests/benchmarks/tables.sh procedures  three ways to update damage
 #   sh tests/benchmarks/tables.sh auto     step = auto against fixed steps
+#   sh tests/benchmarks/tables.sh lengths  cohesive length over cell and points,
+#                                          as CSV, for nsfd_plot; 10 minutes
 # Run from the top of a built checkout. Times depend on the machine, counts do
 # not.
 set -eu
@@ -142,7 +144,69 @@ auto)
   rows quickstart "0.5 0.25 0.16"
   rows benchmarks/fracture_everywhere "0.5 0.25 0.12" \
     --set "Mesh/cells=20, 20" --set "Interface: all/stiffness=5.67e18" ;;
+lengths)
+  # The steps are the same for all degrees and shrink with the cells.
+  row() { # row SERIES LENGTH DEGREE CELLS STEPS [options]
+    series=$1
+    length=$2
+    degree=$3
+    cells=$4
+    steps=$5
+    shift 5
+    run prm/benchmarks/lengths.prm --set "Constants/ell=$length" \
+      --set "Discretization/degree=$degree" --set "Mesh/cells=$cells" \
+      --set "Time/step=4 / $steps" "$@"
+    [ "$series" = reference ] && cp "$out/run/history.csv" "$out/reference.csv"
+    errors=$(awk -v toughness=1e-4 -v from=2 -f tests/benchmarks/tip_path.awk \
+      "$out/reference.csv" "$out/run/history.csv")
+    awk -v s="$series" -v l="$length" -v p="$degree" -v n="$(value dofs)" \
+      -v L="$(edge "$cells")" -v e="$errors" -v r="$(value rejected_steps)" \
+      -v t="$(value cpu_seconds)" 'BEGIN {
+      printf "%s,%.4f,%s,%d,%.4f,%.3f,%.3f,%s,%d,%.1f\n",
+        s, l, p, n, L, l / L, l * p / L, e, r, t }'
+  }
+  edge() { # edge CELLS: the longest one
+    echo "$1" | awk -F, '{ x = 5 / $1; y = 2 / $2; print (x > y ? x : y) }'
+  }
+  springs() { # springs SERIES C LENGTH DEGREE CELLS STEPS
+    joint=$1
+    C=$2
+    shift 2
+    set -- "$@" --set "Interface: plane/law=geubelle-baylor" \
+      --set "Interface: plane/stiffness=$C"
+    row "$joint on the plane" "$@"
+    row "$joint on all faces" "$@" \
+      --set "Interface: elsewhere/law=elastic" \
+      --set "Interface: elsewhere/normal stiffness=$C"
+  }
+  echo "series,L_czm,degree,unknowns,L_mesh,L_czm_over_L_mesh,L_czm_over_L_int,tip,work,kinetic,speed,D_over_Ga,rejected,cpu"
+  for length in 0.66667 0.33333 0.16667 0.08333; do
+    row reference $length 2 "120, 48" 336
+    row "degree 1; coarse" $length 1 "30, 12" 56
+    row "degree 2; coarse" $length 2 "20, 8" 56
+    row "degree 4; coarse" $length 4 "12, 4" 56
+    row "degree 1" $length 1 "60, 24" 112
+    row "degree 2" $length 2 "40, 16" 112
+    row "degree 4" $length 4 "24, 10" 112
+    [ $length = 0.16667 ] && # the reference against another one
+      row "degree 4; as fine" $length 4 "60, 24" 336
+    [ $length = 0.08333 ] && # more points than the jump has nodes
+      springs "C L/E = 21" 252 $length 1 "60, 24" 112 &&
+      springs "C L/E = 21; 5 points" 252 $length 1 "60, 24" 112 \
+        --set "Discretization/interface points=5"
+    [ $length = 0.66667 ] && row "degree 1; fine" $length 1 "120, 48" 224
+    [ $length = 0.33333 ] || continue
+    for mesh in "1:60, 24" "2:40, 16" "4:24, 10"; do
+      p=${mesh%%:*}
+      L=$(edge "${mesh#*:}")
+      springs "C L/E = 21" "$(awk "BEGIN { print 21 / $L }")" \
+        $length "$p" "${mesh#*:}" 112
+      springs "C L/E = 21 (0.5/L)^p" \
+        "$(awk "BEGIN { print 21 / $L * (0.5 / $L)^$p }")" \
+        $length "$p" "${mesh#*:}" 112
+    done
+  done ;;
 *)
-  echo "usage: sh $0 solver | orders | cost | paths | crack | procedures | auto" >&2
+  echo "usage: sh $0 solver | orders | cost | paths | crack | procedures | auto | lengths" >&2
   exit 2 ;;
 esac
