@@ -106,7 +106,9 @@ int main(int argc, char **argv)
     const auto colour = static_cast<unsigned int>(at - stems.begin());
     if (!dashed)
       stems.push_back(stem(curve.name));
-    chart.add_line(curve.name, x, y, LineChart::palette(colour), dashed);
+    std::string name = curve.name;
+    std::replace(name.begin(), name.end(), ';', ',');
+    chart.add_line(name, x, y, LineChart::palette(colour), dashed);
   }
   std::cout << chart.svg(nsfd::SvgUse::file);
 }

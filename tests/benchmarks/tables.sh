@@ -7,8 +7,7 @@
 #   sh tests/benchmarks/tables.sh crack    crack that runs and stops
 #   sh tests/benchmarks/tables.sh procedures  three ways to update damage
 #   sh tests/benchmarks/tables.sh auto     step = auto against fixed steps
-#   sh tests/benchmarks/tables.sh lengths  cohesive length over cell and points,
-#                                          as CSV, for nsfd_plot; 10 minutes
+#   sh tests/benchmarks/tables.sh lengths  points per cohesive length, as CSV
 # Run from the top of a built checkout. Times depend on the machine, counts do
 # not.
 set -eu
@@ -146,6 +145,7 @@ auto)
     --set "Mesh/cells=20, 20" --set "Interface: all/stiffness=5.67e18" ;;
 lengths)
   # The steps are the same for all degrees and shrink with the cells.
+  parts= # of an edge between points, if not the degree
   row() { # row SERIES LENGTH DEGREE CELLS STEPS [options]
     series=$1
     length=$2
@@ -160,10 +160,10 @@ lengths)
     errors=$(awk -v toughness=1e-4 -v from=2 -f tests/benchmarks/tip_path.awk \
       "$out/reference.csv" "$out/run/history.csv")
     awk -v s="$series" -v l="$length" -v p="$degree" -v n="$(value dofs)" \
-      -v L="$(edge "$cells")" -v e="$errors" -v r="$(value rejected_steps)" \
-      -v t="$(value cpu_seconds)" 'BEGIN {
+      -v k="${parts:-$degree}" -v L="$(edge "$cells")" -v e="$errors" \
+      -v r="$(value rejected_steps)" -v t="$(value cpu_seconds)" 'BEGIN {
       printf "%s,%.4f,%s,%d,%.4f,%.3f,%.3f,%s,%d,%.1f\n",
-        s, l, p, n, L, l / L, l * p / L, e, r, t }'
+        s, l, p, n, L, l / L, l * k / L, e, r, t }'
   }
   edge() { # edge CELLS: the longest one
     echo "$1" | awk -F, '{ x = 5 / $1; y = 2 / $2; print (x > y ? x : y) }'
@@ -180,21 +180,32 @@ lengths)
       --set "Interface: elsewhere/normal stiffness=$C"
   }
   echo "series,L_czm,degree,unknowns,L_mesh,L_czm_over_L_mesh,L_czm_over_L_int,tip,work,kinetic,speed,D_over_Ga,rejected,cpu"
-  for length in 0.66667 0.33333 0.16667 0.08333; do
+  for length in 0.66667 0.33333 0.23570 0.16667; do
     row reference $length 2 "120, 48" 336
-    row "degree 1; coarse" $length 1 "30, 12" 56
-    row "degree 2; coarse" $length 2 "20, 8" 56
-    row "degree 4; coarse" $length 4 "12, 4" 56
     row "degree 1" $length 1 "60, 24" 112
     row "degree 2" $length 2 "40, 16" 112
     row "degree 4" $length 4 "24, 10" 112
-    [ $length = 0.16667 ] && # the reference against another one
-      row "degree 4; as fine" $length 4 "60, 24" 336
-    [ $length = 0.08333 ] && # more points than the jump has nodes
-      springs "C L/E = 21" 252 $length 1 "60, 24" 112 &&
-      springs "C L/E = 21; 5 points" 252 $length 1 "60, 24" 112 \
-        --set "Discretization/interface points=5"
-    [ $length = 0.66667 ] && row "degree 1; fine" $length 1 "120, 48" 224
+    row "degree 1; coarse" $length 1 "30, 12" 56
+    row "degree 2; coarse" $length 2 "20, 8" 56
+    row "degree 4; coarse" $length 4 "12, 4" 56
+    case $length in
+    0.66667) row "degree 1; fine" $length 1 "120, 48" 224 ;;
+    0.16667)
+      row "reference; degree 4" $length 4 "60, 24" 336
+      set -- --set "Discretization/interface quadrature=gauss"
+      parts=2
+      row "Gauss points" $length 1 "60, 24" 112 "$@"
+      row "Gauss points; coarse" $length 1 "30, 12" 56 "$@"
+      for points in 2 3 5; do # the jump stays linear, the law is intrinsic
+        set -- --set "Interface: plane/law=geubelle-baylor" \
+          --set "Interface: plane/stiffness=252" \
+          --set "Discretization/interface points=$points"
+        parts=$((points - 1))
+        row "more points" $length 1 "60, 24" 112 "$@"
+        row "more points; coarse" $length 1 "30, 12" 56 "$@"
+      done
+      parts= ;;
+    esac
     [ $length = 0.33333 ] || continue
     for mesh in "1:60, 24" "2:40, 16" "4:24, 10"; do
       p=${mesh%%:*}

@@ -54,8 +54,10 @@ FNR == 1 {
   }
 }
 END {
+  # after the last point that broke nothing is known; a tip that has not moved
+  # is wrong all the time
   end = event[1, events[1]]
-  if (event[2, events[2]] < end)
+  if (tip[2, events[2]] > 0 && event[2, events[2]] < end)
     end = event[2, events[2]]
   at[1] = 1
   for (k = 2; k <= n[2]; ++k) {
@@ -74,5 +76,5 @@ END {
          error_of(time, work, n[1], n[2], time[2, n[2]]),
          kinetic[2] / kinetic[1] - 1,
          sqrt(squares / window) / (length_in / window),
-         work[2, n[2]] / broken
+         (broken > 0 ? work[2, n[2]] / broken : 0)
 }
