@@ -56,8 +56,8 @@ namespace nsfd
       if (is_driven<dim>(input.boundaries[b]))
         driven_.push_back(b);
     auto cells = std::make_unique<Cells<dim>>(triangulation, materials, input);
-    auto faces =
-        make_face_points(triangulation, groups, materials, driven_, input);
+    auto faces = make_face_points(communicator, triangulation, groups,
+                                  materials, driven_, input);
     points_ = std::move(faces.points);
     origins_ = std::move(faces.origins);
     fill_slots(points_, *cells);

@@ -2,6 +2,7 @@
 
 #include "interface_quadrature.h"
 
+#include "nsfd/base/communicator.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/cell_geometry.h"
 #include "nsfd/mesh/mesh_builder.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 namespace nsfd
 {
@@ -64,6 +66,8 @@ namespace nsfd
                     const SceneInput &input);
 
       std::vector<NewFace<dim>> faces; ///< those of this rank first
+      /// centre of the first face, by its coordinates, that no block holds for
+      std::optional<Point<dim>> without_block;
 
     private:
       NewFace<dim> make_face(const Cell &cell, unsigned int face_no,
@@ -71,7 +75,7 @@ namespace nsfd
       void add_boundary(const Cell &cell, unsigned int face_no);
       void add_interior(const Cell &cell, unsigned int face_no);
       unsigned int block_of(const Cell &first, const Cell &second,
-                            const Point<dim> &centre) const;
+                            const Point<dim> &centre);
 
       const MeshGroups<dim> &groups_;
       const std::vector<unsigned int> &materials_, &driven_;
@@ -198,11 +202,20 @@ namespace nsfd
       faces.push_back(std::move(face));
     }
 
-    /** The first one that holds. */
+    template <int dim>
+    bool comes_before(const Point<dim> &a, const Point<dim> &b)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (a[c] != b[c])
+          return a[c] < b[c];
+      return false;
+    }
+
+    /** The first one that holds; a face without one is remembered. */
     template <int dim>
     unsigned int FaceCollector<dim>::block_of(const Cell &first,
                                               const Cell &second,
-                                              const Point<dim> &centre) const
+                                              const Point<dim> &centre)
     {
       const auto material = [&](const Cell &cell) -> const std::string & {
         return input_.materials[materials_[cell->active_cell_index()]].name;
@@ -213,10 +226,29 @@ namespace nsfd
                 material(second),
                 {{first->material_id(), second->material_id()}}))
           return b;
+      if (!without_block || comes_before(centre, *without_block))
+        without_block = centre;
+      return 0;
+    }
+
+    /** All ranks throw, and name the same face, if one of them has such one. */
+    template <int dim>
+    void demand_blocks(const Communicator &communicator,
+                       const std::optional<Point<dim>> &without_block)
+    {
+      bool here = without_block.has_value();
+      if (!communicator.any(here))
+        return;
+      Point<dim> first;
+      for (unsigned int c = 0; c < dim; ++c) {
+        first[c] = communicator.min(here ? (*without_block)[c]
+                                         : std::numeric_limits<double>::max());
+        here = here && (*without_block)[c] == first[c];
+      }
       throw std::runtime_error(
           "no Interface block holds for the face at (" +
-          std::to_string(centre[0]) + ", " + std::to_string(centre[1]) +
-          (dim == 3 ? ", " + std::to_string(centre[dim - 1]) : "") +
+          std::to_string(first[0]) + ", " + std::to_string(first[1]) +
+          (dim == 3 ? ", " + std::to_string(first[dim - 1]) : "") +
           "): add a last block with `set where = all`");
     }
 
@@ -246,7 +278,8 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  FacePoints<dim> make_face_points(const Triangulation<dim> &triangulation,
+  FacePoints<dim> make_face_points(const Communicator &communicator,
+                                   const Triangulation<dim> &triangulation,
                                    const MeshGroups<dim> &groups,
                                    const std::vector<unsigned int> &materials,
                                    const std::vector<unsigned int> &driven,
@@ -254,6 +287,7 @@ namespace nsfd
   {
     FaceCollector<dim> collector(triangulation, groups, materials, driven,
                                  input);
+    demand_blocks(communicator, collector.without_block);
     FacePoints<dim> result;
     auto &points = result.points;
     for (auto &face : collector.faces) {
@@ -333,9 +367,9 @@ namespace nsfd
 
 #define NSFD_INSTANTIATE(dim)                                                  \
   template FacePoints<dim> make_face_points(                                   \
-      const Triangulation<dim> &, const MeshGroups<dim> &,                     \
-      const std::vector<unsigned int> &, const std::vector<unsigned int> &,    \
-      const SceneInput &);                                                     \
+      const Communicator &, const Triangulation<dim> &,                        \
+      const MeshGroups<dim> &, const std::vector<unsigned int> &,              \
+      const std::vector<unsigned int> &, const SceneInput &);                  \
   template void fill_slots(const InterfacePoints<dim> &, Cells<dim> &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
