@@ -195,15 +195,21 @@ namespace nsfd
       const std::string name = "crack pressure",
                         text = "Pa, of x, y, z, t: pushes the lips of broken "
                                "points apart";
-      if (!reader.optional(name, text))
+      const std::string threshold = "pressure threshold",
+                        threshold_text =
+                            "beta up to which a point counts as broken";
+      if (!reader.optional(name, text)) {
+        reader.refuse({threshold}, "there is no `crack pressure`");
+        if (input.law) // named next to the entry that it belongs to
+          reader.optional(threshold, threshold_text);
         return;
+      }
       input.crack_pressure = reader.expression(name, "", units::pressure, text);
       if (!input.law)
         return;
-      input.pressure_threshold = reader.number(
-          "pressure threshold", fmt::format("{}", input.broken_beta()),
-          units::none, {0., 1., false, true},
-          "beta up to which a point counts as broken");
+      input.pressure_threshold =
+          reader.number(threshold, fmt::format("{}", input.broken_beta()),
+                        units::none, {0., 1., false, true}, threshold_text);
     }
 
     /** The law, and what only cohesive laws have besides it. */
