@@ -1,0 +1,83 @@
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <ostream>
+
+// A scene does not pay for parts that it does not name.
+
+namespace end_to_end
+{
+  namespace
+  {
+    struct CostRow {
+      std::string name;
+      bool friction; ///< of its obstacle
+    };
+
+    void PrintTo(const CostRow &row, std::ostream *stream)
+    {
+      *stream << row.name;
+    }
+
+    const std::vector<CostRow> rows = {{"ball", false},
+                                       {"incline", true},
+                                       {"bar_wall", false},
+                                       {"patch_crossed", false}};
+
+    /** A block of the scene that owns no face. */
+    std::vector<std::string> idle(const std::string &law)
+    {
+      return {
+          "Interface: nowhere/where=x > 1e9", "Interface: nowhere/law=" + law,
+          "Interface: nowhere/strength=1e6", "Interface: nowhere/toughness=1",
+          "Interface: nowhere/friction=0.5"};
+    }
+
+    class CostTest : public testing::TestWithParam<CostRow>
+    {
+    };
+  } // namespace
+
+  TEST_P(CostTest, WhatIsNotNamedDoesNotRun)
+  {
+    const Workspace workspace;
+    const Result result = good_run(
+        workspace, "plain", {scene(GetParam().name), {"Output/fields=false"}});
+    ASSERT_TRUE(result.completed());
+    EXPECT_EQ(result.counter("cohesive_points"), 0.);
+    EXPECT_EQ(result.counter("activation_rounds"), 0.);
+    EXPECT_EQ(result.counter("steps_beyond_uniqueness"), 0.);
+    EXPECT_EQ(result.counter("friction_points") > 0., GetParam().friction);
+    EXPECT_FALSE(result.summary.contains("pressure_work"));
+    EXPECT_FALSE(result.summary.contains("viscous_traction_max"));
+    // constant loads and steps: assembled once, factorised once
+    EXPECT_LE(result.counter("load_assemblies"), 1.);
+    EXPECT_LE(result.counter("global_factorisations"), 1.);
+    EXPECT_EQ(result.counter("block_factorisations"),
+              result.counter("body_classes"));
+  }
+
+  // A law that owns no face changes nothing, to the last bit and the last call.
+  TEST_P(CostTest, AnIdleLawCostsNothing)
+  {
+    const Workspace workspace;
+    const Result plain = good_run(
+        workspace, "plain", {scene(GetParam().name), {"Output/fields=false"}});
+    ASSERT_TRUE(plain.completed());
+    for (const std::string law : {"michel-suquet", "camacho-ortiz"}) {
+      SCOPED_TRACE(law);
+      auto set = idle(law);
+      set.push_back("Output/fields=false");
+      const Result named =
+          good_run(workspace, law, {scene(GetParam().name), set});
+      ASSERT_TRUE(named.completed());
+      EXPECT_EQ(plain.history_text, named.history_text);
+      EXPECT_EQ(plain.summary["counters"], named.summary["counters"]);
+    }
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Table, CostTest, testing::ValuesIn(rows),
+                           [](const auto &info) { return info.param.name; });
+} // namespace end_to_end
