@@ -79,6 +79,7 @@ namespace nsfd
         {units::damage_viscosity, "an energy per area times a time",
          "1 uJ/m^2*s"},
         {units::wear_coefficient, "one over a pressure", "1e-6 / MPa"},
+        {units::mass_per_area, "a mass per area", "1.25 kg/m^2"},
         {{1, 1, -2}, "a force", ""},
         {{1, 2, -2}, "an energy", ""},
         {{0, 0, -1}, "a frequency", ""},

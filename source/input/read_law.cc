@@ -1,6 +1,7 @@
 #include "nsfd/input/read_law.h"
 
 #include "nsfd/law_path/drive_point.h"
+#include "read_bar.h"
 #include "read_law_path.h"
 #include "read_sections.h"
 
@@ -15,8 +16,8 @@ namespace nsfd
 {
   namespace
   {
-    const std::vector<std::string> known_kinds = {"Interface", "Path", "Output",
-                                                  "Constants"};
+    const std::vector<std::string> known_kinds = {"Interface", "Path", "Bar",
+                                                  "Output", "Constants"};
 
     void check_section_name(const ParameterSection &section,
                             InputErrors &errors)
@@ -29,7 +30,7 @@ namespace nsfd
             section.location(),
             fmt::format("one point has no section `{}`", section.name()),
             did_you_mean(kind, known_kinds,
-                         "known are Interface: ..., Path, Output and "
+                         "known are Interface: ..., Path, Bar, Output and "
                          "Constants; run a whole scene without `law`"));
       else if (kind == "Interface" && section.block_name().empty())
         errors.error(section.location(), "section `Interface` needs a name",
@@ -94,6 +95,20 @@ namespace nsfd
       return curve;
     }
 
+    /** A path, or the bar that pulls the points. */
+    void read_way(ParameterFile &file, LawInput &input, InputErrors &errors)
+    {
+      if (!file.has_section("Bar")) {
+        SectionReader path(file.open("Path"), errors);
+        return read_law_path(path, input);
+      }
+      if (const ParameterSection *path = file.find("Path"))
+        errors.error(path->location(), "a point has a path or a bar, not both",
+                     "remove section `Path`: the bar pulls the point open");
+      SectionReader bar(file.open("Bar"), errors);
+      read_bar(bar, input);
+    }
+
     std::unique_ptr<LawInput>
     read_parsed(ParameterFile &file, const std::string &output_name,
                 const std::vector<std::string> &overrides, InputErrors &errors)
@@ -117,8 +132,7 @@ namespace nsfd
         errors.error(file.location(), "no Interface block names a law",
                      "add for example: subsection Interface: first, with `set "
                      "law = tvergaard`");
-      SectionReader path(file.open("Path"), errors);
-      read_law_path(path, *input);
+      read_way(file, *input, errors);
       SectionReader output(file.open("Output"), errors);
       input->directory =
           output.word("directory", "output/" + output_name,

@@ -1,6 +1,8 @@
 #include "nsfd/law_path/run_law.h"
 
 #include "law_charts.h"
+#include "law_table.h"
+#include "run_bar.h"
 
 #include "nsfd/output/run_output.h"
 #include "nsfd/output/summary_file.h"
@@ -95,15 +97,6 @@ namespace nsfd
                             summary(input, curves).dump(2) + "\n");
     }
 
-    /** "3.375 J/m²  (1 G)" */
-    std::string share_of(const double energy, const double toughness)
-    {
-      if (std::abs(energy) < 1e-12 * toughness)
-        return "0";
-      return fmt::format("{}  ({:.4g} G)", engineering(energy, "J/m²", 4),
-                         energy / toughness);
-    }
-
     void print_table(const LawInput &input, const std::vector<Curve> &curves)
     {
       for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -114,9 +107,7 @@ namespace nsfd
         std::cout << curve.name
                   << (curve.name == curve.law_name ? "" : ": " + curve.law_name)
                   << "\n";
-        const auto line = [](const char *name, const std::string &value) {
-          std::cout << fmt::format("  {:<20} {}\n", name, value);
-        };
+        const auto line = table_line;
         line("strength",
              fmt::format("{}  at {}", engineering(law.strength(), "Pa"),
                          engineering(law.peak_opening(), "m")));
@@ -151,6 +142,10 @@ namespace nsfd
     if (!claim_directory(input->directory, command.force))
       return exit_code::bad_input;
 
+    if (input->bar) {
+      run_bar(*input, command.quiet);
+      return exit_code::done;
+    }
     std::vector<Curve> curves;
     for (const LawCurveInput &curve : input->curves)
       curves.push_back(

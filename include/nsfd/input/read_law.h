@@ -2,10 +2,12 @@
 
 #include "nsfd/input/input_errors.h"
 #include "nsfd/input/scene_input.h"
+#include "nsfd/law_path/bar.h"
 #include "nsfd/law_path/path.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,7 @@ namespace nsfd
     std::string path_name; ///< named path, points, formula or file
     CohesionRule cohesion_rule = CohesionRule::end_point;
     bool normalised = false; ///< pictures over final opening and strength
+    std::optional<Bar> bar;  ///< pulls the points; then there is no path
     std::string directory;
     std::string echo; ///< complete file: driving it again gives the same
     /// of a law by its name: "strength = 3 MPa (example); friction = 0.3"
@@ -34,7 +37,7 @@ namespace nsfd
   /**
    * Read what `nsfd law WHAT` names: a registered law, with entries of its
    * first example where @p overrides give none, or a file with Interface
-   * blocks and a section `Path`. In @p overrides, entries without a section
+   * blocks and a section `Path` or `Bar`. In @p overrides, entries without a section
    * belong to the (only) Interface block. Errors as read_scene().
    */
   std::unique_ptr<LawInput> read_law(const std::string &what,
