@@ -88,17 +88,21 @@ namespace nsfd
       const double bound = unique_step(law, bar);
       if (bar.step < bound)
         return;
+      if (bound == 0.)
+        return reader.warning(
+            "step",
+            fmt::format("the traction of `{}` drops: a step can have several "
+                        "solutions, however short it is",
+                        curve.name),
+            "take a law that softens with a finite slope");
+      const double chi = bar.rule == CohesionRule::exact ? 0.5 : 1.;
       reader.warning(
           "step",
-          fmt::format("a step of {:.4g} s can have several solutions: `{}` "
-                      "softens by {:.4g} Pa/m, the step allows {:.4g} Pa/m",
-                      bar.step, curve.name,
-                      (bar.rule == CohesionRule::exact ? 0.5 : 1.) *
-                          law.steepest_softening(),
-                      dynamic_slope(bar, bar.step)),
-          bound > 0. ? fmt::format("write for example: set step = {:.3g} s",
-                                   0.95 * bound)
-                     : "its traction drops at once: no step is short enough");
+          fmt::format("a step of {:.4g} s can have several solutions: its "
+                      "slope is {:.4g} Pa/m, `{}` needs more than {:.4g} Pa/m",
+                      bar.step, dynamic_slope(bar, bar.step), curve.name,
+                      chi * law.steepest_softening()),
+          fmt::format("write for example: set step = {:.3g} s", 0.95 * bound));
     }
 
     void read_dynamic(SectionReader &reader, LawInput &input, Bar &bar)
@@ -151,7 +155,7 @@ namespace nsfd
     if (reader.optional("end", text))
       bar.end =
           reader.number("end", "", units::length, Range::positive(), text);
-    bar.normalised =
+    input.normalised =
         reader.boolean("normalised", false,
                        "pictures over final opening and strength of the law");
 
@@ -179,7 +183,7 @@ namespace nsfd
       read_viscous(reader, input, bar);
     if (bar.mode == BarMode::dynamic)
       read_dynamic(reader, input, bar);
-    input.path_name = "bar, " + mode;
+    input.path_name = "bar: " + mode;
     input.bar = bar;
   }
 } // namespace nsfd

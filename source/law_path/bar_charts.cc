@@ -120,14 +120,24 @@ namespace nsfd
         u.insert(u.begin(), 0.);
     }
 
+    /** From @p a to @p b, in so many points that they are not drawn as dots. */
+    Values straight(const double a, const double b)
+    {
+      Values values;
+      for (unsigned int i = 0; i <= 30; ++i)
+        values.push_back(a + i * (b - a) / 30.);
+      return values;
+    }
+
     /** T = slope (zero - u) where 0 <= T <= top. */
     void add_line_of(LineChart &chart, const std::string &name,
                      const double slope, const double zero, const double top,
                      const Axes &axes, const Colour colour)
     {
       const double high = std::min(top, slope * zero);
-      chart.add_line(name, over({zero - high / slope, zero}, axes.opening(0)),
-                     over({high, 0.}, axes.traction(0)), colour, true);
+      chart.add_line(name,
+                     over(straight(zero - high / slope, zero), axes.opening(0)),
+                     over(straight(high, 0.), axes.traction(0)), colour, true);
     }
 
     const Value opening = [](const BarRow &row) { return row.opening; };
@@ -237,12 +247,12 @@ namespace nsfd
     const std::vector<Part> parts = {
         {"work of the grip", [](auto &row) { return row.work; }, Colour::grey,
          single, true},
-        {"bar", [](auto &row) { return row.elastic; }, Colour::green, single,
-         false},
+        // bar and mass pass their energy to and fro
+        {bar.mode == BarMode::dynamic ? "bar and mass" : "bar",
+         [](auto &row) { return row.elastic + row.kinetic; }, Colour::green,
+         single, false},
         {"damage", [](auto &row) { return row.damage; }, Colour::red, true,
          false},
-        {"kinetic", [](auto &row) { return row.kinetic; }, Colour::blue,
-         bar.mode == BarMode::dynamic, true},
         {"viscosity", [](auto &row) { return row.viscous; }, Colour::orange,
          bar.mode == BarMode::viscous, true},
         {"left over", [](auto &row) { return row.excess; }, Colour::orange,
@@ -296,16 +306,18 @@ namespace nsfd
                         : LineChart::Axis{"speed", "m/s"},
                     axes.of_energy());
     const double last = sweep.speeds.back();
-    chart.add_line("imposed on the opening: η v Δ", over({0., last}, unit),
-                   over({0., bar.viscosity * last * opening_scale(law)}, G),
-                   Colour::blue);
+    chart.add_line(
+        "imposed on the opening: η v Δ", over(straight(0., last), unit),
+        over(straight(0., bar.viscosity * last * opening_scale(law)), G),
+        Colour::blue);
     double floor = 0.;
     for (const BarJump &jump : bar_jumps(law, bar.stiffness))
       floor += jump.excess;
     chart.add_line("imposed on the grip of the bar", over(sweep.speeds, unit),
                    over(sweep.viscous, G), Colour::red);
-    chart.add_line("floor: left over by the jump", over({0., last}, unit),
-                   over({floor, floor}, G), Colour::grey, true);
+    chart.add_line("floor: left over by the jump",
+                   over(straight(0., last), unit),
+                   over(straight(floor, floor), G), Colour::grey, true);
     return chart.svg(SvgUse::file);
   }
 

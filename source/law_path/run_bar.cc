@@ -209,7 +209,9 @@ namespace nsfd
     for (std::size_t i = 0; i < runs.size(); ++i)
       write(curve_file(input, i), csv(runs[i]));
     write("bar.svg", bar_chart(input, runs));
-    write("grip.svg", grip_chart(input, runs));
+    // one that waits has nothing to be drawn against
+    if (bar.mode != BarMode::viscous || bar.speed > 0.)
+      write("grip.svg", grip_chart(input, runs));
     write("energies.svg", bar_energy_chart(input, runs));
     if (runs.size() == 1 && bar.mode == BarMode::viscous) {
       const auto jumps = bar_jumps(law_of(input, 0), bar.stiffness);
@@ -227,7 +229,7 @@ namespace nsfd
       return;
     if (!input.entries.empty())
       std::cout << "with " << input.entries << "\n";
-    std::cout << "path: " << input.path_name << "\n";
+    std::cout << input.path_name << "\n";
     print_table(input, runs);
     std::cout << "in " << input.directory << ": "
               << fmt::format("{}\n", fmt::join(written, ", "));

@@ -27,7 +27,6 @@ namespace nsfd
     std::optional<double> end;
     /// shares of the final opening that one step may open the point by
     unsigned int n_steps = 400;
-    bool normalised = false; ///< pictures over final opening and strength
 
     double speed = 0.;     ///< of the grip, m/s; viscous: 0 for a held one
     double viscosity = 0.; ///< eta in Pa s/m
