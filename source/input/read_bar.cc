@@ -48,10 +48,10 @@ namespace nsfd
       if (bar.speed == 0. && bar.end)
         reader.error("end", "the grip waits, its `end` is not used",
                      "give its speed, or remove `end`");
+      if (reader.errors().has_errors())
+        return;
       for (const LawCurveInput &curve : input.curves) {
         const CohesiveLaw *law = curve.interaction.law.get();
-        if (law == nullptr || bar.stiffness <= 0. || bar.viscosity <= 0.)
-          continue;
         if (bar.speed == 0. && bar_jumps(*law, bar.stiffness).empty())
           reader.error(
               "speed",
@@ -119,12 +119,10 @@ namespace nsfd
           "in s: slopes M/(S theta h^2) + theta k in slopes.svg; default "
           "`step`");
       read_theta(reader, bar);
-      if (!(bar.mass > 0. && bar.speed > 0. && bar.step > 0.))
+      if (reader.errors().has_errors())
         return;
       for (const LawCurveInput &curve : input.curves) {
         const CohesiveLaw *law = curve.interaction.law.get();
-        if (law == nullptr || bar.stiffness <= 0.)
-          continue;
         judge_step(reader, curve, bar);
         const double n_steps =
             bar.end.value_or(default_end(*law, bar.stiffness)) /

@@ -22,7 +22,10 @@ namespace nsfd
 
       double grip(const double u) const { return u + law_.traction(u) / k_; }
 
-      /** Openings at which it is sampled: kinks, and many in between. */
+      /**
+       * Openings at which it is sampled: kinks and many in between, closest
+       * next to the kinks, where a law may fall steeply for a short way.
+       */
       std::vector<double> places() const
       {
         std::vector<double> kinks = {0., scale_,
@@ -32,13 +35,17 @@ namespace nsfd
           if (d > 0. && std::isfinite(d))
             kinks.push_back(d);
         std::sort(kinks.begin(), kinks.end());
+        kinks.erase(std::unique(kinks.begin(), kinks.end()), kinks.end());
         std::vector<double> result = {0.};
         constexpr unsigned int n = 5000;
-        for (std::size_t i = 1; i < kinks.size(); ++i)
-          for (unsigned int j = 1; j <= n && kinks[i] > kinks[i - 1]; ++j)
-            result.push_back(j == n ? kinks[i]
-                                    : kinks[i - 1] +
-                                          j * (kinks[i] - kinks[i - 1]) / n);
+        for (std::size_t i = 1; i < kinks.size(); ++i) {
+          const double width = kinks[i] - kinks[i - 1];
+          for (unsigned int j = 1; j < n; ++j) {
+            const double x = double(j) / n;
+            result.push_back(kinks[i - 1] + x * x * (3. - 2. * x) * width);
+          }
+          result.push_back(kinks[i]);
+        }
         return result;
       }
 

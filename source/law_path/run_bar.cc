@@ -5,7 +5,7 @@
 
 #include "nsfd/interface/cohesive_law.h"
 #include "nsfd/law_path/drive_point.h"
-#include "nsfd/output/run_output.h"
+#include "nsfd/output/summary_file.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
