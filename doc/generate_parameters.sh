@@ -118,9 +118,16 @@ END
 
 # Section Path of `nsfd law`, with options.
 path_of() {
+  law_section Path "$@"
+}
+
+# Section $1 of `nsfd law` with the other arguments.
+law_section() {
+  section=$1
+  shift
   printf '```\n'
   ./nsfd law tvergaard "$@" --print-parameters |
-    awk '/^subsection Path$/ { inside = 1 }
+    awk -v first="subsection $section" '$0 == first { inside = 1 }
          inside { print }
          /^end/ { inside = 0 }'
   printf '```\n'
@@ -209,8 +216,8 @@ END
 ## One point: `nsfd law FILE.prm`
 
 A file for `nsfd law` has Interface blocks (law, its entries, `friction`,
-`friction exponent`), a section `Path`, and may have Constants and `Output`
-(`directory`). Every block is driven along the same path; a named path is in
+`friction exponent`), a section `Path` or `Bar`, and may have Constants and
+`Output` (`directory`). Every block is driven along the same path; a named path is in
 units of the final opening and slip of each law (in an endless tail, where 99 %
 of the toughness is gone). `nsfd law NAME --print-parameters` prints such a file
 and `prm/paper` has some. On the command line `--path`, `--opening`, `--slip`,
@@ -246,6 +253,35 @@ END
 Marks from the rows of a CSV file (`--path FILE.csv`): `set type = file` and
 `set file = FILE.csv`, with a header naming some of the columns `opening`,
 `slip`, `reaction`, and numbers in SI.
+
+### A bar in place of a path
+
+With a section `Bar` the point is pulled open by an elastic bar of stiffness
+`k = E/L` whose grip moves: the uniaxial example of the report (section 8 of
+[theory.md](theory.md)). `curve.csv` then has `time`, `grip` (U), `opening` (u),
+`velocity`, the `pull` k (U - u) of the bar, the traction `cohesion` of the law,
+`beta`, and energies per area: in the `bar`, `kinetic`, `stored` in the point,
+`damage`, `viscous`, `left_over` by static jumps, and the `work` of the grip.
+`bar.svg` shows the pull over u, `grip.svg` over U, `energies.svg` where the
+work went. In equilibrium, with its jumps:
+
+END
+  law_section Bar --set 'Bar/stiffness=500 GPa/m'
+  cat <<'END'
+
+With a viscous point (`floor.svg`, `speeds.svg`: what viscosity takes):
+
+END
+  law_section Bar --set 'Bar/stiffness=500 GPa/m' --set Bar/mode=viscous \
+    --set 'Bar/viscosity=10 MPa*s/m'
+  cat <<'END'
+
+With a mass (`slopes.svg`: when a step has one solution):
+
+END
+  law_section Bar --set 'Bar/stiffness=500 GPa/m' --set Bar/mode=dynamic \
+    --set 'Bar/mass=1.25 kg/m^2' --set 'Bar/speed=1 cm/s' --set 'Bar/step=1 us'
+  cat <<'END'
 
 ## Exact values: `prm/verification/midplane.prm`
 

@@ -66,7 +66,7 @@ namespace nsfd
     std::string opening, slip, reaction;
     app.add_option("NAME", command_line.file,
                    "a cohesive law of --list, with its example; or FILE.prm "
-                   "with Interface blocks and a section Path");
+                   "with Interface blocks and a section Path or Bar");
     app.add_option_function<std::vector<std::string>>(
            "--set",
            [&](const std::vector<std::string> &values) {
