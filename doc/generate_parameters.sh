@@ -217,10 +217,10 @@ END
 
 A file for `nsfd law` has Interface blocks (law, its entries, `friction`,
 `friction exponent`), a section `Path` or `Bar`, and may have Constants and
-`Output` (`directory`). Every block is driven along the same path; a named path is in
-units of the final opening and slip of each law (in an endless tail, where 99 %
-of the toughness is gone). `nsfd law NAME --print-parameters` prints such a file
-and `prm/paper` has some. On the command line `--path`, `--opening`, `--slip`,
+`Output` (`directory`). Every block is driven along the same path; a named path
+is in units of the final opening and slip of each law (in an endless tail, where
+99 % of the toughness is gone). `nsfd law NAME --print-parameters` prints such a
+file and `prm/paper` has some. On the command line `--path`, `--opening`, `--slip`,
 `--reaction`, `--steps` and `--rule` stand for entries of `Path`, and `--set
 name=value` for one of the law.
 

@@ -164,8 +164,8 @@ namespace nsfd
       bar.n_steps = reader.integer(
           "steps", "400", 20, 100000,
           bar.mode == BarMode::viscous
-              ? "at least to the final opening, one moves the point no further"
-              : "to the final opening");
+              ? "one opens the point by at most this part of the final opening"
+              : "of the point up to its final opening");
       for (const char *entry : {"mass", "step", "compared steps"})
         refuse(entry, "only mode = dynamic has a mass");
     } else

@@ -1,5 +1,6 @@
 #include "bar_charts.h"
 
+#include "nsfd/input/scene_input.h"
 #include "nsfd/interface/cohesive_law.h"
 #include "nsfd/law_path/drive_point.h"
 #include "nsfd/output/svg.h"
@@ -255,6 +256,11 @@ namespace nsfd
          false},
         {"viscosity", [](auto &row) { return row.viscous; }, Colour::orange,
          bar.mode == BarMode::viscous, true},
+        {"lost by the rule", [](auto &row) { return row.numerical(); },
+         Colour::violet,
+         bar.mode != BarMode::quasi_static &&
+             (bar.theta > 0.5 || bar.rule != CohesionRule::exact),
+         true},
         {"left over", [](auto &row) { return row.excess; }, Colour::orange,
          bar.mode == BarMode::quasi_static, true}};
     for (std::size_t i = 0; i < runs.size(); ++i)

@@ -2,7 +2,6 @@
 
 #include "nsfd/nonsmooth/point_law.h"
 
-#include <memory>
 #include <optional>
 #include <vector>
 
