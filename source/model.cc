@@ -39,6 +39,9 @@ namespace nsfd
     solver = SolverRegistry<dim>::instance().create(method);
     stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
                                                 *dynamics, *solver);
+    if (input.statics)
+      quasi_static = std::make_unique<QuasiStatic<dim>>(input, communicator,
+                                                        *discretization);
     return true;
   }
 
@@ -91,18 +94,33 @@ namespace nsfd
   void Model<dim>::build_control(const SceneInput &input,
                                  std::vector<std::string> &problems)
   {
-    double base = input.time.step;
-    if (input.time.step_kind != StepKind::time) {
-      const double crossing = discretization->crossing_time();
-      if (crossing == 0.) {
-        problems.push_back("Time/step: all bodies are rigid, there is no "
-                           "crossing time; write the step as a time");
-        return;
-      }
-      base *= crossing;
+    if (input.time.step_kind != StepKind::time &&
+        discretization->crossing_time() == 0.) {
+      problems.push_back("Time/step: all bodies are rigid, there is no "
+                         "crossing time; write the step as a time");
+      return;
     }
-    control = std::make_unique<StepControl>(input.time.end, base,
-                                            input.time.maximum_halvings);
+    const bool quasi_static = input.statics && input.statics->steps;
+    control = quasi_static ? std::make_unique<StepControl>(
+                                 input.statics->until, input.statics->step,
+                                 input.time.maximum_halvings)
+                           : dynamic_control(input, 0.);
+  }
+
+  template <int dim>
+  double Model<dim>::dynamic_step(const SceneInput &input) const
+  {
+    return input.time.step * (input.time.step_kind == StepKind::time
+                                  ? 1.
+                                  : discretization->crossing_time());
+  }
+
+  template <int dim>
+  std::unique_ptr<StepControl>
+  Model<dim>::dynamic_control(const SceneInput &input, const double start) const
+  {
+    return std::make_unique<StepControl>(input.time.end, dynamic_step(input),
+                                         input.time.maximum_halvings, start);
   }
 
   /** Short steps: face blocks; long ones: a global matrix. */
@@ -115,7 +133,7 @@ namespace nsfd
     const double crossing = discretization->crossing_time();
     path = input.solver.path;
     if (path == "auto")
-      path = crossing > 0. && control->base_step() > 5. * crossing
+      path = crossing > 0. && dynamic_step(input) > 5. * crossing
                  ? "global"
                  : "element-wise";
     if (path == "global")

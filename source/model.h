@@ -3,6 +3,7 @@
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
 #include "nsfd/time/moreau_jean.h"
+#include "nsfd/time/quasi_static.h"
 #include "nsfd/time/step_control.h"
 
 #include <memory>
@@ -28,6 +29,11 @@ namespace nsfd
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
+    std::unique_ptr<QuasiStatic<dim>> quasi_static; ///< or null
+
+    /** Steps in time from @p start on. */
+    std::unique_ptr<StepControl> dynamic_control(const SceneInput &input,
+                                                 double start) const;
 
     /**
      * False with messages on standard error if the input does not fit the
@@ -41,6 +47,7 @@ namespace nsfd
                           std::vector<std::string> &problems);
     void build_control(const SceneInput &input,
                        std::vector<std::string> &problems);
+    double dynamic_step(const SceneInput &input) const;
     void build_dynamics(const SceneInput &input,
                         const Communicator &communicator);
     void find_unused_blocks(const SceneInput &input,

@@ -2,6 +2,7 @@
 
 #include "model.h"
 #include "run_info.h"
+#include "static_run.h"
 
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/command_line.h"
@@ -35,11 +36,17 @@ namespace nsfd
     private:
       bool prepare();
       void open_output();
+      int fail(const std::string &failure);
+      bool find_equilibrium(std::string &failure);
       void start();
+      void start_dynamics();
       int step_to_the_end();
       void choose_step();
       bool must_redo(const StepReport &report, const State &next);
       bool advance(State &next, std::string &failure);
+      bool advance_load(State &next, std::string &failure);
+      void accept(State &next, const StepReport &report, double time_step);
+      const std::vector<double> &reactions() const;
       void record(const StepReport &report, double time_step);
       void finish(const std::string &failure);
       void fill_counters(std::map<std::string, double> &counters) const;
@@ -54,6 +61,8 @@ namespace nsfd
       std::unique_ptr<CaseObserver<dim>> observer_;
       std::unique_ptr<Fragments<dim>> fragments_;
       std::unique_ptr<RunOutput<dim>> output_;
+      std::unique_ptr<StaticRun<dim>> static_run_; ///< or null
+      bool is_static_ = false; ///< the steps are those of static_run_
 
       State state_;
       Summary summary_;
@@ -100,8 +109,61 @@ namespace nsfd
 
       std::signal(SIGINT, request_stop);
       std::signal(SIGTERM, request_stop);
+      std::string failure;
+      const bool in_equilibrium =
+          !model_.quasi_static || find_equilibrium(failure);
       start();
-      return step_to_the_end();
+      return in_equilibrium ? step_to_the_end() : fail(failure);
+    }
+
+    /** Instead of the given state at t = 0. */
+    template <int dim>
+    bool Simulation<dim>::find_equilibrium(std::string &failure)
+    {
+      static_run_ =
+          std::make_unique<StaticRun<dim>>(input_, model_, communicator_);
+      is_static_ = true;
+      try {
+        state_ = model_.quasi_static->start(state_);
+      } catch (const StepRejected &rejected) {
+        failure = rejected.what();
+        return false;
+      }
+      fragments_->update(state_);
+      if (!input_.statics->steps)
+        start_dynamics();
+      return true;
+    }
+
+    /** From an equilibrium on, at rest. */
+    template <int dim>
+    void Simulation<dim>::start_dynamics()
+    {
+      is_static_ = false;
+      if (input_.statics->steps)
+        model_.control = model_.dynamic_control(input_, state_.time);
+      state_.impulse = state_.point_force;
+      for (double &P : state_.impulse)
+        P *= model_.control->step();
+      state_.point_force.clear();
+    }
+
+    template <int dim>
+    int Simulation<dim>::fail(const std::string &failure)
+    {
+      if (communicator_.is_root())
+        std::cerr << input_.file << ": " << failure
+                  << "\n  the last good state is in "
+                  << input_.output.directory << "\n";
+      finish(failure);
+      return exit_code::step_failed;
+    }
+
+    template <int dim>
+    const std::vector<double> &Simulation<dim>::reactions() const
+    {
+      return is_static_ ? model_.quasi_static->reactions()
+                        : model_.stepper->reactions();
     }
 
     /** The parts and the verification case; false if the input is bad. */
@@ -149,7 +211,7 @@ namespace nsfd
       HistoryRow row;
       row.energy = state_.energy;
       row.fragments = fragments_->count();
-      row.reactions = model_.stepper->reactions();
+      row.reactions = reactions();
       output_->start(row);
       if (observer_)
         observer_->observe(state_, row);
@@ -159,22 +221,22 @@ namespace nsfd
     int Simulation<dim>::step_to_the_end()
     {
       State next = state_;
-      while (!model_.control->finished()) {
+      while (!model_.control->finished() || is_static_) {
+        if (model_.control->finished()) {
+          if (input_.statics->until >= input_.time.end)
+            break;
+          start_dynamics();
+        }
         if (communicator_.any(stop_requested != 0)) {
           finish(fmt::format("stopped on request at t = {:.6g}", state_.time));
           return exit_code::stopped;
         }
-        if (input_.time.step_kind == StepKind::automatic)
+        if (!is_static_ && input_.time.step_kind == StepKind::automatic)
           choose_step();
         std::string failure;
-        if (!advance(next, failure)) {
-          if (communicator_.is_root())
-            std::cerr << input_.file << ": " << failure
-                      << "\n  the last good state is in "
-                      << input_.output.directory << "\n";
-          finish(failure);
-          return exit_code::step_failed;
-        }
+        if (!(is_static_ ? advance_load(next, failure)
+                         : advance(next, failure)))
+          return fail(failure);
       }
       finish("");
       return exit_code::done;
@@ -247,14 +309,42 @@ namespace nsfd
       if (must_redo(report, next))
         return true;
       attempts_ = 0;
-      control.accept();
-      next.time = control.time();
+      accept(next, report, h);
+      return true;
+    }
+
+    /** The same for a quasi-static step. */
+    template <int dim>
+    bool Simulation<dim>::advance_load(State &next, std::string &failure)
+    {
+      using Outcome = typename StaticRun<dim>::Outcome;
+      const double h = model_.control->step();
+      StepReport report;
+      switch (static_run_->step(state_, next, report, failure)) {
+      case Outcome::accepted:
+        accept(next, report, h);
+        return true;
+      case Outcome::to_dynamics:
+        start_dynamics();
+        return true;
+      case Outcome::shortened:
+        return true;
+      default:
+        return false;
+      }
+    }
+
+    template <int dim>
+    void Simulation<dim>::accept(State &next, const StepReport &report,
+                                 const double h)
+    {
+      model_.control->accept();
+      next.time = model_.control->time();
       std::swap(state_, next);
       last_step_ = h;
       fragments_->update(state_);
       record(report, h);
       output_->write_if_due(state_, h, *fragments_);
-      return true;
     }
 
     template <int dim>
@@ -276,7 +366,7 @@ namespace nsfd
       row.newton = report.solver.newton;
       row.krylov = report.solver.krylov;
       row.residual = report.solver.residual;
-      row.reactions = model_.stepper->reactions();
+      row.reactions = reactions();
       summary_.ledger_defect_max =
           std::max(summary_.ledger_defect_max, row.ledger_defect);
       summary_.residual_max = std::max(summary_.residual_max, row.residual);
@@ -308,6 +398,8 @@ namespace nsfd
         bound = std::max(bound, value);
       s.penetration_bound = communicator_.max(bound);
       fill_counters(s.counters);
+      if (static_run_)
+        static_run_->fill_counters(s.counters);
       if (observer_)
         observer_->finish(state_, s.errors);
       s.wall_seconds = wall_seconds() - start_wall_;
@@ -318,6 +410,11 @@ namespace nsfd
           {"set-up", s.setup_seconds},  {"loads and free motion", t.assembly},
           {"nonsmooth solve", t.solve}, {"update of bodies", t.update},
           {"energy ledger", t.ledger},  {"output", output_->cpu()}};
+      if (model_.quasi_static) {
+        const auto &q = model_.quasi_static->timings();
+        s.timings.insert(s.timings.begin() + 1,
+                         {"equilibria", q.assembly + q.solve + q.update});
+      }
       output_->write_summary(s);
       if (communicator_.is_root() && !options_.quiet)
         print_end();

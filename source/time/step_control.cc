@@ -7,22 +7,25 @@ namespace nsfd
 {
   StepControl::StepControl(const double end,
                            const double base,
-                           const unsigned int maximum_halvings)
+                           const unsigned int maximum_halvings,
+                           const double start)
     : end_(end)
     , ceiling_(std::numeric_limits<double>::infinity())
     , n_base_(static_cast<unsigned long long>(
-        std::fmax(1., std::ceil(end / base * (1. - 1e-12)))))
+        std::fmax(1., std::ceil((end - start) / base * (1. - 1e-12)))))
     , maximum_level_(maximum_halvings)
+    , start_(start)
   {
-    base_ = end / double(n_base_);
+    base_ = (end - start) / double(n_base_);
   }
 
   double StepControl::time() const
   {
     if (finished())
       return end_;
-    return (double(base_count_) + std::ldexp(double(position_), -int(level_))) *
-           base_;
+    return start_ +
+           (double(base_count_) + std::ldexp(double(position_), -int(level_))) *
+             base_;
   }
 
   double StepControl::step() const { return std::ldexp(base_, -int(level_)); }

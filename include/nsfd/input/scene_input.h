@@ -194,6 +194,24 @@ namespace nsfd
     unsigned int maximum_halvings = 10;
   };
 
+  /** What a run does where no equilibrium continues the last one. */
+  enum class SolutionJump
+  {
+    stop,    ///< ends with the last equilibrium
+    dynamic, ///< goes on from it with Moreau-Jean
+    relax    ///< takes the next equilibrium, books what is left over
+  };
+
+  /** Equilibria: at the start, and from step to step of the load. */
+  struct StaticInput
+  {
+    bool steps = false; ///< scheme = quasi-static, else the start alone
+    double until = 0.;  ///< s, end of the quasi-static steps
+    double step = 0.;   ///< s, of the load
+    SolutionJump at_jump = SolutionJump::stop;
+    double tolerance = 1e-10; ///< force left over, relative to those present
+  };
+
   struct SolverInput
   {
     std::string method = "auto";      ///< auto | dual newton | gauss seidel
@@ -232,5 +250,13 @@ namespace nsfd
     std::shared_ptr<VerificationCase> verification;
     /// complete echo: running it again reproduces the run
     std::string echo;
+    /// only if the scene asks for equilibria
+    std::optional<StaticInput> statics;
+    /** Whether a step in time can come. */
+    bool may_move() const
+    {
+      return !statics || !statics->steps || statics->until < time.end ||
+             statics->at_jump == SolutionJump::dynamic;
+    }
   };
 } // namespace nsfd

@@ -90,7 +90,7 @@ namespace nsfd
     };
     const Counters &counters() const { return counters_; }
 
-  private:
+  protected:
     void set_loads(double time);
     void move_freely(const State &old, const std::vector<double> &pressure);
     SolverReport solve(const SolverControl &control,

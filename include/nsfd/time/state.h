@@ -41,5 +41,7 @@ namespace nsfd
     double penetration = 0., penetration_excess = 0., rigid_drift = 0.,
            positive_friction_work = 0., broken_area = 0.,
            pressure_work = 0.; ///< of cracks, a part of the work
+    std::vector<double> point_force; ///< of an equilibrium, N; empty if the
+                                     ///< state is none
   };
 } // namespace nsfd

@@ -13,7 +13,8 @@ namespace nsfd
   {
   public:
     /** @p base is shortened so that the end is met exactly. */
-    StepControl(double end, double base, unsigned int maximum_halvings);
+    StepControl(double end, double base, unsigned int maximum_halvings,
+                double start = 0.);
 
     bool finished() const { return base_count_ == n_base_; }
     double time() const;
@@ -37,5 +38,6 @@ namespace nsfd
     double end_, base_, ceiling_;
     unsigned long long n_base_, base_count_ = 0, position_ = 0;
     unsigned int level_ = 0, maximum_level_, n_halvings_ = 0;
+    double start_;
   };
 } // namespace nsfd

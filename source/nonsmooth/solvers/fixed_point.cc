@@ -1,9 +1,6 @@
 #include "nsfd/nonsmooth/solver.h"
 
-#include <deal.II/base/index_set.h>
-#include <deal.II/base/mpi.h>
-#include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/sundials/kinsol.h>
+#include "nsfd/base/accelerated_rounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,41 +190,18 @@ namespace nsfd
       if (round.judge()) {
         Vector x = round.unknowns();
         if (anderson_ > 0) {
-          using Distributed =
-            dealii::LinearAlgebra::distributed::Vector<double>;
           const std::size_t n = Round::stride * problem.n_owned;
-          const dealii::IndexSet owned =
-            dealii::Utilities::MPI::create_ascending_partitioning(
-              communicator.mpi(), n)[communicator.rank()];
-          using Kinsol = dealii::SUNDIALS::KINSOL<Distributed>;
-          typename Kinsol::AdditionalData data(
-            Kinsol::AdditionalData::fixed_point,
-            control.maximum_iterations + 1, 1e-300, 1e-300);
-          data.anderson_subspace_size = anderson_;
-          Kinsol kinsol(data, communicator.mpi());
-          kinsol.reinit_vector = [&](Distributed &v) {
-            v.reinit(owned, communicator.mpi());
-          };
-          Distributed vector(owned, communicator.mpi());
-          kinsol.iteration_function = [&](const Distributed &in,
-                                          Distributed &out) {
-            if (round.finished) { // nothing changes: KINSOL stops
-              out = in;
-              return 0;
-            }
-            std::copy_n(in.begin(), n, x.begin());
-            round.complete(x);
-            round.apply(x);
-            round.judge();
-            std::copy_n(x.begin(), n, out.begin());
-            return 0;
-          };
-          std::copy_n(x.begin(), n, vector.begin());
-          try {
-            kinsol.solve(vector);
-          } catch (const dealii::ExceptionBase &) {
-            // judged by what the rounds reached
-          }
+          Vector owned(x.begin(), x.begin() + n);
+          accelerated_rounds(
+            communicator, anderson_, control.maximum_iterations + 1, owned,
+            [&](Vector &mixed) {
+              std::copy_n(mixed.begin(), n, x.begin());
+              round.complete(x);
+              round.apply(x);
+              const bool goes_on = round.judge();
+              std::copy_n(x.begin(), n, mixed.begin());
+              return goes_on;
+            });
           // It also stops where the unknowns rest and the impulses do not,
           // and mixing may stall where forces are not unique: plain rounds
           // from nothing.

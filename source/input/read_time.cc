@@ -1,0 +1,259 @@
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Splits "0.6 crossings" into "0.6" and "crossings". */
+    std::pair<SourceText, std::string> split_last_word(const SourceText &value)
+    {
+      const std::string &text = value.text();
+      std::size_t begin = text.size();
+      while (begin > 0 &&
+             std::isalpha(static_cast<unsigned char>(text[begin - 1])))
+        --begin;
+      return {value.part(0, begin), text.substr(begin)};
+    }
+
+    void read_step(SectionReader &reader, const std::string &name,
+                   TimeInput &time)
+    {
+      const auto value =
+          reader.raw(name, "0.5 crossings",
+                     "a time, crossings of a cell L/c_p, or auto");
+      if (!value || value->text() == "auto") {
+        time.step_kind = StepKind::automatic;
+        return;
+      }
+      const auto [number, word] = split_last_word(*value);
+      const bool is_misspelt =
+          !find_unit(word) && nearest_name(word, {"crossings"}) == "crossings";
+      if (word == "crossings" || word == "crossing") {
+        time.step_kind = StepKind::crossings;
+        time.step = reader.number_in(number, name, "0.5 crossings",
+                                     units::none, Range::positive());
+      } else if (is_misspelt)
+        reader.error(name,
+                     fmt::format("{} = {}: `{}` is not a unit", name,
+                                 value->text(), word),
+                     "did you mean `crossings`?");
+      else if (nearest_name(value->text(), {"auto"}) == "auto")
+        reader.error(name,
+                     fmt::format("{} = {} is not a step", name, value->text()),
+                     "did you mean `auto`?");
+      else {
+        time.step_kind = StepKind::time;
+        time.step = reader.number_in(*value, name, "0.5 crossings",
+                                     units::time, Range::positive());
+      }
+    }
+
+    bool all_rigid(const SceneInput &scene)
+    {
+      return !scene.materials.empty() &&
+             std::all_of(scene.materials.begin(), scene.materials.end(),
+                         [](const MaterialInput &m) { return m.rigid; });
+    }
+
+    void check_step(SectionReader &reader, const SceneInput &scene)
+    {
+      if (all_rigid(scene) && scene.time.step_kind != StepKind::time)
+        reader.error("step",
+                     "the step must be a time: all materials are rigid, and no "
+                     "wave crosses a cell",
+                     "write for example: set step = 1 us");
+    }
+
+    /** An equilibrium at the start, and what it cannot go with. */
+    bool read_start(SectionReader &reader, const SceneInput &scene,
+                    const bool quasi_static)
+    {
+      const std::string start =
+          reader.choice("start", quasi_static ? "equilibrium" : "given",
+                        {"given", "equilibrium"}, "given or equilibrium");
+      if (start == "given") {
+        if (quasi_static)
+          reader.error("start", "quasi-static steps go from one equilibrium to "
+                                "the next, also the first one",
+                       "write: equilibrium");
+        return false;
+      }
+      if (all_rigid(scene))
+        reader.error("start",
+                     "an equilibrium needs a body that deforms: all materials "
+                     "are rigid",
+                     "remove `start` and `scheme`, or the entry `model = "
+                     "rigid` of a material");
+      for (const MaterialInput &material : scene.materials)
+        for (unsigned int c = 0; c < scene.dimension; ++c)
+          if (!material.initial_velocity[c].is_zero()) {
+            reader.error("start",
+                         fmt::format("an equilibrium is at rest, and material "
+                                     "`{}` has an initial velocity",
+                                     material.name),
+                         "keep one of the two");
+            return true;
+          }
+      return true;
+    }
+
+    /** `step` of the load, and where quasi-static steps end. */
+    void read_quasi_static(SectionReader &reader, SceneInput &scene)
+    {
+      TimeInput &time = scene.time;
+      StaticInput &statics = *scene.statics;
+      statics.steps = true;
+      const auto step = reader.raw("step", "", "a time: of the load", "1 ms");
+      if (step) {
+        const std::string word = split_last_word(*step).second;
+        if (word == "auto" || word == "crossings" || word == "crossing")
+          reader.error("step",
+                       fmt::format("step = {}: a quasi-static step is a time "
+                                   "of the load, no wave counts in it",
+                                   step->text()),
+                       "write for example: set step = 1 ms");
+        else
+          statics.step = reader.number_in(*step, "step", "1 ms", units::time,
+                                          Range::positive());
+      }
+      statics.until = time.end;
+      if (reader.optional("quasi-static until",
+                          "s; Moreau-Jean steps after it"))
+        statics.until =
+            reader.number("quasi-static until", "", units::time,
+                          {0., time.end, true, false},
+                          "s; Moreau-Jean steps after it");
+      const std::string at_jump = reader.choice(
+          "at solution jump", "stop", {"stop", "dynamic", "relax"},
+          "where no equilibrium continues the last: stop, dynamic or relax");
+      statics.at_jump = at_jump == "dynamic" ? SolutionJump::dynamic
+                        : at_jump == "relax" ? SolutionJump::relax
+                                             : SolutionJump::stop;
+      if (scene.may_move())
+        read_step(reader, "dynamic step", time);
+      else {
+        reader.refuse({"dynamic step"},
+                      "no step of this scene is dynamic: neither `quasi-static "
+                      "until` nor `at solution jump = dynamic` is there");
+        time.step_kind = StepKind::time;
+        time.step = statics.step > 0. ? statics.step : time.end;
+      }
+      for (const InterfaceInput &interface : scene.interfaces)
+        if (interface.opening_viscosity > 0.)
+          reader.warning("scheme",
+                         fmt::format("an equilibrium has no rates: the opening "
+                                     "viscosity of `{}` takes no part in "
+                                     "quasi-static steps",
+                                     interface.name));
+    }
+
+    void read_theta(SectionReader &reader, const SceneInput &scene,
+                    TimeInput &time)
+    {
+      const unsigned int n_before = reader.errors().n_errors();
+      time.theta = reader.number("theta", "0.5", units::none, Range::any(),
+                                 "1/2 conserves energy, 1 damps");
+      if (reader.errors().n_errors() > n_before)
+        return;
+      if (time.theta < 0.5)
+        reader.error("theta",
+                     fmt::format("theta = {:g} must be at least 0.5: below it "
+                                 "every step grows, as forward Euler does",
+                                 time.theta),
+                     "write for example: 0.5");
+      if (time.theta > 1.)
+        reader.error("theta",
+                     fmt::format("theta = {:g} must be at most 1", time.theta),
+                     "write for example: 0.5");
+
+      double restitution = 0.;
+      for (const InterfaceInput &interface : scene.interfaces)
+        restitution = std::max(restitution, interface.restitution);
+      for (const ObstacleInput &obstacle : scene.obstacles)
+        restitution = std::max(restitution, obstacle.restitution);
+      const double bound = 1. / (1. + restitution);
+      if (time.theta > bound && time.theta <= 1.)
+        reader.warning("theta",
+                       fmt::format("theta = {:g} is above 1/(1 + e) = {:g} for "
+                                   "restitution e = {:g}: impacts can create "
+                                   "energy",
+                                   time.theta, bound, restitution),
+                       fmt::format("write at most {:g}", bound));
+    }
+
+    template <typename T>
+    T read_named(SectionReader &reader, const std::string &name,
+                 const std::vector<std::pair<std::string, T>> &values,
+                 const std::string &text)
+    {
+      std::vector<std::string> names;
+      for (const auto &value : values)
+        names.push_back(value.first);
+      const std::string chosen =
+          reader.choice(name, names.front(), names, text);
+      for (const auto &value : values)
+        if (value.first == chosen)
+          return value.second;
+      return values.front().second;
+    }
+  } // namespace
+
+  void read_time(ParameterFile &file, InputErrors &errors, SceneInput &scene)
+  {
+    SectionReader reader(file.open("Time"), errors);
+    TimeInput &time = scene.time;
+    time.end = reader.number("end", "", units::time, Range::positive(), "s");
+    const bool quasi_static =
+        reader.choice("scheme", "moreau-jean", {"moreau-jean", "quasi-static"},
+                      "moreau-jean or quasi-static") == "quasi-static";
+    if (read_start(reader, scene, quasi_static)) {
+      scene.statics.emplace();
+      scene.statics->tolerance = reader.number(
+          "equilibrium tolerance", "1e-10", units::none, {0., 1e-3, true, false},
+          "force left over, relative to the forces present");
+    } else
+      reader.refuse({"equilibrium tolerance"}, "the scene asks for no equilibrium");
+    if (quasi_static && scene.statics)
+      read_quasi_static(reader, scene);
+    else {
+      reader.refuse({"quasi-static until", "at solution jump", "dynamic step"},
+                    "it belongs to scheme = quasi-static");
+      read_step(reader, "step", time);
+      check_step(reader, scene);
+    }
+    read_theta(reader, scene, time);
+    time.forecast_gamma1 = reader.number(
+        "forecast gamma1", "0.5", units::none, Range::closed(0., 1.),
+        "weight of the old velocity in the forecast of the gap");
+    time.forecast_gamma2 =
+        reader.number("forecast gamma2", "0", units::none,
+                      Range::closed(0., 1.), "weight of the new velocity");
+    if (time.forecast_gamma2 != 0.)
+      reader.error("forecast gamma2",
+                   "an implicit forecast of the gap is not there yet",
+                   "write: forecast gamma2 = 0");
+    time.cohesion_rule =
+        read_named<CohesionRule>(reader, "cohesion rule",
+                                 {{"exact", CohesionRule::exact},
+                                  {"end point", CohesionRule::end_point},
+                                  {"end velocity", CohesionRule::end_velocity}},
+                                 "exact, end point or end velocity");
+    time.contact_target =
+        read_named<ContactTarget>(reader, "contact target",
+                                  {{"energy safe", ContactTarget::energy_safe},
+                                   {"velocity", ContactTarget::velocity},
+                                   {"position", ContactTarget::position}},
+                                  "energy safe, velocity or position");
+    time.sliding = read_named<Sliding>(
+        reader, "sliding",
+        {{"velocity", Sliding::velocity}, {"increment", Sliding::increment}},
+        "what friction opposes: velocity or increment");
+    time.maximum_halvings = reader.integer("maximum halvings", "10", 0, 60,
+                                           "of a step that cannot be solved");
+  }
+} // namespace nsfd

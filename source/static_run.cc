@@ -1,0 +1,96 @@
+#include "static_run.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+namespace nsfd
+{
+  template <int dim>
+  auto StaticRun<dim>::step(const State &state, State &next,
+                            StepReport &report, std::string &text) -> Outcome
+  {
+    auto &control = *model_.control;
+    StepControl after = control;
+    after.accept();
+    EquilibriumReport equilibrium;
+    std::string what;
+    bool found = true;
+    try {
+      equilibrium = model_.quasi_static->advance(state, after.time(), next);
+    } catch (const StepRejected &rejected) {
+      found = false;
+      what = rejected.what();
+    }
+    if (found && !equilibrium.jumps) {
+      report = equilibrium.step;
+      return Outcome::accepted;
+    }
+    if (control.halve()) {
+      ++shortened_;
+      return Outcome::shortened;
+    }
+    ++jumps_;
+    if (jumps_ == 1)
+      first_jump_ = state.time;
+    if (found) {
+      released_ += equilibrium.left_over;
+      what = fmt::format(
+          "solution jump between t = {:.8g} and {:.8g}: no equilibrium "
+          "continues the last one, {:.6g} J are left over; worst face {}",
+          state.time, after.time(), equilibrium.left_over, equilibrium.place);
+    } else
+      what = fmt::format("solution jump after t = {:.8g}: {}", state.time, what);
+    report = equilibrium.step;
+    return jump(what, found, text);
+  }
+
+  template <int dim>
+  auto StaticRun<dim>::jump(const std::string &what, const bool may_relax,
+                            std::string &text) -> Outcome
+  {
+    switch (input_.statics->at_jump) {
+    case SolutionJump::dynamic:
+      print_problems(communicator_, input_, "note",
+                     {what + "; goes on in dynamic steps"});
+      return Outcome::to_dynamics;
+    case SolutionJump::relax:
+      if (may_relax)
+        return Outcome::accepted;
+      [[fallthrough]];
+    default:
+      text = what + (may_relax ? "\n  in section Time, `set at solution jump = "
+                                 "dynamic` follows it in time, `relax` takes "
+                                 "the next equilibrium"
+                               : "\n  in section Time, `set at solution jump = "
+                                 "dynamic` follows what moves in time");
+      return Outcome::failed;
+    }
+  }
+
+  template <int dim>
+  void
+  StaticRun<dim>::fill_counters(std::map<std::string, double> &counters) const
+  {
+    const auto &found = model_.quasi_static->counters();
+    const auto &solver = model_.quasi_static->solver_counters();
+    const auto &dynamics = model_.quasi_static->dynamics_counters();
+    counters["equilibria"] = double(found.equilibria);
+    counters["equilibrium_rounds"] = double(found.rounds);
+    counters["equilibrium_newton"] = double(solver.newton);
+    counters["equilibrium_krylov"] = double(solver.krylov);
+    counters["equilibrium_factorisations"] =
+        double(dynamics.global_factorisations);
+    if (!input_.statics->steps)
+      return;
+    counters["shortened_load_steps"] = shortened_;
+    counters["solution_jumps"] = jumps_;
+    if (jumps_ > 0) {
+      counters["solution_jump_energy"] = released_;
+      counters["solution_jump_time"] = first_jump_;
+    }
+  }
+
+  template class StaticRun<2>;
+  template class StaticRun<3>;
+} // namespace nsfd

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "nsfd/input/scene_input.h"
+#include "nsfd/time/moreau_jean.h"
+
+#include <vector>
+
+namespace nsfd
+{
+  /** A scene as an equilibrium sees it: backward Euler from rest, no rates. */
+  SceneInput static_scene(const SceneInput &input);
+
+  /**
+   * One implicit step from rest, so long that masses hardly matter: with
+   * theta = 1 and cohesion at the end point
+   *
+   *     (M/h^2) (q' - q) + K q' = F + H^T r,     r = P/h in the point laws,
+   *
+   * the proximal map of the potential energy, which equilibria leave where
+   * they are. The mass holds what floats. Everything a step of the load
+   * remembers is taken from the equilibrium before it: d_m, the sliding
+   * (u_T - u_T,k in place of h U_T) and the gap, u_N >= 0 in place of its
+   * velocity. So the iterates q leave no trace, and the equilibrium obeys the
+   * laws over the step of the load exactly.
+   *
+   * The local solves see an elastic support, R = 1/(w h^2 kappa), instead of
+   * the mass of a floating cell: kappa the stiffness E/L of a cell, or twice
+   * the steepest softening, below which a local solve has several solutions.
+   * The natural map then weighs errors of jumps as errors of forces.
+   */
+  template <int dim>
+  class Relaxation : public MoreauJean<dim>
+  {
+  public:
+    /** @p input is a static_scene() and outlives this. */
+    Relaxation(const SceneInput &input,
+               const Discretization<dim> &discretization,
+               Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver)
+        : MoreauJean<dim>(input, discretization, dynamics, solver)
+    {
+    }
+
+    /**
+     * From the equilibrium @p old, which outlives the rounds, to loads and
+     * motion at @p time, after @p duration of prescribed velocities.
+     */
+    void begin(const State &old, double time, double duration);
+
+    /** q := q'. The residual of the point laws is solved to @p tolerance. */
+    SolverReport relax(std::vector<double> &q, double h, double tolerance);
+
+    /**
+     * |F + H^T r - K q'| over the largest forces that were present so far: what
+     * is broken may carry none at all.
+     */
+    double imbalance() const { return imbalance_; }
+    /** F + H^T r - K q' at all unknowns. */
+    const std::vector<double> &residual() const { return residual_; }
+
+    /** Data of the step of the load as a whole, over the last h. */
+    const OneStepProblem<dim> &load_step();
+    /** Of the last round: r in N, local solutions, forces, pressure. */
+    const std::vector<double> &point_force() const { return force_; }
+    const std::vector<LocalSolution<dim>> &solutions() const
+    {
+      return solutions_;
+    }
+    const std::vector<double> &forces() const { return this->forces_; }
+    const std::vector<double> &pressure() const { return pressure_; }
+    std::string worst_face() const { return this->describe(worst_point_); }
+    std::string face(const std::size_t point) const
+    {
+      return this->describe(point);
+    }
+
+  private:
+    void constrain(double h);
+    void soften(double h);
+    void set_support();
+    double forces_present(const std::vector<double> &q) const;
+    void measure(const std::vector<double> &q, double h,
+                 const std::vector<double> &velocity);
+
+    const State *old_ = nullptr;
+    State at_; ///< the iterate as the start of a step
+    double time_ = 0., h_ = 0.;
+    std::vector<double> target_; ///< jumps of driven points
+    std::vector<char> let_go_;   ///< extrinsic points that opened in this step
+    std::vector<double> force_, pressure_, residual_;
+    std::vector<LocalSolution<dim>> solutions_;
+    std::vector<double> support_; ///< w kappa of the points, N/m
+    double present_ = 0.;     ///< largest forces at an equilibrium, N
+    double point_scale_ = 0.; ///< largest sum of r^2/(w kappa), J
+    double imbalance_ = 0.;
+    std::size_t worst_point_ = 0;
+  };
+} // namespace nsfd

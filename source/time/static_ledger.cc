@@ -1,0 +1,319 @@
+#include "static_ledger.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    enum PointRow {
+      stored,
+      damage,
+      friction,
+      positive_friction,
+      numerical,
+      left_over, ///< the part of `numerical` that cohesion has
+      moved,     ///< |work| of the mean forces in cohesion and joints
+      motion,
+      pressure_work,
+      broken,
+      n_rows
+    };
+
+    template <int dim>
+    class StaticBook
+    {
+    public:
+      StaticBook(const OneStepProblem<dim> &problem,
+                 const std::vector<LocalSolution<dim>> &solutions,
+                 const State &old, State &next)
+          : terms(n_rows * problem.n_owned, 0.), problem_(problem),
+            solutions_(solutions), old_(old), next_(next)
+      {
+        next.opening_max = old.opening_max;
+        next.beta = old.beta;
+        next.kind = old.kind;
+        next.two_sided = old.two_sided;
+        next.slip = old.slip;
+        next.penetration_bound = old.penetration_bound;
+        next.contact.assign(problem.n_points, 0);
+      }
+
+      void book_motion(std::size_t i);
+      void book_joint(std::size_t i);
+      void book_law(std::size_t i);
+      void book_pressure(std::size_t i);
+
+      std::vector<double> terms; ///< n_rows of n_owned
+      double penetration = 0., drift = 0.;
+      unsigned int active = 0;
+      EnergyLeft left;
+
+    private:
+      using Vector = std::array<double, dim>;
+
+      void put(const PointRow row, const std::size_t i, const double value)
+      {
+        if (i < problem_.n_owned)
+          terms[row * problem_.n_owned + i] += value;
+      }
+      double old_force(const std::size_t k) const
+      {
+        return old_.point_force.empty() ? 0. : old_.point_force[k];
+      }
+      /** Of the mean force over the step, on the bodies. */
+      double mean_work(const std::size_t i) const
+      {
+        double work = 0.;
+        for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+          work += (old_force(k) + next_.point_force[k]) / 2. *
+                  (next_.jump[k] - old_.jump[k]);
+        return work;
+      }
+      Vector old_cohesion(std::size_t i) const;
+      void remember(std::size_t i, const PointEnergies<dim> &energies);
+
+      const OneStepProblem<dim> &problem_;
+      const std::vector<LocalSolution<dim>> &solutions_;
+      const State &old_;
+      State &next_;
+    };
+
+    template <int dim>
+    void StaticBook<dim>::book_motion(const std::size_t i)
+    {
+      put(motion, i, mean_work(i));
+    }
+
+    template <int dim>
+    void StaticBook<dim>::book_joint(const std::size_t i)
+    {
+      put(numerical, i, -mean_work(i));
+      double square = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        square += next_.jump[i * dim + c] * next_.jump[i * dim + c];
+      drift = std::max(drift, std::sqrt(square));
+    }
+
+    /** Traction of the law at the last equilibrium, Pa. */
+    template <int dim>
+    auto StaticBook<dim>::old_cohesion(const std::size_t i) const -> Vector
+    {
+      Vector traction{};
+      const PointKind kind = old_.kind[i];
+      const auto &interaction =
+          problem_.interactions[problem_.interaction[i]];
+      if (kind == PointKind::rigid) {
+        for (unsigned int c = 0; c < dim; ++c)
+          traction[c] = -old_force(i * dim + c) / problem_.weight[i];
+        return traction;
+      }
+      if (kind != PointKind::elastic && kind != PointKind::cohesive)
+        return traction;
+      const double l = problem_.opening_factor[i];
+      const double b = kind == PointKind::elastic
+                           ? interaction.normal_stiffness
+                           : problem_.strength_factor[i] * l *
+                                 interaction.law->secant(l *
+                                                         old_.opening_max[i]);
+      const double *u = &old_.jump[i * dim];
+      traction[0] = u[0] > 0. ? b * u[0]
+                              : problem_.compression_stiffness[i] * u[0];
+      for (unsigned int c = 1; c < dim; ++c)
+        traction[c] = b * interaction.stiffness_ratio * u[c];
+      return traction;
+    }
+
+    template <int dim>
+    void StaticBook<dim>::book_law(const std::size_t i)
+    {
+      const double w = problem_.weight[i], h = problem_.time_step;
+      const auto &solution = solutions_[i];
+      Vector velocity;
+      for (unsigned int c = 0; c < dim; ++c)
+        velocity[c] = (next_.jump[i * dim + c] - old_.jump[i * dim + c]) / h;
+      const auto energies =
+          point_energies<dim>(problem_, i, velocity, solution.frozen);
+      const Vector before = old_cohesion(i);
+      double cohesive_work = 0., normal_work = 0., rubbing = 0., square = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t k = i * dim + c;
+        const double R_0 = w * before[c],
+                     R_1 = w * energies.cohesive_traction[c],
+                     du = next_.jump[k] - old_.jump[k];
+        cohesive_work += (R_0 + R_1) / 2. * du;
+        const double contact = (old_force(k) + R_0 + next_.point_force[k] + R_1) /
+                               2. * du;
+        (c == 0 ? normal_work : rubbing) += contact;
+        square += c == 0 ? 0. : du * du;
+      }
+      const bool closed = solution.contact_impulse > 0.;
+      // mean contact forces: what closes or opens within the step has a gap
+      put(numerical, i, -normal_work);
+      if (problem_.interactions[problem_.interaction[i]].friction > 0.) {
+        put(friction, i, -rubbing);
+        put(positive_friction, i, std::max(0., rubbing));
+      } else
+        put(numerical, i, -rubbing);
+      next_.contact[i] = closed;
+      if (closed)
+        next_.slip[i] += std::sqrt(square);
+      if (i < problem_.n_owned && (closed || solution.damages))
+        ++active;
+
+      const double dissipated = w * energies.damage,
+                   spent = w * (energies.stored + energies.overlap_released -
+                                energies.stored_old);
+      put(stored, i, w * energies.stored);
+      put(damage, i, dissipated);
+      const double rest = cohesive_work - spent - dissipated;
+      put(numerical, i, rest + w * energies.overlap_released);
+      put(left_over, i, rest);
+      put(moved, i, std::abs(cohesive_work));
+      if (i < problem_.n_owned && std::abs(rest) > left.worst) {
+        left.worst = std::abs(rest);
+        left.worst_point = i;
+      }
+      remember(i, energies);
+      if (!next_.two_sided[i]) {
+        const double depth = -next_.jump[i * dim];
+        if (old_.two_sided[i])
+          next_.penetration_bound[i] =
+              std::max(next_.penetration_bound[i], depth);
+        penetration = std::max(penetration, depth);
+      }
+    }
+
+    template <int dim>
+    void StaticBook<dim>::remember(const std::size_t i,
+                                   const PointEnergies<dim> &energies)
+    {
+      next_.opening_max[i] = energies.opening_max;
+      if (problem_.kind[i] == PointKind::rigid && energies.opening_max > 0.)
+        next_.kind[i] = PointKind::cohesive;
+      if (next_.kind[i] != PointKind::cohesive)
+        return;
+      next_.beta[i] = std::min(old_.beta[i], energies.beta);
+      if (energies.beta < 1.)
+        next_.two_sided[i] = 0; // its overlap is booked in point_energies()
+      if (next_.beta[i] <= 0.)
+        next_.kind[i] = PointKind::free;
+      // tails count as broken once they carry a thousandth
+      if (next_.beta[i] < 1e-3 && old_.beta[i] >= 1e-3)
+        put(broken, i, problem_.weight[i]);
+    }
+
+    template <int dim>
+    void StaticBook<dim>::book_pressure(const std::size_t i)
+    {
+      const double before = old_.pressure.empty() ? 0. : old_.pressure[i];
+      put(pressure_work, i,
+          problem_.weight[i] * (before + next_.pressure[i]) / 2. *
+              (next_.jump[i * dim] - old_.jump[i * dim]));
+    }
+  } // namespace
+
+  template <int dim>
+  bool StaticLedger<dim>::has_pressure(const SceneInput &input)
+  {
+    return std::any_of(
+        input.interfaces.begin(), input.interfaces.end(),
+        [](const InterfaceInput &block) { return bool(block.crack_pressure); });
+  }
+
+  template <int dim>
+  EnergyLeft StaticLedger<dim>::book(Relaxation<dim> &relaxation,
+                                     const std::vector<double> &forces_old,
+                                     const State &old, State &next,
+                                     StepReport &report)
+  {
+    const auto &communicator = dynamics_.communicator();
+    const auto &problem = relaxation.load_step();
+    StaticBook<dim> book(problem, relaxation.solutions(), old, next);
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      if (has_pressure_)
+        book.book_pressure(i);
+      if (problem.kind[i] != PointKind::prescribed)
+        book.book_law(i);
+      else if (discretization_.origins()[i].kind == PointOrigin::Kind::motion)
+        book.book_motion(i);
+      else
+        book.book_joint(i);
+    }
+    const auto sums =
+        communicator.sums(book.terms.data(), n_rows, problem.n_owned);
+
+    const std::size_t n = next.displacement.size();
+    std::vector<double> terms(3 * n);
+    const auto put_elastic = [&](const State &state, const std::size_t row) {
+      std::vector<double> product(n);
+      dynamics_.apply(Dynamics<dim>::Operator::stiffness,
+                      state.displacement.data(), product.data());
+      for (std::size_t k = 0; k < n; ++k)
+        terms[row * n + k] = state.displacement[k] * product[k] / 2.;
+    };
+    put_elastic(next, 0);
+    for (std::size_t k = 0; k < n; ++k)
+      terms[n + k] = (forces_old[k] + relaxation.forces()[k]) / 2. *
+                     (next.displacement[k] - old.displacement[k]);
+    const auto body = communicator.sums(terms.data(), 2, n);
+
+    EnergyLines &energy = next.energy;
+    energy = old.energy;
+    energy.kinetic = 0.;
+    energy.elastic = body[0];
+    energy.cohesive = sums[stored];
+    energy.damage += sums[damage];
+    energy.friction += sums[friction];
+    energy.numerical += sums[numerical];
+    const double work = sums[motion] + body[1] + sums[pressure_work];
+    energy.work += work;
+    next.pressure_work = old.pressure_work + sums[pressure_work];
+    next.broken_area = old.broken_area + sums[broken];
+    next.positive_friction_work =
+        old.positive_friction_work + sums[positive_friction];
+    next.initial_energy = old.initial_energy;
+    next.penetration =
+        std::max(old.penetration, communicator.max(book.penetration));
+    next.penetration_excess = old.penetration_excess;
+    next.rigid_drift = std::max(old.rigid_drift, communicator.max(book.drift));
+    report.active = unsigned(communicator.sum_integer(book.active));
+
+    const auto &driven = discretization_.driven_boundaries();
+    if (!driven.empty()) {
+      std::vector<double> rows(reactions_.size() * problem.n_owned, 0.);
+      for (std::size_t i = 0; i < problem.n_owned; ++i) {
+        const PointOrigin origin = discretization_.origins()[i];
+        if (origin.kind != PointOrigin::Kind::motion)
+          continue;
+        const std::size_t d =
+            std::find(driven.begin(), driven.end(), origin.block) -
+            driven.begin();
+        for (unsigned int c = 0; c < dim; ++c)
+          rows[(d * dim + c) * problem.n_owned + i] =
+              next.point_force[i * dim + c];
+      }
+      reactions_ =
+          communicator.sums(rows.data(), reactions_.size(), problem.n_owned);
+    }
+
+    next.largest_energy = std::max(
+        {old.largest_energy, energy.elastic, energy.cohesive,
+         std::abs(energy.work), energy.damage, energy.friction});
+    const double defect = energy.elastic + energy.cohesive + energy.damage +
+                          energy.friction + energy.viscous + energy.impact +
+                          energy.numerical - energy.work - next.initial_energy;
+    report.ledger_defect =
+        next.largest_energy > 0. ? std::abs(defect) / next.largest_energy : 0.;
+
+    EnergyLeft left = book.left;
+    left.energy = sums[left_over];
+    left.turnover = std::max({std::abs(work), sums[moved], sums[damage],
+                              std::abs(energy.elastic - old.energy.elastic)});
+    return left;
+  }
+
+  template class StaticLedger<2>;
+  template class StaticLedger<3>;
+} // namespace nsfd

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "relaxation.h"
+
+namespace nsfd
+{
+  /** What a step from equilibrium to equilibrium has left over. */
+  struct EnergyLeft
+  {
+    double energy = 0.;  ///< in the cohesion, J
+    double turnover = 0.; ///< what the step has moved: work, stored, dissipated
+    std::size_t worst_point = 0; ///< local, of the largest share
+    double worst = 0.;           ///< its share, J, this rank
+  };
+
+  /**
+   * The books of a step from equilibrium to equilibrium. Forces balance at
+   * both ends, so that over a change dq of the displacements
+   *
+   *     d(q.K q/2) = (F_k + F_{k+1})/2 . dq + sum (r_k + r_{k+1})/2 . du,
+   *
+   * without any term of the scheme. What a point takes from the bodies by its
+   * mean force is booked by its law: stored, damage, friction; the rest is
+   * numerical. In the cohesion that rest is of third order in the step as long
+   * as the path is continuous, and it is what a solution jump leaves over.
+   */
+  template <int dim>
+  class StaticLedger
+  {
+  public:
+    StaticLedger(const SceneInput &input,
+                 const Discretization<dim> &discretization,
+                 const Dynamics<dim> &dynamics)
+        : discretization_(discretization), dynamics_(dynamics),
+          reactions_(discretization.driven_boundaries().size() * dim, 0.),
+          has_pressure_(has_pressure(input))
+    {
+    }
+
+    /**
+     * From @p old to @p next, of which displacement, jump, force and pressure
+     * are known: everything else of it, and of @p report. @p forces_old are
+     * the loads at @p old. Collective.
+     */
+    EnergyLeft book(Relaxation<dim> &relaxation,
+                    const std::vector<double> &forces_old, const State &old,
+                    State &next, StepReport &report);
+
+    const std::vector<double> &reactions() const { return reactions_; }
+
+  private:
+    static bool has_pressure(const SceneInput &input);
+
+    const Discretization<dim> &discretization_;
+    const Dynamics<dim> &dynamics_;
+    std::vector<double> reactions_;
+    bool has_pressure_;
+  };
+} // namespace nsfd
