@@ -207,8 +207,11 @@ namespace nsfd
         const double *W = this->face_block(f);
         for (unsigned int k = 0; k < n; ++k) {
           const std::size_t row = std::size_t(face.first) * dim + k;
+          const double least = this->least_compliance_.empty()
+                                 ? 1e-2 * W[k * n + k]
+                                 : this->least_compliance_[row];
           if (D[row] >= 0.)
-            inverse_D_[row] = 1. / std::max(D[row], 1e-2 * W[k * n + k]);
+            inverse_D_[row] = 1. / std::max(D[row], least);
         }
       }
 

@@ -121,11 +121,17 @@ namespace nsfd
   void Relaxation<dim>::soften(const double h)
   {
     auto &problem = this->problem_;
-    for (std::size_t i = 0; i < problem.n_points; ++i)
+    std::vector<double> least(problem.n_points * dim);
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
       for (auto *majorant :
            {&problem.majorant_normal, &problem.majorant_tangential})
         (*majorant)[i] =
             std::min((*majorant)[i], 1. / (h * h * support_[i]));
+      for (unsigned int c = 0; c < dim; ++c)
+        least[i * dim + c] = 0.03 * (c == 0 ? problem.majorant_normal[i]
+                                            : problem.majorant_tangential[i]);
+    }
+    this->dynamics_.set_least_compliance(std::move(least));
   }
 
   template <int dim>
@@ -171,6 +177,7 @@ namespace nsfd
     control.tolerance = tolerance;
     control.maximum_iterations = this->input_.solver.maximum_iterations;
     control.idle_rounds = 1;
+    control.may_sweep = false;
     SolverReport report;
     {
       const Stopwatch watch(this->timings_.solve);

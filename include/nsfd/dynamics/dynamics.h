@@ -76,6 +76,16 @@ namespace nsfd
     /** z = approximation of (W + D)^{-1} r on the components that take part. */
     virtual void precondition(const double *r, double *z) const = 0;
 
+    /**
+     * What stands for D = 0 in the preconditioner of the global path, one per
+     * component; empty: a share of the diagonal of W, which at long steps is
+     * far more than the bodies' own compliance.
+     */
+    void set_least_compliance(std::vector<double> compliance)
+    {
+      least_compliance_ = std::move(compliance);
+    }
+
     const InterfacePoints<dim> &points() const { return points_; }
     const Bodies &bodies() const { return bodies_; }
     const Communicator &communicator() const { return communicator_; }
@@ -118,6 +128,9 @@ namespace nsfd
     void to_cartesian(const double *local) const;
     void add_sides(double *local) const;
     mutable std::vector<double> cartesian_, side_1_, side_2_;
+
+  protected:
+    std::vector<double> least_compliance_;
   };
 
   /** Preconditioned by the face blocks of W: for steps up to some crossings. */

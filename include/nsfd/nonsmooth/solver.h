@@ -14,6 +14,7 @@ namespace nsfd
     unsigned int maximum_iterations = 200; ///< Newton steps, or 100 sweeps each
     unsigned int idle_rounds = 2; ///< of sweeps that did not halve the error,
                                   ///< before the solve is given up
+    bool may_sweep = true; ///< the majorant is one of W, as Gauss-Seidel needs
   };
 
   /**

@@ -52,6 +52,8 @@ namespace nsfd
       void symmetric_direction(const Work &work, double tolerance, Vector &dP);
       void coupled_direction(const Work &work, double tolerance, double shift,
                              Vector &dP);
+      bool shorten(const Work &work, double before, const Vector &dP,
+                   Vector &impulse, Vector &trial);
       bool line_search(const Work &work, const Vector &direction,
                        Vector &impulse);
       double majorant(const Work &work, const std::size_t k) const
@@ -368,6 +370,25 @@ namespace nsfd
       return true;
     }
 
+    /** Shares of the step, down to a tenth, until one reduces the map. */
+    template <int dim>
+    bool DualNewton<dim>::shorten(const Work &work, const double before,
+                                  const Vector &dP, Vector &impulse,
+                                  Vector &trial)
+    {
+      for (const double share : {0.5, 0.25, 0.1}) {
+        for (std::size_t k = 0; k < work.n; ++k)
+          trial[k] = impulse[k] + share * dP[k];
+        work.evaluation.update(trial);
+        if (work.evaluation.error < (1. - 0.3 * share) * before) {
+          impulse.swap(trial);
+          return true;
+        }
+      }
+      work.evaluation.update(impulse);
+      return false;
+    }
+
     template <int dim>
     SolverReport DualNewton<dim>::solve(const OneStepProblem<dim> &problem,
                                         Dynamics<dim> &dynamics,
@@ -427,6 +448,11 @@ namespace nsfd
         evaluation.defect = defect;
         evaluation.velocity = velocity;
         evaluation.error = before;
+        if (!control.may_sweep && coupled &&
+            shorten(work, before, dP, impulse, trial)) {
+          remember();
+          continue;
+        }
         if (coupled)
           symmetric_direction(work, forcing, dP);
         bool moved = line_search(work, dP, impulse);
@@ -457,6 +483,11 @@ namespace nsfd
         if (idle_rounds > control.idle_rounds ||
             report.sweeps >= 5 * control.maximum_iterations)
           break;
+        if (!control.may_sweep) {
+          if (stalled > 4)
+            break;
+          continue;
+        }
         if (colours_.empty())
           colours_ = colour_faces(dynamics);
         if (report.sweeps == 0)
