@@ -120,10 +120,12 @@ namespace nsfd
     if (discretization_.has_loads())
       discretization_.add_loads(old.time, forces_old);
     find(old, time, next, report.step);
+    report.stable = relaxation_->softening() < 1.;
     const EnergyLeft left =
         ledger_->book(*relaxation_, forces_old, old, next, report.step);
     report.left_over = left.energy;
-    report.jumps = left.energy > jump_share * left.turnover;
+    report.jumps =
+        !report.stable || left.energy > jump_share * left.turnover;
     if (report.jumps) {
       // named by the rank that has it
       const double worst = communicator_.max(left.worst);

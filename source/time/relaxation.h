@@ -57,6 +57,18 @@ namespace nsfd
     /** F + H^T r - K q' at all unknowns. */
     const std::vector<double> &residual() const { return residual_; }
 
+    /**
+     * How much of its stiffness softening takes from the scene at the last
+     * round: the largest eigenvalue of
+     *
+     *     G^{1/2} H A^{-1} H^T G^{1/2},     G = w h^2 (T/d - T'(d)),
+     *
+     * along the opening of the points that damage, A the scene with all
+     * cohesion at its secant. From 1 on the equilibrium is not stable: (38) of
+     * the report as a number.
+     */
+    double softening();
+
     /** Data of the step of the load as a whole, over the last h. */
     const OneStepProblem<dim> &load_step();
     /** Of the last round: r in N, local solutions, forces, pressure. */

@@ -16,7 +16,9 @@ namespace nsfd
   {
     StepReport step;
     double left_over = 0.; ///< energy that the cohesion did not take, J
-    bool jumps = false;    ///< it is no small part of what the step has moved
+    bool stable = true;    ///< softening leaves some stiffness everywhere
+    bool jumps = false;    ///< not stable, or what is left over is no small
+                           ///< part of what the step has moved
     std::string place;     ///< of the face with the largest share of it
   };
 

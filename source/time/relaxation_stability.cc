@@ -1,0 +1,120 @@
+#include "relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** T/d - T'(d) on the envelope of a point. */
+    double softening_slope(const CohesiveLaw &law, const double a,
+                           const double l, const double opening)
+    {
+      const double x = l * opening, step = 1e-6 * x;
+      const double slope =
+          (law.traction(x + step) - law.traction(x - step)) / (2. * step);
+      return a * l * std::max(0., law.traction(x) / x - slope);
+    }
+  } // namespace
+
+  template <int dim>
+  double Relaxation<dim>::softening()
+  {
+    auto &dynamics = this->dynamics_;
+    const auto &problem = this->problem_;
+    const auto &communicator = dynamics.communicator();
+    const std::size_t n = problem.n_points * dim;
+    // one row per point that damages: its weight and its direction
+    std::vector<double> direction(n, 0.), D(n, -1.);
+    bool any = false;
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      const auto &solution = solutions_[i];
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      const double w_h2 = problem.weight[i] * h_ * h_;
+      if (problem.kind[i] == PointKind::prescribed) {
+        for (unsigned int c = 0; c < dim; ++c)
+          if (problem.mask[i] & (1u << c))
+            D[i * dim + c] = 0.;
+        continue;
+      }
+      const bool held = std::isinf(solution.frozen.secant);
+      for (unsigned int c = 0; c < dim; ++c) {
+        double b = held ? 0. : solution.frozen.secant;
+        if (c > 0)
+          b *= interaction.stiffness_ratio;
+        else if (problem.jump_free[i * dim] + h_ * solution.velocity[0] < 0.)
+          b = problem.compression_stiffness[i];
+        const bool rests =
+            held || (c == 0 ? solution.contact_impulse > 0.
+                            : solution.status == PointStatus::stick &&
+                                  solution.frozen.threshold > 0.);
+        D[i * dim + c] = rests ? 0. : b > 0. ? 1. / (w_h2 * b) : -1.;
+      }
+      if (!solution.damages || held)
+        continue;
+      any = true;
+      const double d = solution.opening;
+      const double size = std::sqrt(
+          w_h2 * softening_slope(*interaction.law, problem.strength_factor[i],
+                                 problem.opening_factor[i], d));
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t k = i * dim + c;
+        const double u = problem.jump_free[k] + h_ * solution.velocity[c];
+        if (D[k] > 0.)
+          direction[k] = size / d *
+                         (c == 0 ? std::max(0., u)
+                                 : std::sqrt(interaction.stiffness_ratio *
+                                             interaction.shear_weight) *
+                                       u);
+      }
+    }
+    if (!communicator.any(any))
+      return 0.;
+
+    // joints and contacts as stiff as the solver of the matrix can stand
+    std::vector<double> least(n);
+    for (std::size_t k = 0; k < n; ++k)
+      least[k] = 1e-6 / (h_ * h_ * support_[k / dim]);
+    dynamics.set_least_compliance(std::move(least));
+    dynamics.prepare_preconditioner(D);
+    std::vector<double> share(problem.n_points, 1.), f(n), z(n);
+    double largest = 0.;
+    for (unsigned int round = 0; round < 60; ++round) {
+      for (std::size_t k = 0; k < n; ++k)
+        f[k] = D[k] > 0. ? D[k] * direction[k] * share[k / dim] : 0.;
+      std::fill(z.begin(), z.end(), 0.);
+      dynamics.precondition(f.data(), z.data());
+      std::vector<double> terms(2 * problem.n_owned, 0.);
+      std::vector<double> next(problem.n_points, 0.);
+      for (std::size_t i = 0; i < problem.n_points; ++i) {
+        for (unsigned int c = 0; c < dim; ++c) {
+          const std::size_t k = i * dim + c;
+          if (direction[k] != 0.)
+            next[i] += direction[k] * (f[k] - D[k] * z[k]);
+        }
+        if (i < problem.n_owned) {
+          terms[i] = next[i] * next[i];
+          terms[problem.n_owned + i] =
+              direction[i * dim] != 0. || next[i] != 0. ? share[i] * share[i]
+                                                        : 0.;
+        }
+      }
+      const auto sums = communicator.sums(terms.data(), 2, problem.n_owned);
+      if (!(sums[0] > 0.))
+        break;
+      const double value = std::sqrt(sums[0] / sums[1]);
+      const double scale = 1. / std::sqrt(sums[0]);
+      for (std::size_t i = 0; i < problem.n_points; ++i)
+        share[i] = next[i] * scale;
+      const bool settled = std::abs(value - largest) < 1e-4 * value;
+      largest = value;
+      if (settled && round > 3)
+        break;
+    }
+    return largest;
+  }
+
+  template double Relaxation<2>::softening();
+  template double Relaxation<3>::softening();
+} // namespace nsfd
