@@ -5,9 +5,12 @@
 
 #include <deal.II/fe/fe.h>
 
+#include <fmt/format.h>
+
 #include <unistd.h>
 
 #include <ctime>
+#include <iostream>
 
 namespace nsfd
 {
@@ -70,13 +73,58 @@ namespace nsfd
       parts.emplace_back("loads", "body forces and tractions");
     parts.emplace_back("dynamics", model.path);
     parts.emplace_back("solver", model.method);
+    if (input.statics)
+      parts.emplace_back("equilibria", input.statics->steps
+                                           ? "quasi-static steps"
+                                           : "at the start");
     if (input.verification)
       parts.emplace_back("verification", "exact values");
     return info;
+  }
+
+  template <int dim>
+  void count_points(const SceneInput &input,
+                    const Discretization<dim> &discretization,
+                    const Communicator &communicator,
+                    std::map<std::string, double> &c)
+  {
+    unsigned long long cohesive = 0, frictional = 0;
+    for (std::size_t i = 0; i < discretization.points().n_owned; ++i) {
+      const auto &origin = discretization.origins()[i];
+      if (origin.kind == PointOrigin::Kind::interface) {
+        const auto &block = input.interfaces[origin.block];
+        cohesive += bool(block.law);
+        frictional += block.friction > 0.;
+      } else if (origin.kind == PointOrigin::Kind::obstacle)
+        frictional += input.obstacles[origin.block].friction > 0.;
+    }
+    c["cohesive_points"] = double(communicator.sum_integer(cohesive));
+    c["friction_points"] = double(communicator.sum_integer(frictional));
+    }
+
+  void print_opening(const SceneInput &input, const RunInfo &info,
+                     const Summary &summary, const double step,
+                     const double crossing)
+  {
+    std::cout << fmt::format(
+        "nsfd {}  {}  {} cells, {} unknowns, {} interface points, step {:.4g}",
+        info.version, input.file, summary.cells, summary.dofs,
+        summary.interface_points, step);
+    if (crossing > 0.)
+      std::cout << fmt::format(" ({:.3g} crossings)", step / crossing);
+    std::cout << "\n";
+    for (const auto &[kind, name] : info.parts)
+      std::cout << fmt::format("  {:<24} {}\n", kind, name);
   }
 
   template RunInfo run_info(const SceneInput &, const RunOptions &,
                             const Model<2> &, unsigned int);
   template RunInfo run_info(const SceneInput &, const RunOptions &,
                             const Model<3> &, unsigned int);
+  template void count_points(const SceneInput &, const Discretization<2> &,
+                             const Communicator &,
+                             std::map<std::string, double> &);
+  template void count_points(const SceneInput &, const Discretization<3> &,
+                             const Communicator &,
+                             std::map<std::string, double> &);
 } // namespace nsfd

@@ -50,8 +50,6 @@ namespace nsfd
       void record(const StepReport &report, double time_step);
       void finish(const std::string &failure);
       void fill_counters(std::map<std::string, double> &counters) const;
-      void count_points(std::map<std::string, double> &counters) const;
-      void print_opening(const RunInfo &info) const;
       void print_end() const;
 
       const SceneInput &input_;
@@ -199,7 +197,8 @@ namespace nsfd
       output_ = std::make_unique<RunOutput<dim>>(
           input_, info, options_.quiet, *model_.discretization, communicator_);
       if (communicator_.is_root() && !options_.quiet)
-        print_opening(info);
+        print_opening(input_, info, summary_, model_.control->base_step(),
+                      model_.discretization->crossing_time());
     }
 
     /** The state at t = 0. */
@@ -440,46 +439,11 @@ namespace nsfd
       c["redone_steps"] = redone_;
       c["steps_beyond_uniqueness"] = beyond_unique_;
       c["penetration_excess"] = state_.penetration_excess;
-      count_points(c);
+      count_points(input_, *model_.discretization, communicator_, c);
       c["body_classes"] = communicator_.max(
           double(model_.discretization->bodies().classes.size()));
       for (const auto &[name, count] : switches_)
         c["switches_to_" + name] = count;
-    }
-
-    template <int dim>
-    void Simulation<dim>::count_points(std::map<std::string, double> &c) const
-    {
-      unsigned long long cohesive = 0, frictional = 0;
-      for (std::size_t i = 0; i < model_.discretization->points().n_owned;
-           ++i) {
-        const auto &origin = model_.discretization->origins()[i];
-        if (origin.kind == PointOrigin::Kind::interface) {
-          const auto &block = input_.interfaces[origin.block];
-          cohesive += bool(block.law);
-          frictional += block.friction > 0.;
-        } else if (origin.kind == PointOrigin::Kind::obstacle)
-          frictional += input_.obstacles[origin.block].friction > 0.;
-      }
-      c["cohesive_points"] = double(communicator_.sum_integer(cohesive));
-      c["friction_points"] = double(communicator_.sum_integer(frictional));
-    }
-
-    template <int dim>
-    void Simulation<dim>::print_opening(const RunInfo &info) const
-    {
-      const double step = model_.control->base_step();
-      const double crossing = model_.discretization->crossing_time();
-      std::cout << fmt::format(
-          "nsfd {}  {}  {} cells, {} unknowns, {} interface points, step "
-          "{:.4g}",
-          info.version, input_.file, summary_.cells, summary_.dofs,
-          summary_.interface_points, step);
-      if (crossing > 0.)
-        std::cout << fmt::format(" ({:.3g} crossings)", step / crossing);
-      std::cout << "\n";
-      for (const auto &[kind, name] : info.parts)
-        std::cout << fmt::format("  {:<24} {}\n", kind, name);
     }
 
     template <int dim>

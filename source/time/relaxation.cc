@@ -51,16 +51,45 @@ namespace nsfd
     }
     if (support_.empty())
       set_support();
-    present_ = std::max(present_, forces_present(old.displacement));
-    std::vector<double> terms(this->problem_.n_owned, 0.);
-    for (std::size_t i = 0; i < terms.size(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        terms[i] += force_[i * dim + c] * force_[i * dim + c] / support_[i];
-    point_scale_ = std::max(point_scale_,
-                            this->dynamics_.communicator().sum(terms));
+    set_scales();
     this->set_loads(time);
     if (this->crack_pressure_)
       this->crack_pressure_->evaluate(old, time, pressure_);
+  }
+
+  /** Forces at the last equilibrium, and what the motion makes round-off of. */
+  template <int dim>
+  void Relaxation<dim>::set_scales()
+  {
+    const auto &communicator = this->dynamics_.communicator();
+    const auto &bodies = this->dynamics_.bodies();
+    double largest = 0.;
+    for (const double value : old_->displacement)
+      largest = std::max(largest, std::abs(value));
+    for (std::size_t i = 0; i < old_->kind.size(); ++i)
+      if (this->discretization_.origins()[i].kind == PointOrigin::Kind::motion)
+        for (unsigned int c = 0; c < dim; ++c)
+          largest = std::max(largest, std::abs(target_[i * dim + c]));
+    // some bits of K q, seen from the goal
+    const double share = 1e-14 / this->input_.statics->tolerance *
+                         communicator.max(largest);
+    std::vector<double> diagonal(bodies.n_dofs(), 0.);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const BodyClass &body = bodies.classes[bodies.class_of[b]];
+      for (unsigned int k = 0; k < body.n_dofs && !body.rigid; ++k)
+        diagonal[bodies.first_dof[b] + k] = body.stiffness(k, k);
+    }
+    round_off_ = share * std::sqrt(communicator.dot(
+                             diagonal.data(), diagonal.data(), bodies.n_dofs()));
+    std::vector<double> terms(this->problem_.n_owned, 0.), supports = terms;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      supports[i] = support_[i];
+      for (unsigned int c = 0; c < dim; ++c)
+        terms[i] += force_[i * dim + c] * force_[i * dim + c] / support_[i];
+    }
+    point_round_off_ = share * share * communicator.sum(supports);
+    point_scale_ = std::max(point_scale_, communicator.sum(terms));
+    present_ = std::max(present_, forces_present(old_->displacement));
   }
 
   /** What counts from the last equilibrium instead of from the iterate. */
@@ -160,7 +189,8 @@ namespace nsfd
     }
     // the floor of the natural map: the largest forces so far
     const double share = std::max(1e-6, 1e-14 / tolerance);
-    const double energy_scale = point_scale_ / (share * share);
+    const double energy_scale =
+        std::max(point_scale_, point_round_off_) / (share * share);
     LawEvaluation<dim> evaluation(this->problem_, dynamics, energy_scale,
                                   tolerance);
     for (std::size_t i = 0; i < let_go_.size(); ++i)
@@ -241,7 +271,8 @@ namespace nsfd
       value /= h;
     const double left =
         std::sqrt(communicator.dot(residual_.data(), residual_.data(), n));
-    const double present = std::max(present_, forces_present(q));
+    const double present =
+        std::max({present_, round_off_, forces_present(q)});
     imbalance_ = left == 0. ? 0. : left / present;
   }
 

@@ -51,7 +51,7 @@ namespace nsfd
 
     /**
      * |F + H^T r - K q'| over the largest forces that were present so far: what
-     * is broken may carry none at all.
+     * is broken may carry none at all. Round-off of K q counts as a force.
      */
     double imbalance() const { return imbalance_; }
     /** F + H^T r - K q' at all unknowns. */
@@ -89,6 +89,7 @@ namespace nsfd
     void constrain(double h);
     void soften(double h);
     void set_support();
+    void set_scales();
     double forces_present(const std::vector<double> &q) const;
     void measure(const std::vector<double> &q, double h,
                  const std::vector<double> &velocity);
@@ -101,6 +102,7 @@ namespace nsfd
     std::vector<double> force_, pressure_, residual_;
     std::vector<LocalSolution<dim>> solutions_;
     std::vector<double> support_; ///< w kappa of the points, N/m
+    double round_off_ = 0., point_round_off_ = 0.; ///< as the next two
     double present_ = 0.;     ///< largest forces at an equilibrium, N
     double point_scale_ = 0.; ///< largest sum of r^2/(w kappa), J
     double imbalance_ = 0.;

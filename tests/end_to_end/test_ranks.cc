@@ -63,6 +63,8 @@ namespace end_to_end
         {"patch_blocks", {}, {}},
         {"patch_crossed", {}, {}},
         {"rigid_motion", {}, {}},
+        {"static_crossed", {}, {}},
+        {"static_michel", {"Mesh/cells=4, 2"}, {"Mesh/cells=4, 2"}},
         {"step_load", {}, {}},
         {"stop", {}, {}},
         {"bar_wall_in_space", column, column, "bar_wall"},

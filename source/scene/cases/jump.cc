@@ -98,10 +98,11 @@ namespace nsfd
         const double u = 0.5 * (low + high);
         (u + law_->traction(u) / stiffness_ < U ? low : high) = u;
       }
+      const double u = 0.5 * (low + high);
       // an extrinsic law holds any traction up to its strength at u = 0
-      const double T = law_->extrinsic() && u_at_jump_ == 0.
+      const double T = law_->extrinsic() && stiffness_ * U < law_->strength()
                            ? stiffness_ * U
-                           : law_->traction(0.5 * (low + high));
+                           : law_->traction(u);
       const double measured = row.reactions[n_components_] / area_;
       force_ = std::max(force_, std::abs(measured - T) / law_->strength());
     }
