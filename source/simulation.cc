@@ -89,7 +89,8 @@ namespace nsfd
       if (options_.check)
         return print_check<dim>(input_, *model_.triangulation,
                                 *model_.discretization, *model_.stepper,
-                                *model_.dynamics, model_.control->base_step(),
+                                *model_.dynamics,
+                                model_.dynamic_control(input_, 0.)->base_step(),
                                 communicator_);
       bool ours = true;
       if (communicator_.is_root())

@@ -148,7 +148,8 @@ namespace nsfd
           print_bounds(law, families[b].density);
         print_jumps(law);
       }
-      print_step(law, unique_steps[b]);
+      if (input.may_move())
+        print_step(law, unique_steps[b]);
     }
 
     /** (49)-(52). */
@@ -307,7 +308,7 @@ namespace nsfd
     template <int dim>
     void Advisor<dim>::print_contraction() const
     {
-      if (!(contraction > 0.))
+      if (!(contraction > 0.) || !input.may_move())
         return;
       std::cout << fmt::format(
           "  softening  on all faces at once: flexibility times slope (38) is "
@@ -359,7 +360,15 @@ namespace nsfd
                              discretization.shear_wave_speed(m));
       }
       const double crossing = discretization.crossing_time();
-      const auto n_steps = std::llround(input.time.end / step);
+      const StaticInput statics = input.statics.value_or(StaticInput());
+      if (statics.steps)
+        out << fmt::format("  load       {:.4g} per step, {} quasi-static "
+                           "steps\n",
+                           statics.step,
+                           std::llround(statics.until / statics.step));
+      if (!input.may_move())
+        return;
+      const auto n_steps = std::llround((input.time.end - statics.until) / step);
       if (crossing > 0.)
         out << fmt::format("  step       {:.4g} = {:.3g} crossings of the "
                            "smallest cell (one is {:.4g}), {} steps\n",
