@@ -116,6 +116,31 @@ subsection Time
 end
 END
 
+# Equilibria: every entry of their section Time.
+cat >"$scratch/static.prm" <<'END'
+# static - a bar pulled from equilibrium to equilibrium.
+set dimension = 2
+subsection Mesh
+  set lower corner = 0, 0
+  set upper corner = 1, 1
+  set cells        = 1, 1
+end
+subsection Material: rock
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Time
+  set scheme             = quasi-static
+  set end                = 1
+  set step               = 10 ms
+  set quasi-static until = 500 ms
+end
+END
+
 # Section Path of `nsfd law`, with options.
 path_of() {
   law_section Path "$@"
@@ -199,6 +224,12 @@ END
 
 END
   sections "$scratch/parts.prm" '(Obstacle|Material): .*'
+  cat <<'END'
+
+## Time, with quasi-static steps
+
+END
+  sections "$scratch/static.prm" 'Time'
   cat <<'END'
 
 ## Several bodies, three dimensions
