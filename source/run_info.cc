@@ -100,7 +100,7 @@ namespace nsfd
     }
     c["cohesive_points"] = double(communicator.sum_integer(cohesive));
     c["friction_points"] = double(communicator.sum_integer(frictional));
-    }
+  }
 
   void print_opening(const SceneInput &input, const RunInfo &info,
                      const Summary &summary, const double step,

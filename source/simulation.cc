@@ -87,11 +87,10 @@ namespace nsfd
       if (!prepare())
         return exit_code::bad_input;
       if (options_.check)
-        return print_check<dim>(input_, *model_.triangulation,
-                                *model_.discretization, *model_.stepper,
-                                *model_.dynamics,
-                                model_.dynamic_control(input_, 0.)->base_step(),
-                                communicator_);
+        return print_check<dim>(
+            input_, *model_.triangulation, *model_.discretization,
+            *model_.stepper, *model_.dynamics,
+            model_.dynamic_control(input_, 0.)->base_step(), communicator_);
       bool ours = true;
       if (communicator_.is_root())
         ours = claim_directory(input_.output.directory, options_.force);
@@ -152,8 +151,8 @@ namespace nsfd
     {
       if (communicator_.is_root())
         std::cerr << input_.file << ": " << failure
-                  << "\n  the last good state is in "
-                  << input_.output.directory << "\n";
+                  << "\n  the last good state is in " << input_.output.directory
+                  << "\n";
       finish(failure);
       return exit_code::step_failed;
     }
@@ -260,8 +259,7 @@ namespace nsfd
      * True if the step is to be taken again, with shorter ones to its end.
      */
     template <int dim>
-    bool Simulation<dim>::must_redo(const StepReport &report,
-                                    const State &next)
+    bool Simulation<dim>::must_redo(const StepReport &report, const State &next)
     {
       auto &control = *model_.control;
       if (input_.time.step_kind != StepKind::automatic ||
@@ -290,12 +288,12 @@ namespace nsfd
       StepReport report;
       // A shorter step is the cure for a step with several solutions, but not
       // for every hard one: each further attempt may cost twice as much.
-      const unsigned int doublings = control.can_halve() ? std::min(attempts_, 10u) : 10;
+      const unsigned int doublings =
+          control.can_halve() ? std::min(attempts_, 10u) : 10;
       // the one place that catches StepRejected and shortens the step
       try {
         report = model_.stepper->advance(
-          state_, h, next,
-          SolverControl().idle_rounds << doublings);
+            state_, h, next, SolverControl().idle_rounds << doublings);
       } catch (const StepRejected &rejected) {
         ++rejected_;
         ++attempts_;
@@ -464,8 +462,7 @@ namespace nsfd
           "rejected {}, redone {}, beyond uniqueness {}\n",
           1e3 * (t.assembly + t.solve + t.update + t.ledger) / steps,
           double(stepper.newton) / steps, double(stepper.krylov) / steps,
-          double(stepper.sweeps) / steps, rejected_, redone_,
-          beyond_unique_);
+          double(stepper.sweeps) / steps, rejected_, redone_, beyond_unique_);
       std::cout << "  time:";
       for (const auto &[name, seconds] : s.timings)
         std::cout << fmt::format(" {} {:.3g} s;", name, seconds);

@@ -7,8 +7,8 @@
 namespace nsfd
 {
   template <int dim>
-  auto StaticRun<dim>::step(const State &state, State &next,
-                            StepReport &report, std::string &text) -> Outcome
+  auto StaticRun<dim>::step(const State &state, State &next, StepReport &report,
+                            std::string &text) -> Outcome
   {
     auto &control = *model_.control;
     StepControl after = control;
@@ -40,7 +40,8 @@ namespace nsfd
           "continues the last one, {:.6g} J are left over; worst face {}",
           state.time, after.time(), equilibrium.left_over, equilibrium.place);
     } else
-      what = fmt::format("solution jump after t = {:.8g}: {}", state.time, what);
+      what =
+          fmt::format("solution jump after t = {:.8g}: {}", state.time, what);
     report = equilibrium.step;
     return jump(what, found, text);
   }

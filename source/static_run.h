@@ -18,8 +18,7 @@ namespace nsfd
     {
     }
 
-    enum class Outcome
-    {
+    enum class Outcome {
       accepted,
       shortened,   ///< the step is to be taken again
       to_dynamics, ///< from the last equilibrium

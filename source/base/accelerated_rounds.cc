@@ -10,9 +10,8 @@
 namespace nsfd
 {
   void
-  accelerated_rounds(const Communicator &communicator,
-                     const unsigned int depth, const unsigned int maximum,
-                     std::vector<double> &x,
+  accelerated_rounds(const Communicator &communicator, const unsigned int depth,
+                     const unsigned int maximum, std::vector<double> &x,
                      const std::function<bool(std::vector<double> &)> &round)
   {
     using Distributed = dealii::LinearAlgebra::distributed::Vector<double>;

@@ -23,9 +23,8 @@ namespace nsfd
     void read_step(SectionReader &reader, const std::string &name,
                    TimeInput &time)
     {
-      const auto value =
-          reader.raw(name, "0.5 crossings",
-                     "a time, crossings of a cell L/c_p, or auto");
+      const auto value = reader.raw(
+          name, "0.5 crossings", "a time, crossings of a cell L/c_p, or auto");
       if (!value || value->text() == "auto") {
         time.step_kind = StepKind::automatic;
         return;
@@ -35,8 +34,8 @@ namespace nsfd
           !find_unit(word) && nearest_name(word, {"crossings"}) == "crossings";
       if (word == "crossings" || word == "crossing") {
         time.step_kind = StepKind::crossings;
-        time.step = reader.number_in(number, name, "0.5 crossings",
-                                     units::none, Range::positive());
+        time.step = reader.number_in(number, name, "0.5 crossings", units::none,
+                                     Range::positive());
       } else if (is_misspelt)
         reader.error(name,
                      fmt::format("{} = {}: `{}` is not a unit", name,
@@ -48,8 +47,8 @@ namespace nsfd
                      "did you mean `auto`?");
       else {
         time.step_kind = StepKind::time;
-        time.step = reader.number_in(*value, name, "0.5 crossings",
-                                     units::time, Range::positive());
+        time.step = reader.number_in(*value, name, "0.5 crossings", units::time,
+                                     Range::positive());
       }
     }
 
@@ -78,8 +77,9 @@ namespace nsfd
                         {"given", "equilibrium"}, "given or equilibrium");
       if (start == "given") {
         if (quasi_static)
-          reader.error("start", "quasi-static steps go from one equilibrium to "
-                                "the next, also the first one",
+          reader.error("start",
+                       "quasi-static steps go from one equilibrium to "
+                       "the next, also the first one",
                        "write: equilibrium");
         return false;
       }
@@ -124,10 +124,9 @@ namespace nsfd
       statics.until = time.end;
       if (reader.optional("quasi-static until",
                           "s; Moreau-Jean steps after it"))
-        statics.until =
-            reader.number("quasi-static until", "", units::time,
-                          {0., time.end, true, false},
-                          "s; Moreau-Jean steps after it");
+        statics.until = reader.number("quasi-static until", "", units::time,
+                                      {0., time.end, true, false},
+                                      "s; Moreau-Jean steps after it");
       const std::string at_jump = reader.choice(
           "at solution jump", "stop", {"stop", "dynamic", "relax"},
           "where no equilibrium continues the last: stop, dynamic or relax");
@@ -213,11 +212,13 @@ namespace nsfd
                       "moreau-jean or quasi-static") == "quasi-static";
     if (read_start(reader, scene, quasi_static)) {
       scene.statics.emplace();
-      scene.statics->tolerance = reader.number(
-          "equilibrium tolerance", "1e-10", units::none, {0., 1e-3, true, false},
-          "force left over, relative to the forces present");
+      scene.statics->tolerance =
+          reader.number("equilibrium tolerance", "1e-10", units::none,
+                        {0., 1e-3, true, false},
+                        "force left over, relative to the forces present");
     } else
-      reader.refuse({"equilibrium tolerance"}, "the scene asks for no equilibrium");
+      reader.refuse({"equilibrium tolerance"},
+                    "the scene asks for no equilibrium");
     if (quasi_static && scene.statics)
       read_quasi_static(reader, scene);
     else {

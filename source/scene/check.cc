@@ -368,7 +368,8 @@ namespace nsfd
                            std::llround(statics.until / statics.step));
       if (!input.may_move())
         return;
-      const auto n_steps = std::llround((input.time.end - statics.until) / step);
+      const auto n_steps =
+          std::llround((input.time.end - statics.until) / step);
       if (crossing > 0.)
         out << fmt::format("  step       {:.4g} = {:.3g} crossings of the "
                            "smallest cell (one is {:.4g}), {} steps\n",

@@ -13,8 +13,7 @@ namespace nsfd
   namespace
   {
     template <int dim>
-    struct RigidMotion
-    {
+    struct RigidMotion {
       std::string name;
       std::vector<double> unknowns;
     };
@@ -30,11 +29,11 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         motions.push_back(
             {fmt::format("the translation in {}", "xyz"[c]),
-             discretization.interpolate([c](const dealii::Point<dim> &,
-                                            unsigned int, double *value) {
-               for (unsigned int d = 0; d < dim; ++d)
-                 value[d] = d == c;
-             })});
+             discretization.interpolate(
+                 [c](const dealii::Point<dim> &, unsigned int, double *value) {
+                   for (unsigned int d = 0; d < dim; ++d)
+                     value[d] = d == c;
+                 })});
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int b = a + 1; b < dim; ++b)
           motions.push_back(
@@ -51,8 +50,7 @@ namespace nsfd
 
   template <int dim>
   std::string loose_motion(const Discretization<dim> &discretization,
-                           const Communicator &communicator,
-                           const State &state,
+                           const Communicator &communicator, const State &state,
                            const std::vector<double> &residual)
   {
     Fragments<dim> fragments(discretization, communicator);
@@ -95,8 +93,7 @@ namespace nsfd
               terms[k] = residual[k] * motion.unknowns[k];
               terms[residual.size() + k] = std::abs(terms[k]);
             }
-        const auto work =
-            communicator.sums(terms.data(), 2, residual.size());
+        const auto work = communicator.sums(terms.data(), 2, residual.size());
         // all of one sign: the forces of a free acceleration
         const double share = work[1] > 0. ? std::abs(work[0]) / work[1] : 0.;
         if (share > largest && std::abs(work[0]) > 0.01 * all) {

@@ -16,7 +16,6 @@ namespace nsfd
    */
   template <int dim>
   std::string loose_motion(const Discretization<dim> &discretization,
-                           const Communicator &communicator,
-                           const State &state,
+                           const Communicator &communicator, const State &state,
                            const std::vector<double> &residual);
 } // namespace nsfd

@@ -51,15 +51,14 @@ namespace nsfd
         h_(first_step(input, discretization))
   {
     const auto &solver = input.solver;
-    dynamics_ =
-        solver.path == "element-wise"
-            ? make_elementwise_dynamics<dim>(communicator,
-                                             discretization.bodies(),
-                                             discretization.points())
-            : make_sparse_dynamics<dim>(
-                  communicator, discretization.bodies(),
-                  discretization.points(),
-                  solver.linear_solver == "cg" ? "cg" : "direct");
+    dynamics_ = solver.path == "element-wise"
+                    ? make_elementwise_dynamics<dim>(communicator,
+                                                     discretization.bodies(),
+                                                     discretization.points())
+                    : make_sparse_dynamics<dim>(
+                          communicator, discretization.bodies(),
+                          discretization.points(),
+                          solver.linear_solver == "cg" ? "cg" : "direct");
     dynamics_->reinit(h_, 1.);
     solver_ = SolverRegistry<dim>::instance().create(
         solver.method == "auto" ? "dual newton" : solver.method);
@@ -124,13 +123,18 @@ namespace nsfd
     const EnergyLeft left =
         ledger_->book(*relaxation_, forces_old, old, next, report.step);
     report.left_over = left.energy;
-    report.jumps =
-        !report.stable || left.energy > jump_share * left.turnover;
+    report.jumps = !report.stable || left.energy > jump_share * left.turnover;
     if (report.jumps) {
-      // named by the rank that has it
-      const double worst = communicator_.max(left.worst);
-      report.place = left.worst == worst ? relaxation_->face(left.worst_point)
-                                         : "of another rank";
+      // named by the last rank that has it
+      const bool mine = left.worst == communicator_.max(left.worst);
+      const int rank =
+          int(communicator_.max(mine ? double(communicator_.rank()) : -1.));
+      report.place = relaxation_->face(left.worst_point);
+      int length = int(report.place.size());
+      MPI_Bcast(&length, 1, MPI_INT, rank, communicator_.mpi());
+      report.place.resize(std::size_t(length));
+      MPI_Bcast(report.place.data(), length, MPI_CHAR, rank,
+                communicator_.mpi());
     }
     return report;
   }
@@ -152,8 +156,7 @@ namespace nsfd
                            smallest = relaxation_->imbalance();
                            best = x;
                          }
-                         return more &&
-                                relaxation_->imbalance() < 10. * start;
+                         return more && relaxation_->imbalance() < 10. * start;
                        });
     q = best;
     solved_ = true;

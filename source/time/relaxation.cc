@@ -71,16 +71,17 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           largest = std::max(largest, std::abs(target_[i * dim + c]));
     // some bits of K q, seen from the goal
-    const double share = 1e-14 / this->input_.statics->tolerance *
-                         communicator.max(largest);
+    const double share =
+        1e-14 / this->input_.statics->tolerance * communicator.max(largest);
     std::vector<double> diagonal(bodies.n_dofs(), 0.);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const BodyClass &body = bodies.classes[bodies.class_of[b]];
       for (unsigned int k = 0; k < body.n_dofs && !body.rigid; ++k)
         diagonal[bodies.first_dof[b] + k] = body.stiffness(k, k);
     }
-    round_off_ = share * std::sqrt(communicator.dot(
-                             diagonal.data(), diagonal.data(), bodies.n_dofs()));
+    round_off_ =
+        share * std::sqrt(communicator.dot(diagonal.data(), diagonal.data(),
+                                           bodies.n_dofs()));
     std::vector<double> terms(this->problem_.n_owned, 0.), supports = terms;
     for (std::size_t i = 0; i < terms.size(); ++i) {
       supports[i] = support_[i];
@@ -154,8 +155,7 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       for (auto *majorant :
            {&problem.majorant_normal, &problem.majorant_tangential})
-        (*majorant)[i] =
-            std::min((*majorant)[i], 1. / (h * h * support_[i]));
+        (*majorant)[i] = std::min((*majorant)[i], 1. / (h * h * support_[i]));
       for (unsigned int c = 0; c < dim; ++c)
         least[i * dim + c] = 0.03 * (c == 0 ? problem.majorant_normal[i]
                                             : problem.majorant_tangential[i]);
@@ -194,12 +194,11 @@ namespace nsfd
     LawEvaluation<dim> evaluation(this->problem_, dynamics, energy_scale,
                                   tolerance);
     for (std::size_t i = 0; i < let_go_.size(); ++i)
-      evaluation.solutions[i].opening =
-          std::max(at_.opening_max[i],
-                   effective_opening<dim>(
-                       this->problem_
-                           .interactions[this->problem_.interaction[i]],
-                       &this->problem_.jump_old[i * dim]));
+      evaluation.solutions[i].opening = std::max(
+          at_.opening_max[i],
+          effective_opening<dim>(
+              this->problem_.interactions[this->problem_.interaction[i]],
+              &this->problem_.jump_old[i * dim]));
     std::vector<double> impulse = force_;
     for (double &P : impulse)
       P *= h;
@@ -227,8 +226,8 @@ namespace nsfd
       force_[k] = impulse[k] / h;
     solutions_ = evaluation.solutions;
     for (std::size_t i = 0; i < let_go_.size(); ++i)
-      if (this->problem_.kind[i] == PointKind::rigid &&
-          solutions_[i].damages && !let_go_[i]) {
+      if (this->problem_.kind[i] == PointKind::rigid && solutions_[i].damages &&
+          !let_go_[i]) {
         let_go_[i] = 1;
         // on its envelope from now on; far below any opening it is held
         at_.kind[i] = PointKind::cohesive;
@@ -240,8 +239,7 @@ namespace nsfd
 
   /** The largest of |K q|, |F| and |H^T r|, N. */
   template <int dim>
-  double
-  Relaxation<dim>::forces_present(const std::vector<double> &q) const
+  double Relaxation<dim>::forces_present(const std::vector<double> &q) const
   {
     const auto &dynamics = this->dynamics_;
     const std::size_t n = q.size();
@@ -249,8 +247,7 @@ namespace nsfd
       return std::sqrt(dynamics.communicator().dot(x.data(), x.data(), n));
     };
     std::vector<double> forces(n);
-    dynamics.apply(Dynamics<dim>::Operator::stiffness, q.data(),
-                   forces.data());
+    dynamics.apply(Dynamics<dim>::Operator::stiffness, q.data(), forces.data());
     double present = std::max(norm(forces), norm(this->forces_));
     dynamics.generalised_impulse(force_.data(), forces.data());
     return std::max(present, norm(forces));
@@ -271,8 +268,7 @@ namespace nsfd
       value /= h;
     const double left =
         std::sqrt(communicator.dot(residual_.data(), residual_.data(), n));
-    const double present =
-        std::max({present_, round_off_, forces_present(q)});
+    const double present = std::max({present_, round_off_, forces_present(q)});
     imbalance_ = left == 0. ? 0. : left / present;
   }
 

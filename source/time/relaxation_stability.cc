@@ -95,9 +95,9 @@ namespace nsfd
         }
         if (i < problem.n_owned) {
           terms[i] = next[i] * next[i];
-          terms[problem.n_owned + i] =
-              direction[i * dim] != 0. || next[i] != 0. ? share[i] * share[i]
-                                                        : 0.;
+          terms[problem.n_owned + i] = direction[i * dim] != 0. || next[i] != 0.
+                                           ? share[i] * share[i]
+                                           : 0.;
         }
       }
       const auto sums = communicator.sums(terms.data(), 2, problem.n_owned);

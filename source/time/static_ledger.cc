@@ -102,8 +102,7 @@ namespace nsfd
     {
       Vector traction{};
       const PointKind kind = old_.kind[i];
-      const auto &interaction =
-          problem_.interactions[problem_.interaction[i]];
+      const auto &interaction = problem_.interactions[problem_.interaction[i]];
       if (kind == PointKind::rigid) {
         for (unsigned int c = 0; c < dim; ++c)
           traction[c] = -old_force(i * dim + c) / problem_.weight[i];
@@ -112,14 +111,14 @@ namespace nsfd
       if (kind != PointKind::elastic && kind != PointKind::cohesive)
         return traction;
       const double l = problem_.opening_factor[i];
-      const double b = kind == PointKind::elastic
-                           ? interaction.normal_stiffness
-                           : problem_.strength_factor[i] * l *
-                                 interaction.law->secant(l *
-                                                         old_.opening_max[i]);
+      const double b =
+          kind == PointKind::elastic
+              ? interaction.normal_stiffness
+              : problem_.strength_factor[i] * l *
+                    interaction.law->secant(l * old_.opening_max[i]);
       const double *u = &old_.jump[i * dim];
-      traction[0] = u[0] > 0. ? b * u[0]
-                              : problem_.compression_stiffness[i] * u[0];
+      traction[0] =
+          u[0] > 0. ? b * u[0] : problem_.compression_stiffness[i] * u[0];
       for (unsigned int c = 1; c < dim; ++c)
         traction[c] = b * interaction.stiffness_ratio * u[c];
       return traction;
@@ -143,8 +142,8 @@ namespace nsfd
                      R_1 = w * energies.cohesive_traction[c],
                      du = next_.jump[k] - old_.jump[k];
         cohesive_work += (R_0 + R_1) / 2. * du;
-        const double contact = (old_force(k) + R_0 + next_.point_force[k] + R_1) /
-                               2. * du;
+        const double contact =
+            (old_force(k) + R_0 + next_.point_force[k] + R_1) / 2. * du;
         (c == 0 ? normal_work : rubbing) += contact;
         square += c == 0 ? 0. : du * du;
       }
@@ -298,9 +297,9 @@ namespace nsfd
           communicator.sums(rows.data(), reactions_.size(), problem.n_owned);
     }
 
-    next.largest_energy = std::max(
-        {old.largest_energy, energy.elastic, energy.cohesive,
-         std::abs(energy.work), energy.damage, energy.friction});
+    next.largest_energy =
+        std::max({old.largest_energy, energy.elastic, energy.cohesive,
+                  std::abs(energy.work), energy.damage, energy.friction});
     const double defect = energy.elastic + energy.cohesive + energy.damage +
                           energy.friction + energy.viscous + energy.impact +
                           energy.numerical - energy.work - next.initial_energy;

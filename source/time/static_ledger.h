@@ -5,9 +5,8 @@
 namespace nsfd
 {
   /** What a step from equilibrium to equilibrium has left over. */
-  struct EnergyLeft
-  {
-    double energy = 0.;  ///< in the cohesion, J
+  struct EnergyLeft {
+    double energy = 0.;   ///< in the cohesion, J
     double turnover = 0.; ///< what the step has moved: work, stored, dissipated
     std::size_t worst_point = 0; ///< local, of the largest share
     double worst = 0.;           ///< its share, J, this rank

@@ -17,8 +17,8 @@ namespace nsfd
    * What the rounds have reached is for the caller to judge: after the end
    * @p x is no more than the last mixture.
    */
-  void accelerated_rounds(const Communicator &communicator,
-                          unsigned int depth, unsigned int maximum,
-                          std::vector<double> &x,
-                          const std::function<bool(std::vector<double> &)> &round);
+  void
+  accelerated_rounds(const Communicator &communicator, unsigned int depth,
+                     unsigned int maximum, std::vector<double> &x,
+                     const std::function<bool(std::vector<double> &)> &round);
 } // namespace nsfd

@@ -12,8 +12,7 @@ namespace nsfd
   class StaticLedger;
 
   /** An equilibrium, and how it lies to the one before it. */
-  struct EquilibriumReport
-  {
+  struct EquilibriumReport {
     StepReport step;
     double left_over = 0.; ///< energy that the cohesion did not take, J
     bool stable = true;    ///< softening leaves some stiffness everywhere
@@ -59,8 +58,7 @@ namespace nsfd
     /** Of what a step moves; what is left over above it makes a jump. */
     static constexpr double jump_share = 0.01;
 
-    struct Counters
-    {
+    struct Counters {
       unsigned long long equilibria = 0, rounds = 0, step_changes = 0;
     };
     const Counters &counters() const { return counters_; }
