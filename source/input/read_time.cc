@@ -68,6 +68,30 @@ namespace nsfd
                      "write for example: set step = 1 us");
     }
 
+    /** Laws with rates, and contacts that sliding moves. */
+    void refuse_rates(SectionReader &reader, const SceneInput &scene)
+    {
+      const auto refuse_lift = [&reader](const auto &block) {
+        if (block.sliding.lifts())
+          reader.error("start",
+                       fmt::format("equilibria with dilatancy or wear (`{}`) "
+                                   "are not there yet",
+                                   block.name),
+                       "remove them, or start as given");
+      };
+      for (const InterfaceInput &interface : scene.interfaces) {
+        if (interface.law && interface.law->rate_dependent())
+          reader.error("start",
+                       fmt::format("an equilibrium has no rates, and the law "
+                                   "of `{}` lets its damage lag",
+                                   interface.name),
+                       "remove its damage viscosity");
+        refuse_lift(interface);
+      }
+      for (const ObstacleInput &obstacle : scene.obstacles)
+        refuse_lift(obstacle);
+    }
+
     /** An equilibrium at the start, and what it cannot go with. */
     bool read_start(SectionReader &reader, const SceneInput &scene,
                     const bool quasi_static)
@@ -89,6 +113,7 @@ namespace nsfd
                      "are rigid",
                      "remove `start` and `scheme`, or the entry `model = "
                      "rigid` of a material");
+      refuse_rates(reader, scene);
       for (const MaterialInput &material : scene.materials)
         for (unsigned int c = 0; c < scene.dimension; ++c)
           if (!material.initial_velocity[c].is_zero()) {

@@ -20,6 +20,8 @@ namespace nsfd
       problem_.viscosity = {bar.viscosity};
     if (!law.extrinsic())
       problem_.opening_max = {law.elastic_limit()};
+    if (law.mixed())
+      problem_.slip_max = {0.};
   }
 
   void BarStep::set_state(const double opening, const double velocity)
@@ -49,7 +51,8 @@ namespace nsfd
         velocity_ + h * (k * (grip_theta_ - u - h * theta * velocity_)) / mass;
     problem_.free_velocity[0] = free;
     problem_.majorant_normal[0] = problem_.majorant_tangential[0] = 1. / mass;
-    return solve_point<2>(problem_, 0, {free, 0.}, 1. / mass, 1. / mass, start);
+    return solve_point<2>(problem_, 0, {free, 0.}, 1. / mass, 1. / mass,
+                          {start, 0.});
   }
 
   double BarStep::end_opening(const LocalSolution<2> &solution) const
@@ -125,7 +128,9 @@ namespace nsfd
     row.viscous += energies.viscous;
 
     problem_.jump_old[0] = u;
-    problem_.opening_max[0] = energies.opening_max;
+    problem_.opening_max[0] = energies.history.opening;
+    if (!problem_.slip_max.empty())
+      problem_.slip_max[0] = energies.history.slip;
     // unlike `free`, a broken cohesive point keeps its viscosity: without
     // mass something has to hold it back
     if (problem_.kind[0] == PointKind::rigid && solution.damages)
@@ -133,6 +138,6 @@ namespace nsfd
     const CohesiveLaw &law = *problem_.interactions[0].law;
     row.cohesion = problem_.kind[0] == PointKind::rigid
                        ? row.pull
-                       : law.secant(energies.opening_max) * std::max(u, 0.);
+                       : law.secant(energies.history.opening) * std::max(u, 0.);
   }
 } // namespace nsfd

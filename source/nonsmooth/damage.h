@@ -53,8 +53,8 @@ namespace nsfd
     /** Openings at the elastic limit, the peak and the end of the law. */
     std::array<double, 3> kinks() const
     {
-      return {law_.elastic_limit() / l_, law_.peak_opening() / l_,
-              law_.final_opening() / l_};
+      return {{law_.elastic_limit() / l_, law_.peak_opening() / l_,
+               law_.final_opening() / l_}};
     }
 
     /** The traction drops to 0 at the end. */

@@ -17,6 +17,10 @@ namespace nsfd
     , dynamics_(dynamics)
     , floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
   {
+    linear_.reserve(problem.n_points);
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      linear_.push_back(
+        linear_point<dim>(problem, i, majorant(i, 0), majorant(i, 1)));
     // local solves start from the opening without any change
     for (std::size_t i = 0; i < problem.n_points; ++i)
       solutions[i].reach.opening = problem.opening_max[i];
@@ -49,11 +53,14 @@ namespace nsfd
     ++law_calls;
     for (std::size_t i = 0; i < problem_.n_points; ++i) {
       const auto local = local_velocity(impulse, i);
-      solutions[i] =
-        is_frozen(i) ? solve_frozen_point<dim>(problem_, i, (*frozen_)[i], local,
-                                          majorant(i, 0), majorant(i, 1)) :
-                  solve_point<dim>(problem_, i, local, majorant(i, 0),
-                                   majorant(i, 1), solutions[i].reach);
+      if (is_frozen(i))
+        solutions[i] =
+          solve_frozen_point<dim>(problem_, i, (*frozen_)[i], local,
+                                  majorant(i, 0), majorant(i, 1));
+      else if (!linear_[i].exists() ||
+               !linear_[i].solve(problem_, i, local, solutions[i]))
+        solutions[i] = solve_point<dim>(problem_, i, local, majorant(i, 0),
+                                        majorant(i, 1), solutions[i].reach);
       for (unsigned int c = 0; c < dim; ++c)
         defect[i * dim + c] =
           impulse[i * dim + c] - solutions[i].impulse[c];

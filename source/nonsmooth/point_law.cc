@@ -311,11 +311,13 @@ namespace nsfd
 
     /**
      * The root of @p excess next to @p start in [low, high], where it falls
-     * from positive to negative; the upper end may have to go further.
+     * from positive to negative; the upper end may have to go further. A sign
+     * change between two @p kinks of the law comes before one further on.
      */
     template <typename Function>
     double adjacent_root(const Function &excess, double low, double high,
-                         const double start)
+                         const double start,
+                         const std::array<double, 3> &kinks = {})
     {
       double f_low = excess(low), f_high = excess(high);
       // a spring that is crossed (u and u' on both sides) may push further
@@ -323,32 +325,18 @@ namespace nsfd
         f_high = excess(high *= 2.);
       if (f_low <= 0.)
         return low;
-      if (start > low && start < high) {
-        const double f = excess(start);
-        (f > 0. ? low : high) = start;
+      const auto split = [&](const double x) {
+        const double f = excess(x);
+        (f > 0. ? low : high) = x;
         (f > 0. ? f_low : f_high) = f;
-      }
+      };
+      if (start > low && start < high)
+        split(start);
+      for (const double kink : kinks)
+        if (kink > low && kink < high)
+          split(kink);
       return f_high >= 0. ? high
                           : bracketed_root(excess, low, high, f_low, f_high);
-    }
-
-    /**
-     * The same, but a sign change between two kinks of the law comes before
-     * one that lies further on.
-     */
-    template <typename Function>
-    double first_root(const Function &excess, double low, double high,
-                      const std::array<double, 3> &kinks, const double start)
-    {
-      for (const double kink : kinks)
-        if (kink > low && kink < high) {
-          if (excess(kink) <= 0.)
-            return adjacent_root(excess, low, kink, start);
-          if (excess(low) <= 0.)
-            return low;
-          low = kink;
-        }
-      return adjacent_root(excess, low, high, start);
     }
 
     /**
@@ -395,7 +383,7 @@ namespace nsfd
         return local.solution.reach.opening - opening;
       };
       const double root =
-        first_root(excess, low, high, damage.kinks(), start);
+        adjacent_root(excess, low, high, start, damage.kinks());
       if (std::abs(excess(root)) > 1e-9 * root && !damage.plateau()) {
         excess(root * (1. - 1e-15));
         const FrozenPoint before = local.solution.frozen;
@@ -538,6 +526,50 @@ namespace nsfd
     return problem.kind[i] != PointKind::rigid && !interaction.plateau &&
            interaction.wear == 0. &&
            (problem.dilatancy.empty() || problem.dilatancy[i] == 0.);
+  }
+
+  template <int dim>
+  LinearPoint<dim> linear_point(const OneStepProblem<dim> &problem,
+                                const std::size_t i,
+                                const double majorant_normal,
+                                const double majorant_tangential)
+  {
+    LinearPoint<dim> result;
+    const auto &interaction = problem.interactions[problem.interaction[i]];
+    const bool elastic = problem.kind[i] == PointKind::elastic;
+    if ((!elastic && problem.kind[i] != PointKind::cohesive) ||
+        problem.contact[i] || problem.compression_stiffness[i] == 0. ||
+        (!problem.viscosity.empty() && problem.viscosity[i] > 0.))
+      return result;
+    if (elastic) {
+      const double C = interaction.normal_stiffness;
+      result.secant = {C, C * interaction.stiffness_ratio};
+      result.largest = infinity;
+    } else {
+      const PointDamage<dim> damage(problem, i);
+      if (damage.plateau() || interaction.law->mixed())
+        return result;
+      result.secant = damage.secant(damage.history());
+      result.largest = square(damage.history().opening);
+    }
+    if (result.secant.normal != problem.compression_stiffness[i]) {
+      result.largest = -1.;
+      return result;
+    }
+    const TangentialSpring spring =
+      tangential_spring<dim>(problem, result.secant.tangential);
+    result.slope = spring.slope;
+    for (unsigned int c = 0; c < dim; ++c)
+      result.offset[c] = tangential_offset<dim>(problem, i, c);
+    const double wh = problem.weight[i] * problem.time_step;
+    const auto kappa = [&](const double b, const double R) {
+      return wh * b / (1. + R * wh * b * spring.slope);
+    };
+    result.normal = kappa(result.secant.normal, majorant_normal);
+    result.tangential = kappa(result.secant.tangential, majorant_tangential);
+    result.normal_majorant = majorant_normal;
+    result.tangential_majorant = majorant_tangential;
+    return result;
   }
 
   template <int dim>
@@ -778,6 +810,8 @@ namespace nsfd
   template std::array<double, dim> frozen_velocity<dim>(                       \
     const OneStepProblem<dim> &, std::size_t, const FrozenPoint &,             \
     const std::array<double, dim> &);                                          \
+  template LinearPoint<dim> linear_point<dim>(                                 \
+    const OneStepProblem<dim> &, std::size_t, double, double);                 \
   template bool has_frozen_law<dim>(const OneStepProblem<dim> &, std::size_t); \
   template double point_strength<dim>(const OneStepProblem<dim> &,             \
                                       std::size_t);                            \

@@ -163,6 +163,18 @@ namespace nsfd
     this->dynamics_.set_least_compliance(std::move(least));
   }
 
+  /** As far as the iterate is open, or the equilibrium before it. */
+  template <int dim>
+  void Relaxation<dim>::set_start(const std::size_t i, Reach &start) const
+  {
+    const auto &problem = this->problem_;
+    start = reach_of<dim>(problem.interactions[problem.interaction[i]],
+                          &problem.jump_old[i * dim]);
+    start.opening = std::max(start.opening, at_.opening_max[i]);
+    if (!at_.slip_max.empty())
+      start.slip = std::max(start.slip, at_.slip_max[i]);
+  }
+
   template <int dim>
   SolverReport Relaxation<dim>::relax(std::vector<double> &q, const double h,
                                       const double tolerance)
@@ -194,11 +206,7 @@ namespace nsfd
     LawEvaluation<dim> evaluation(this->problem_, dynamics, energy_scale,
                                   tolerance);
     for (std::size_t i = 0; i < let_go_.size(); ++i)
-      evaluation.solutions[i].opening = std::max(
-          at_.opening_max[i],
-          effective_opening<dim>(
-              this->problem_.interactions[this->problem_.interaction[i]],
-              &this->problem_.jump_old[i * dim]));
+      set_start(i, evaluation.solutions[i].reach);
     std::vector<double> impulse = force_;
     for (double &P : impulse)
       P *= h;
@@ -231,7 +239,7 @@ namespace nsfd
         let_go_[i] = 1;
         // on its envelope from now on; far below any opening it is held
         at_.kind[i] = PointKind::cohesive;
-        at_.opening_max[i] = 1e-9 * solutions_[i].opening;
+        at_.opening_max[i] = 1e-9 * solutions_[i].reach.opening;
       }
     measure(q, h, velocity);
     return report;

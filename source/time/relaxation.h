@@ -86,6 +86,7 @@ namespace nsfd
     }
 
   private:
+    void set_start(std::size_t point, Reach &start) const;
     void constrain(double h);
     void soften(double h);
     void set_support();

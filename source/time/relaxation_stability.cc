@@ -16,6 +16,20 @@ namespace nsfd
           (law.traction(x + step) - law.traction(x - step)) / (2. * step);
       return a * l * std::max(0., law.traction(x) / x - slope);
     }
+
+    /** -d k/d ln(s) of the secant k along the ray s (x, y), as above. */
+    double softening_slope(const MixedLaw &law, const double a, const double l,
+                           const Reach &reach)
+    {
+      const double x = l * reach.opening, y = l * reach.slip, step = 1e-6;
+      const auto secant = [&](const double s) {
+        return (law.normal_secant(s * x, s * y) * x * x +
+                law.tangential_secant(s * x, s * y) * y * y) /
+               (x * x + y * y);
+      };
+      return a * l *
+             std::max(0., (secant(1. - step) - secant(1. + step)) / (2. * step));
+    }
   } // namespace
 
   template <int dim>
@@ -38,12 +52,13 @@ namespace nsfd
             D[i * dim + c] = 0.;
         continue;
       }
-      const bool held = std::isinf(solution.frozen.secant);
+      const bool held = solution.frozen.is_rigid();
       for (unsigned int c = 0; c < dim; ++c) {
-        double b = held ? 0. : solution.frozen.secant;
-        if (c > 0)
-          b *= interaction.stiffness_ratio;
-        else if (problem.jump_free[i * dim] + h_ * solution.velocity[0] < 0.)
+        double b = held    ? 0.
+                   : c > 0 ? solution.frozen.secant.tangential
+                           : solution.frozen.secant.normal;
+        if (c == 0 &&
+            problem.jump_free[i * dim] + h_ * solution.velocity[0] < 0.)
           b = problem.compression_stiffness[i];
         const bool rests =
             held || (c == 0 ? solution.contact_impulse > 0.
@@ -54,19 +69,23 @@ namespace nsfd
       if (!solution.damages || held)
         continue;
       any = true;
-      const double d = solution.opening;
+      const double a = problem.strength_factor[i],
+                   l = problem.opening_factor[i];
+      const MixedLaw *mixed = interaction.law->mixed();
+      const double d = std::hypot(solution.reach.opening, solution.reach.slip);
       const double size = std::sqrt(
-          w_h2 * softening_slope(*interaction.law, problem.strength_factor[i],
-                                 problem.opening_factor[i], d));
+          w_h2 * (mixed ? softening_slope(*mixed, a, l, solution.reach)
+                        : softening_slope(*interaction.law, a, l, d)));
+      const double tangential =
+          mixed ? 1.
+                : std::sqrt(interaction.stiffness_ratio *
+                            interaction.shear_weight);
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
         const double u = problem.jump_free[k] + h_ * solution.velocity[c];
         if (D[k] > 0.)
           direction[k] = size / d *
-                         (c == 0 ? std::max(0., u)
-                                 : std::sqrt(interaction.stiffness_ratio *
-                                             interaction.shear_weight) *
-                                       u);
+                         (c == 0 ? std::max(0., u) : tangential * u);
       }
     }
     if (!communicator.any(any))

@@ -32,6 +32,7 @@ namespace nsfd
             solutions_(solutions), old_(old), next_(next)
       {
         next.opening_max = old.opening_max;
+        next.slip_max = old.slip_max;
         next.beta = old.beta;
         next.kind = old.kind;
         next.two_sided = old.two_sided;
@@ -110,17 +111,14 @@ namespace nsfd
       }
       if (kind != PointKind::elastic && kind != PointKind::cohesive)
         return traction;
-      const double l = problem_.opening_factor[i];
-      const double b =
-          kind == PointKind::elastic
-              ? interaction.normal_stiffness
-              : problem_.strength_factor[i] * l *
-                    interaction.law->secant(l * old_.opening_max[i]);
       const double *u = &old_.jump[i * dim];
-      traction[0] =
-          u[0] > 0. ? b * u[0] : problem_.compression_stiffness[i] * u[0];
+      const Secant b =
+          frozen_state<dim>(problem_, i, reach_of<dim>(interaction, u), 0.)
+              .secant;
+      traction[0] = (u[0] > 0. ? b.normal : problem_.compression_stiffness[i]) *
+                    u[0];
       for (unsigned int c = 1; c < dim; ++c)
-        traction[c] = b * interaction.stiffness_ratio * u[c];
+        traction[c] = b.tangential * u[c];
       return traction;
     }
 
@@ -188,8 +186,11 @@ namespace nsfd
     void StaticBook<dim>::remember(const std::size_t i,
                                    const PointEnergies<dim> &energies)
     {
-      next_.opening_max[i] = energies.opening_max;
-      if (problem_.kind[i] == PointKind::rigid && energies.opening_max > 0.)
+      next_.opening_max[i] = energies.history.opening;
+      if (!next_.slip_max.empty())
+        next_.slip_max[i] = energies.history.slip;
+      if (problem_.kind[i] == PointKind::rigid &&
+          energies.history.opening > 0.)
         next_.kind[i] = PointKind::cohesive;
       if (next_.kind[i] != PointKind::cohesive)
         return;

@@ -76,6 +76,62 @@ namespace nsfd
                                  double majorant_tangential,
                                  const Reach &start);
 
+  /**
+   * A two-sided spring, for the steps that do not damage it: against R = (R_N,
+   * R_T, R_T), P = -kappa (y_0 + s U_loc) in each direction. What most points
+   * of an intact body are, at a fraction of the cost of solve_point().
+   */
+  template <int dim>
+  struct LinearPoint
+  {
+    std::array<double, dim> offset{};         ///< y_0, m
+    double slope = 0.;                        ///< s
+    double normal = 0., tangential = 0.;      ///< kappa
+    double normal_majorant = 0., tangential_majorant = 0.; ///< R
+    Secant secant;
+    double largest = -1.; ///< d_m^2; negative: the law is not linear
+
+    bool exists() const { return largest >= 0.; }
+
+    /** False, and nothing done, if the step would damage the point. */
+    bool solve(const OneStepProblem<dim> &problem,
+               const std::size_t point,
+               const std::array<double, dim> &local,
+               LocalSolution<dim> &solution) const
+    {
+      const double h_theta = problem.time_step * problem.theta;
+      std::array<double, dim> P, U;
+      double square = 0., slip = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        P[c] = -(c == 0 ? normal : tangential) * (offset[c] + slope * local[c]);
+        U[c] =
+          local[c] + (c == 0 ? normal_majorant : tangential_majorant) * P[c];
+        const double u = problem.jump_free[point * dim + c] + h_theta * U[c];
+        if (c > 0)
+          slip += u * u;
+        else if (u > 0.)
+          square = u * u;
+      }
+      square +=
+        problem.interactions[problem.interaction[point]].shear_weight * slip;
+      if (!(square <= largest))
+        return false;
+      solution.impulse = P;
+      solution.velocity = U;
+      solution.frozen = {secant};
+      solution.contact_impulse = 0.;
+      solution.damages = solution.coupled = false;
+      solution.status = PointStatus::open;
+      return true; // the reach stays: below its history it has no say
+    }
+  };
+
+  template <int dim>
+  LinearPoint<dim> linear_point(const OneStepProblem<dim> &problem,
+                                std::size_t point,
+                                double majorant_normal,
+                                double majorant_tangential);
+
   /** The same with damage and friction threshold frozen: a convex problem. */
   template <int dim>
   LocalSolution<dim>

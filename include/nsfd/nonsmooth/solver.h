@@ -59,6 +59,15 @@ namespace nsfd
     std::vector<double> velocity;  ///< U
     std::vector<double> defect;    ///< P - P*
     std::vector<LocalSolution<dim>> solutions;
+
+    /** The law at the last solution of a point, if it is linear there. */
+    const LinearPoint<dim> *linear(const std::size_t point) const
+    {
+      return linear_[point].exists() && !solutions[point].damages &&
+                 !is_frozen()
+               ? &linear_[point]
+               : nullptr;
+    }
     std::size_t worst_point = 0;
     double worst_error = 0.;
     unsigned int law_calls = 0;
@@ -75,6 +84,7 @@ namespace nsfd
     const OneStepProblem<dim> &problem_;
     const Dynamics<dim> &dynamics_;
     double floor_;
+    std::vector<LinearPoint<dim>> linear_;
     std::vector<double> terms_;
     const std::vector<FrozenPoint> *frozen_ = nullptr;
   };

@@ -82,6 +82,12 @@ namespace nsfd
         const auto &solution = work.evaluation.solutions[i];
         const double R_N = work.evaluation.majorant(i, 0),
                      R_T = work.evaluation.majorant(i, 1);
+        if (const auto *linear = work.evaluation.linear(i)) {
+          for (unsigned int c = 0; c < dim; ++c)
+            slopes_[i * dim + c] =
+              linear->slope * (c == 0 ? linear->normal : linear->tangential);
+          continue;
+        }
         const auto s = frozen_slopes<dim>(problem, i, solution.frozen,
                                           solution, R_N, R_T);
         std::copy(s.begin(), s.end(), slopes_.begin() + i * dim);
