@@ -175,6 +175,9 @@ namespace nsfd
       const std::array<double, dim> &local;
       double majorant_normal, majorant_tangential;
       LocalSolution<dim> solution{};
+      /// nobody asks how far other points are open
+      const bool has_law = problem.kind[i] == PointKind::cohesive ||
+                           problem.kind[i] == PointKind::rigid;
 
       const Interaction &interaction() const
       {
@@ -195,7 +198,8 @@ namespace nsfd
         solve_tangential<dim>(problem, i, frozen, local, majorant_tangential,
                               solution);
         solution.frozen = frozen;
-        solution.reach = end_reach<dim>(problem, i, solution.velocity);
+        if (has_law)
+          solution.reach = end_reach<dim>(problem, i, solution.velocity);
       }
 
       /**
@@ -218,7 +222,8 @@ namespace nsfd
         solve_tangential<dim>(problem, i, frozen, local, majorant_tangential,
                               solution);
         solution.frozen = frozen;
-        solution.reach = end_reach<dim>(problem, i, solution.velocity);
+        if (has_law)
+          solution.reach = end_reach<dim>(problem, i, solution.velocity);
       }
 
       /** With the secant and beta of an end of the step. */
@@ -537,6 +542,10 @@ namespace nsfd
     LinearPoint<dim> result;
     const auto &interaction = problem.interactions[problem.interaction[i]];
     const bool elastic = problem.kind[i] == PointKind::elastic;
+    if (problem.kind[i] == PointKind::free && !problem.contact[i]) {
+      result.largest = infinity; // nothing acts
+      return result;
+    }
     if ((!elastic && problem.kind[i] != PointKind::cohesive) ||
         problem.contact[i] || problem.compression_stiffness[i] == 0. ||
         (!problem.viscosity.empty() && problem.viscosity[i] > 0.))

@@ -79,7 +79,8 @@ namespace nsfd
   /**
    * A two-sided spring, for the steps that do not damage it: against R = (R_N,
    * R_T, R_T), P = -kappa (y_0 + s U_loc) in each direction. What most points
-   * of an intact body are, at a fraction of the cost of solve_point().
+   * of an intact body are, at a fraction of the cost of solve_point(); and
+   * open points without any law, kappa = 0.
    */
   template <int dim>
   struct LinearPoint
