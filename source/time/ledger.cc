@@ -24,7 +24,7 @@ namespace nsfd
       numerical,
       motion,
       broken,
-      viscous ///< only where a point of the scene has a viscosity
+      viscous ///< only where a point of the scene has_rates()
     };
 
     /** All points of one step, one after the other. */
@@ -71,6 +71,19 @@ namespace nsfd
       State &next_;
     };
 
+    /** Something that a point does takes time. */
+    template <int dim>
+    bool has_rates(const OneStepProblem<dim> &problem)
+    {
+      return !problem.viscosity.empty() ||
+             std::any_of(problem.interactions.begin(),
+                         problem.interactions.end(),
+                         [](const Interaction &interaction) {
+                           return interaction.law &&
+                                  interaction.law->rate_dependent();
+                         });
+    }
+
     template <int dim>
     PointBook<dim>::PointBook(const Discretization<dim> &discretization,
                               const UniquenessBound<dim> &uniqueness,
@@ -78,7 +91,7 @@ namespace nsfd
                               const LawEvaluation<dim> &evaluation,
                               const State &old, State &next)
         : n_owned(problem.n_owned),
-          n_rows(problem.viscosity.empty() ? viscous : viscous + 1),
+          n_rows(has_rates(problem) ? viscous + 1 : viscous),
           terms(n_rows * n_owned, 0.),
           reactions(discretization.driven_boundaries().size() * dim * n_owned,
                     0.),
@@ -371,8 +384,9 @@ namespace nsfd
     energy.damage += sums[damage];
     energy.friction += sums[friction];
     energy.impact += sums[impact];
-    if (!problem.viscosity.empty()) {
+    if (has_rates(problem))
       energy.viscous += sums[viscous];
+    if (!problem.viscosity.empty()) {
       next.viscous_traction =
           std::max(old.viscous_traction.value_or(0.),
                    communicator.max(points.viscous_traction));

@@ -72,7 +72,7 @@ namespace end_to_end
       else
         EXPECT_GT(curve["damage"].get<double>(), 0.95 * G) << law;
       const History rows(read_text(directory / "curve.csv"));
-      ASSERT_GT(rows.size(), 400u);
+      ASSERT_GE(rows.size(), 400u); // more where the law has kinks
       EXPECT_EQ(rows["damage"].back(), curve["damage"].get<double>());
       EXPECT_EQ(rows["beta"].front(), 1.);
     }

@@ -1,4 +1,5 @@
 #include "law_checks.h"
+#include "make_scene.h"
 
 #include "nsfd/input/scene_input.h"
 #include "nsfd/nonsmooth/point_law.h"
@@ -153,6 +154,53 @@ namespace
         result.spent += energies.stored - stored;
     }
     return result;
+  }
+
+  TEST(ViscousAdhesion, ClosesTheLedgerOfARun)
+  {
+    const std::string blocks = R"(# blocks - two blocks fly apart.
+set dimension = 2
+subsection Mesh
+  set lower corner = 0, 0
+  set upper corner = 2, 1
+  set cells        = 2, 1
+end
+subsection Material: left
+  set where              = x < 1
+  set model              = rigid
+  set density            = 1
+  set initial velocity x = -1
+end
+subsection Material: right
+  set model              = rigid
+  set density            = 1
+  set initial velocity x = 1
+  set initial velocity y = 0.3
+end
+subsection Interface: face
+  set law              = rcc
+  set stiffness        = 20
+  set adhesion energy  = 0.3
+  set damage viscosity = 0.05
+end
+subsection Time
+  set end  = 1
+  set step = 0.01 s
+end
+)";
+    for (const std::string rule : {"exact", "end point"}) {
+      Scene<2> scene(blocks, {"Time/cohesion rule=" + rule});
+      for (unsigned int k = 0; k < 200; ++k)
+        EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+      const EnergyLines &e = scene.state.energy;
+      EXPECT_GT(e.viscous, 0.01);
+      EXPECT_GT(e.damage, 0.28) << "most of w = 0.3";
+      EXPECT_LE(e.damage, 0.3);
+      if (rule == "exact") {
+        EXPECT_NEAR(e.numerical, 0., 1e-9);
+      }
+      EXPECT_FALSE(scene.state.viscous_traction);
+    }
   }
 
   TEST(ViscousAdhesion, FollowsARamp)
