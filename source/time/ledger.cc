@@ -1,5 +1,7 @@
 #include "ledger.h"
 
+#include "common_books.h"
+
 #include "nsfd/input/scene_input.h"
 #include "nsfd/time/moreau_jean.h"
 
@@ -98,18 +100,11 @@ namespace nsfd
           discretization_(discretization), uniqueness_(uniqueness),
           problem_(problem), evaluation_(evaluation), old_(old), next_(next)
     {
-      next.opening_max = old.opening_max;
-      next.slip_max = old.slip_max;
-      next.beta = old.beta;
-      next.kind = old.kind;
-      next.two_sided = old.two_sided;
-      next.slip = old.slip;
-      next.penetration_bound = old.penetration_bound;
+      carry_history(old, next);
       next.dilated = old.dilated;
       next.worn = old.worn;
       next.dilation_speed.assign(old.dilated.size(), 0.);
       next.wear_speed.assign(old.dilated.size(), 0.);
-      next.contact.assign(problem.n_points, 0);
     }
 
     template <int dim>
@@ -252,27 +247,21 @@ namespace nsfd
                                   const PointEnergies<dim> &energies)
     {
       const auto &solution = evaluation_.solutions[i];
-      next_.opening_max[i] = energies.history.opening;
-      if (!next_.slip_max.empty())
-        next_.slip_max[i] = energies.history.slip;
-      if (problem_.kind[i] == PointKind::rigid && solution.damages)
-        next_.kind[i] = PointKind::cohesive;
-      if (next_.kind[i] != PointKind::cohesive)
+      const bool breaks = remember_damage<dim>(
+          energies, i,
+          problem_.kind[i] == PointKind::rigid && solution.damages, old_,
+          next_);
+      if (breaks)
+        put(broken, i, problem_.weight[i]);
+      if (problem_.kind[i] != PointKind::cohesive &&
+          problem_.kind[i] != PointKind::rigid)
         return;
-      next_.beta[i] = std::min(old_.beta[i], energies.beta);
-      if (energies.beta < 1.)
-        next_.two_sided[i] = 0; // its overlap is booked in point_energies()
-      if (next_.beta[i] <= 0.)
-        next_.kind[i] = PointKind::free;
       // a softening point in a step above the uniqueness bound
       const auto &law = *problem_.interactions[problem_.interaction[i]].law;
       if (solution.damages &&
           past_peak(law, problem_.opening_factor[i], energies.history))
         beyond_unique |=
             uniqueness_.ratio(problem_, i, problem_.time_step) >= 1.;
-      // newly broken surface; tails count once they carry a thousandth
-      if (next_.beta[i] < 1e-3 && old_.beta[i] >= 1e-3)
-        put(broken, i, problem_.weight[i]);
     }
 
     /**
@@ -413,16 +402,7 @@ namespace nsfd
     report.active = unsigned(communicator.sum_integer(points.active));
     report.beyond_unique = communicator.any(points.beyond_unique);
 
-    next.largest_energy =
-        std::max({old.largest_energy, energy.kinetic, energy.elastic,
-                  energy.cohesive, std::abs(energy.work), energy.damage,
-                  energy.impact, energy.friction, energy.viscous});
-    const double defect = energy.kinetic + energy.elastic + energy.cohesive +
-                          energy.damage + energy.friction + energy.viscous +
-                          energy.plastic + energy.impact + energy.numerical -
-                          energy.work - next.initial_energy;
-    report.ledger_defect =
-        next.largest_energy > 0. ? std::abs(defect) / next.largest_energy : 0.;
+    close_books(old, next, report);
   }
 
   template class Ledger<2>;

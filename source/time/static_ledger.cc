@@ -1,5 +1,7 @@
 #include "static_ledger.h"
 
+#include "common_books.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,14 +33,7 @@ namespace nsfd
           : terms(n_rows * problem.n_owned, 0.), problem_(problem),
             solutions_(solutions), old_(old), next_(next)
       {
-        next.opening_max = old.opening_max;
-        next.slip_max = old.slip_max;
-        next.beta = old.beta;
-        next.kind = old.kind;
-        next.two_sided = old.two_sided;
-        next.slip = old.slip;
-        next.penetration_bound = old.penetration_bound;
-        next.contact.assign(problem.n_points, 0);
+        carry_history(old, next);
       }
 
       void book_motion(std::size_t i);
@@ -73,7 +68,6 @@ namespace nsfd
         return work;
       }
       Vector old_cohesion(std::size_t i) const;
-      void remember(std::size_t i, const PointEnergies<dim> &energies);
 
       const OneStepProblem<dim> &problem_;
       const std::vector<LocalSolution<dim>> &solutions_;
@@ -172,7 +166,11 @@ namespace nsfd
         left.worst = std::abs(rest);
         left.worst_point = i;
       }
-      remember(i, energies);
+      if (remember_damage<dim>(energies, i,
+                               problem_.kind[i] == PointKind::rigid &&
+                                   energies.history.opening > 0.,
+                               old_, next_))
+        put(broken, i, w);
       if (!next_.two_sided[i]) {
         const double depth = -next_.jump[i * dim];
         if (old_.two_sided[i])
@@ -180,28 +178,6 @@ namespace nsfd
               std::max(next_.penetration_bound[i], depth);
         penetration = std::max(penetration, depth);
       }
-    }
-
-    template <int dim>
-    void StaticBook<dim>::remember(const std::size_t i,
-                                   const PointEnergies<dim> &energies)
-    {
-      next_.opening_max[i] = energies.history.opening;
-      if (!next_.slip_max.empty())
-        next_.slip_max[i] = energies.history.slip;
-      if (problem_.kind[i] == PointKind::rigid &&
-          energies.history.opening > 0.)
-        next_.kind[i] = PointKind::cohesive;
-      if (next_.kind[i] != PointKind::cohesive)
-        return;
-      next_.beta[i] = std::min(old_.beta[i], energies.beta);
-      if (energies.beta < 1.)
-        next_.two_sided[i] = 0; // its overlap is booked in point_energies()
-      if (next_.beta[i] <= 0.)
-        next_.kind[i] = PointKind::free;
-      // tails count as broken once they carry a thousandth
-      if (next_.beta[i] < 1e-3 && old_.beta[i] >= 1e-3)
-        put(broken, i, problem_.weight[i]);
     }
 
     template <int dim>
@@ -298,14 +274,7 @@ namespace nsfd
           communicator.sums(rows.data(), reactions_.size(), problem.n_owned);
     }
 
-    next.largest_energy =
-        std::max({old.largest_energy, energy.elastic, energy.cohesive,
-                  std::abs(energy.work), energy.damage, energy.friction});
-    const double defect = energy.elastic + energy.cohesive + energy.damage +
-                          energy.friction + energy.viscous + energy.impact +
-                          energy.numerical - energy.work - next.initial_energy;
-    report.ledger_defect =
-        next.largest_energy > 0. ? std::abs(defect) / next.largest_energy : 0.;
+    close_books(old, next, report);
 
     EnergyLeft left = book.left;
     left.energy = sums[left_over];
