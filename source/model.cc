@@ -38,7 +38,7 @@ namespace nsfd
         input.solver.method == "auto" ? "dual newton" : input.solver.method;
     solver = SolverRegistry<dim>::instance().create(method);
     stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
-                                                *dynamics, *solver);
+                                                *dynamics, *solver, bonded);
     if (input.statics)
       quasi_static = std::make_unique<QuasiStatic<dim>>(input, communicator,
                                                         *discretization);
@@ -123,6 +123,28 @@ namespace nsfd
                                          input.time.maximum_halvings, start);
   }
 
+  /**
+   * Bonded faces: rigid rows cost little in short steps if most faces may
+   * break anyway; elsewhere the faces without a law had better have no rows.
+   */
+  template <int dim>
+  bool Model<dim>::joins_through_bulk(const SceneInput &input,
+                                      const Communicator &communicator) const
+  {
+    const double crossing = discretization->crossing_time();
+    if (crossing > 0. && dynamic_step(input) > 5. * crossing)
+      return true;
+    std::size_t lasting = 0, breakable = 0;
+    for (const PointOrigin &origin : discretization->origins())
+      if (origin.kind == PointOrigin::Kind::interface) {
+        const auto &block = input.interfaces[origin.block];
+        ++(block.intact == IntactFaces::bonded && !block.law ? lasting
+                                                             : breakable);
+      }
+    return communicator.sum_integer(lasting) >
+           communicator.sum_integer(breakable);
+  }
+
   /** Short steps: face blocks; long ones: a global matrix. */
   template <int dim>
   void Model<dim>::build_dynamics(const SceneInput &input,
@@ -132,6 +154,16 @@ namespace nsfd
     const auto &points = discretization->points();
     const double crossing = discretization->crossing_time();
     path = input.solver.path;
+    if (input.has_bonded_faces() &&
+        (path == "global" ||
+         (path == "auto" && joins_through_bulk(input, communicator)))) {
+      path = "global";
+      auto joined = make_bonded_dynamics<dim>(communicator, bodies, points,
+                                              input.solver.linear_solver);
+      bonded = joined.get();
+      dynamics = std::move(joined);
+      return;
+    }
     if (path == "auto")
       path = crossing > 0. && dynamic_step(input) > 5. * crossing
                  ? "global"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/dynamics/bonded.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
 #include "nsfd/time/moreau_jean.h"
@@ -26,6 +27,7 @@ namespace nsfd
     std::unique_ptr<StepControl> control;
     std::string path; ///< of the linear algebra: element-wise or global
     std::unique_ptr<Dynamics<dim>> dynamics;
+    BondedDynamics<dim> *bonded = nullptr; ///< the same, if faces are bonded
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
@@ -48,6 +50,8 @@ namespace nsfd
     void build_control(const SceneInput &input,
                        std::vector<std::string> &problems);
     double dynamic_step(const SceneInput &input) const;
+    bool joins_through_bulk(const SceneInput &input,
+                            const Communicator &communicator) const;
     void build_dynamics(const SceneInput &input,
                         const Communicator &communicator);
     void find_unused_blocks(const SceneInput &input,

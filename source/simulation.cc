@@ -43,6 +43,7 @@ namespace nsfd
       int step_to_the_end();
       void choose_step();
       bool must_redo(const StepReport &report, const State &next);
+      bool overshoots(const StepReport &report);
       bool advance(State &next, std::string &failure);
       bool advance_load(State &next, std::string &failure);
       void accept(State &next, const StepReport &report, double time_step);
@@ -277,6 +278,24 @@ namespace nsfd
     }
 
     /**
+     * A bonded point went too far beyond its strength. True if the step is to
+     * be taken again, to where the first of them reaches it; three levels down
+     * the ladder a front is steeper than the mesh resolves.
+     */
+    template <int dim>
+    bool Simulation<dim>::overshoots(const StepReport &report)
+    {
+      auto &control = *model_.control;
+      if (report.overshoot <= input_.time.largest_overshoot ||
+          control.level() >= 3 || !control.can_halve())
+        return false;
+      const double h = control.step();
+      control.limit(std::clamp(report.share, 0.125, 0.5) * h);
+      ++redone_;
+      return true;
+    }
+
+    /**
      * Take a step or, if it is rejected, shorten the next one. False with the
      * reason if that is not possible any more.
      */
@@ -304,7 +323,7 @@ namespace nsfd
                               input_.time.maximum_halvings);
         return false;
       }
-      if (must_redo(report, next))
+      if (must_redo(report, next) || overshoots(report))
         return true;
       attempts_ = 0;
       accept(next, report, h);
@@ -434,6 +453,9 @@ namespace nsfd
       c["global_factorisations"] = double(dynamics.global_factorisations);
       c["load_assemblies"] = double(stepper.load_assemblies);
       c["activation_rounds"] = double(stepper.activation_rounds);
+      c["global_solves"] = double(dynamics.global_solves);
+      if (model_.bonded)
+        c["released_bonds"] = double(stepper.released_bonds);
       c["rejected_steps"] = rejected_;
       c["redone_steps"] = redone_;
       c["steps_beyond_uniqueness"] = beyond_unique_;

@@ -11,6 +11,7 @@ namespace nsfd
   {
     const std::vector<NamedText> plain_laws = {
         {"rigid", "faces stay closed, without any compliance"},
+        {"bonded", "the same, joined through the bulk (interior penalty)"},
         {"elastic", "springs C_N, C_T that never break"},
         {"contact", "unilateral contact and Coulomb friction only"},
     };
@@ -26,7 +27,8 @@ namespace nsfd
     std::string read_law_name(SectionReader &reader)
     {
       const auto value = reader.raw(
-          "law", "", "rigid, elastic, contact or a cohesive law", "rigid");
+          "law", "", "rigid, bonded, elastic, contact or a cohesive law",
+          "rigid");
       if (!value) {
         reader.accept_everything();
         return "";
@@ -36,13 +38,7 @@ namespace nsfd
       for (const NamedText &law : plain_laws)
         known.push_back(law.name);
 
-      if (name == "bonded")
-        reader.error("law",
-                     "law = bonded: faces joined through the bulk are not "
-                     "there yet",
-                     "write rigid: at Gauss points it is the continuous "
-                     "element");
-      else if (std::find(known.begin(), known.end(), name) == known.end())
+      if (std::find(known.begin(), known.end(), name) == known.end())
         reader.error(
             "law", fmt::format("law = {} is not a law", name),
             did_you_mean(name, known, "`nsfd --list` prints all names"));
@@ -104,29 +100,37 @@ namespace nsfd
                                   const InterfaceInput &input)
     {
       const bool extrinsic = input.law && input.law->extrinsic();
+      // rigid rows on all faces make W singular, and tractions ambiguous
+      const bool everywhere = input.where.kind == Where::Kind::all;
       const std::string name = reader.choice(
-          "intact faces", extrinsic ? "rigid" : "spring",
+          "intact faces",
+          !extrinsic ? "spring" : everywhere ? "bonded" : "rigid",
           {"spring", "unilateral", "rigid", "bonded"},
-          "while beta = 1: spring or unilateral (intrinsic laws), "
-          "rigid (extrinsic laws)");
-      if (name == "bonded")
-        reader.error("intact faces",
-                     "intact faces = bonded: faces joined through the bulk "
-                     "are not there yet",
-                     extrinsic ? "write rigid, and name the faces in `where`"
-                               : "write spring");
-      else if (extrinsic && name != "rigid")
+          "while beta = 1: spring or unilateral (intrinsic laws), rigid or "
+          "bonded (extrinsic laws; default: bonded if where = all)");
+      const bool joined = name == "rigid" || name == "bonded";
+      if (extrinsic && !joined)
         reader.error("intact faces",
                      fmt::format("intact faces = {} needs a stiffness, and the "
                                  "extrinsic law {} has none",
                                  name, input.law_name),
-                     "write rigid, or take an intrinsic law");
-      else if (!extrinsic && name == "rigid")
+                     "write rigid or bonded, or take an intrinsic law");
+      else if (extrinsic && everywhere && name == "rigid")
         reader.error("intact faces",
-                     fmt::format("intact faces = rigid contradicts the "
-                                 "stiffness of the law {}",
+                     fmt::format("intact faces = rigid with where = all and "
+                                 "the law {}: rigid rows on all faces make the "
+                                 "Delassus matrix W singular",
                                  input.law_name),
+                     "write bonded, or name the faces that may break and give "
+                     "the others law = bonded");
+      else if (!extrinsic && joined)
+        reader.error("intact faces",
+                     fmt::format("intact faces = {} contradicts the stiffness "
+                                 "of the law {}",
+                                 name, input.law_name),
                      "write spring or unilateral, or take an extrinsic law");
+      if (name == "bonded")
+        return IntactFaces::bonded;
       if (name == "unilateral")
         return IntactFaces::unilateral;
       return name == "rigid" || extrinsic ? IntactFaces::rigid
@@ -219,17 +223,6 @@ namespace nsfd
       read_point_factors(reader, input);
       read_viscosity(reader, input);
       input.plateau = read_plateau(reader, input.law.get(), input.law_name);
-
-      if (input.law && input.law->extrinsic() &&
-          input.where.kind == Where::Kind::all)
-        reader.error("where",
-                     fmt::format("where = all with the extrinsic law {}: rigid "
-                                 "rows on all faces make the Delassus matrix "
-                                 "W singular, and bonded faces are not there "
-                                 "yet",
-                                 input.law_name),
-                     "name the faces that may break, and give the others law "
-                     "= rigid");
     }
 
     InterfaceInput read_interface(SectionReader &reader,
@@ -243,8 +236,11 @@ namespace nsfd
       input.law_name = read_law_name(reader);
       if (input.law_name.empty())
         return input;
-      if (input.law_name == "rigid") {
-        const std::string reason = "faces of the law `rigid` never open";
+      if (input.law_name == "rigid" || input.law_name == "bonded") {
+        input.intact = input.law_name == "rigid" ? IntactFaces::rigid
+                                                 : IntactFaces::bonded;
+        const std::string reason =
+            fmt::format("faces of the law `{}` never open", input.law_name);
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
                        "intact faces", "crack pressure", "pressure threshold",
                        "dilatancy", "dilatancy saturation", "wear coefficient"},

@@ -80,6 +80,12 @@ namespace nsfd
                        "remove them, or start as given");
       };
       for (const InterfaceInput &interface : scene.interfaces) {
+        if (interface.intact == IntactFaces::bonded)
+          reader.error("start",
+                       fmt::format("equilibria with bonded faces (`{}`) are "
+                                   "not there yet",
+                                   interface.name),
+                       "write rigid, or start as given");
         if (interface.law && interface.law->rate_dependent())
           reader.error("start",
                        fmt::format("an equilibrium has no rates, and the law "
@@ -90,6 +96,24 @@ namespace nsfd
       }
       for (const ObstacleInput &obstacle : scene.obstacles)
         refuse_lift(obstacle);
+    }
+
+    /** The energy that it misses is of the order of its square. */
+    void read_overshoot(SectionReader &reader, SceneInput &scene)
+    {
+      const std::string name = "largest overshoot";
+      const auto breaks = [](const InterfaceInput &block) {
+        return block.law && block.intact == IntactFaces::bonded;
+      };
+      if (std::none_of(scene.interfaces.begin(), scene.interfaces.end(),
+                       breaks)) {
+        reader.refuse({name}, "there are no bonded faces that may break");
+        return;
+      }
+      scene.time.largest_overshoot = reader.number(
+          name, "0.05", units::none, Range::positive(),
+          "of a bonded point over its strength; beyond it the step is "
+          "taken again, shorter");
     }
 
     /** An equilibrium at the start, and what it cannot go with. */
@@ -281,5 +305,6 @@ namespace nsfd
         "what friction opposes: velocity or increment");
     time.maximum_halvings = reader.integer("maximum halvings", "10", 0, 60,
                                            "of a step that cannot be solved");
+    read_overshoot(reader, scene);
   }
 } // namespace nsfd

@@ -8,8 +8,12 @@
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/lapack_full_matrix.h>
+#include <deal.II/lac/vector.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace nsfd
 {
@@ -105,8 +109,11 @@ namespace nsfd
     body.n_dofs = shape.n_nodes * dim;
     if (body.rigid)
       make_rigid(size, shape, body);
-    else
+    else {
       body.stiffness = stiffness(shape, material);
+      if (input_.has_bonded_faces())
+        set_traction(shape, body);
+    }
   }
 
   template <int dim>
@@ -204,10 +211,13 @@ namespace nsfd
       const FaceGeometry<dim> face(shape.reference, shape.corners, f);
       const auto quadrature =
           interface_quadrature<dim>(input_.discretization, face.is_triangle());
-      for (const auto &xi : quadrature.get_points()) {
+      for (unsigned int q = 0; q < quadrature.size(); ++q) {
+        const auto &xi = quadrature.point(q);
         shape.slot_positions.push_back(face.position(xi));
+        shape.slot_normals.push_back(face.normal(xi) * quadrature.weight(q));
+        shape.slot_places.push_back(face.in_reference_cell(xi));
         for (unsigned int i = 0; i < n; ++i)
-          values.push_back(element_.shape_value(i, face.in_reference_cell(xi)));
+          values.push_back(element_.shape_value(i, shape.slot_places.back()));
       }
     }
     const unsigned int n_slots = unsigned(shape.slot_positions.size());
@@ -217,6 +227,82 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           trace(s * dim + c, i * dim + c) = values[s * n + i];
     return trace;
+  }
+
+  namespace
+  {
+    /**
+     * The largest eigenvalue of B u = Lambda K u for B = G^T G, both blind to
+     * rigid motions @p modes: K is made definite on them.
+     */
+    template <int dim>
+    double largest_ratio(const Block &G, const Block &K, const Block &modes)
+    {
+      const unsigned int n = K.rows;
+      double trace = 0., size = 0.;
+      for (unsigned int i = 0; i < n; ++i) {
+        trace += K(i, i) / n;
+        for (unsigned int k = 0; k < modes.cols; ++k)
+          size += modes(i, k) * modes(i, k) / modes.cols;
+      }
+      Block definite = K;
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          for (unsigned int k = 0; k < modes.cols; ++k)
+            definite(i, j) += trace / size * modes(i, k) * modes(j, k);
+      // B and K in the coordinates of L^T u: eigenvalues of the Gram matrix
+      const Block scaled =
+          gram(forward_solve(cholesky(definite), G.transposed()).transposed());
+      LAPACKFullMatrix<double> matrix(n);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          matrix(i, j) = scaled(i, j);
+      double bound = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        bound += scaled(i, i);
+      Vector<double> eigenvalues;
+      FullMatrix<double> eigenvectors;
+      matrix.compute_eigenvalues_symmetric(0., 1.1 * bound, 0., eigenvalues,
+                                           eigenvectors);
+      return *std::max_element(eigenvalues.begin(), eigenvalues.end());
+    }
+  } // namespace
+
+  template <int dim>
+  void ClassBuilder<dim>::set_traction(const BodyShape<dim> &shape,
+                                       BodyClass &body) const
+  {
+    const LinearElasticity<dim> elasticity(input_.materials[body.material],
+                                           input_.plane_stress);
+    const unsigned int n = shape.n_nodes;
+    body.traction = Block(body.n_slots * dim, n * dim);
+    Block weighted(body.n_slots * dim, n * dim); // sqrt(w) times the traction
+    for (unsigned int s = 0; s < body.n_slots; ++s) {
+      const auto &place = shape.slot_places[s];
+      const auto inverse =
+          invert(jacobian(shape.reference, shape.corners, place));
+      const double w = shape.slot_normals[s].norm();
+      const Tensor<1, dim> normal = shape.slot_normals[s] / w;
+      for (unsigned int i = 0; i < n; ++i) {
+        const auto reference_gradient = element_.shape_grad(i, place);
+        Tensor<1, dim> g;
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = 0; b < dim; ++b)
+            g[a] += inverse[b][a] * reference_gradient[b];
+        // sigma n of a displacement N_i e_d
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d) {
+            const double value =
+                elasticity.lambda * g[d] * normal[c] +
+                elasticity.mu *
+                    (g[c] * normal[d] + (c == d ? g * normal : 0.));
+            body.traction(s * dim + c, i * dim + d) = value;
+            weighted(s * dim + c, i * dim + d) = std::sqrt(w) * value;
+          }
+      }
+    }
+    body.traction_bound = largest_ratio<dim>(
+        weighted, body.stiffness, rigid_modes(shape, shape.height));
   }
 
   template class ClassBuilder<2>;

@@ -34,6 +34,8 @@ namespace nsfd
     std::vector<double> values;
     std::vector<dealii::Tensor<1, dim>> gradients;
     std::vector<dealii::Point<dim>> slot_positions;
+    std::vector<dealii::Tensor<1, dim>> slot_normals; ///< outward, times w
+    std::vector<dealii::Point<dim>> slot_places; ///< in the reference cell
     std::vector<double> corner_values; ///< corner x node
     double volume = 0.;
     dealii::Point<dim> centre;
@@ -68,6 +70,8 @@ namespace nsfd
     Block stiffness(const BodyShape<dim> &shape, unsigned int material) const;
     /** Also the slots. */
     Block trace(BodyShape<dim> &shape) const;
+    /** Traction block and its bound; needs stiffness and slots. */
+    void set_traction(const BodyShape<dim> &shape, BodyClass &body) const;
 
     const dealii::FiniteElement<dim, dim> &element_;
     const SceneInput &input_;

@@ -135,10 +135,14 @@ namespace nsfd
         const double *frame = &points.frame[i * dim * dim];
         const double *u = &state_.jump[i * dim], *P = &state_.impulse[i * dim];
         Vector3 jump{}, traction{};
+        const bool bonded = state_.kind[i] == PointKind::bonded;
         for (unsigned int r = 0; r < dim; ++r)
           for (unsigned int c = 0; c < dim; ++c) {
             jump[c] += u[r] * frame[r * dim + c];
-            if (time_step_ > 0.)
+            if (bonded) // sigma n acts on body 1, the impulse on body 2
+              traction[c] -=
+                  state_.bond_traction[i * dim + r] * frame[r * dim + c];
+            else if (time_step_ > 0.)
               traction[c] +=
                   P[r] * frame[r * dim + c] / (points.weight[i] * time_step_);
           }

@@ -21,6 +21,7 @@ namespace nsfd
       case PointKind::prescribed:
       case PointKind::rigid:
       case PointKind::elastic:
+      case PointKind::bonded:
         return true;
       case PointKind::cohesive:
         if (state.beta[i] >= 1e-3)

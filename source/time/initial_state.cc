@@ -51,6 +51,8 @@ namespace nsfd
           (block.has_broken && block.broken.at(x, 0.) != 0.)) {
         state.kind[i] = PointKind::free;
         state.beta[i] = 0.;
+      } else if (block.intact == IntactFaces::bonded) {
+        state.kind[i] = PointKind::bonded;
       } else if (block.law_name == "elastic") {
         state.kind[i] = PointKind::elastic;
         state.two_sided[i] = block.intact == IntactFaces::spring;
@@ -85,6 +87,8 @@ namespace nsfd
       start.slip_max = state.slip_max;
       std::vector<double> stored(problem.n_owned, 0.);
       for (std::size_t i = 0; i < problem.n_owned; ++i) {
+        if (state.kind[i] == PointKind::bonded)
+          continue; // in the stiffness of the bodies
         if (state.two_sided[i])
           start.compression_stiffness[i] = intact_stiffness<dim>(problem, i);
         stored[i] = problem.weight[i] * stored_energy<dim>(start, i);

@@ -1,6 +1,7 @@
 #include "nsfd/time/moreau_jean.h"
 
 #include "activation.h"
+#include "bond_release.h"
 #include "crack_pressure.h"
 #include "initial_state.h"
 #include "ledger.h"
@@ -20,11 +21,13 @@ namespace nsfd
   MoreauJean<dim>::MoreauJean(const SceneInput &input,
                               const Discretization<dim> &discretization,
                               Dynamics<dim> &dynamics,
-                              NonsmoothSolver<dim> &solver)
+                              NonsmoothSolver<dim> &solver,
+                              BondedDynamics<dim> *bonded)
     : input_(input)
     , discretization_(discretization)
     , dynamics_(dynamics)
     , solver_(solver)
+    , bonded_(bonded)
     , problem_(constant_data(input, discretization))
     , uniqueness_(std::make_unique<UniquenessBound<dim>>(input, dynamics))
     , ledger_(std::make_unique<Ledger<dim>>(input, discretization, dynamics,
@@ -33,7 +36,9 @@ namespace nsfd
     , forces_(discretization.bodies().n_dofs(), 0.)
   {
     for (const auto &block : input.interfaces)
-      has_extrinsic_ |= block.law && block.law->extrinsic();
+      has_extrinsic_ |= block.intact == IntactFaces::rigid && block.law;
+    if (input.has_bonded_faces())
+      bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
   }
 
   template <int dim>
@@ -42,7 +47,11 @@ namespace nsfd
   template <int dim>
   State MoreauJean<dim>::initial_state() const
   {
-    return nsfd::initial_state(input_, discretization_, dynamics_, problem_);
+    State state =
+      nsfd::initial_state(input_, discretization_, dynamics_, problem_);
+    if (bulk_)
+      set_bond_tractions(*bulk_, state);
+    return state;
   }
 
   template <int dim>
@@ -78,6 +87,8 @@ namespace nsfd
   {
     {
       const Stopwatch watch(timings_.assembly);
+      if (bonded_)
+        bonded_->set_bonds(bonded_points(old));
       dynamics_.reinit(h, input_.time.theta);
       set_step(input_, discretization_, dynamics_, old, h, problem_);
       set_loads(old.time + input_.time.theta * h);
@@ -103,6 +114,7 @@ namespace nsfd
       control.tolerance = input_.solver.tolerance;
       control.maximum_iterations = input_.solver.maximum_iterations;
       control.idle_rounds = idle_rounds;
+      control.may_sweep = dynamics_.bodies_are_apart();
       report.solver = solve(control, energy_scale, next.impulse, evaluation);
     }
     if (!report.solver.converged)
@@ -117,6 +129,14 @@ namespace nsfd
     }
     const Stopwatch watch(timings_.ledger);
     ledger_->book(problem_, evaluation, forces_, old, next, report);
+    if (bulk_) {
+      const BondReport bonds =
+        release_bonds(problem_, dynamics_, *bulk_, old, next);
+      report.released = bonds.released;
+      report.overshoot = bonds.overshoot;
+      report.share = bonds.share;
+      counters_.released_bonds += bonds.released;
+    }
     return report;
   }
 
@@ -214,9 +234,17 @@ namespace nsfd
         old.displacement[i] +
         h * (theta * next.velocity[i] + (1. - theta) * old.velocity[i]);
     next.relative_velocity = evaluation.velocity;
+    if (bonded_) { // W has no rows there
+      std::vector<double> velocity(next.relative_velocity.size());
+      dynamics_.relative_velocity(next.velocity.data(), velocity.data());
+      for (std::size_t k = 0; k < velocity.size(); ++k)
+        if (old.kind[k / dim] == PointKind::bonded)
+          next.relative_velocity[k] = velocity[k];
+    }
     next.jump.resize(old.jump.size());
     for (std::size_t k = 0; k < old.jump.size(); ++k)
-      next.jump[k] = problem_.jump_free[k] + h * theta * evaluation.velocity[k];
+      next.jump[k] =
+        problem_.jump_free[k] + h * theta * next.relative_velocity[k];
   }
 
   template <int dim>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/dynamics/bonded.h"
 #include "nsfd/input/read_scene.h"
 #include "nsfd/mesh/discretization.h"
 #include "nsfd/mesh/mesh_builder.h"
@@ -55,7 +56,13 @@ namespace nsfd
         if (input->time.step_kind != StepKind::time)
           time_step *= discretization->crossing_time();
 
-        if (input->solver.path == "global")
+        if (input->has_bonded_faces() && input->solver.path == "global") {
+          auto joined = make_bonded_dynamics<dim>(
+              communicator, discretization->bodies(), discretization->points(),
+              input->solver.linear_solver);
+          bonded = joined.get();
+          dynamics = std::move(joined);
+        } else if (input->solver.path == "global")
           dynamics = make_sparse_dynamics<dim>(
               communicator, discretization->bodies(), discretization->points(),
               input->solver.linear_solver == "cg" ? "cg" : "direct");
@@ -66,7 +73,7 @@ namespace nsfd
             input->solver.method == "auto" ? "dual newton"
                                            : input->solver.method);
         stepper = std::make_unique<MoreauJean<dim>>(*input, *discretization,
-                                                    *dynamics, *solver);
+                                                    *dynamics, *solver, bonded);
         dynamics->reinit(time_step, input->time.theta);
         state = stepper->initial_state();
         next = state;
@@ -113,6 +120,7 @@ namespace nsfd
       std::unique_ptr<MeshGroups<dim>> groups;
       std::unique_ptr<Discretization<dim>> discretization;
       std::unique_ptr<Dynamics<dim>> dynamics;
+      BondedDynamics<dim> *bonded = nullptr; ///< the same, or null
       std::unique_ptr<NonsmoothSolver<dim>> solver;
       std::unique_ptr<MoreauJean<dim>> stepper;
       double time_step = 0.;

@@ -51,6 +51,11 @@ namespace nsfd
     bool rigid = false;
     unsigned int material = 0;
     Block mass, stiffness, trace; ///< stiffness is empty for rigid bodies
+    /// of deformable bodies in scenes with bonded faces: the traction on the
+    /// outward normal at the slots, (slot, component) x unknown, in Pa/m
+    Block traction;
+    /// the largest ratio of sum over slots w |traction|^2 to u.K u, in Pa/m
+    double traction_bound = 0.;
     std::vector<unsigned int> bodies; ///< members on this rank
   };
 

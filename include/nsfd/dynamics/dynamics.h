@@ -31,7 +31,7 @@ namespace nsfd
     virtual void reinit(double time_step, double theta);
 
     /** U = W P over all points. One exchange with the neighbouring ranks. */
-    void apply_delassus(const double *impulse, double *velocity) const;
+    virtual void apply_delassus(const double *impulse, double *velocity) const;
 
     /**
      * The Cartesian contributions of both bodies to W P at every point (body 1
@@ -48,7 +48,8 @@ namespace nsfd
     void generalised_impulse(const double *impulse, double *result) const;
 
     /** dv += M_hat^{-1} H^T P. */
-    void add_velocity_change(const double *impulse, double *velocity) const;
+    virtual void add_velocity_change(const double *impulse,
+                                     double *velocity) const;
 
     enum class Operator
     {
@@ -56,12 +57,16 @@ namespace nsfd
       stiffness,
       inverse ///< M_hat^{-1}
     };
-    /** y = A x body by body. */
-    void apply(Operator op, const double *x, double *y) const;
+    /** y = A x. */
+    virtual void apply(Operator op, const double *x, double *y) const;
+
+    /** Gauss-Seidel can work: what one body does no other one feels. */
+    virtual bool bodies_are_apart() const { return true; }
 
     /**
      * Diagonal blocks of W per face in the local frames, row-major of size
-     * (count dim)^2, at face_block(f).
+     * (count dim)^2, at face_block(f); at least these where bonded faces make
+     * the bodies stiffer.
      */
     const double *face_block(const std::size_t face) const
     {
@@ -94,7 +99,8 @@ namespace nsfd
     {
       unsigned long long factorisations = 0; ///< of body blocks
       unsigned long long global_factorisations = 0;
-      mutable unsigned long long delassus = 0;
+      unsigned long long global_solves = 0; ///< with one right-hand side each
+      unsigned long long delassus = 0;
     };
     const Counters &counters() const { return counters_; }
 
@@ -119,17 +125,18 @@ namespace nsfd
     const Bodies &bodies_;
     const InterfacePoints<dim> &points_;
     double time_step_ = 0., theta_ = 0.;
+    /// of the stiffness of the bodies that the blocks below are built with
+    double stiffness_share_ = 1.;
     std::vector<ClassBlocks> blocks_;
     std::vector<double> face_blocks_;
     std::vector<std::size_t> face_offset_;
-    Counters counters_;
+    mutable Counters counters_;
 
-  private:
+    /** Into cartesian_. */
     void to_cartesian(const double *local) const;
+    /** The sum of both sides, once complete, in the local frames. */
     void add_sides(double *local) const;
     mutable std::vector<double> cartesian_, side_1_, side_2_;
-
-  protected:
     std::vector<double> least_compliance_;
   };
 

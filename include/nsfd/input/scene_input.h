@@ -96,14 +96,15 @@ namespace nsfd
   {
     spring,
     unilateral,
-    rigid
+    rigid,
+    bonded ///< through the bulk, see dynamics/bonded.h
   };
 
   struct InterfaceInput
   {
     std::string name;
     Where where;
-    /// "rigid", "elastic", "contact" or the name of a cohesive law
+    /// "rigid", "bonded", "elastic", "contact" or the name of a cohesive law
     std::string law_name;
     /// for cohesive laws
     std::shared_ptr<const CohesiveLaw> law;
@@ -192,6 +193,7 @@ namespace nsfd
     ContactTarget contact_target = ContactTarget::energy_safe;
     Sliding sliding = Sliding::velocity;
     unsigned int maximum_halvings = 10;
+    double largest_overshoot = 0.05; ///< of the strength of a bonded point
   };
 
   /** What a run does where no equilibrium continues the last one. */
@@ -252,6 +254,13 @@ namespace nsfd
     std::string echo;
     /// only if the scene asks for equilibria
     std::optional<StaticInput> statics;
+    bool has_bonded_faces() const
+    {
+      for (const auto &block : interfaces)
+        if (block.intact == IntactFaces::bonded)
+          return true;
+      return false;
+    }
     /** Whether a step in time can come. */
     bool may_move() const
     {

@@ -24,6 +24,7 @@ namespace nsfd
     double friction = 0.;         ///< mu
     double friction_exponent = 1.; ///< kappa = (1-beta)^s; 0: kappa = 1
     double restitution = 0.;       ///< e
+    bool bonded = false;  ///< extrinsic, joined through the bulk before
     bool plateau = false; ///< extrinsic, T(d_m) also while it closes: form (5)
     double viscous_limit =
       std::numeric_limits<double>::infinity(); ///< of viscous traction, Pa
@@ -38,7 +39,8 @@ namespace nsfd
     elastic,    ///< two-sided spring, no damage
     cohesive,   ///< intrinsic, or extrinsic after activation
     rigid,      ///< extrinsic before activation: U = 0 up to the strength
-    free        ///< contact and friction only, beta = 0
+    free,       ///< contact and friction only, beta = 0
+    bonded      ///< carries through the bulk, not by an impulse
   };
 
   /**

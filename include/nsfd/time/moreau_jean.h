@@ -16,6 +16,10 @@ namespace nsfd
   class Ledger;
   template <int dim>
   class UniquenessBound;
+  template <int dim>
+  class BondedDynamics;
+  template <int dim>
+  class BulkTraction;
 
   /** A step that has to be redone shorter; the text says where and why. */
   class StepRejected : public std::runtime_error
@@ -31,6 +35,9 @@ namespace nsfd
     double ledger_defect = 0.; ///< of this step, relative
     unsigned int active = 0;   ///< points in contact or damaging
     bool beyond_unique = false; ///< step above the uniqueness bound
+    unsigned int released = 0;  ///< points that leave their bond
+    double overshoot = 0.; ///< their largest traction over the strength, less 1
+    double share = 1.; ///< of the step at which the first of them reached it
   };
 
   /**
@@ -42,10 +49,15 @@ namespace nsfd
   class MoreauJean
   {
   public:
+    /**
+     * Bonded faces are joined by @p bonded, which is @p dynamics, or if it is
+     * null by rigid rows.
+     */
     MoreauJean(const SceneInput &input,
                const Discretization<dim> &discretization,
                Dynamics<dim> &dynamics,
-               NonsmoothSolver<dim> &solver);
+               NonsmoothSolver<dim> &solver,
+               BondedDynamics<dim> *bonded = nullptr);
     ~MoreauJean();
 
     /** State at t = 0: positions, velocities, gaps, broken points. */
@@ -86,7 +98,7 @@ namespace nsfd
     {
       unsigned long long solves = 0, newton = 0, krylov = 0, sweeps = 0,
                          law_sweeps = 0, line_searches = 0, load_assemblies = 0,
-                         activation_rounds = 0;
+                         activation_rounds = 0, released_bonds = 0;
     };
     const Counters &counters() const { return counters_; }
 
@@ -105,10 +117,12 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     Dynamics<dim> &dynamics_;
     NonsmoothSolver<dim> &solver_;
+    BondedDynamics<dim> *bonded_; ///< or null
     OneStepProblem<dim> problem_;
     std::unique_ptr<UniquenessBound<dim>> uniqueness_;
     std::unique_ptr<Ledger<dim>> ledger_;
     std::unique_ptr<CrackPressure<dim>> crack_pressure_; ///< or null
+    std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
     bool has_extrinsic_ = false;
     std::vector<double> forces_, v_free_, work_;
     bool forces_known_ = false;

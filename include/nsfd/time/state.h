@@ -33,6 +33,8 @@ namespace nsfd
     std::vector<PointKind> kind;
     std::vector<std::uint8_t> two_sided; ///< intact spring, also in compression
     std::vector<std::uint8_t> contact;   ///< contact impulse in the last step
+    std::vector<double> bond_traction; ///< {sigma n} at bonded points, Pa, dim
+                                       ///< per point; empty without such
     std::vector<double> pressure; ///< in cracks in the last step, Pa; empty if
                                   ///< the scene has none
     std::optional<double> viscous_traction; ///< largest so far, Pa; if any

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "nsfd/dynamics/bulk_traction.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Bodies joined through the bulk at bonded points by the symmetric interior
+   * penalty method: these points have no row in W; instead
+   *
+   *     K = sum of body stiffnesses
+   *         + sum over bonded points w ( t.[v] + [u].t(v) + eta [u].[v] ),
+   *
+   * [u] the jump, t and eta those of BulkTraction. K is at least half of the
+   * sum of body stiffnesses on every mesh, at every degree and contrast,
+   * whichever points are bonded (theory.md).
+   */
+  template <int dim>
+  class BondedDynamics : public Dynamics<dim>
+  {
+  public:
+    using Dynamics<dim>::Dynamics;
+
+    /**
+     * From now on these points are bonded (one per point, not zero: bonded).
+     * Nothing happens if they were. Collective. @throws std::runtime_error if
+     * two rigid bodies share one.
+     */
+    virtual void set_bonds(const std::vector<std::uint8_t> &bonded) = 0;
+
+    bool bodies_are_apart() const override { return false; }
+  };
+
+  /** @p solver is `direct` (sparse Cholesky) or `cg`. */
+  template <int dim>
+  std::unique_ptr<BondedDynamics<dim>>
+  make_bonded_dynamics(const Communicator &communicator,
+                       const Bodies &bodies,
+                       const InterfacePoints<dim> &points,
+                       const std::string &solver);
+} // namespace nsfd

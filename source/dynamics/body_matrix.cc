@@ -1,0 +1,147 @@
+#include "body_matrix.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  BodyMatrix<dim>::BodyMatrix(const Bodies &bodies,
+                              const InterfacePoints<dim> &points,
+                              std::array<std::vector<PointTrace>, 2> traces,
+                              std::vector<Bond> bonds,
+                              const long long first_dof)
+    : bodies_(bodies)
+    , points_(points)
+    , traces_(std::move(traces))
+    , bonds_(std::move(bonds))
+    , first_dof_(first_dof)
+    , neighbors_(bodies.size())
+  {
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      neighbors_[b].push_back(
+        {first_dof + static_cast<long long>(bodies.first_dof[b]),
+         unsigned(bodies.first_dof[b + 1] - bodies.first_dof[b])});
+    for (const auto &face : points.faces)
+      for (unsigned int s = 0; s < 2; ++s) {
+        const PointTrace &other = traces_[1 - s][face.first];
+        if (face.bodies[s] >= 0 && other.first >= 0)
+          neighbors_[face.bodies[s]].push_back({other.first, other.n_dofs});
+      }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      auto &list = neighbors_[b];
+      std::sort(list.begin(), list.end(), [](const auto &a, const auto &c) {
+        return a.first < c.first;
+      });
+      list.erase(std::unique(list.begin(), list.end(),
+                             [](const auto &a, const auto &c) {
+                               return a.first == c.first;
+                             }),
+                 list.end());
+      unsigned int width = 0;
+      for (auto &neighbor : list) {
+        neighbor.offset = width;
+        width += neighbor.n_dofs;
+      }
+      for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
+           ++i) {
+        for (const auto &neighbor : list)
+          for (unsigned int j = 0; j < neighbor.n_dofs; ++j)
+            matrix_.column.push_back(neighbor.first + j);
+        matrix_.start.push_back(static_cast<long long>(matrix_.column.size()));
+      }
+    }
+    matrix_.value.resize(matrix_.column.size());
+  }
+
+  /** First entry of the columns from @p first on in the first row of a body. */
+  template <int dim>
+  double *BodyMatrix<dim>::block(const unsigned int body,
+                                 const long long first, std::size_t &stride)
+  {
+    const auto &list = neighbors_[body];
+    const auto found =
+      std::lower_bound(list.begin(), list.end(), first,
+                       [](const auto &a, const long long value) {
+                         return a.first < value;
+                       });
+    const std::size_t row = bodies_.first_dof[body];
+    stride = std::size_t(matrix_.start[row + 1] - matrix_.start[row]);
+    return &matrix_.value[std::size_t(matrix_.start[row]) + found->offset];
+  }
+
+  template <int dim>
+  void BodyMatrix<dim>::add_face(
+    const typename InterfacePoints<dim>::Face &face, const unsigned int s,
+    const unsigned int t, const double factor,
+    const std::vector<std::uint8_t> &bonded, const double *stiffness)
+  {
+    if (face.bodies[s] < 0 || traces_[t][face.first].first < 0)
+      return;
+    std::size_t stride;
+    double *out = block(unsigned(face.bodies[s]), traces_[t][face.first].first,
+                        stride);
+    for (unsigned int p = face.first; p < face.first + face.count; ++p) {
+      const PointTrace &row = traces_[s][p], &column = traces_[t][p];
+      const unsigned int n = row.n_dofs, m = column.n_dofs;
+      for (unsigned int k = 0; k < dim; ++k) {
+        // a' (alpha a + beta t) + t' (beta a) with the rows of either side
+        double alpha = stiffness ? stiffness[p * dim + k] : 0.;
+        double row_beta = 0., column_beta = 0.;
+        if (bonded[p]) {
+          const double f = factor * points_.weight[p];
+          const auto omega = [&](const unsigned int side) {
+            return side == 0 ? bonds_[p].weight_1 : bonds_[p].weight_2;
+          };
+          alpha += f * bonds_[p].penalty;
+          row_beta = f * omega(s);
+          column_beta = f * omega(t);
+        }
+        if (alpha == 0.)
+          continue;
+        const double *a = &row.jump[k * n], *c = &column.jump[k * m];
+        if (!bonded[p]) {
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < m; ++j)
+              out[i * stride + j] += alpha * a[i] * c[j];
+          continue;
+        }
+        const double *u = &row.traction[k * n], *v = &column.traction[k * m];
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < m; ++j)
+            out[i * stride + j] +=
+              a[i] * (alpha * c[j] + column_beta * v[j]) +
+              row_beta * u[i] * c[j];
+      }
+    }
+  }
+
+  template <int dim>
+  const SparseRows &
+  BodyMatrix<dim>::assemble(const double factor,
+                            const std::vector<std::uint8_t> &bonded,
+                            const double *stiffness)
+  {
+    std::fill(matrix_.value.begin(), matrix_.value.end(), 0.);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const BodyClass &body = bodies_.classes[bodies_.class_of[b]];
+      std::size_t stride;
+      double *out =
+        block(unsigned(b),
+              first_dof_ + static_cast<long long>(bodies_.first_dof[b]),
+              stride);
+      for (unsigned int i = 0; i < body.n_dofs; ++i)
+        for (unsigned int j = 0; j < body.n_dofs; ++j)
+          out[i * stride + j] =
+            body.mass(i, j) +
+            (body.rigid ? 0. : factor * body.stiffness(i, j));
+    }
+    for (const auto &face : points_.faces)
+      for (unsigned int s = 0; s < 2; ++s)
+        for (unsigned int t = 0; t < 2; ++t)
+          add_face(face, s, t, factor, bonded, stiffness);
+    return matrix_;
+  }
+
+  template class BodyMatrix<2>;
+  template class BodyMatrix<3>;
+} // namespace nsfd

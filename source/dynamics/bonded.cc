@@ -1,0 +1,329 @@
+#include "nsfd/dynamics/bonded.h"
+
+#include "body_loops.h"
+#include "body_matrix.h"
+#include "condensed.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace nsfd
+{
+  namespace
+  {
+    template <int dim>
+    class Bonded final : public BondedDynamics<dim>
+    {
+    public:
+      using Operator = typename Dynamics<dim>::Operator;
+
+      Bonded(const Communicator &communicator,
+             const Bodies &bodies,
+             const InterfacePoints<dim> &points,
+             const std::string &solver);
+
+      void reinit(double time_step, double theta) override;
+      void set_bonds(const std::vector<std::uint8_t> &bonded) override;
+      void apply_delassus(const double *impulse,
+                          double *velocity) const override;
+      void add_velocity_change(const double *impulse,
+                               double *velocity) const override;
+      void apply(Operator op, const double *x, double *y) const override;
+      void prepare_preconditioner(const std::vector<double> &D) override;
+      void precondition(const double *r, double *z) const override;
+
+    private:
+      void add_bonds(const double *x, double *y) const;
+      void solve(const double *b, double *x) const;
+      void update() const;
+      bool is_row(const std::size_t k) const { return !bonded_[k / dim]; }
+      double least_compliance(std::size_t row, double W) const;
+      bool condense() const;
+
+      BulkTraction<dim> bulk_;
+      std::vector<Block> traction_transposed_; ///< per class
+      std::vector<std::uint8_t> bonded_; ///< per point
+      mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
+      mutable SparseCholesky factor_;  ///< of M_hat
+      SparseCholesky joined_;          ///< of A = M_hat + H^T D^{-1} H
+      mutable bool valid_ = false;     ///< factor_
+      bool joined_valid_ = false;
+      mutable std::size_t n_solves_ = 0; ///< with the present factor
+      mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
+      std::vector<double> D_, inverse_D_;
+      mutable std::vector<double> rows_, columns_, work_, point_work_,
+        body_work_;
+    };
+
+    template <int dim>
+    Bonded<dim>::Bonded(const Communicator &communicator,
+                        const Bodies &bodies,
+                        const InterfacePoints<dim> &points,
+                        const std::string &)
+      : BondedDynamics<dim>(communicator, bodies, points)
+      , bulk_(*this)
+      , bonded_(points.n_points, 0)
+    {
+      // K >= half of the bodies' own: their blocks bound W from above
+      this->stiffness_share_ = 0.5;
+      for (const auto &body : bodies.classes)
+        traction_transposed_.push_back(body.traction.transposed());
+      const long long mine = static_cast<long long>(bodies.n_dofs());
+      long long sum = 0;
+      MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
+      matrix_ = std::make_unique<BodyMatrix<dim>>(
+        bodies, points, point_traces(*this, sum - mine, true), bulk_.bonds(),
+        sum - mine);
+    }
+
+    template <int dim>
+    void Bonded<dim>::reinit(const double time_step, const double theta)
+    {
+      if (time_step != this->time_step_ || theta != this->theta_)
+        valid_ = joined_valid_ = false;
+      Dynamics<dim>::reinit(time_step, theta);
+    }
+
+    template <int dim>
+    void Bonded<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
+    {
+      if (!this->communicator_.any(bonded != bonded_))
+        return;
+      bool impossible = false;
+      for (std::size_t i = 0; i < bonded.size(); ++i)
+        impossible |= bonded[i] && bulk_.bonds()[i].penalty == 0.;
+      if (this->communicator_.any(impossible))
+        throw std::runtime_error("two rigid bodies share a bonded face: join "
+                                 "them with the law `rigid`");
+      bonded_ = bonded;
+      valid_ = joined_valid_ = false;
+    }
+
+    /** Factor M_hat if the step or the bonds have changed. */
+    template <int dim>
+    void Bonded<dim>::update() const
+    {
+      if (valid_)
+        return;
+      const double f =
+        this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
+      factor_.factor(matrix_->assemble(f, bonded_, nullptr));
+      ++this->counters_.global_factorisations;
+      valid_ = true;
+      n_solves_ = 0;
+      condensed_.clear();
+    }
+
+    template <int dim>
+    void Bonded<dim>::solve(const double *b, double *x) const
+    {
+      update();
+      factor_.solve(b, x);
+      ++n_solves_;
+      ++this->counters_.global_solves;
+    }
+
+    /** y += K_bonds x. */
+    template <int dim>
+    void Bonded<dim>::add_bonds(const double *x, double *y) const
+    {
+      const auto &points = this->points_;
+      const auto &bonds = bulk_.bonds();
+      const std::size_t n = points.n_points;
+      std::vector<double> jump(n * dim), traction(n * dim);
+      this->relative_velocity(x, jump.data());
+      bulk_.evaluate(x, traction.data());
+      for (std::size_t i = 0; i < n; ++i)
+        for (unsigned int c = 0; c < dim; ++c) {
+          double &u = jump[i * dim + c], &t = traction[i * dim + c];
+          const double w = bonded_[i] ? points.weight[i] : 0.;
+          t = w * (t + bonds[i].penalty * u);
+          u *= w;
+        }
+      body_work_.resize(this->bodies_.n_dofs());
+      this->generalised_impulse(traction.data(), body_work_.data());
+      for (std::size_t k = 0; k < body_work_.size(); ++k)
+        y[k] += body_work_[k];
+      // the tractions of the test functions, each body with its share
+      this->to_cartesian(jump.data());
+      const auto &bodies = this->bodies_;
+      const auto gather = [&](const unsigned int b, double *in,
+                              const unsigned int stride) {
+        const std::size_t first = bodies.first_slot[b],
+                          n_slots = bodies.first_slot[b + 1] - first;
+        for (std::size_t s = 0; s < n_slots; ++s) {
+          const std::size_t p = bodies.slot_point[first + s];
+          const bool second = bodies.slot_sign[first + s] > 0;
+          const double share = p == n     ? 0.
+                               : second ? -bonds[p].weight_2
+                                        : bonds[p].weight_1;
+          for (unsigned int c = 0; c < dim; ++c)
+            in[(s * dim + c) * stride] = share * this->cartesian_[p * dim + c];
+        }
+      };
+      for_all_bodies(
+        bodies, [this](const std::size_t k) -> const Block & {
+          return traction_transposed_[k];
+        },
+        gather, dof_scatter<true>(bodies, y));
+    }
+
+    template <int dim>
+    void Bonded<dim>::apply(const Operator op, const double *x,
+                            double *y) const
+    {
+      if (op == Operator::inverse) {
+        solve(x, y);
+        return;
+      }
+      Dynamics<dim>::apply(op, x, y);
+      if (op == Operator::stiffness)
+        add_bonds(x, y);
+    }
+
+    template <int dim>
+    void Bonded<dim>::apply_delassus(const double *impulse,
+                                     double *velocity) const
+    {
+      ++this->counters_.delassus;
+      if (condense()) {
+        condensed_.apply(impulse, velocity);
+        return;
+      }
+      rows_.resize(this->bodies_.n_dofs());
+      columns_.resize(rows_.size());
+      this->generalised_impulse(impulse, rows_.data());
+      solve(rows_.data(), columns_.data());
+      this->relative_velocity(columns_.data(), velocity);
+    }
+
+    template <int dim>
+    void Bonded<dim>::add_velocity_change(const double *impulse,
+                                          double *velocity) const
+    {
+      rows_.resize(this->bodies_.n_dofs());
+      columns_.resize(rows_.size());
+      this->generalised_impulse(impulse, rows_.data());
+      solve(rows_.data(), columns_.data());
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        velocity[k] += columns_[k];
+    }
+
+    /**
+     * W of the rows as a dense matrix, on one rank: once as many systems have
+     * been solved as its columns cost, and if it fits.
+     */
+    template <int dim>
+    bool Bonded<dim>::condense() const
+    {
+      if (this->communicator_.size() > 1)
+        return false;
+      update();
+      if (!condensed_.empty())
+        return true;
+      std::vector<std::size_t> rows;
+      for (std::size_t k = 0; k < bonded_.size() * dim; ++k)
+        if (is_row(k))
+          rows.push_back(k);
+      // many columns at once cost a quarter of as many single ones
+      if (rows.empty() || rows.size() > CondensedDelassus::largest ||
+          (rows.size() > 64 && 4 * n_solves_ < rows.size()))
+        return false;
+      const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
+      constexpr std::size_t batch = 64;
+      std::vector<double> B(n * batch), X(n * batch),
+        impulse(bonded_.size() * dim, 0.), velocity(impulse.size());
+      condensed_.reset(impulse.size(), rows);
+      for (std::size_t first = 0; first < m; first += batch) {
+        const std::size_t count = std::min(batch, m - first);
+        for (std::size_t c = 0; c < count; ++c) {
+          impulse[rows[first + c]] = 1.;
+          this->generalised_impulse(impulse.data(), &B[c * n]);
+          impulse[rows[first + c]] = 0.;
+        }
+        factor_.solve(B.data(), X.data(), count);
+        for (std::size_t c = 0; c < count; ++c) {
+          this->relative_velocity(&X[c * n], velocity.data());
+          condensed_.set_column(first + c, velocity.data());
+        }
+      }
+      this->counters_.global_solves += m;
+      return true;
+    }
+
+    template <int dim>
+    double Bonded<dim>::least_compliance(const std::size_t row,
+                                         const double W) const
+    {
+      return this->least_compliance_.empty() ? 1e-2 * W
+                                             : this->least_compliance_[row];
+    }
+
+    template <int dim>
+    void Bonded<dim>::prepare_preconditioner(const std::vector<double> &D)
+    {
+      if (condense() && condensed_.can_factor()) {
+        condensed_.factor(D);
+        return;
+      }
+      if (joined_valid_ && D == D_)
+        return;
+      D_ = D;
+      inverse_D_.assign(D.size(), 0.);
+      for (std::size_t f = 0; f < this->points_.faces.size(); ++f) {
+        const auto &face = this->points_.faces[f];
+        const unsigned int n = face.count * dim;
+        const double *W = this->face_block(f);
+        for (unsigned int k = 0; k < n; ++k) {
+          const std::size_t row = std::size_t(face.first) * dim + k;
+          if (D[row] >= 0. && is_row(row))
+            inverse_D_[row] =
+              1. / std::max(D[row], least_compliance(row, W[k * n + k]));
+        }
+      }
+      const double f =
+        this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
+      joined_.factor(matrix_->assemble(f, bonded_, inverse_D_.data()));
+      ++this->counters_.global_factorisations;
+      joined_valid_ = true;
+    }
+
+    template <int dim>
+    void Bonded<dim>::precondition(const double *r, double *z) const
+    {
+      if (!condensed_.empty() && condensed_.can_factor()) {
+        condensed_.solve(r, z);
+        return;
+      }
+      const std::size_t n = inverse_D_.size();
+      point_work_.resize(n);
+      rows_.resize(this->bodies_.n_dofs());
+      columns_.resize(rows_.size());
+      for (std::size_t k = 0; k < n; ++k)
+        point_work_[k] = inverse_D_[k] * r[k];
+      this->generalised_impulse(point_work_.data(), rows_.data());
+      joined_.solve(rows_.data(), columns_.data());
+      ++this->counters_.global_solves;
+      this->relative_velocity(columns_.data(), z);
+      for (std::size_t k = 0; k < n; ++k)
+        z[k] = inverse_D_[k] * (r[k] - z[k]);
+    }
+  } // namespace
+
+  template <int dim>
+  std::unique_ptr<BondedDynamics<dim>>
+  make_bonded_dynamics(const Communicator &communicator,
+                       const Bodies &bodies,
+                       const InterfacePoints<dim> &points,
+                       const std::string &solver)
+  {
+    return std::make_unique<Bonded<dim>>(communicator, bodies, points, solver);
+  }
+
+  template std::unique_ptr<BondedDynamics<2>>
+  make_bonded_dynamics<2>(const Communicator &, const Bodies &,
+                          const InterfacePoints<2> &, const std::string &);
+  template std::unique_ptr<BondedDynamics<3>>
+  make_bonded_dynamics<3>(const Communicator &, const Bodies &,
+                          const InterfacePoints<3> &, const std::string &);
+} // namespace nsfd

@@ -1,0 +1,104 @@
+#include "bond_release.h"
+
+#include "nsfd/nonsmooth/point_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Pull and shear as the strength is compared with them, over it. */
+    template <int dim>
+    double utilisation(const OneStepProblem<dim> &problem, const std::size_t i,
+                       const double *traction)
+    {
+      const double r2 =
+        problem.interactions[problem.interaction[i]].shear_weight;
+      const double pull = std::max(0., traction[0]);
+      double square = pull * pull;
+      for (unsigned int c = 1; c < dim; ++c)
+        square += r2 > 0. ? traction[c] * traction[c] / r2 : 0.;
+      return std::sqrt(square) / point_strength<dim>(problem, i);
+    }
+  } // namespace
+
+  std::vector<std::uint8_t> bonded_points(const State &state)
+  {
+    std::vector<std::uint8_t> bonded(state.kind.size());
+    std::transform(state.kind.begin(), state.kind.end(), bonded.begin(),
+                   [](const PointKind kind) {
+                     return kind == PointKind::bonded;
+                   });
+    return bonded;
+  }
+
+  template <int dim>
+  void set_bond_tractions(const BulkTraction<dim> &bulk, State &state)
+  {
+    state.bond_traction.resize(state.jump.size());
+    bulk.evaluate(state.displacement.data(), state.bond_traction.data());
+    for (std::size_t i = 0; i < state.kind.size(); ++i)
+      if (state.kind[i] != PointKind::bonded)
+        std::fill_n(&state.bond_traction[i * dim], dim, 0.);
+  }
+
+  template <int dim>
+  BondReport release_bonds(const OneStepProblem<dim> &problem,
+                           const Dynamics<dim> &dynamics,
+                           const BulkTraction<dim> &bulk, const State &old,
+                           State &next)
+  {
+    const auto &communicator = dynamics.communicator();
+    set_bond_tractions(bulk, next);
+    BondReport report;
+    std::vector<double> stored(problem.n_owned, 0.);
+    unsigned int released = 0;
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      if (next.kind[i] != PointKind::bonded ||
+          !problem.interactions[problem.interaction[i]].law)
+        continue;
+      const double *traction = &next.bond_traction[i * dim];
+      const double now = utilisation(problem, i, traction);
+      if (now < 1.)
+        continue;
+      const double before =
+        utilisation(problem, i, &old.bond_traction[i * dim]);
+      report.overshoot = std::max(report.overshoot, now - 1.);
+      if (now > before)
+        report.share =
+          std::min(report.share, std::max(0., 1. - before) / (now - before));
+      next.kind[i] = PointKind::rigid;
+      for (unsigned int c = 0; c < dim; ++c)
+        next.impulse[i * dim + c] =
+          -problem.weight[i] * problem.time_step * traction[c];
+      if (i < problem.n_owned) {
+        if (!dynamics.bodies_are_apart())
+          stored[i] = bulk.bond_energy(i, &next.jump[i * dim], traction);
+        ++released;
+      }
+    }
+    report.released = unsigned(communicator.sum_integer(released));
+    if (report.released == 0)
+      return report;
+    report.overshoot = communicator.max(report.overshoot);
+    report.share = communicator.min(report.share);
+    const double energy = communicator.sum(stored);
+    next.energy.elastic -= energy;
+    next.energy.numerical += energy;
+    set_bond_tractions(bulk, next);
+    return report;
+  }
+
+  template void set_bond_tractions(const BulkTraction<2> &, State &);
+  template void set_bond_tractions(const BulkTraction<3> &, State &);
+  template BondReport release_bonds(const OneStepProblem<2> &,
+                                    const Dynamics<2> &,
+                                    const BulkTraction<2> &, const State &,
+                                    State &);
+  template BondReport release_bonds(const OneStepProblem<3> &,
+                                    const Dynamics<3> &,
+                                    const BulkTraction<3> &, const State &,
+                                    State &);
+} // namespace nsfd

@@ -1,0 +1,127 @@
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+// Faces joined through the bulk against exact values: the same scenes as with
+// rigid rows, and what rigid rows cannot do.
+
+namespace end_to_end
+{
+  namespace
+  {
+    using Settings = std::vector<std::string>;
+
+    const std::string elsewhere = "Interface: elsewhere/law=bonded",
+                      midline = "Interface: midline/intact faces=bonded",
+                      global = "Solver/path=global",
+                      no_fields = "Output/fields=false";
+  } // namespace
+
+  // One plane in a body without other rows: the toughness at any step.
+  class BondedMidplaneTest : public testing::TestWithParam<double>
+  {
+  };
+
+  TEST_P(BondedMidplaneTest, TakesTheToughness)
+  {
+    const Workspace workspace;
+    Settings settings{elsewhere, midline, global, no_fields};
+    settings.push_back("Time/step=" + std::to_string(GetParam()) +
+                       " crossings");
+    const Result result =
+        good_run(workspace, "midplane", {scene("midplane"), settings});
+    ASSERT_TRUE(result.completed());
+    expect_below("damage over 5 uJ/m, less 1",
+                 std::abs(result.dissipated("damage") / 5e-6 - 1.), 1e-9);
+    EXPECT_EQ(result.number("fragments"), 2);
+    EXPECT_EQ(result.counter("released_bonds"), 80.);
+    // 6e-3 of the toughness at 5 crossings, 2e-4 at 1 with this criterion
+    expect_below("energy left in broken bonds over the toughness",
+                 std::abs(result.dissipated("numerical")) / 5e-6,
+                 GetParam() > 1. ? 1e-2 : 1e-3);
+    if (GetParam() < 1.) {
+      expect_below("separation time over 5.57 ns, less 1",
+                   std::abs(result.error("separation_time") / 5.57e-9 - 1.),
+                   0.02);
+      expect_below("peak force over 3.35 kN/m, less 1",
+                   std::abs(result.error("peak_force") / 3.35e3 - 1.), 0.05);
+    }
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Crossings, BondedMidplaneTest,
+                           testing::Values(5., 1., 0.6), [](const auto &info) {
+                             return "step_" + std::to_string(info.index);
+                           });
+
+  // A smooth mode of vibration: order p + 1, as with rigid rows.
+  class BondedModeTest : public testing::TestWithParam<unsigned int>
+  {
+  };
+
+  TEST_P(BondedModeTest, OrderOfTheDisplacement)
+  {
+    const unsigned int degree = GetParam();
+    const Workspace workspace;
+    std::vector<double> errors;
+    for (const unsigned int n : {8u, 16u}) {
+      const std::string cells = std::to_string(n);
+      const Result result = good_run(
+          workspace, cells,
+          {scene("mode"),
+           {"Mesh/cells=" + cells + ", 1",
+            "Discretization/degree=" + std::to_string(degree),
+            "Interface: joints/law=bonded", global, no_fields,
+            "Time/step=0.2 us"}});
+      ASSERT_TRUE(result.completed());
+      errors.push_back(result.error("displacement_L2"));
+    }
+    const double order = std::log2(errors[0] / errors[1]);
+    std::printf("  degree %u: %.2e %.2e, order %.2f\n", degree, errors[0],
+                errors[1], order);
+    EXPECT_GT(order, degree + 1 - 0.3);
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Degrees, BondedModeTest, testing::Values(1u, 2u, 3u),
+                           [](const auto &info) {
+                             return "degree_" + std::to_string(info.param);
+                           });
+
+  // Every face may break, without compliance before: waves and a spall, on
+  // rigid rows and through the bulk.
+  class BondedEverywhereTest : public testing::TestWithParam<std::string>
+  {
+  };
+
+  TEST_P(BondedEverywhereTest, TearsThePlateApart)
+  {
+    const Workspace workspace;
+    const std::string small = "Mesh/cells=10, 10";
+    const Result result = good_run(
+        workspace, "plate",
+        {std::filesystem::path(NSFD_SOURCE_DIR) / "prm" / "benchmarks" /
+             "fracture_extrinsic.prm",
+         {small, "Solver/path=" + GetParam(), "Time/step=0.2 crossings",
+          no_fields}});
+    ASSERT_TRUE(result.completed());
+    EXPECT_GE(result.number("fragments"), 2);
+    expect_below("ledger", result.number("ledger_defect_max"), 1e-9);
+    // what breaks takes its toughness: at least one section of 10 um
+    EXPECT_GE(result.dissipated("damage"), 5e-6 * 0.9);
+    expect_below("energy left in broken bonds over damage",
+                 std::abs(result.dissipated("numerical")),
+                 1e-2 * result.dissipated("damage"));
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Paths, BondedEverywhereTest,
+                           testing::Values("element-wise", "global"),
+                           [](const auto &info) {
+                             return info.param == "global" ? "global"
+                                                           : "elementwise";
+                           });
+} // namespace end_to_end
