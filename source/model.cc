@@ -123,28 +123,6 @@ namespace nsfd
                                          input.time.maximum_halvings, start);
   }
 
-  /**
-   * Bonded faces: rigid rows cost little in short steps if most faces may
-   * break anyway; elsewhere the faces without a law had better have no rows.
-   */
-  template <int dim>
-  bool Model<dim>::joins_through_bulk(const SceneInput &input,
-                                      const Communicator &communicator) const
-  {
-    const double crossing = discretization->crossing_time();
-    if (crossing > 0. && dynamic_step(input) > 5. * crossing)
-      return true;
-    std::size_t lasting = 0, breakable = 0;
-    for (const PointOrigin &origin : discretization->origins())
-      if (origin.kind == PointOrigin::Kind::interface) {
-        const auto &block = input.interfaces[origin.block];
-        ++(block.intact == IntactFaces::bonded && !block.law ? lasting
-                                                             : breakable);
-      }
-    return communicator.sum_integer(lasting) >
-           communicator.sum_integer(breakable);
-  }
-
   /** Short steps: face blocks; long ones: a global matrix. */
   template <int dim>
   void Model<dim>::build_dynamics(const SceneInput &input,
@@ -153,10 +131,7 @@ namespace nsfd
     const auto &bodies = discretization->bodies();
     const auto &points = discretization->points();
     const double crossing = discretization->crossing_time();
-    path = input.solver.path;
-    if (input.has_bonded_faces() &&
-        (path == "global" ||
-         (path == "auto" && joins_through_bulk(input, communicator)))) {
+    if (input.has_bonded_faces()) {
       path = "global";
       auto joined = make_bonded_dynamics<dim>(communicator, bodies, points,
                                               input.solver.linear_solver);

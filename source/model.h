@@ -50,8 +50,6 @@ namespace nsfd
     void build_control(const SceneInput &input,
                        std::vector<std::string> &problems);
     double dynamic_step(const SceneInput &input) const;
-    bool joins_through_bulk(const SceneInput &input,
-                            const Communicator &communicator) const;
     void build_dynamics(const SceneInput &input,
                         const Communicator &communicator);
     void find_unused_blocks(const SceneInput &input,

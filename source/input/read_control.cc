@@ -37,6 +37,16 @@ namespace nsfd
     solver.path =
         reader.choice("path", "auto", {"auto", "element-wise", "global"},
                       "auto, element-wise or global");
+    if (solver.path == "element-wise" && scene.has_bonded_faces())
+      reader.error("path",
+                   "path = element-wise contradicts bonded faces, which couple "
+                   "the bodies",
+                   "write auto, or take rigid faces");
+    if (solver.method == "gauss seidel" && scene.has_bonded_faces())
+      reader.error("method",
+                   "method = gauss seidel works body by body, and bonded faces "
+                   "couple the bodies",
+                   "write auto, or take rigid faces");
     solver.linear_solver =
         reader.choice("linear solver", "auto", {"auto", "direct", "cg"},
                       "of the global path: auto, direct or cg");

@@ -25,7 +25,6 @@ namespace nsfd
     {
       return origins[point].kind == PointOrigin::Kind::interface &&
              problem.interactions[problem.interaction[point]].law &&
-             !problem.interactions[problem.interaction[point]].bonded &&
              is_joined(problem, point * dim);
     }
 

@@ -22,6 +22,40 @@ namespace nsfd
         square += r2 > 0. ? traction[c] * traction[c] / r2 : 0.;
       return std::sqrt(square) / point_strength<dim>(problem, i);
     }
+    /**
+     * A law that is set-valued at u = 0 leaves open what a point carries that
+     * does not move; joined neighbours leave it open again. So the law starts
+     * on its envelope, at the opening that has taken this share of the
+     * toughness, with the jump that carries the traction of the bond there.
+     * Returns the energy that it stores with that, in J.
+     */
+    constexpr double share_at_start = 1e-9;
+
+    template <int dim>
+    double start_law(const OneStepProblem<dim> &problem, const std::size_t i,
+                   const double utilisation, const double *traction,
+                   State &next)
+    {
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      const double opening = share_at_start * interaction.law->toughness() /
+                             interaction.law->strength() /
+                             problem.opening_factor[i];
+      const double r2 = interaction.shear_weight;
+      const double compliance =
+        opening / (utilisation * point_strength<dim>(problem, i));
+      next.kind[i] = PointKind::cohesive;
+      next.opening_max[i] = opening;
+      for (unsigned int c = 0; c < dim; ++c) {
+        double &u = next.jump[i * dim + c];
+        if (c == 0)
+          u = compliance * std::max(0., traction[0]);
+        else
+          u = r2 > 0. ? compliance * traction[c] / r2 : 0.;
+        next.impulse[i * dim + c] = -problem.weight[i] * problem.time_step *
+                                    traction[c] / utilisation;
+      }
+      return problem.weight[i] * point_strength<dim>(problem, i) * opening / 2.;
+    }
   } // namespace
 
   std::vector<std::uint8_t> bonded_points(const State &state)
@@ -46,14 +80,13 @@ namespace nsfd
 
   template <int dim>
   BondReport release_bonds(const OneStepProblem<dim> &problem,
-                           const Dynamics<dim> &dynamics,
                            const BulkTraction<dim> &bulk, const State &old,
                            State &next)
   {
-    const auto &communicator = dynamics.communicator();
+    const auto &communicator = bulk.dynamics().communicator();
     set_bond_tractions(bulk, next);
     BondReport report;
-    std::vector<double> stored(problem.n_owned, 0.);
+    std::vector<double> in_bonds(problem.n_owned, 0.), in_laws(in_bonds);
     unsigned int released = 0;
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       if (next.kind[i] != PointKind::bonded ||
@@ -69,24 +102,24 @@ namespace nsfd
       if (now > before)
         report.share =
           std::min(report.share, std::max(0., 1. - before) / (now - before));
-      next.kind[i] = PointKind::rigid;
-      for (unsigned int c = 0; c < dim; ++c)
-        next.impulse[i * dim + c] =
-          -problem.weight[i] * problem.time_step * traction[c];
       if (i < problem.n_owned) {
-        if (!dynamics.bodies_are_apart())
-          stored[i] = bulk.bond_energy(i, &next.jump[i * dim], traction);
+        in_bonds[i] = bulk.bond_energy(i, &next.jump[i * dim], traction);
         ++released;
       }
+      const double stored = start_law(problem, i, now, traction, next);
+      if (i < problem.n_owned)
+        in_laws[i] = stored;
     }
     report.released = unsigned(communicator.sum_integer(released));
     if (report.released == 0)
       return report;
     report.overshoot = communicator.max(report.overshoot);
     report.share = communicator.min(report.share);
-    const double energy = communicator.sum(stored);
-    next.energy.elastic -= energy;
-    next.energy.numerical += energy;
+    const double lost = communicator.sum(in_bonds),
+                 gained = communicator.sum(in_laws);
+    next.energy.elastic -= lost;
+    next.energy.cohesive += gained;
+    next.energy.numerical += lost - gained;
     set_bond_tractions(bulk, next);
     return report;
   }
@@ -94,11 +127,9 @@ namespace nsfd
   template void set_bond_tractions(const BulkTraction<2> &, State &);
   template void set_bond_tractions(const BulkTraction<3> &, State &);
   template BondReport release_bonds(const OneStepProblem<2> &,
-                                    const Dynamics<2> &,
                                     const BulkTraction<2> &, const State &,
                                     State &);
   template BondReport release_bonds(const OneStepProblem<3> &,
-                                    const Dynamics<3> &,
                                     const BulkTraction<3> &, const State &,
                                     State &);
 } // namespace nsfd

@@ -23,15 +23,13 @@ namespace nsfd
 
   /**
    * After a step: bonded points whose mean bulk traction has reached the
-   * strength of their law are left to it, set-valued at the jump where they
-   * are. What a bond of BondedDynamics had stored, w (t.u + eta u^2 / 2), goes
-   * from the elastic energy to the numerical line (a rigid row stores nothing);
-   * the impulse of the next step starts from the traction, so that it is
+   * strength of their law are left to it. What the bond had stored, w (t.u +
+   * eta u^2 / 2), goes from the elastic energy to the numerical line; the
+   * impulse of the next step starts from the traction, so that it is
    * continuous. Collective.
    */
   template <int dim>
   BondReport release_bonds(const OneStepProblem<dim> &problem,
-                           const Dynamics<dim> &dynamics,
                            const BulkTraction<dim> &bulk, const State &old,
                            State &next);
 } // namespace nsfd

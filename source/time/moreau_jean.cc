@@ -131,7 +131,7 @@ namespace nsfd
     ledger_->book(problem_, evaluation, forces_, old, next, report);
     if (bulk_) {
       const BondReport bonds =
-        release_bonds(problem_, dynamics_, *bulk_, old, next);
+        release_bonds(problem_, *bulk_, old, next);
       report.released = bonds.released;
       report.overshoot = bonds.overshoot;
       report.share = bonds.share;

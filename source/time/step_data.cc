@@ -19,7 +19,6 @@ namespace nsfd
       interaction.friction = block.friction;
       interaction.friction_exponent = block.friction_exponent;
       interaction.restitution = block.restitution;
-      interaction.bonded = block.intact == IntactFaces::bonded;
       interaction.plateau = block.plateau;
       interaction.viscous_limit = block.viscous_limit;
       interaction.wear = block.sliding.wear;
@@ -72,13 +71,10 @@ namespace nsfd
       return 0.;
     }
 
-    /**
-     * Joints, springs in compression, contact by forecast. @p rows_bond: bonded
-     * points are rigid rows here, not part of the bodies.
-     */
+    /** Joints, springs in compression, contact by forecast. */
     template <int dim>
     void set_point(const TimeInput &time, const double extent,
-                   const bool rows_bond, const State &old, const std::size_t i,
+                   const State &old, const std::size_t i,
                    OneStepProblem<dim> &problem)
     {
       constexpr auto all_components = std::uint8_t((1u << dim) - 1u);
@@ -94,18 +90,14 @@ namespace nsfd
       problem.contact[i] = 0;
       problem.mask[i] = 0;
       problem.compression_stiffness[i] = 0.;
-      const bool bonded = old.kind[i] == PointKind::bonded;
-      if (bonded && !rows_bond) {
+      if (old.kind[i] == PointKind::bonded) {
         problem.kind[i] = PointKind::free; // without contact: no impulse
         return;
       }
-      if (old.kind[i] == PointKind::rigid || bonded) {
-        // joined until activate() finds that the strength is reached; one that
-        // has left its bond is there already
-        if (!interaction.bonded || bonded) {
-          problem.kind[i] = PointKind::prescribed;
-          problem.mask[i] = all_components;
-        }
+      if (old.kind[i] == PointKind::rigid) {
+        // joined until activate() finds that the strength is reached
+        problem.kind[i] = PointKind::prescribed;
+        problem.mask[i] = all_components;
         for (unsigned int c = 0; c < dim; ++c) {
           problem.given_velocity[i * dim + c] = 0.;
           // the law counts from where the joint lets go, not from its drift
@@ -121,10 +113,8 @@ namespace nsfd
         // A closed point must not open by what the solver left of its position;
         // one without restitution stays a candidate as long as it rests.
         const bool rests = old.contact[i] && interaction.restitution == 0.;
-        problem.contact[i] =
-            (interaction.bonded && old.kind[i] == PointKind::rigid) ||
-            u_N + h * time.forecast_gamma1 * U_N <=
-                (rests ? 1e-9 : 1e-14) * extent;
+        problem.contact[i] = u_N + h * time.forecast_gamma1 * U_N <=
+                             (rests ? 1e-9 : 1e-14) * extent;
         // restitution belongs to broken points
         const double e =
             old.kind[i] == PointKind::free ? interaction.restitution : 0.;
@@ -333,8 +323,7 @@ namespace nsfd
       problem.jump_free[k] =
           old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
     for (std::size_t i = 0; i < problem.n_points; ++i)
-      set_point(input.time, discretization.extent(),
-                dynamics.bodies_are_apart(), old, i, problem);
+      set_point(input.time, discretization.extent(), old, i, problem);
     set_viscosity(input, discretization, old, problem);
     set_dilatancy(input, discretization, old, problem);
     set_motion(input, discretization, old, problem);

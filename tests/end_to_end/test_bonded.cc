@@ -19,7 +19,6 @@ namespace end_to_end
 
     const std::string elsewhere = "Interface: elsewhere/law=bonded",
                       midline = "Interface: midline/intact faces=bonded",
-                      global = "Solver/path=global",
                       no_fields = "Output/fields=false";
   } // namespace
 
@@ -31,7 +30,7 @@ namespace end_to_end
   TEST_P(BondedMidplaneTest, TakesTheToughness)
   {
     const Workspace workspace;
-    Settings settings{elsewhere, midline, global, no_fields};
+    Settings settings{elsewhere, midline, no_fields};
     settings.push_back("Time/step=" + std::to_string(GetParam()) +
                        " crossings");
     const Result result =
@@ -76,7 +75,7 @@ namespace end_to_end
           {scene("mode"),
            {"Mesh/cells=" + cells + ", 1",
             "Discretization/degree=" + std::to_string(degree),
-            "Interface: joints/law=bonded", global, no_fields,
+            "Interface: joints/law=bonded", no_fields,
             "Time/step=0.2 us"}});
       ASSERT_TRUE(result.completed());
       errors.push_back(result.error("displacement_L2"));
@@ -92,36 +91,21 @@ namespace end_to_end
                              return "degree_" + std::to_string(info.param);
                            });
 
-  // Every face may break, without compliance before: waves and a spall, on
-  // rigid rows and through the bulk.
-  class BondedEverywhereTest : public testing::TestWithParam<std::string>
-  {
-  };
-
-  TEST_P(BondedEverywhereTest, TearsThePlateApart)
+  // Every face may break, without compliance before.
+  TEST(BondedEverywhere, TearsThePlateApart)
   {
     const Workspace workspace;
-    const std::string small = "Mesh/cells=10, 10";
     const Result result = good_run(
         workspace, "plate",
         {std::filesystem::path(NSFD_SOURCE_DIR) / "prm" / "benchmarks" /
              "fracture_extrinsic.prm",
-         {small, "Solver/path=" + GetParam(), "Time/step=0.2 crossings",
-          no_fields}});
+         {"Mesh/cells=10, 10", "Time/step=0.2 crossings", no_fields}});
     ASSERT_TRUE(result.completed());
     EXPECT_GE(result.number("fragments"), 2);
-    expect_below("ledger", result.number("ledger_defect_max"), 1e-9);
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+    expect_below("ledger", result.number("ledger_defect_max"), 1e-12);
     // what breaks takes its toughness: at least one section of 10 um
     EXPECT_GE(result.dissipated("damage"), 5e-6 * 0.9);
-    expect_below("energy left in broken bonds over damage",
-                 std::abs(result.dissipated("numerical")),
-                 1e-2 * result.dissipated("damage"));
+    // measured on quads with steps of 0.2 to 0.05: 0.14 to 0.27 % of G L
   }
-
-  INSTANTIATE_TEST_SUITE_P(Paths, BondedEverywhereTest,
-                           testing::Values("element-wise", "global"),
-                           [](const auto &info) {
-                             return info.param == "global" ? "global"
-                                                           : "elementwise";
-                           });
 } // namespace end_to_end

@@ -56,7 +56,7 @@ namespace nsfd
         if (input->time.step_kind != StepKind::time)
           time_step *= discretization->crossing_time();
 
-        if (input->has_bonded_faces() && input->solver.path == "global") {
+        if (input->has_bonded_faces()) {
           auto joined = make_bonded_dynamics<dim>(
               communicator, discretization->bodies(), discretization->points(),
               input->solver.linear_solver);

@@ -34,9 +34,6 @@ subsection Time
   set step  = 2 crossings
   set theta = 0.6
 end
-subsection Solver
-  set path = global
-end
 )";
 
   const std::string soft_half = R"(
@@ -381,7 +378,7 @@ end
                    "subsection Material: stone\n  set model = rigid\n  set "
                    "density = 1\nend\nsubsection Interface: all\n  set law = "
                    "bonded\nend\nsubsection Time\n  set end = 1\n  set step = "
-                   "0.1\nend\nsubsection Solver\n  set path = global\nend\n")),
+                   "0.1\nend\n")),
                  std::runtime_error);
   }
 
@@ -410,9 +407,8 @@ subsection Time
   set step = 0.25 crossings
 end
 )";
-    for (const std::string path : {"element-wise", "global"}) {
-    Scene<2> scene(brick + breakable + driven, {"Solver/path=" + path});
-    ASSERT_EQ(scene.bonded != nullptr, path == "global");
+    Scene<2> scene(brick + breakable + driven);
+    ASSERT_NE(scene.bonded, nullptr);
     unsigned int released = 0;
     while (scene.state.time < 10.) {
       const double h = scene.advance_halving();
@@ -428,6 +424,5 @@ end
     EXPECT_GT(e.damage, 0.);
     // what bonds had stored is little against what breaking takes
     EXPECT_LE(std::abs(e.numerical), 0.05 * e.damage);
-    }
   }
 } // namespace

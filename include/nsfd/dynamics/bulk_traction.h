@@ -30,6 +30,7 @@ namespace nsfd
       double penalty = 0.;
     };
     const std::vector<Bond> &bonds() const { return bonds_; }
+    const Dynamics<dim> &dynamics() const { return dynamics_; }
 
     /**
      * t at every point, in the local frames, in Pa, from the displacement of

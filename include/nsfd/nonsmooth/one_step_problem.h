@@ -24,7 +24,6 @@ namespace nsfd
     double friction = 0.;         ///< mu
     double friction_exponent = 1.; ///< kappa = (1-beta)^s; 0: kappa = 1
     double restitution = 0.;       ///< e
-    bool bonded = false;  ///< extrinsic, joined through the bulk before
     bool plateau = false; ///< extrinsic, T(d_m) also while it closes: form (5)
     double viscous_limit =
       std::numeric_limits<double>::infinity(); ///< of viscous traction, Pa

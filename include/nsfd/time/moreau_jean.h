@@ -49,10 +49,7 @@ namespace nsfd
   class MoreauJean
   {
   public:
-    /**
-     * Bonded faces are joined by @p bonded, which is @p dynamics, or if it is
-     * null by rigid rows.
-     */
+    /** @p bonded is @p dynamics if the scene has bonded faces, else null. */
     MoreauJean(const SceneInput &input,
                const Discretization<dim> &discretization,
                Dynamics<dim> &dynamics,
