@@ -1,6 +1,7 @@
 #include "model.h"
 
 #include "nsfd/interface/point_factors.h"
+#include "nsfd/mesh/node_coordinates.h"
 
 #include <deal.II/grid/tria.h>
 
@@ -145,8 +146,8 @@ namespace nsfd
                  : "element-wise";
     if (path == "global")
       dynamics = make_sparse_dynamics<dim>(
-          communicator, bodies, points,
-          input.solver.linear_solver == "cg" ? "cg" : "direct");
+          communicator, bodies, points, input.solver.linear_solver,
+          node_coordinates(*discretization));
     else
       dynamics = make_elementwise_dynamics<dim>(communicator, bodies, points);
   }

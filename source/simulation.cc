@@ -451,6 +451,12 @@ namespace nsfd
       c["delassus_applications"] = double(dynamics.delassus);
       c["block_factorisations"] = double(dynamics.factorisations);
       c["global_factorisations"] = double(dynamics.global_factorisations);
+      c["coarse_spaces"] = double(dynamics.coarse_spaces);
+      c["global_solves"] = double(dynamics.global_solves);
+      c["inner_iterations"] = double(dynamics.inner_iterations);
+      // products with W and, inside the preconditioner, with A
+      c["operator_applications"] =
+          double(dynamics.delassus + dynamics.inner_iterations);
       c["load_assemblies"] = double(stepper.load_assemblies);
       c["activation_rounds"] = double(stepper.activation_rounds);
       c["global_solves"] = double(dynamics.global_solves);

@@ -1,22 +1,25 @@
-#include "nsfd/dynamics/dynamics.h"
+#include "sparse_assembly.h"
 
-#include <deal.II/base/index_set.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_solver.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-#include <deal.II/lac/trilinos_vector.h>
+#include "nsfd/dynamics/dynamics.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 namespace nsfd
 {
   namespace
   {
+    /** Unknowns up to which a factor of A is cheaper than iterations. */
+    template <int dim>
+    constexpr long long largest_factor = dim == 2 ? 200000 : 15000;
+    /** The same for the coarse matrix, whose factor serves longer. */
+    template <int dim>
+    constexpr long long largest_coarse_factor = dim == 2 ? 300000 : 15000;
+
     /**
-     * The global sparse matrix of all bodies joined by what their faces carry,
+     * The sparse matrix of all bodies joined by what their faces carry,
      *
      *     A = M_hat + H^T D^{-1} H,
      *
@@ -25,9 +28,9 @@ namespace nsfd
      *     (W + D)^{-1} = D^{-1} (1 - H A^{-1} H^T D^{-1}).
      *
      * With D > 0 everywhere this is the inverse itself. Rigid rows and closed
-     * contacts (D = 0) enter with a compliance 1e-2 of the diagonal of W: a
-     * stiffness only for the preconditioner, the row stays exact. (A smaller
-     * one lets round-off grow along impulses that W does not see.)
+     * contacts (D = 0) enter with a hundred times the stiffness of the softer
+     * body next to them: only in the preconditioner, the row stays exact. (A
+     * stiffer one lets round-off grow along impulses that W does not see.)
      */
     template <int dim>
     class SparseDynamics final : public Dynamics<dim>
@@ -36,148 +39,63 @@ namespace nsfd
       SparseDynamics(const Communicator &communicator,
                      const Bodies &bodies,
                      const InterfacePoints<dim> &points,
-                     const std::string &solver);
+                     const std::string &solver,
+                     const std::vector<double> &coordinates);
 
       void reinit(double time_step, double theta) override;
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
+      bool inverts() const override { return inverts_; }
 
     private:
-      void exchange_traces();
-      void build_pattern();
-
-      /** dofs and rows of Q T at a point on one side, known on both ranks. */
-      struct Trace
+      double share() const
       {
-        long long first = -1;
-        std::vector<double> rows; // dim x n_dofs
-      };
-      std::array<std::vector<Trace>, 2> traces_;
-      long long first_dof_ = 0;
-      bool direct_;
-      dealii::IndexSet owned_;
-      dealii::TrilinosWrappers::SparseMatrix matrix_;
-      dealii::SolverControl control_;
-      std::unique_ptr<dealii::TrilinosWrappers::SolverDirect> factor_;
-      std::unique_ptr<dealii::TrilinosWrappers::PreconditionAMG> multigrid_;
-      std::vector<double> D_, inverse_D_;
-      bool valid_ = false;
-      mutable std::vector<double> work_, body_work_;
+        return this->time_step_ * this->time_step_ * this->theta_ *
+               this->theta_;
+      }
+      void set_body_stiffness();
+      void set_springs(const std::vector<double> &D);
+      bool loose_springs_changed(const std::vector<char> &glued) const;
+      void glue();
+      void use_cg();
+
+      SparseAssembly<dim> assembly_;
+      GluedSpace glued_;
+      std::unique_ptr<SpdSolver> solver_;
+      bool direct_, prepared_ = false;
+      std::vector<double> body_stiffness_; ///< of the softer body, per point
+      std::vector<double> D_, inverse_D_, inverse_D_coarse_;
+      bool valid_ = false, coarse_valid_ = false, inverts_ = false;
+      mutable std::vector<double> work_, right_, solution_;
     };
 
     template <int dim>
     SparseDynamics<dim>::SparseDynamics(const Communicator &communicator,
                                         const Bodies &bodies,
                                         const InterfacePoints<dim> &points,
-                                        const std::string &solver)
+                                        const std::string &solver,
+                                        const std::vector<double> &coordinates)
       : Dynamics<dim>(communicator, bodies, points)
-      , direct_(solver == "direct")
+      , assembly_(communicator, bodies, points, coordinates)
+      , glued_(communicator, dim, assembly_.unknowns(), assembly_.node_pairs())
     {
-      const long long mine = static_cast<long long>(bodies.n_dofs());
-      long long sum = 0;
-      MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
-      first_dof_ = sum - mine;
-      const auto total = communicator.sum_integer(bodies.n_dofs());
-      owned_ = dealii::IndexSet(total);
-      owned_.add_range(first_dof_, sum);
-      exchange_traces();
-      build_pattern();
+      const auto n = communicator.sum_integer(bodies.n_dofs());
+      direct_ = solver == "direct" ||
+                (solver == "auto" && communicator.size() == 1 &&
+                 static_cast<long long>(n) <= largest_factor<dim>);
+      if (direct_)
+        solver_ = make_cholesky_solver(communicator);
+      else
+        use_cg();
     }
 
     template <int dim>
-    void SparseDynamics<dim>::exchange_traces()
+    void SparseDynamics<dim>::use_cg()
     {
-      const auto &points = this->points_;
-      const auto &bodies = this->bodies_;
-      double largest = 0.;
-      for (const auto &body : bodies.classes)
-        largest = std::max(largest, double(body.n_dofs));
-      const unsigned int width =
-        unsigned(this->communicator_.max(largest)); // on every rank
-      const unsigned int stride = 2 + dim * width;
-      std::array<std::vector<double>, 2> side;
-      for (auto &s : side)
-        s.assign((points.n_points + 1) * stride, -1.);
-      const auto fill = [&](const std::size_t b, const std::size_t slot,
-                            const std::size_t point, const bool second) {
-        const BodyClass &body = bodies.classes[bodies.class_of[b]];
-        double *out = side[second].data() + point * stride;
-        out[0] = double(first_dof_) + double(bodies.first_dof[b]);
-        out[1] = body.n_dofs;
-        const double *Q = points.frame.data() + point * dim * dim;
-        for (unsigned int k = 0; k < dim; ++k)
-          for (unsigned int j = 0; j < body.n_dofs; ++j) {
-            double value = 0.;
-            for (unsigned int c = 0; c < dim; ++c)
-              value +=
-                Q[k * dim + c] * body.trace(unsigned(slot) * dim + c, j);
-            out[2 + k * width + j] = value;
-          }
-      };
-      for (std::size_t b = 0; b < bodies.size(); ++b)
-        for (std::size_t s = bodies.first_slot[b];
-             s < bodies.first_slot[b + 1]; ++s)
-          if (bodies.slot_point[s] < points.n_points)
-            fill(b, s - bodies.first_slot[b], bodies.slot_point[s],
-                 bodies.slot_sign[s] > 0);
-      for (const auto &[slot, point] : bodies.extra_points) {
-        const std::size_t b =
-          std::upper_bound(bodies.first_slot.begin(), bodies.first_slot.end(),
-                           slot) -
-          bodies.first_slot.begin() - 1;
-        fill(b, slot - bodies.first_slot[b], point, true);
-      }
-      this->exchange({{side[0].data(), side[1].data()}}, stride);
-      for (unsigned int s = 0; s < 2; ++s) {
-        traces_[s].resize(points.n_points);
-        for (std::size_t i = 0; i < points.n_points; ++i) {
-          const double *in = side[s].data() + i * stride;
-          if (in[0] < 0.)
-            continue;
-          const unsigned int n = unsigned(in[1]);
-          traces_[s][i].first = static_cast<long long>(in[0]);
-          traces_[s][i].rows.resize(dim * n);
-          for (unsigned int k = 0; k < dim; ++k)
-            for (unsigned int j = 0; j < n; ++j)
-              traces_[s][i].rows[k * n + j] =
-                (s == 1 ? 1. : -1.) * in[2 + k * width + j];
-        }
-      }
-    }
-
-    template <int dim>
-    void SparseDynamics<dim>::build_pattern()
-    {
-      const auto &bodies = this->bodies_;
-      dealii::DynamicSparsityPattern pattern(owned_.size(), owned_.size(),
-                                             owned_);
-      std::vector<dealii::types::global_dof_index> columns;
-      const auto range = [&](const long long first, const std::size_t n) {
-        columns.resize(n);
-        for (std::size_t j = 0; j < n; ++j)
-          columns[j] = first + j;
-      };
-      for (std::size_t b = 0; b < bodies.size(); ++b) {
-        const std::size_t n = bodies.first_dof[b + 1] - bodies.first_dof[b];
-        range(first_dof_ + bodies.first_dof[b], n);
-        for (std::size_t j = 0; j < n; ++j)
-          pattern.add_entries(columns[j], columns.begin(), columns.end(),
-                              true);
-      }
-      for (const auto &face : this->points_.faces) {
-        const std::size_t i = face.first;
-        for (unsigned int s = 0; s < 2; ++s) {
-          const Trace &row = traces_[s][i], &column = traces_[1 - s][i];
-          if (face.bodies[s] < 0 || row.first < 0 || column.first < 0)
-            continue;
-          range(column.first, column.rows.size() / dim);
-          for (std::size_t j = 0; j < row.rows.size() / dim; ++j)
-            pattern.add_entries(row.first + j, columns.begin(), columns.end(),
-                                true);
-        }
-      }
-      matrix_.reinit(owned_, owned_, pattern, this->communicator_.mpi(),
-                     true);
+      direct_ = prepared_ = coarse_valid_ = false;
+      solver_ =
+        make_glued_cg_solver(this->communicator_, this->bodies_.first_dof,
+                             largest_coarse_factor<dim>);
     }
 
     template <int dim>
@@ -185,107 +103,120 @@ namespace nsfd
                                      const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
-        valid_ = false;
+        valid_ = coarse_valid_ = false;
       Dynamics<dim>::reinit(time_step, theta);
     }
 
     template <int dim>
-    void
-    SparseDynamics<dim>::prepare_preconditioner(const std::vector<double> &D)
+    void SparseDynamics<dim>::set_body_stiffness()
     {
-      // a factor is good as long as the step and D stay what they were
-      if (!this->communicator_.any(!valid_ || D != D_))
-        return;
-      D_ = D;
-      valid_ = true;
+      auto sides = assembly_.own_stiffness(share());
+      this->exchange({{sides[0].data(), sides[1].data()}}, 1);
+      const std::size_t n = this->points_.n_points;
+      body_stiffness_.resize(n);
+      for (std::size_t i = 0; i < n; ++i)
+        body_stiffness_[i] = std::min(sides[0][i], sides[1][i]);
+    }
+
+    template <int dim>
+    void SparseDynamics<dim>::set_springs(const std::vector<double> &D)
+    {
       const auto &points = this->points_;
-      const auto &bodies = this->bodies_;
       inverse_D_.assign(D.size(), 0.);
+      bool exact = true;
       for (std::size_t f = 0; f < points.faces.size(); ++f) {
         const auto &face = points.faces[f];
         const unsigned int n = face.count * dim;
         const double *W = this->face_block(f);
         for (unsigned int k = 0; k < n; ++k) {
           const std::size_t row = std::size_t(face.first) * dim + k;
-          const double least = this->least_compliance_.empty()
-                                 ? 1e-2 * W[k * n + k]
-                                 : this->least_compliance_[row];
-          if (D[row] >= 0.)
-            inverse_D_[row] = 1. / std::max(D[row], least);
-        }
-      }
-
-      matrix_ = 0.;
-      std::vector<dealii::types::global_dof_index> rows, columns;
-      dealii::FullMatrix<double> block;
-      const double factor =
-        this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
-      for (std::size_t b = 0; b < bodies.size(); ++b) {
-        const BodyClass &body = bodies.classes[bodies.class_of[b]];
-        const unsigned int n = body.n_dofs;
-        rows.resize(n);
-        block.reinit(n, n);
-        for (unsigned int i = 0; i < n; ++i) {
-          rows[i] = first_dof_ + bodies.first_dof[b] + i;
-          for (unsigned int j = 0; j < n; ++j)
-            block(i, j) = body.mass(i, j) +
-                          (body.rigid ? 0. : factor * body.stiffness(i, j));
-        }
-        matrix_.add(rows, rows, block);
-      }
-      for (const auto &face : points.faces)
-        for (unsigned int s = 0; s < 2; ++s) {
-          if (face.bodies[s] < 0)
+          if (!(D[row] >= 0.))
             continue;
-          for (unsigned int t = 0; t < 2; ++t) {
-            if (traces_[t][face.first].first < 0)
-              continue;
-            const std::size_t n = traces_[s][face.first].rows.size() / dim,
-                              m = traces_[t][face.first].rows.size() / dim;
-            rows.resize(n);
-            columns.resize(m);
-            block.reinit(n, m);
-            for (std::size_t i = 0; i < n; ++i)
-              rows[i] = traces_[s][face.first].first + i;
-            for (std::size_t j = 0; j < m; ++j)
-              columns[j] = traces_[t][face.first].first + j;
-            for (unsigned int p = face.first; p < face.first + face.count; ++p)
-              for (unsigned int k = 0; k < dim; ++k) {
-                const double stiffness = inverse_D_[p * dim + k];
-                if (stiffness == 0.)
-                  continue;
-                const double *a = &traces_[s][p].rows[k * n];
-                const double *c = &traces_[t][p].rows[k * m];
-                for (std::size_t i = 0; i < n; ++i)
-                  for (std::size_t j = 0; j < m; ++j)
-                    block(i, j) += stiffness * a[i] * c[j];
-              }
-            matrix_.add(rows, columns, block);
-          }
+          const double stiffness = body_stiffness_[row / dim];
+          double least = 1e-2 * W[k * n + k], vanishing = 0.;
+          if (!this->least_compliance_.empty())
+            vanishing = least = this->least_compliance_[row];
+          else if (std::isfinite(stiffness)) {
+            least = 1e-2 / stiffness;
+            vanishing = 1e-10 / stiffness;
+          } else
+            vanishing = least;
+          exact = exact && D[row] >= vanishing;
+          inverse_D_[row] = 1. / (D[row] >= vanishing ? D[row] : least);
         }
-      matrix_.compress(dealii::VectorOperation::add);
-      ++this->counters_.global_factorisations;
-      if (direct_) {
-        factor_ = std::make_unique<dealii::TrilinosWrappers::SolverDirect>(
-          control_, dealii::TrilinosWrappers::SolverDirect::AdditionalData(
-                      false, "Amesos_Klu"));
-        factor_->initialize(matrix_);
-      } else {
-        dealii::TrilinosWrappers::PreconditionAMG::AdditionalData data;
-        data.elliptic = true;
-        data.higher_order_elements = true;
-        data.aggregation_threshold = 1e-3;
-        data.smoother_sweeps = 2;
-        // translations of the bodies
-        data.constant_modes.assign(dim, std::vector<bool>(bodies.n_dofs()));
-        for (std::size_t b = 0; b < bodies.size(); ++b)
-          for (std::size_t k = bodies.first_dof[b];
-               k < bodies.first_dof[b + 1]; ++k)
-            data.constant_modes[(k - bodies.first_dof[b]) % dim][k] = true;
-        multigrid_ =
-          std::make_unique<dealii::TrilinosWrappers::PreconditionAMG>();
-        multigrid_->initialize(matrix_, data);
       }
+      inverts_ = !this->communicator_.any(!exact);
+    }
+
+    /**
+     * The coarse matrix knows the springs of faces that are not glued. It
+     * stays a good one while they keep their order of magnitude; what is
+     * small against the inertia of the bodies does not count.
+     */
+    template <int dim>
+    bool SparseDynamics<dim>::loose_springs_changed(
+      const std::vector<char> &glued) const
+    {
+      const auto &points = this->points_;
+      for (std::size_t f = 0; f < points.faces.size(); ++f) {
+        const auto &face = points.faces[f];
+        if (glued[f])
+          continue;
+        const unsigned int n = face.count * dim;
+        const double *W = this->face_block(f);
+        for (unsigned int k = 0; k < n; ++k) {
+          const std::size_t row = std::size_t(face.first) * dim + k;
+          const double inertia = 1. / W[k * n + k],
+                       now = inverse_D_[row] + inertia,
+                       then = inverse_D_coarse_[row] + inertia;
+          if (now > 4. * then || then > 4. * now)
+            return true;
+        }
+      }
+      return false;
+    }
+
+    template <int dim>
+    void SparseDynamics<dim>::glue()
+    {
+      const auto faces = assembly_.carrying(share(), inverse_D_);
+      const auto before = glued_.space().version;
+      glued_.glue(faces);
+      if (glued_.space().version == before &&
+          this->communicator_.any(!coarse_valid_ ||
+                                  loose_springs_changed(faces)))
+        glued_.touch();
+      if (glued_.space().version != before)
+        inverse_D_coarse_ = inverse_D_;
+      coarse_valid_ = true;
+    }
+
+    template <int dim>
+    void
+    SparseDynamics<dim>::prepare_preconditioner(const std::vector<double> &D)
+    {
+      // all is good as long as the step and D stay what they were
+      if (!this->communicator_.any(!valid_ || D != D_))
+        return;
+      if (this->communicator_.any(!coarse_valid_ || body_stiffness_.empty()))
+        set_body_stiffness();
+      D_ = D;
+      valid_ = true;
+      set_springs(D);
+      assembly_.assemble(share(), inverse_D_);
+      ++this->counters_.global_factorisations;
+      if (direct_)
+        try {
+          solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
+          coarse_valid_ = prepared_ = true;
+          return;
+        } catch (const std::runtime_error &) {
+          use_cg();
+        }
+      glue();
+      solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
+      prepared_ = true;
+      this->counters_.coarse_spaces = solver_->counters().coarse_spaces;
     }
 
     template <int dim>
@@ -293,30 +224,15 @@ namespace nsfd
     {
       const std::size_t n = inverse_D_.size(), m = this->bodies_.n_dofs();
       work_.resize(n);
-      body_work_.resize(m);
+      right_.resize(m);
       for (std::size_t k = 0; k < n; ++k)
         work_[k] = inverse_D_[k] * r[k];
-      this->generalised_impulse(work_.data(), body_work_.data());
-      dealii::TrilinosWrappers::MPI::Vector b(owned_,
-                                              this->communicator_.mpi()),
-        x(owned_, this->communicator_.mpi());
-      std::copy(body_work_.begin(), body_work_.end(), b.begin());
-      if (direct_)
-        factor_->solve(x, b);
-      else {
-        const double norm = b.l2_norm();
-        if (norm > 0.) {
-          dealii::SolverControl control(2000, 1e-11 * norm);
-          dealii::TrilinosWrappers::SolverCG cg(control);
-          try {
-            cg.solve(matrix_, x, b, *multigrid_);
-          } catch (const dealii::SolverControl::NoConvergence &) {
-            // only a preconditioner: the outer iteration judges the result
-          }
-        }
-      }
-      std::copy(x.begin(), x.end(), body_work_.begin());
-      this->relative_velocity(body_work_.data(), z);
+      this->generalised_impulse(work_.data(), right_.data());
+      solution_.assign(m, 0.);
+      this->counters_.inner_iterations += solver_->solve(
+        right_.data(), solution_.data(), this->inner_tolerance_);
+      ++this->counters_.global_solves;
+      this->relative_velocity(solution_.data(), z);
       for (std::size_t k = 0; k < n; ++k)
         z[k] = inverse_D_[k] * (r[k] - z[k]);
     }
@@ -327,16 +243,19 @@ namespace nsfd
   make_sparse_dynamics(const Communicator &communicator,
                        const Bodies &bodies,
                        const InterfacePoints<dim> &points,
-                       const std::string &solver)
+                       const std::string &solver,
+                       const std::vector<double> &coordinates)
   {
     return std::make_unique<SparseDynamics<dim>>(communicator, bodies, points,
-                                                 solver);
+                                                 solver, coordinates);
   }
 
   template std::unique_ptr<Dynamics<2>>
   make_sparse_dynamics<2>(const Communicator &, const Bodies &,
-                          const InterfacePoints<2> &, const std::string &);
+                          const InterfacePoints<2> &, const std::string &,
+                          const std::vector<double> &);
   template std::unique_ptr<Dynamics<3>>
   make_sparse_dynamics<3>(const Communicator &, const Bodies &,
-                          const InterfacePoints<3> &, const std::string &);
+                          const InterfacePoints<3> &, const std::string &,
+                          const std::vector<double> &);
 } // namespace nsfd

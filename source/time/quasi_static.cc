@@ -6,6 +6,7 @@
 
 #include "nsfd/base/accelerated_rounds.h"
 #include "nsfd/base/stopwatch.h"
+#include "nsfd/mesh/node_coordinates.h"
 
 #include <fmt/format.h>
 
@@ -58,7 +59,8 @@ namespace nsfd
                     : make_sparse_dynamics<dim>(
                           communicator, discretization.bodies(),
                           discretization.points(),
-                          solver.linear_solver == "cg" ? "cg" : "direct");
+                          solver.linear_solver,
+                          node_coordinates(discretization));
     dynamics_->reinit(h_, 1.);
     solver_ = SolverRegistry<dim>::instance().create(
         solver.method == "auto" ? "dual newton" : solver.method);

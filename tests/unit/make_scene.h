@@ -4,6 +4,7 @@
 #include "nsfd/input/read_scene.h"
 #include "nsfd/mesh/discretization.h"
 #include "nsfd/mesh/mesh_builder.h"
+#include "nsfd/mesh/node_coordinates.h"
 #include "nsfd/nonsmooth/solver.h"
 #include "nsfd/time/moreau_jean.h"
 
@@ -65,7 +66,7 @@ namespace nsfd
         } else if (input->solver.path == "global")
           dynamics = make_sparse_dynamics<dim>(
               communicator, discretization->bodies(), discretization->points(),
-              input->solver.linear_solver == "cg" ? "cg" : "direct");
+              input->solver.linear_solver, node_coordinates(*discretization));
         else
           dynamics = make_elementwise_dynamics<dim>(
               communicator, discretization->bodies(), discretization->points());

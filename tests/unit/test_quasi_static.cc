@@ -188,7 +188,10 @@ end
       for (const double t : {0.2, 0.4, 0.49}) {
         const auto report = pushed.to(t);
         EXPECT_LT(report.step.ledger_defect, 1e-9);
-        EXPECT_GE(pushed.state.energy.friction, last) << "friction takes";
+        // as long as all sticks, what is left is the round-off of the jumps
+        EXPECT_GE(pushed.state.energy.friction,
+                  last - 1e-12 * pushed.state.energy.elastic)
+            << "friction takes";
         last = pushed.state.energy.friction;
         push = 0.;
         const auto &origins = pushed.scene.discretization->origins();

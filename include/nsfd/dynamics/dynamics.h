@@ -82,6 +82,22 @@ namespace nsfd
     virtual void precondition(const double *r, double *z) const = 0;
 
     /**
+     * Whether precondition() inverts the whole matrix it was prepared for, up
+     * to the inner tolerance: no component without compliance, no face left
+     * out.
+     */
+    virtual bool inverts() const { return false; }
+
+    /**
+     * Relative tolerance of the iterative solve inside precondition(), in the
+     * norm of its own preconditioner; a factor knows nothing of it.
+     */
+    void set_inner_tolerance(const double tolerance)
+    {
+      inner_tolerance_ = tolerance;
+    }
+
+    /**
      * What stands for D = 0 in the preconditioner of the global path, one per
      * component; empty: a share of the diagonal of W, which at long steps is
      * far more than the bodies' own compliance.
@@ -98,7 +114,12 @@ namespace nsfd
     struct Counters
     {
       unsigned long long factorisations = 0; ///< of body blocks
+      /// matrices of all bodies that were assembled and made ready to solve
       unsigned long long global_factorisations = 0;
+      /// glued spaces that were built again (`cg`)
+      unsigned long long coarse_spaces = 0;
+      /// iterations inside precondition(), each one product with A (`cg`)
+      unsigned long long inner_iterations = 0;
       unsigned long long global_solves = 0; ///< with one right-hand side each
       unsigned long long delassus = 0;
     };
@@ -138,6 +159,7 @@ namespace nsfd
     void add_sides(double *local) const;
     mutable std::vector<double> cartesian_, side_1_, side_2_;
     std::vector<double> least_compliance_;
+    double inner_tolerance_ = 1e-11;
   };
 
   /** Preconditioned by the face blocks of W: for steps up to some crossings. */
@@ -148,13 +170,18 @@ namespace nsfd
                             const InterfacePoints<dim> &points);
 
   /**
-   * Preconditioned by the sparse matrix A of all bodies in Trilinos: for long
-   * steps. @p solver is `direct` (Amesos) or `cg` (CG with ML).
+   * Preconditioned by the sparse matrix A of all bodies: for long steps.
+   * @p solver is `direct` (Cholesky factor) or `cg` (conjugate gradients
+   * preconditioned by body blocks and the glued space); `auto` takes the
+   * factor while it is the cheaper one. @p coordinates holds, per unknown of a
+   * deformable body, the coordinate of its node along its own component:
+   * nodes at the same place on a face can be glued. Empty: nothing is glued.
    */
   template <int dim>
   std::unique_ptr<Dynamics<dim>>
   make_sparse_dynamics(const Communicator &communicator,
                        const Bodies &bodies,
                        const InterfacePoints<dim> &points,
-                       const std::string &solver);
+                       const std::string &solver,
+                       const std::vector<double> &coordinates = {});
 } // namespace nsfd

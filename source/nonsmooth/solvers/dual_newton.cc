@@ -152,6 +152,11 @@ namespace nsfd
       r_ = rhs_;
       z_.assign(work.n, 0.);
       work.dynamics.precondition(r_.data(), z_.data());
+      if (work.dynamics.inverts()) {
+        for (std::size_t k = 0; k < work.n; ++k)
+          dP[k] += z_[k];
+        return;
+      }
       p_ = z_;
       double rz = communicator.dot(r_.data(), z_.data(), work.n_owned);
       const double target = tolerance * tolerance * rz;

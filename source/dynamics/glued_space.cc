@@ -1,0 +1,139 @@
+#include "glued_space.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  GluedSpace::GluedSpace(const Communicator &communicator,
+                         const unsigned int dim,
+                         Unknowns unknowns,
+                         NodePairs pairs)
+    : communicator_(communicator)
+    , dim_(dim)
+    , unknowns_(std::move(unknowns))
+    , pairs_(std::move(pairs))
+  {
+    const long long n = static_cast<long long>(unknowns_.component.size());
+    for (const long long other : pairs_.other)
+      if (other < unknowns_.first || other >= unknowns_.first + n)
+        for (unsigned int c = 0; c < dim; ++c)
+          ghosts_.push_back(other + c);
+    std::sort(ghosts_.begin(), ghosts_.end());
+    ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
+    const auto &component = unknowns_.component;
+    const bool other_kinds =
+      std::find(component.begin(), component.end(), -1) != component.end();
+    space_.per_node = communicator.any(other_kinds) ? 1 : dim;
+    exchange_ =
+      GhostValues(communicator, unknowns_.first, std::size_t(n), ghosts_);
+  }
+
+  int GluedSpace::root(int unknown)
+  {
+    while (parent_[unknown] != unknown)
+      unknown = parent_[unknown] = parent_[parent_[unknown]];
+    return unknown;
+  }
+
+  void GluedSpace::join(const std::vector<char> &faces)
+  {
+    const long long n = static_cast<long long>(unknowns_.component.size());
+    parent_.resize(n);
+    for (long long i = 0; i < n; ++i)
+      parent_[i] = int(i);
+    across_.clear();
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (std::size_t k = pairs_.start[f];
+           faces[f] && k < pairs_.start[f + 1]; ++k)
+        for (unsigned int c = 0; c < dim_; ++c) {
+          const int own = pairs_.own[k] + int(c);
+          const long long other = pairs_.other[k] + c;
+          if (other >= unknowns_.first && other < unknowns_.first + n) {
+            // the smaller one stays, so that a root has the smallest number
+            const int a = root(own), b = root(int(other - unknowns_.first));
+            parent_[std::max(a, b)] = std::min(a, b);
+          } else
+            across_.emplace_back(
+              own, int(std::lower_bound(ghosts_.begin(), ghosts_.end(), other) -
+                       ghosts_.begin()));
+        }
+  }
+
+  /**
+   * Make @p value, one per unknown and valid at the roots, the smallest
+   * (largest) one over all that is glued together on any rank. As many
+   * exchanges as ranks lie around a node.
+   */
+  void GluedSpace::agree(std::vector<double> &value, const bool smallest)
+  {
+    std::vector<double> ghosts(ghosts_.size());
+    bool changed = true;
+    while (communicator_.any(changed)) {
+      changed = false;
+      for (std::size_t i = 0; i < value.size(); ++i)
+        value[i] = value[root(int(i))];
+      exchange_.fetch(value.data(), ghosts.data());
+      for (const auto &[own, ghost] : across_) {
+        double &mine = value[root(own)];
+        if (smallest ? ghosts[ghost] < mine : ghosts[ghost] > mine) {
+          mine = ghosts[ghost];
+          changed = true;
+        }
+      }
+    }
+  }
+
+  void GluedSpace::glue(const std::vector<char> &faces)
+  {
+    if (!communicator_.any(space_.version == 0 || faces != glued_))
+      return;
+    glued_ = faces;
+    ++space_.version;
+    join(faces);
+    const std::size_t n = unknowns_.component.size();
+    std::vector<double> value(n); // integers below 2^53
+    for (std::size_t i = 0; i < n; ++i)
+      value[i] = double(unknowns_.first) + double(i);
+    agree(value, true);
+    // numbered by the rank that owns the smallest of them
+    long long own = 0, end = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      own += value[i] == double(unknowns_.first) + double(i);
+    MPI_Scan(&own, &end, 1, MPI_LONG_LONG, MPI_SUM, communicator_.mpi());
+    space_.first = end - own;
+    space_.n_own = own;
+    space_.n_global = static_cast<long long>(
+      communicator_.sum_integer(static_cast<unsigned long long>(own)));
+    double next = double(space_.first);
+    for (std::size_t i = 0; i < n; ++i)
+      value[i] = value[i] == double(unknowns_.first) + double(i) ? next++ : -1.;
+    agree(value, false);
+    space_.number.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      space_.number[i] = static_cast<long long>(value[i]);
+    set_modes();
+  }
+
+  /** Translations and rotations of the deformable bodies. */
+  void GluedSpace::set_modes()
+  {
+    const unsigned int n_modes = dim_ == 2 ? 3 : 6;
+    space_.modes.assign(n_modes, std::vector<double>(space_.n_own, 0.));
+    for (std::size_t i = 0; i < space_.number.size(); ++i) {
+      const long long k = space_.number[i] - space_.first;
+      const int c = unknowns_.component[i];
+      if (k < 0 || k >= space_.n_own || c < 0)
+        continue;
+      const double *x = unknowns_.coordinates.data() + i - c;
+      space_.modes[c][k] = 1.;
+      if (dim_ == 2)
+        space_.modes[2][k] = c == 0 ? -x[1] : x[0];
+      else
+        for (int a = 0; a < 3; ++a) {
+          // e_a x r
+          const int b = (a + 1) % 3, d = (a + 2) % 3;
+          space_.modes[3 + a][k] = c == b ? -x[d] : c == d ? x[b] : 0.;
+        }
+    }
+  }
+} // namespace nsfd
