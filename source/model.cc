@@ -134,8 +134,9 @@ namespace nsfd
     const double crossing = discretization->crossing_time();
     if (input.has_bonded_faces()) {
       path = "global";
-      auto joined = make_bonded_dynamics<dim>(communicator, bodies, points,
-                                              input.solver.linear_solver);
+      auto joined = make_bonded_dynamics<dim>(
+          communicator, bodies, points, input.solver.linear_solver,
+          node_coordinates(*discretization));
       bonded = joined.get();
       dynamics = std::move(joined);
       return;

@@ -459,7 +459,6 @@ namespace nsfd
           double(dynamics.delassus + dynamics.inner_iterations);
       c["load_assemblies"] = double(stepper.load_assemblies);
       c["activation_rounds"] = double(stepper.activation_rounds);
-      c["global_solves"] = double(dynamics.global_solves);
       if (model_.bonded)
         c["released_bonds"] = double(stepper.released_bonds);
       c["rejected_steps"] = rejected_;

@@ -4,6 +4,15 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    template <typename Neighbor>
+    bool comes_before(const Neighbor &a, const Neighbor &b)
+    {
+      return a.elsewhere != b.elsewhere ? b.elsewhere : a.first < b.first;
+    }
+  } // namespace
+
   template <int dim>
   BodyMatrix<dim>::BodyMatrix(const Bodies &bodies,
                               const InterfacePoints<dim> &points,
@@ -17,37 +26,79 @@ namespace nsfd
     , first_dof_(first_dof)
     , neighbors_(bodies.size())
   {
+    matrix_.first_row = first_dof;
     for (std::size_t b = 0; b < bodies.size(); ++b)
       neighbors_[b].push_back(
-        {first_dof + static_cast<long long>(bodies.first_dof[b]),
-         unsigned(bodies.first_dof[b + 1] - bodies.first_dof[b])});
+        neighbor(first_dof + static_cast<long long>(bodies.first_dof[b]),
+                 unsigned(bodies.first_dof[b + 1] - bodies.first_dof[b])));
     for (const auto &face : points.faces)
       for (unsigned int s = 0; s < 2; ++s) {
         const PointTrace &other = traces_[1 - s][face.first];
         if (face.bodies[s] >= 0 && other.first >= 0)
-          neighbors_[face.bodies[s]].push_back({other.first, other.n_dofs});
+          neighbors_[face.bodies[s]].push_back(
+            neighbor(other.first, other.n_dofs));
       }
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      auto &list = neighbors_[b];
-      std::sort(list.begin(), list.end(), [](const auto &a, const auto &c) {
-        return a.first < c.first;
-      });
+    for (auto &list : neighbors_) {
+      std::sort(list.begin(), list.end(), comes_before<Neighbor>);
       list.erase(std::unique(list.begin(), list.end(),
                              [](const auto &a, const auto &c) {
                                return a.first == c.first;
                              }),
                  list.end());
+    }
+    number_ghosts();
+    build_pattern();
+  }
+
+  template <int dim>
+  typename BodyMatrix<dim>::Neighbor
+  BodyMatrix<dim>::neighbor(const long long first,
+                            const unsigned int n_dofs) const
+  {
+    const bool here =
+      first >= first_dof_ &&
+      first < first_dof_ + static_cast<long long>(bodies_.n_dofs());
+    return {!here, first, n_dofs, 0};
+  }
+
+  template <int dim>
+  void BodyMatrix<dim>::number_ghosts()
+  {
+    for (const auto &list : neighbors_)
+      for (const auto &neighbor : list)
+        if (neighbor.elsewhere)
+          for (unsigned int j = 0; j < neighbor.n_dofs; ++j)
+            matrix_.ghosts.push_back(neighbor.first + j);
+    auto &ghosts = matrix_.ghosts;
+    std::sort(ghosts.begin(), ghosts.end());
+    ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+  }
+
+  template <int dim>
+  void BodyMatrix<dim>::build_pattern()
+  {
+    const auto &ghosts = matrix_.ghosts;
+    matrix_.start = {0};
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
       unsigned int width = 0;
-      for (auto &neighbor : list) {
+      for (auto &neighbor : neighbors_[b]) {
         neighbor.offset = width;
         width += neighbor.n_dofs;
       }
-      for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
+      for (std::size_t i = bodies_.first_dof[b]; i < bodies_.first_dof[b + 1];
            ++i) {
-        for (const auto &neighbor : list)
+        for (const auto &neighbor : neighbors_[b]) {
+          const long long first =
+            neighbor.elsewhere
+              ? static_cast<long long>(bodies_.n_dofs()) +
+                  (std::lower_bound(ghosts.begin(), ghosts.end(),
+                                    neighbor.first) -
+                   ghosts.begin())
+              : neighbor.first - first_dof_;
           for (unsigned int j = 0; j < neighbor.n_dofs; ++j)
-            matrix_.column.push_back(neighbor.first + j);
-        matrix_.start.push_back(static_cast<long long>(matrix_.column.size()));
+            matrix_.column.push_back(int(first + j));
+        }
+        matrix_.start.push_back(int(matrix_.column.size()));
       }
     }
     matrix_.value.resize(matrix_.column.size());
@@ -59,11 +110,8 @@ namespace nsfd
                                  const long long first, std::size_t &stride)
   {
     const auto &list = neighbors_[body];
-    const auto found =
-      std::lower_bound(list.begin(), list.end(), first,
-                       [](const auto &a, const long long value) {
-                         return a.first < value;
-                       });
+    const auto found = std::lower_bound(
+      list.begin(), list.end(), neighbor(first, 0), comes_before<Neighbor>);
     const std::size_t row = bodies_.first_dof[body];
     stride = std::size_t(matrix_.start[row + 1] - matrix_.start[row]);
     return &matrix_.value[std::size_t(matrix_.start[row]) + found->offset];

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "point_traces.h"
-#include "sparse_cholesky.h"
 
 #include "nsfd/dynamics/bulk_traction.h"
+#include "nsfd/dynamics/spd_solver.h"
 
 #include <cstdint>
 #include <vector>
@@ -40,9 +40,13 @@ namespace nsfd
     /** A body that couples with a row of bodies: its columns there. */
     struct Neighbor
     {
-      long long first = 0;
+      bool elsewhere = false; ///< on another rank: ghosts come last in a row
+      long long first = 0;    ///< global
       unsigned int n_dofs = 0, offset = 0;
     };
+    Neighbor neighbor(long long first, unsigned int n_dofs) const;
+    void number_ghosts();
+    void build_pattern();
     double *block(unsigned int body, long long first, std::size_t &stride);
     void add_face(const typename InterfacePoints<dim>::Face &face,
                   unsigned int row_side, unsigned int column_side,

@@ -3,6 +3,7 @@
 #include "body_loops.h"
 #include "body_matrix.h"
 #include "condensed.h"
+#include "sparse_assembly.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -11,6 +12,14 @@ namespace nsfd
 {
   namespace
   {
+    /** Unknowns up to which a factor is cheaper than iterations. */
+    template <int dim>
+    constexpr long long largest_factor = dim == 2 ? 200000 : 15000;
+    /// of iterations: the ledger shows what a product with W leaves
+    constexpr double tight = 1e-12;
+    template <int dim>
+    constexpr long long largest_coarse_factor = dim == 2 ? 300000 : 15000;
+
     template <int dim>
     class Bonded final : public BondedDynamics<dim>
     {
@@ -20,7 +29,8 @@ namespace nsfd
       Bonded(const Communicator &communicator,
              const Bodies &bodies,
              const InterfacePoints<dim> &points,
-             const std::string &solver);
+             const std::string &solver,
+             const std::vector<double> &coordinates);
 
       void reinit(double time_step, double theta) override;
       void set_bonds(const std::vector<std::uint8_t> &bonded) override;
@@ -35,6 +45,10 @@ namespace nsfd
     private:
       void add_bonds(const double *x, double *y) const;
       void solve(const double *b, double *x) const;
+      void solve(SpdSolver &solver, const double *b, double *x) const;
+      void glue() const;
+      void prepare(SpdSolver &solver, const SparseRows &matrix,
+                   SparseRows &kept) const;
       void update() const;
       bool is_row(const std::size_t k) const { return !bonded_[k / dim]; }
       double least_compliance(std::size_t row, double W) const;
@@ -44,9 +58,12 @@ namespace nsfd
       std::vector<Block> traction_transposed_; ///< per class
       std::vector<std::uint8_t> bonded_; ///< per point
       mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
-      mutable SparseCholesky factor_;  ///< of M_hat
-      SparseCholesky joined_;          ///< of A = M_hat + H^T D^{-1} H
-      mutable bool valid_ = false;     ///< factor_
+      std::unique_ptr<GluedSpace> glued_; ///< null: factors need none
+      std::unique_ptr<SpdSolver> factor_; ///< of M_hat
+      std::unique_ptr<SpdSolver> joined_; ///< of A = M_hat + H^T D^{-1} H
+      mutable SparseRows factor_matrix_, joined_matrix_;
+      mutable bool is_glued_ = false; ///< for the step and the bonds
+      mutable bool valid_ = false;        ///< factor_
       bool joined_valid_ = false;
       mutable std::size_t n_solves_ = 0; ///< with the present factor
       mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
@@ -59,13 +76,14 @@ namespace nsfd
     Bonded<dim>::Bonded(const Communicator &communicator,
                         const Bodies &bodies,
                         const InterfacePoints<dim> &points,
-                        const std::string &)
+                        const std::string &solver,
+                        const std::vector<double> &coordinates)
       : BondedDynamics<dim>(communicator, bodies, points)
       , bulk_(*this)
       , bonded_(points.n_points, 0)
     {
-      // K >= half of the bodies' own: their blocks bound W from above
-      this->stiffness_share_ = 0.5;
+      // K >= so much of the bodies' own: their blocks bound W from above
+      this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
       for (const auto &body : bodies.classes)
         traction_transposed_.push_back(body.traction.transposed());
       const long long mine = static_cast<long long>(bodies.n_dofs());
@@ -74,13 +92,61 @@ namespace nsfd
       matrix_ = std::make_unique<BodyMatrix<dim>>(
         bodies, points, point_traces(*this, sum - mine, true), bulk_.bonds(),
         sum - mine);
+      const auto n = communicator.sum_integer(bodies.n_dofs());
+      const bool direct =
+        solver == "direct" ||
+        (solver == "auto" && static_cast<long long>(n) <= largest_factor<dim>);
+      if (!direct) {
+        const SparseAssembly<dim> nodes(communicator, bodies, points,
+                                        coordinates);
+        glued_ = std::make_unique<GluedSpace>(
+          communicator, dim, nodes.unknowns(), nodes.node_pairs());
+      }
+      for (auto *one : {&factor_, &joined_})
+        *one = direct ? make_cholesky_solver(communicator)
+                      : make_glued_cg_solver(communicator, bodies.first_dof,
+                                             largest_coarse_factor<dim>);
+    }
+
+    /**
+     * Nodes are one across faces that are bonded all over. The coarse matrix
+     * stays as long as the step and the bonds do.
+     */
+    template <int dim>
+    void Bonded<dim>::glue() const
+    {
+      if (is_glued_)
+        return;
+      std::vector<char> faces;
+      for (const auto &face : this->points_.faces)
+        faces.push_back(std::all_of(
+          bonded_.begin() + face.first,
+          bonded_.begin() + face.first + face.count,
+          [](const std::uint8_t bonded) { return bonded != 0; }));
+      glued_->glue(faces);
+      glued_->touch();
+      is_glued_ = true;
+    }
+
+    template <int dim>
+    void Bonded<dim>::prepare(SpdSolver &solver, const SparseRows &matrix,
+                              SparseRows &kept) const
+    {
+      const bool first = solver.counters().factorisations == 0;
+      if (glued_) { // iterations go on looking at their matrix
+        glue();
+        kept = matrix;
+        solver.prepare(kept, glued_->space(), first);
+      } else
+        solver.prepare(matrix, CoarseSpace(), first);
+      ++this->counters_.global_factorisations;
     }
 
     template <int dim>
     void Bonded<dim>::reinit(const double time_step, const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
-        valid_ = joined_valid_ = false;
+        valid_ = joined_valid_ = is_glued_ = false;
       Dynamics<dim>::reinit(time_step, theta);
     }
 
@@ -96,7 +162,7 @@ namespace nsfd
         throw std::runtime_error("two rigid bodies share a bonded face: join "
                                  "them with the law `rigid`");
       bonded_ = bonded;
-      valid_ = joined_valid_ = false;
+      valid_ = joined_valid_ = is_glued_ = false;
     }
 
     /** Factor M_hat if the step or the bonds have changed. */
@@ -107,8 +173,8 @@ namespace nsfd
         return;
       const double f =
         this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
-      factor_.factor(matrix_->assemble(f, bonded_, nullptr));
-      ++this->counters_.global_factorisations;
+      prepare(*factor_, matrix_->assemble(f, bonded_, nullptr),
+              factor_matrix_);
       valid_ = true;
       n_solves_ = 0;
       condensed_.clear();
@@ -118,8 +184,16 @@ namespace nsfd
     void Bonded<dim>::solve(const double *b, double *x) const
     {
       update();
-      factor_.solve(b, x);
+      solve(*factor_, b, x);
       ++n_solves_;
+    }
+
+    template <int dim>
+    void Bonded<dim>::solve(SpdSolver &solver, const double *b,
+                            double *x) const
+    {
+      std::fill(x, x + this->bodies_.n_dofs(), 0.);
+      this->counters_.inner_iterations += solver.solve(b, x, tight);
       ++this->counters_.global_solves;
     }
 
@@ -230,7 +304,7 @@ namespace nsfd
           (rows.size() > 64 && 4 * n_solves_ < rows.size()))
         return false;
       const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
-      constexpr std::size_t batch = 64;
+      constexpr std::size_t batch = 64; // columns fill the caches
       std::vector<double> B(n * batch), X(n * batch),
         impulse(bonded_.size() * dim, 0.), velocity(impulse.size());
       condensed_.reset(impulse.size(), rows);
@@ -241,7 +315,7 @@ namespace nsfd
           this->generalised_impulse(impulse.data(), &B[c * n]);
           impulse[rows[first + c]] = 0.;
         }
-        factor_.solve(B.data(), X.data(), count);
+        factor_->solve_columns(B.data(), X.data(), n, count, tight);
         for (std::size_t c = 0; c < count; ++c) {
           this->relative_velocity(&X[c * n], velocity.data());
           condensed_.set_column(first + c, velocity.data());
@@ -283,8 +357,8 @@ namespace nsfd
       }
       const double f =
         this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
-      joined_.factor(matrix_->assemble(f, bonded_, inverse_D_.data()));
-      ++this->counters_.global_factorisations;
+      prepare(*joined_, matrix_->assemble(f, bonded_, inverse_D_.data()),
+              joined_matrix_);
       joined_valid_ = true;
     }
 
@@ -302,8 +376,7 @@ namespace nsfd
       for (std::size_t k = 0; k < n; ++k)
         point_work_[k] = inverse_D_[k] * r[k];
       this->generalised_impulse(point_work_.data(), rows_.data());
-      joined_.solve(rows_.data(), columns_.data());
-      ++this->counters_.global_solves;
+      solve(*joined_, rows_.data(), columns_.data());
       this->relative_velocity(columns_.data(), z);
       for (std::size_t k = 0; k < n; ++k)
         z[k] = inverse_D_[k] * (r[k] - z[k]);
@@ -315,15 +388,19 @@ namespace nsfd
   make_bonded_dynamics(const Communicator &communicator,
                        const Bodies &bodies,
                        const InterfacePoints<dim> &points,
-                       const std::string &solver)
+                       const std::string &solver,
+                       const std::vector<double> &coordinates)
   {
-    return std::make_unique<Bonded<dim>>(communicator, bodies, points, solver);
+    return std::make_unique<Bonded<dim>>(communicator, bodies, points, solver,
+                                         coordinates);
   }
 
   template std::unique_ptr<BondedDynamics<2>>
   make_bonded_dynamics<2>(const Communicator &, const Bodies &,
-                          const InterfacePoints<2> &, const std::string &);
+                          const InterfacePoints<2> &, const std::string &,
+                          const std::vector<double> &);
   template std::unique_ptr<BondedDynamics<3>>
   make_bonded_dynamics<3>(const Communicator &, const Bodies &,
-                          const InterfacePoints<3> &, const std::string &);
+                          const InterfacePoints<3> &, const std::string &,
+                          const std::vector<double> &);
 } // namespace nsfd

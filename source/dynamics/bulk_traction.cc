@@ -29,9 +29,11 @@ namespace nsfd
       if (a < 0. || b < 0.)
         continue; // at the boundary
       if (a == 0. || b == 0.)
-        bonds_[i] = {a > 0. ? 1. : 0., b > 0. ? 1. : 0., 2. * (a + b)};
+        bonds_[i] = {a > 0. ? 1. : 0., b > 0. ? 1. : 0.,
+                     penalty_factor * (a + b)};
       else
-        bonds_[i] = {b / (a + b), a / (a + b), 2. * a * b / (a + b)};
+        bonds_[i] = {b / (a + b), a / (a + b),
+                     penalty_factor * a * b / (a + b)};
     }
     side_1_.resize((points.n_points + 1) * dim);
     side_2_.resize((points.n_points + 1) * dim);

@@ -162,6 +162,22 @@ namespace nsfd
                    n, MPI_DOUBLE, 0, mpi);
   }
 
+  void Cholesky::solve_columns(const double *B, double *X, const std::size_t n)
+  {
+    const std::size_t rows = library_->factor->n;
+    cholmod_dense right{};
+    right.nrow = right.d = rows;
+    right.ncol = n;
+    right.nzmax = rows * n;
+    right.x = const_cast<double *>(B);
+    right.xtype = CHOLMOD_REAL;
+    right.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense *solution = cholmod_solve(CHOLMOD_A, library_->factor, &right,
+                                            &library_->common);
+    std::copy_n(static_cast<const double *>(solution->x), rows * n, X);
+    cholmod_free_dense(&solution, &library_->common);
+  }
+
   double Cholesky::n_entries() const
   {
     return library_->factor ? double(library_->factor->xsize) : 0.;
@@ -189,6 +205,13 @@ namespace nsfd
         ++counters_.solves;
         factor_.solve(b, x);
         return 0;
+      }
+
+      void solve_columns(const double *B, double *X, std::size_t,
+                         const std::size_t n, double) override
+      {
+        counters_.solves += n;
+        factor_.solve_columns(B, X, n);
       }
 
     private:

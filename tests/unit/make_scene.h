@@ -60,7 +60,7 @@ namespace nsfd
         if (input->has_bonded_faces()) {
           auto joined = make_bonded_dynamics<dim>(
               communicator, discretization->bodies(), discretization->points(),
-              input->solver.linear_solver);
+              input->solver.linear_solver, node_coordinates(*discretization));
           bonded = joined.get();
           dynamics = std::move(joined);
         } else if (input->solver.path == "global")

@@ -16,7 +16,7 @@ namespace nsfd
    *     K = sum of body stiffnesses
    *         + sum over bonded points w ( t.[v] + [u].t(v) + eta [u].[v] ),
    *
-   * [u] the jump, t and eta those of BulkTraction. K is at least half of the
+   * [u] the jump, t and eta those of BulkTraction. K is at least 31/32 of the
    * sum of body stiffnesses on every mesh, at every degree and contrast,
    * whichever points are bonded (theory.md).
    */
@@ -36,11 +36,12 @@ namespace nsfd
     bool bodies_are_apart() const override { return false; }
   };
 
-  /** @p solver is `direct` (sparse Cholesky) or `cg`. */
+  /** @p solver and @p coordinates as in make_sparse_dynamics(). */
   template <int dim>
   std::unique_ptr<BondedDynamics<dim>>
   make_bonded_dynamics(const Communicator &communicator,
                        const Bodies &bodies,
                        const InterfacePoints<dim> &points,
-                       const std::string &solver);
+                       const std::string &solver,
+                       const std::vector<double> &coordinates);
 } // namespace nsfd

@@ -68,6 +68,17 @@ namespace nsfd
     virtual unsigned int
     solve(const double *b, double *x, double tolerance) = 0;
 
+    /**
+     * The same for @p n right-hand sides of @p rows own values each, one after
+     * the other in memory.
+     */
+    virtual void solve_columns(const double *B, double *X, std::size_t rows,
+                               std::size_t n, double tolerance)
+    {
+      for (std::size_t c = 0; c < n; ++c)
+        solve(B + c * rows, X + c * rows, tolerance);
+    }
+
     /** Whether the last solve() reached its tolerance. */
     bool converged() const { return converged_; }
 
