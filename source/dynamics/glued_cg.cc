@@ -148,8 +148,6 @@ namespace nsfd
       z_.resize(n);
       q_.resize(n);
       p_.resize(n + matrix_->ghosts.size());
-      precondition(r_.data(), z_.data());
-      const double target = tolerance * tolerance * dot(r_, z_);
       bool started = false;
       for (std::size_t i = 0; i < n; ++i)
         started = started || x[i] != 0.;
@@ -158,9 +156,10 @@ namespace nsfd
         multiply(*matrix_, exchange_, p_.data(), q_.data());
         for (std::size_t i = 0; i < n; ++i)
           r_[i] -= q_[i];
-        precondition(r_.data(), z_.data());
       }
+      precondition(r_.data(), z_.data());
       double rz = dot(r_, z_);
+      const double target = tolerance * tolerance * rz;
       std::copy(z_.begin(), z_.end(), p_.begin());
       // a sum that is not above round-off any more ends it as well
       const unsigned int limit = 1000;

@@ -46,6 +46,8 @@ namespace nsfd
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
       bool inverts() const override { return inverts_; }
+      bool solve_springs(const double *P, const double *U, const double *r,
+                         double tolerance, double *next) override;
 
     private:
       double share() const
@@ -67,6 +69,7 @@ namespace nsfd
       std::vector<double> D_, inverse_D_, inverse_D_coarse_;
       bool valid_ = false, coarse_valid_ = false, inverts_ = false;
       mutable std::vector<double> work_, right_, solution_;
+      std::vector<double> difference_, velocity_; ///< of the last solve_springs()
     };
 
     template <int dim>
@@ -235,6 +238,50 @@ namespace nsfd
       this->relative_velocity(solution_.data(), z);
       for (std::size_t k = 0; k < n; ++k)
         z[k] = inverse_D_[k] * (r[k] - z[k]);
+    }
+
+    template <int dim>
+    bool SparseDynamics<dim>::solve_springs(const double *P, const double *U,
+                                            const double *r,
+                                            const double tolerance,
+                                            double *next)
+    {
+      const std::size_t n = inverse_D_.size(), m = this->bodies_.n_dofs();
+      if (!this->free_velocity_ || this->free_velocity_->size() != m)
+        return false;
+      work_.resize(n);
+      right_.resize(m);
+      difference_.resize(m);
+      velocity_.resize(m, 0.);
+      // A dv = M_hat (v_free - v) + H^T P, P = P^ - D^{-1} H v of the last v:
+      // the residual without A, whose round-off grows with the stiffness
+      this->relative_velocity(velocity_.data(), work_.data());
+      for (std::size_t k = 0; k < n; ++k)
+        if (D_[k] >= 0.)
+          next[k] = P[k] - inverse_D_[k] * (r[k] - U[k] + work_[k]);
+      this->generalised_impulse(next, right_.data());
+      for (std::size_t i = 0; i < m; ++i)
+        difference_[i] = (*this->free_velocity_)[i] - velocity_[i];
+      solution_.resize(m);
+      this->apply(Dynamics<dim>::Operator::mass, difference_.data(),
+                  solution_.data());
+      for (std::size_t i = 0; i < m; ++i)
+        right_[i] += solution_[i];
+      this->apply(Dynamics<dim>::Operator::stiffness, difference_.data(),
+                  solution_.data());
+      for (std::size_t i = 0; i < m; ++i)
+        right_[i] += share() * solution_[i];
+      solution_.assign(m, 0.);
+      this->counters_.inner_iterations +=
+        solver_->solve(right_.data(), solution_.data(), tolerance);
+      ++this->counters_.global_solves;
+      this->relative_velocity(solution_.data(), work_.data());
+      for (std::size_t k = 0; k < n; ++k)
+        if (D_[k] >= 0.)
+          next[k] -= inverse_D_[k] * work_[k];
+      for (std::size_t i = 0; i < m; ++i)
+        velocity_[i] += solution_[i];
+      return true;
     }
   } // namespace
 

@@ -182,6 +182,7 @@ namespace nsfd
       dynamics_.add_velocity_change(
         crack_pressure_->impulse(pressure, h).data(), v_free_.data());
     dynamics_.relative_velocity(v_free_.data(), problem_.free_velocity.data());
+    dynamics_.set_free_velocity(&v_free_);
   }
 
   /** Again as long as extrinsic points reach their strength. */

@@ -89,6 +89,33 @@ namespace nsfd
     virtual bool inverts() const { return false; }
 
     /**
+     * One Newton step in velocities: impulses P* with
+     *
+     *     M_hat v = M_hat v_free + H^T P*,
+     *     D (P* - P) + H v - U + r = 0     where D > 0 takes part,
+     *
+     * and the D of the preconditioner where D = 0, a proximal step; @p next
+     * holds P* of the components that do not take part and all of them on
+     * return. The right-hand side is a momentum of the order of P*, whatever
+     * the step and the stiffness, while (W + D) dP = -r loses the digits of
+     * W/D on its way through D^{-1} r. @p tolerance is that of an iterative
+     * solve, relative to its start, the velocities of the last one. Returns
+     * false where there is no such solver or no v_free.
+     */
+    virtual bool solve_springs(const double * /*P*/, const double * /*U*/,
+                               const double * /*r*/, double /*tolerance*/,
+                               double * /*next*/)
+    {
+      return false;
+    }
+
+    /** v_free behind the U_free of the problems to come; it stays the owner's. */
+    void set_free_velocity(const std::vector<double> *v_free)
+    {
+      free_velocity_ = v_free;
+    }
+
+    /**
      * Relative tolerance of the iterative solve inside precondition(), in the
      * norm of its own preconditioner; a factor knows nothing of it.
      */
@@ -160,6 +187,7 @@ namespace nsfd
     mutable std::vector<double> cartesian_, side_1_, side_2_;
     std::vector<double> least_compliance_;
     double inner_tolerance_ = 1e-11;
+    const std::vector<double> *free_velocity_ = nullptr;
   };
 
   /** Preconditioned by the face blocks of W: for steps up to some crossings. */

@@ -46,9 +46,11 @@ namespace nsfd
         LawEvaluation<dim> &evaluation;
         SolverReport &report;
         std::size_t n, n_owned; // components
+        const Vector *impulse;  // where the evaluation is
       };
 
       bool differentiate(const Work &work, const Vector &impulse);
+      bool spring_direction(const Work &work, double tolerance, Vector &dP);
       void symmetric_direction(const Work &work, double tolerance, Vector &dP);
       void coupled_direction(const Work &work, double tolerance, double shift,
                              Vector &dP);
@@ -125,6 +127,42 @@ namespace nsfd
       return work.dynamics.communicator().any(any);
     }
 
+    /**
+     * The same step in the velocities of the bodies, where that is possible.
+     * With linear laws only, all that is left of the error can go at once.
+     */
+    template <int dim>
+    bool DualNewton<dim>::spring_direction(const Work &work,
+                                           double tolerance, Vector &dP)
+    {
+      bool linear = true;
+      for (std::size_t i = 0; i < work.problem.n_owned && linear; ++i)
+        linear = work.evaluation.linear(i) != nullptr ||
+                 work.problem.kind[i] == PointKind::prescribed;
+      work.dynamics.prepare_preconditioner(compliance_);
+      if (!work.dynamics.communicator().any(!linear) &&
+          work.dynamics.inverts())
+        tolerance = std::min(tolerance, 0.1 * work.control.tolerance /
+                                          work.evaluation.error);
+      rhs_.assign(work.n, 0.);
+      for (std::size_t k = 0; k < work.n; ++k) {
+        const double defect = work.evaluation.defect[k];
+        if (compliance_[k] >= 0.)
+          rhs_[k] = (compliance_[k] + majorant(work, k)) * defect;
+        else
+          dP[k] = (*work.impulse)[k] - defect;
+      }
+      if (!work.dynamics.solve_springs(work.impulse->data(),
+                                       work.evaluation.velocity.data(),
+                                       rhs_.data(), tolerance, dP.data())) {
+        dP.assign(work.n, 0.);
+        return false;
+      }
+      for (std::size_t k = 0; k < work.n; ++k)
+        dP[k] -= (*work.impulse)[k];
+      return true;
+    }
+
     /** Conjugate gradients for (W + D) dP = -(D + R) Phi. */
     template <int dim>
     void DualNewton<dim>::symmetric_direction(const Work &work,
@@ -134,6 +172,8 @@ namespace nsfd
       const auto &communicator = work.dynamics.communicator();
       const Vector &defect = work.evaluation.defect;
       dP.assign(work.n, 0.);
+      if (spring_direction(work, tolerance, dP))
+        return;
       rhs_.assign(work.n, 0.);
       bool moved = false;
       for (std::size_t k = 0; k < work.n; ++k)
@@ -152,11 +192,6 @@ namespace nsfd
       r_ = rhs_;
       z_.assign(work.n, 0.);
       work.dynamics.precondition(r_.data(), z_.data());
-      if (work.dynamics.inverts()) {
-        for (std::size_t k = 0; k < work.n; ++k)
-          dP[k] += z_[k];
-        return;
-      }
       p_ = z_;
       double rz = communicator.dot(r_.data(), z_.data(), work.n_owned);
       const double target = tolerance * tolerance * rz;
@@ -415,7 +450,8 @@ namespace nsfd
                       evaluation,
                       report,
                       problem.n_points * dim,
-                      problem.n_owned * dim};
+                      problem.n_owned * dim,
+                      &impulse};
       Vector dP, best, trial;
       evaluation.update(impulse);
       unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
