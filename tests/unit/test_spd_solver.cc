@@ -29,7 +29,7 @@ namespace
     return "set dimension = " + std::to_string(dim) +
            "\nsubsection Mesh\n  set type = " + type +
            "\n  set upper corner = " + upper + "\n  set cells = " + cells +
-           "\n  set distortion = 0.2\nend\n"
+           "\n  set distortion = 0.1\nend\n"
            "subsection Discretization\n  set degree = " +
            std::to_string(degree) + R"(
 end
@@ -78,17 +78,19 @@ end
     return y;
   }
 
-  /** Springs of many sizes; those of faces across x = 2 are broken. */
+  /** Springs a decade apart from face to face; those of faces across x = 2 are broken. */
   template <int dim>
   Vector springs(const Scene<dim> &scene, const bool broken)
   {
     const auto &points = scene.discretization->points();
-    Vector k = random_vector(points.n_points * dim, 3);
+    Vector k(points.n_points * dim);
+    const Vector exponent = random_vector(points.faces.size(), 3);
     for (std::size_t i = 0; i < k.size(); ++i) {
       const auto &face = points.faces[points.face_of[i / dim]];
-      k[i] = 1e3 * std::pow(10., 2. * k[i]);
+      k[i] = 1e4 * std::pow(10., 0.5 * exponent[points.face_of[i / dim]]) *
+             (i % dim == 0 ? 2. : 1.);
       if (broken && std::abs(face.centre[0] - 2.) < 0.3 &&
-          std::abs(points.frame[(i / dim) * dim * dim]) > 0.7)
+          std::abs(points.frame[(i / dim) * dim * dim]) > 0.85)
         k[i] = 0.;
     }
     return k;

@@ -158,6 +158,34 @@ namespace nsfd
         dP.assign(work.n, 0.);
         return false;
       }
+      // rows without compliance are approached by proximal steps
+      const auto &communicator = work.dynamics.communicator();
+      const auto size = [&](const Vector &r) {
+        z_.assign(work.n_owned, 0.);
+        for (std::size_t k = 0; k < work.n_owned; ++k)
+          if (compliance_[k] >= 0.)
+            z_[k] = r[k] * r[k] / majorant(work, k);
+        return std::sqrt(communicator.sum(z_.data(), work.n_owned));
+      };
+      if (!work.dynamics.inverts()) {
+        const double goal = tolerance * size(rhs_);
+        for (unsigned int round = 0; round < 5; ++round) {
+          Ap_.resize(work.n);
+          work.dynamics.apply_delassus(dP.data(), Ap_.data());
+          r_ = rhs_;
+          for (std::size_t k = 0; k < work.n; ++k) {
+            Ap_[k] += work.problem.free_velocity[k];
+            r_[k] += compliance_[k] * (dP[k] - (*work.impulse)[k]) + Ap_[k] -
+                     work.evaluation.velocity[k];
+          }
+          if (!(size(r_) > goal))
+            break;
+          ++work.report.krylov;
+          p_ = dP;
+          work.dynamics.solve_springs(p_.data(), Ap_.data(), r_.data(),
+                                      0.1, dP.data());
+        }
+      }
       for (std::size_t k = 0; k < work.n; ++k)
         dP[k] -= (*work.impulse)[k];
       return true;
