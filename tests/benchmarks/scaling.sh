@@ -23,14 +23,17 @@ row() { # row SERIES DIMENSION DEGREE CELLS RATIO STEP STEPS PATH [options]
   shift 8
   all="$cells, $cells"
   lower="0, 0" upper="1, 1" type=rectangle
+  scene=prm/benchmarks/pulse.prm
   if [ "$dimension" = 3 ]; then
     all="$all, $cells" lower="0, 0, 0" upper="1, 1, 1" type=brick
+    scene="$out/pulse.prm"
+    sed '/^set plane/d' prm/benchmarks/pulse.prm >"$scene"
   fi
   # the shortest crossing of a cell lasts 1 / cells / 1.16
   end=$(awk "BEGIN { print ($steps - 0.5) * $step / $cells / 1.16 }")
   theta=$(awk "BEGIN { print $step < 2 ? 0.5 : 1 }")
   status=0
-  timeout "${LIMIT:-300}" ./nsfd prm/benchmarks/pulse.prm \
+  timeout "${LIMIT:-300}" ./nsfd "$scene" \
     --set "dimension=$dimension" \
     --set "Mesh/type=$type" --set "Mesh/cells=$all" \
     --set "Mesh/lower corner=$lower" --set "Mesh/upper corner=$upper" \
