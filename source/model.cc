@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/interface/point_factors.h"
 #include "nsfd/mesh/node_coordinates.h"
 
@@ -34,7 +35,9 @@ namespace nsfd
       print_problems(communicator, input, "error", problems);
       return false;
     }
+    charge_memory("bodies and points");
     build_dynamics(input, communicator);
+    charge_memory("blocks of the bodies");
     method =
         input.solver.method == "auto" ? "dual newton" : input.solver.method;
     solver = SolverRegistry<dim>::instance().create(method);
@@ -55,6 +58,7 @@ namespace nsfd
     if (!problems.empty())
       return;
     groups = std::make_unique<MeshGroups<dim>>(input, *triangulation);
+    charge_memory("mesh");
     std::vector<std::string> warnings;
     const auto materials = material_indices<dim>(input, *groups, *triangulation,
                                                  problems, warnings);

@@ -1,9 +1,11 @@
 #include "nsfd/simulation.h"
 
 #include "model.h"
+#include "run_costs.h"
 #include "run_info.h"
 #include "static_run.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/command_line.h"
 #include "nsfd/output/fragments.h"
@@ -65,6 +67,7 @@ namespace nsfd
 
       State state_;
       Summary summary_;
+      RunCosts<dim> costs_;
       double start_wall_, last_step_ = 0.;
       unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
       unsigned int attempts_ = 0; // at the present step, all rejected
@@ -85,6 +88,8 @@ namespace nsfd
     int Simulation<dim>::run()
     {
       const double setup = cpu_seconds();
+      begin_costs();
+      auto charge = std::make_unique<Charge>(Cost::set_up);
       if (!prepare())
         return exit_code::bad_input;
       if (options_.check)
@@ -99,12 +104,15 @@ namespace nsfd
         return exit_code::bad_input;
 
       model_.dynamics->reinit(model_.control->step(), input_.time.theta);
+      charge_memory("blocks of the bodies");
       state_ = model_.stepper->initial_state();
       fragments_ = std::make_unique<Fragments<dim>>(*model_.discretization,
                                                     communicator_);
       fragments_->update(state_);
+      charge_memory("state and history of the points");
       open_output();
       summary_.setup_seconds = cpu_seconds() - setup;
+      charge.reset();
 
       std::signal(SIGINT, request_stop);
       std::signal(SIGTERM, request_stop);
@@ -221,6 +229,7 @@ namespace nsfd
     int Simulation<dim>::step_to_the_end()
     {
       State next = state_;
+      charge_memory("state and history of the points");
       while (!model_.control->finished() || is_static_) {
         if (model_.control->finished()) {
           if (input_.statics->until >= input_.time.end)
@@ -359,6 +368,7 @@ namespace nsfd
       next.time = model_.control->time();
       std::swap(state_, next);
       last_step_ = h;
+      const Charge charge(Cost::output);
       fragments_->update(state_);
       record(report, h);
       output_->write_if_due(state_, h, *fragments_);
@@ -369,6 +379,7 @@ namespace nsfd
                                  const double time_step)
     {
       beyond_unique_ += report.beyond_unique;
+      costs_.record(report.solver, model_.dynamics->counters().delassus);
       for (const auto &name : report.solver.switches)
         ++switches_[name];
       HistoryRow row;
@@ -395,6 +406,7 @@ namespace nsfd
     template <int dim>
     void Simulation<dim>::finish(const std::string &failure)
     {
+      const Charge charge(Cost::output);
       output_->write_if_due(state_, last_step_, *fragments_, true);
       output_->end_progress();
       auto &s = summary_;
@@ -432,6 +444,8 @@ namespace nsfd
         s.timings.insert(s.timings.begin() + 1,
                          {"equilibria", q.assembly + q.solve + q.update});
       }
+      charge_memory("fields and curves");
+      s.cost = costs_.finish(*model_.dynamics);
       output_->write_summary(s);
       if (communicator_.is_root() && !options_.quiet)
         print_end();
@@ -490,11 +504,8 @@ namespace nsfd
           1e3 * (t.assembly + t.solve + t.update + t.ledger) / steps,
           double(stepper.newton) / steps, double(stepper.krylov) / steps,
           double(stepper.sweeps) / steps, rejected_, redone_, beyond_unique_);
-      std::cout << "  time:";
-      for (const auto &[name, seconds] : s.timings)
-        std::cout << fmt::format(" {} {:.3g} s;", name, seconds);
       std::cout << fmt::format(
-          "\n  energy: kinetic {:.6g}, elastic {:.6g}, cohesive {:.6g}, damage "
+          "  energy: kinetic {:.6g}, elastic {:.6g}, cohesive {:.6g}, damage "
           "{:.6g}, friction {:.6g}, impact {:.6g}, numerical {:.3g}, work "
           "{:.6g}; broken area {:.4g}, fragments {}\n",
           s.energy.kinetic, s.energy.elastic, s.energy.cohesive,
@@ -502,6 +513,7 @@ namespace nsfd
           s.energy.numerical, s.energy.work, state_.broken_area, s.fragments);
       for (const auto &[name, value] : s.errors)
         std::cout << fmt::format("  {:<28} {:.6g}\n", name, value);
+      std::cout << cost_text(s.cost, s.peak_memory_mb);
       std::cout << "  " << input_.output.directory
                 << (input_.output.report ? "/report.html\n" : "/\n");
     }

@@ -1,5 +1,6 @@
 #include "nsfd/base/communicator.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/dynamics/block_kernels.h"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ namespace nsfd
                            const double *b,
                            const std::size_t n) const
   {
+    const Charge charge(Cost::sums);
     static thread_local std::vector<double> products;
     products.resize(n);
     for (std::size_t i = 0; i < n; ++i)
@@ -36,6 +38,7 @@ namespace nsfd
                                          const std::size_t rows,
                                          const std::size_t n) const
   {
+    const Charge charge(Cost::sums);
     // Bit patterns of non-negative doubles are ordered like the doubles.
     std::vector<unsigned long long> largest(rows);
     for (std::size_t r = 0; r < rows; ++r)

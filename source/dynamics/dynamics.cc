@@ -2,6 +2,8 @@
 
 #include "body_loops.h"
 
+#include "nsfd/base/cost.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -28,6 +30,7 @@ namespace nsfd
   {
     if (time_step == time_step_ && theta == theta_)
       return;
+    const Charge charge(Cost::blocks);
     time_step_ = time_step;
     theta_ = theta;
     blocks_.resize(bodies_.classes.size());
@@ -91,6 +94,7 @@ namespace nsfd
   void Dynamics<dim>::apply_delassus(const double *impulse,
                                      double *velocity) const
   {
+    const Charge charge(Cost::delassus);
     ++counters_.delassus;
     to_cartesian(impulse);
     for_all_bodies(

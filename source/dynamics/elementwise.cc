@@ -1,5 +1,7 @@
 #include "nsfd/dynamics/dynamics.h"
 
+#include "nsfd/base/cost.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,6 +21,7 @@ namespace nsfd
 
       void prepare_preconditioner(const std::vector<double> &D) override
       {
+        const Charge charge(Cost::preconditioner);
         const auto &faces = this->points_.faces;
         factors_.resize(this->face_offset_.back());
         for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -45,6 +48,7 @@ namespace nsfd
 
       void precondition(const double *r, double *z) const override
       {
+        const Charge charge(Cost::precondition);
         const auto &faces = this->points_.faces;
         for (std::size_t f = 0; f < faces.size(); ++f) {
           const unsigned int n = faces[f].count * dim;

@@ -1,5 +1,6 @@
 #include "sparse_assembly.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/dynamics/dynamics.h"
 
 #include <algorithm>
@@ -198,6 +199,7 @@ namespace nsfd
     void
     SparseDynamics<dim>::prepare_preconditioner(const std::vector<double> &D)
     {
+      const Charge charge(Cost::preconditioner);
       // all is good as long as the step and D stay what they were
       if (!this->communicator_.any(!valid_ || D != D_))
         return;
@@ -225,6 +227,7 @@ namespace nsfd
     template <int dim>
     void SparseDynamics<dim>::precondition(const double *r, double *z) const
     {
+      const Charge charge(Cost::precondition);
       const std::size_t n = inverse_D_.size(), m = this->bodies_.n_dofs();
       work_.resize(n);
       right_.resize(m);

@@ -1,5 +1,7 @@
 #include "nsfd/nonsmooth/solver.h"
 
+#include "nsfd/base/cost.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,7 @@ namespace nsfd
     , dynamics_(dynamics)
     , floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
   {
+    const Charge charge(Cost::laws);
     linear_.reserve(problem.n_points);
     for (std::size_t i = 0; i < problem.n_points; ++i)
       linear_.push_back(
@@ -50,6 +53,7 @@ namespace nsfd
   template <int dim>
   void LawEvaluation<dim>::update_laws(const std::vector<double> &impulse)
   {
+    const Charge charge(Cost::laws);
     ++law_calls;
     for (std::size_t i = 0; i < problem_.n_points; ++i) {
       const auto local = local_velocity(impulse, i);

@@ -1,6 +1,7 @@
 #include "nsfd/output/report.h"
 
 #include "report_charts.h"
+#include "report_cost.h"
 #include "report_html.h"
 
 #include "nsfd/output/progress.h"
@@ -254,34 +255,6 @@ namespace nsfd
                           engineering(report.summary.final_time, "s", 4));
     }
 
-    std::string cost(const Report &report)
-    {
-      const Summary &s = report.summary;
-      Table timings;
-      double sum = 0.;
-      for (const auto &timing : s.timings)
-        sum += timing.second;
-      const double total = std::max(sum, s.cpu_seconds);
-      for (const auto &[name, seconds] : s.timings)
-        timings.add_share(readable(name), fmt::format("{:.3f} s", seconds),
-                          seconds / total);
-      if (!s.timings.empty() && total > 1.0005 * sum)
-        timings.add_share("all else", fmt::format("{:.3f} s", total - sum),
-                          (total - sum) / total);
-
-      Table counters;
-      for (const auto &[name, value] : s.counters)
-        counters.add(readable(name), count(value),
-                     s.steps > 0 && value >= s.steps
-                         ? engineering(value / s.steps, "") + " per step"
-                         : "");
-      const std::string cards =
-          timings.card(
-              fmt::format("CPU time by part of the step, {:.3g} s", total)) +
-          counters.card("Counters");
-      return cards.empty() ? "" : section("Cost", row_of(cards));
-    }
-
     std::string how_it_was_run(const Report &report)
     {
       const RunInfo &info = report.info;
@@ -352,7 +325,7 @@ namespace nsfd
                                figures.figure(charts.step_size()) +
                                figures.figure(charts.newton()) +
                                figures.figure(charts.krylov())));
-    html += cost(report);
+    html += cost_section(report.summary);
     html += how_it_was_run(report);
 
     html += "<p class=\"muted\">Single pictures next to this page: ";

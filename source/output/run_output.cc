@@ -1,5 +1,6 @@
 #include "nsfd/output/run_output.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/output/field_output.h"
@@ -121,6 +122,7 @@ namespace nsfd
     const auto &output = input_.output;
     const bool due = last || is_due(state);
     if (due && !(last && fields_current_)) {
+      charge_memory("vectors of a step and its solver");
       if (output.fields_every > 0.)
         next_fields_ =
             (std::floor(state.time / output.fields_every * (1. + 1e-12)) + 1.) *
@@ -133,6 +135,7 @@ namespace nsfd
           for (std::size_t k = 1; k < snapshots_.size(); ++k)
             snapshots_.erase(snapshots_.begin() + long(k));
       }
+      charge_memory("fields and curves");
     }
     fields_current_ = due;
   }

@@ -29,6 +29,33 @@ namespace nsfd
       return object;
     }
 
+    Json costs(const CostRecord &cost)
+    {
+      Json json = Json::object();
+      json["parts"] = Json::object();
+      for (const auto &part : cost.parts)
+        json["parts"][part.name] = {{"seconds", number(part.seconds)},
+                                    {"calls", part.calls}};
+      json["per_step"] = Json::object();
+      for (const auto &spread : cost.per_step)
+        json["per_step"][spread.name] = {{"median", number(spread.median)},
+                                         {"worst", number(spread.worst)}};
+      json["memory_bytes"] = numbers(cost.memory);
+      Json loop = {{"applications", number(cost.applications)},
+                   {"seconds", number(cost.seconds)},
+                   {"flops", number(cost.flops)},
+                   {"bytes", number(cost.bytes)}};
+      if (cost.has_limits()) {
+        loop["copy_bytes_per_second"] = number(cost.copy_bytes_per_second);
+        loop["product_flops_per_second"] =
+            number(cost.product_flops_per_second);
+        loop["share_of_limit"] = number(cost.share_of_limit());
+        loop["limit"] = cost.limited_by_copy() ? "copy" : "product";
+      }
+      json["application_of_W"] = loop;
+      return json;
+    }
+
     void write_json(const std::string &path, const Json &json)
     {
       // host names and paths may hold bytes that are no UTF-8
@@ -95,6 +122,7 @@ namespace nsfd
     json["counters"] = numbers(summary.counters);
     json["errors"] = numbers(summary.errors);
     json["timings"] = numbers(summary.timings);
+    json["cost"] = costs(summary.cost);
     write_json(path, json);
   }
 

@@ -8,6 +8,7 @@
 #include "step_data.h"
 #include "uniqueness.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/scene_input.h"
 
@@ -87,6 +88,7 @@ namespace nsfd
   {
     {
       const Stopwatch watch(timings_.assembly);
+      const Charge charge(Cost::free_motion);
       if (bonded_)
         bonded_->set_bonds(bonded_points(old));
       dynamics_.reinit(h, input_.time.theta);
@@ -110,6 +112,7 @@ namespace nsfd
     next.impulse = old.impulse;
     {
       const Stopwatch watch(timings_.solve);
+      const Charge charge(Cost::solver);
       SolverControl control;
       control.tolerance = input_.solver.tolerance;
       control.maximum_iterations = input_.solver.maximum_iterations;
@@ -125,9 +128,13 @@ namespace nsfd
         report.solver.sweeps, describe(evaluation.worst_point)));
     {
       const Stopwatch watch(timings_.update);
+      const Charge charge(Cost::update);
       move(old, evaluation, next);
     }
+    if (old.step == 0)
+      charge_memory("vectors of a step and its solver");
     const Stopwatch watch(timings_.ledger);
+    const Charge charge(Cost::ledger);
     ledger_->book(problem_, evaluation, forces_, old, next, report);
     if (bulk_) {
       const BondReport bonds =

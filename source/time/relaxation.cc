@@ -5,6 +5,7 @@
 #include "step_data.h"
 #include "uniqueness.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/base/stopwatch.h"
 
 #include <algorithm>
@@ -184,6 +185,7 @@ namespace nsfd
     h_ = h;
     {
       const Stopwatch watch(this->timings_.assembly);
+      const Charge charge(Cost::free_motion);
       std::vector<double> change(n);
       for (std::size_t k = 0; k < n; ++k)
         change[k] = q[k] - old_->displacement[k];
@@ -218,9 +220,11 @@ namespace nsfd
     SolverReport report;
     {
       const Stopwatch watch(this->timings_.solve);
+      const Charge charge(Cost::solver);
       report = this->solve(control, energy_scale, impulse, evaluation);
     }
     const Stopwatch watch(this->timings_.update);
+    const Charge charge(Cost::update);
     worst_point_ = evaluation.worst_point;
     // near round-off a solve may end above its goal: the balance judges it
     report.converged = report.residual <= 10. * tolerance;

@@ -180,6 +180,9 @@ namespace
     summary.penetration_max = std::numeric_limits<double>::infinity();
     summary.errors["displacement_L2"] = 1e-3;
     summary.timings = {{"z last", 1.}, {"a first", 2.}};
+    summary.cost.parts = {{"laws", 0.25, 7}};
+    summary.cost.per_step = {{"Newton", 3., 9.}};
+    summary.cost.memory = {{"mesh", 1024.}};
     const std::string path = scratch("summary.json");
     write_summary(path, summary);
 
@@ -188,7 +191,7 @@ namespace
          {"completed", "steps", "dofs", "interface_points", "final_time",
           "wall_seconds", "peak_memory_mb", "energy", "dissipated", "work",
           "ledger_defect_max", "residual_max", "penetration_max", "counters",
-          "errors", "fragments", "failure", "timings"})
+          "errors", "fragments", "failure", "timings", "cost"})
       EXPECT_TRUE(json.contains(key)) << key;
     for (const char *key : {"crack_pressure_work", "viscous_traction_max"})
       EXPECT_FALSE(json.contains(key)) << "no such part";
@@ -208,6 +211,12 @@ namespace
     EXPECT_TRUE(json["residual_max"].is_null());
     EXPECT_TRUE(json["penetration_max"].is_null());
     EXPECT_EQ(json["timings"].begin().key(), "z last");
+    EXPECT_EQ(json["cost"]["parts"]["laws"]["seconds"], 0.25);
+    EXPECT_EQ(json["cost"]["parts"]["laws"]["calls"], 7);
+    EXPECT_EQ(json["cost"]["per_step"]["Newton"]["worst"], 9.);
+    EXPECT_EQ(json["cost"]["memory_bytes"]["mesh"], 1024.);
+    EXPECT_FALSE(json["cost"]["application_of_W"].contains("limit"))
+        << "not measured";
     EXPECT_FALSE(std::ifstream(path + ".part"));
   }
 

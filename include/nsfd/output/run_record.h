@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/output/cost_record.h"
+
 #include <array>
 #include <map>
 #include <optional>
@@ -62,6 +64,7 @@ namespace nsfd
     std::map<std::string, double> errors;
     /// seconds of CPU by part of the step, in the order to print
     std::vector<std::pair<std::string, double>> timings;
+    CostRecord cost;
   };
 
   /** What run.json says. */

@@ -1,5 +1,7 @@
 #include "nsfd/nonsmooth/solver.h"
 
+#include "nsfd/base/cost.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -100,6 +102,7 @@ namespace nsfd
     const auto &bodies = dynamics.bodies();
     const auto &blocks = dynamics.class_blocks();
 
+    const Charge charge(Cost::sweeps);
     // where in its bodies a point sits
     struct Place
     {
