@@ -1,0 +1,306 @@
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+// Stiff and extreme scenes of prm/stability: doc/stability.md is their table.
+
+namespace end_to_end
+{
+  namespace
+  {
+    std::filesystem::path stability_scene(const std::string &name)
+    {
+      return quickstart().parent_path() / "stability" / (name + ".prm");
+    }
+
+    Launch launch(const std::string &name,
+                  const std::vector<std::string> &set = {},
+                  const double energy_scale = 0.)
+    {
+      Launch what{stability_scene(name), set};
+      what.energy_scale = energy_scale;
+      return what;
+    }
+
+    double krylov_per_step(const Result &result)
+    {
+      return result.counter("krylov") / result.number("steps");
+    }
+
+    double mechanical_energy(const History &history, const std::size_t row)
+    {
+      return history["kinetic"][row] + history["elastic"][row] +
+             history["cohesive"][row];
+    }
+
+    /** Mean traction in y over the last picture of the obstacles' points. */
+    double floor_traction(const Result &result)
+    {
+      const auto pictures = snapshots(result.directory, "interfaces");
+      if (pictures.empty())
+        return std::nan("");
+      const auto &traction = pictures.back().at("traction");
+      const auto &obstacle = pictures.back().at("obstacle");
+      double sum = 0., count = 0.;
+      for (std::size_t i = 0; i < obstacle.size(); ++i)
+        if (obstacle[i] > 0.5) {
+          sum += traction[3 * i + 1];
+          count += 1.;
+        }
+      return std::abs(sum / count);
+    }
+
+    /** All blocks stay where they are. */
+    void expect_rest(const Result &result, const double mass,
+                     const double fall)
+    {
+      double kinetic = 0.;
+      for (const double value : result.history["kinetic"])
+        kinetic = std::max(kinetic, value);
+      expect_below("largest speed over that of a fall in a step",
+                   std::sqrt(2. * kinetic / mass) / fall, 1e-6,
+                   "tolerance of the solver, step after step");
+    }
+  } // namespace
+
+  // Springs add 1/ratio to the compliance, so errors fall like 1/ratio to that
+  // of the mesh; the work does not grow.
+  TEST(Stability, StiffInterface)
+  {
+    const Workspace workspace;
+    const Result stiffest = good_run(
+        workspace, "1e8", launch("stiff_interface", {"Constants/ratio=1e8"}));
+    ASSERT_TRUE(stiffest.completed());
+    const double of_mesh = stiffest.error("displacement_L2");
+    double first = 0., krylov_at_1e2 = 0.;
+    for (const char *ratio : {"1e2", "1e3", "1e4", "1e5", "1e6", "1e7"}) {
+      const Result result =
+          good_run(workspace, ratio,
+                   launch("stiff_interface",
+                          {std::string("Constants/ratio=") + ratio}));
+      ASSERT_TRUE(result.completed());
+      const double excess = result.error("displacement_L2") - of_mesh,
+                   scale = std::stod(ratio);
+      if (first == 0.) {
+        first = excess * scale;
+        krylov_at_1e2 = krylov_per_step(result);
+        // a bar longer by the compliance of its joints, 1/100, in waves
+        expect_below("ratio 1e2: excess error", excess, 0.02);
+      } else
+        expect_below(std::string("ratio ") + ratio + ": excess times ratio " +
+                         "over that at 1e2",
+                     excess * scale / first, scale < 1e6 ? 1.5 : 15.,
+                     "1/C, down to the tolerance of the solver");
+      expect_below(std::string("ratio ") + ratio + ": Krylov over that at 1e2",
+                   krylov_per_step(result) / krylov_at_1e2,
+                   1. + std::log10(scale / 100.), "log C");
+    }
+    expect_below("ratio 1e8: Krylov over that at 1e2",
+                 krylov_per_step(stiffest) / krylov_at_1e2, 7., "log C");
+  }
+
+  TEST(Stability, DensityRatioImpact)
+  {
+    const Workspace workspace;
+    for (const double e : {0., 0.5, 1.}) {
+      const Result result =
+          good_run(workspace, "e = " + std::to_string(e),
+                   launch("density_ratio",
+                          {"Constants/e=" + std::to_string(e)}));
+      ASSERT_TRUE(result.completed());
+      const double m1 = 1., m2 = 1e6, u1 = 3., u2 = -1.;
+      const double v1 = u1 - (1. + e) * m2 / (m1 + m2) * (u1 - u2),
+                   v2 = u2 + (1. + e) * m1 / (m1 + m2) * (u1 - u2),
+                   lost = 0.5 * (1. - e * e) * m1 * m2 / (m1 + m2) *
+                          (u1 - u2) * (u1 - u2);
+      const auto fields = snapshots(result.directory, "fields");
+      ASSERT_GE(fields.size(), 2u);
+      double low = 1e9, high = -1e9; // the light block moves back at v_1
+      const auto &velocity = fields.back().at("velocity");
+      for (std::size_t i = 0; i < velocity.size(); i += 3) {
+        low = std::min(low, velocity[i]);
+        high = std::max(high, velocity[i]);
+      }
+      expect_below("impulse", std::abs((u1 - low) /
+                                           (u1 - v1) - 1.), 1e-8);
+      expect_below("velocity of the heavy block",
+                   std::abs(high - v2), 1e-8);
+      expect_below("energy lost, over that of the light block",
+                   std::abs(result.dissipated("impact") - lost) / 4.5, 1e-8);
+    }
+  }
+
+  // With friction up to 1e4 only: beyond, see doc/stability.md.
+  TEST(Stability, HeavyOnLightStandsStill)
+  {
+    const Workspace workspace;
+    for (const auto &[ratio, mu] : std::map<std::string, std::string>{
+             {"1e4", "0.5"}, {"1e6", "0"}}) {
+      const double heavy = std::stod(ratio);
+      const Result result = good_run(
+          workspace, ratio,
+          launch("heavy_on_light",
+                 {"Constants/ratio=" + ratio, "Constants/mu=" + mu},
+                 0.5 * heavy)); // m g^2 h^2 / 2
+      ASSERT_TRUE(result.completed());
+      expect_rest(result, heavy, 0.1);
+      expect_below("ratio " + ratio + ", force of the floor",
+                   std::abs(floor_traction(result) / (heavy + 1.) / 10. - 1.),
+                   1e-9);
+    }
+  }
+
+  TEST(Stability, HugeFrictionOnTheIncline)
+  {
+    const Workspace workspace;
+    for (const char *mu : {"10", "1e3"}) {
+      const Result result =
+          good_run(workspace, mu,
+                   {scene("incline"),
+                    {std::string("Obstacle: plane/friction=") + mu}, 1, false,
+                    120., 1.});
+      ASSERT_TRUE(result.completed());
+      for (const char *key : {"velocity", "position", "normal_reaction"})
+        expect_below(std::string("mu = ") + mu + ", " + key, result.error(key),
+                     1e-10, "sticks");
+    }
+  }
+
+  // An elastic block: every point that touches sticks, and lifts off in the
+  // vibrations. The sliding of the whole step makes friction take energy.
+  TEST(Stability, HugeFrictionOfAnElasticBlock)
+  {
+    const Workspace workspace;
+    for (const char *mu : {"10", "1e3"}) {
+      const Result result =
+          good_run(workspace, mu,
+                   launch("mu_huge", {std::string("Constants/mu=") + mu,
+                                      "Time/sliding=increment"}));
+      ASSERT_TRUE(result.completed());
+      const double scale = result.history.largest_energy();
+      for (const double friction : result.history["friction"])
+        EXPECT_GE(friction, -1e-9 * scale);
+      expect_below(std::string("mu = ") + mu + ", energy over work",
+                   mechanical_energy(result.history,
+                                     result.history.size() - 1) /
+                       result.history["work"].back(),
+                   1., "nothing is created");
+    }
+  }
+
+  // theta = 1, steps of 1000 crossings: equilibrium; theta = 1/2, of 100: the
+  // energy stays bounded (the ledger of longer ones: doc/stability.md).
+  TEST(Stability, LargeSteps)
+  {
+    const Workspace workspace;
+    const Result one = good_run(workspace, "theta = 1", launch("large_step"));
+    ASSERT_TRUE(one.completed());
+    // sigma = 1 MPa, S = 0.05 m^2, a = 1 m, 19 springs of 1e4 E/L, L = a/20
+    const double elastic = 0.5 * 1e12 / 1e9 * 0.05,
+                 cohesive = elastic * 1e-4 * 19. / 20.;
+    const auto &history = one.history;
+    expect_below("theta = 1, elastic energy",
+                 std::abs(history["elastic"].back() / elastic - 1.), 1e-8);
+    expect_below("theta = 1, energy of the springs, over the elastic one",
+                 std::abs(history["cohesive"].back() - cohesive) / elastic,
+                 2e-6, "round-off times the square of the steps");
+    expect_below("theta = 1, force of the support",
+                 std::abs(std::abs(history["reaction_left_x"].back()) / 5e4 -
+                          1.),
+                 1e-8);
+    expect_below("theta = 1, kinetic energy",
+                 history["kinetic"].back() / elastic, 1e-9);
+
+    const Result half =
+        good_run(workspace, "theta = 1/2",
+                 launch("large_step",
+                        {"Constants/theta=0.5", "Constants/steps=100",
+                         "Time/cohesion rule=exact"}));
+    ASSERT_TRUE(half.completed());
+    double largest = 0.;
+    for (std::size_t i = 0; i < half.history.size(); ++i)
+      largest = std::max(largest, mechanical_energy(half.history, i));
+    // every mode starts at rest under its share of the load
+    expect_below("theta = 1/2, energy over its bound",
+                 largest / (4. * (elastic + cohesive)), 1. + 1e-6,
+                 "a load at once: at most twice the static displacement");
+  }
+
+  // theta = 1/2 <= 1 / (1 + e): no impact creates energy.
+  TEST(Stability, HalfImpact)
+  {
+    const Workspace workspace;
+    for (const char *e : {"0", "0.5", "1"}) {
+      const Result result =
+          good_run(workspace, std::string("e = ") + e,
+                   launch("half_impact",
+                          {std::string("Obstacle: wall/restitution=") + e,
+                           "Output/fields=false"}));
+      ASSERT_TRUE(result.completed());
+      double rise = 0.;
+      for (std::size_t i = 0; i < result.history.size(); ++i)
+        rise = std::max(rise, mechanical_energy(result.history, i) / 50. - 1.);
+      expect_below(std::string("e = ") + e + ", energy gained", rise, 1e-9,
+                   "tolerance of the solver");
+      expect_below(std::string("e = ") + e + ", impulse",
+                   result.error("impulse"), 0.01, "half a cell length over L");
+    }
+  }
+
+  TEST(Stability, AllIntact)
+  {
+    const Workspace workspace;
+    Launch rigid = launch("all_intact", {"Interface: faces/where=x > 9",
+                                         "Interface: z/where=all",
+                                         "Interface: z/law=rigid"});
+    const auto intact = [&](const std::string &ratio) {
+      return good_run(workspace, ratio,
+                      launch("all_intact", {"Constants/ratio=" + ratio}));
+    };
+    const Result conforming = good_run(workspace, "rigid", rigid),
+                 soft = intact("1e2"), stiff = intact("1e4"),
+                 stiffest = intact("1e6");
+    ASSERT_TRUE(conforming.completed() && soft.completed() &&
+                stiff.completed() && stiffest.completed());
+    for (const Result *result : {&soft, &stiff, &stiffest})
+      for (const char *line : {"damage", "friction", "impact"})
+        EXPECT_EQ(result->dissipated(line), 0.) << line;
+    const double at_1e2 = energy_difference(conforming.history, soft.history),
+                 at_1e4 = energy_difference(conforming.history, stiff.history),
+                 at_1e6 =
+                     energy_difference(conforming.history, stiffest.history);
+    expect_below("ratio 1e2: energies against rigid faces", at_1e2, 0.1);
+    expect_below("ratio 1e4: over a hundredth of that", 100. * at_1e4 / at_1e2,
+                 1.5, "1/C");
+    expect_below("ratio 1e6: over a hundredth of that", 100. * at_1e6 / at_1e4,
+                 1.5, "1/C");
+  }
+
+  // More impulses than equations of equilibrium: their sum is exact.
+  TEST(Stability, Hyperstatic)
+  {
+    struct Row {
+      const char *name;
+      double mass, area;
+    };
+    for (const Row &row : {Row{"four_points", 2000., 1.},
+                           Row{"tower", 1e4, 1.}, Row{"wall", 1e4, 10.}}) {
+      SCOPED_TRACE(row.name);
+      const Workspace workspace;
+      const Result result = good_run(
+          workspace, row.name,
+          launch(row.name, {}, 0.5 * row.mass * 0.01)); // m g^2 h^2 / 2
+      ASSERT_TRUE(result.completed());
+      expect_rest(result, row.mass, 0.1);
+      expect_below(std::string(row.name) + ", sum of the reactions",
+                   std::abs(floor_traction(result) * row.area /
+                                (row.mass * 10.) -
+                            1.),
+                   1e-8);
+    }
+  }
+} // namespace end_to_end
