@@ -58,6 +58,28 @@ namespace nsfd
     return cost;
   }
 
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  stage_timings(const Model<dim> &model, const double setup,
+                const double output)
+  {
+    const auto &t = model.stepper->timings();
+    std::vector<std::pair<std::string, double>> stages = {
+        {"set-up", setup},           {"loads and free motion", t.assembly},
+        {"nonsmooth solve", t.solve}, {"update of bodies", t.update},
+        {"energy ledger", t.ledger}, {"output", output}};
+    if (model.quasi_static) {
+      const auto &q = model.quasi_static->timings();
+      stages.insert(stages.begin() + 1,
+                    {"equilibria", q.assembly + q.solve + q.update});
+    }
+    return stages;
+  }
+
+  template std::vector<std::pair<std::string, double>>
+  stage_timings<2>(const Model<2> &, double, double);
+  template std::vector<std::pair<std::string, double>>
+  stage_timings<3>(const Model<3> &, double, double);
   template class RunCosts<2>;
   template class RunCosts<3>;
 } // namespace nsfd

@@ -1,15 +1,13 @@
 #pragma once
 
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "model.h"
+
 #include "nsfd/output/cost_record.h"
 
 #include <array>
 
 namespace nsfd
 {
-  template <int dim>
-  class Dynamics;
-
   /** Iterations of the accepted steps, and at the end the costs of a run. */
   template <int dim>
   class RunCosts
@@ -25,4 +23,9 @@ namespace nsfd
     std::array<std::vector<unsigned int>, 4> counts_;
     unsigned long long applications_ = 0;
   };
+
+  /** Seconds of CPU by stage of the step, in the order to print. */
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  stage_timings(const Model<dim> &model, double setup, double output);
 } // namespace nsfd

@@ -434,16 +434,7 @@ namespace nsfd
       s.wall_seconds = wall_seconds() - start_wall_;
       s.cpu_seconds = cpu_seconds();
       s.peak_memory_mb = peak_memory_mb();
-      const auto &t = model_.stepper->timings();
-      s.timings = {
-          {"set-up", s.setup_seconds},  {"loads and free motion", t.assembly},
-          {"nonsmooth solve", t.solve}, {"update of bodies", t.update},
-          {"energy ledger", t.ledger},  {"output", output_->cpu()}};
-      if (model_.quasi_static) {
-        const auto &q = model_.quasi_static->timings();
-        s.timings.insert(s.timings.begin() + 1,
-                         {"equilibria", q.assembly + q.solve + q.update});
-      }
+      s.timings = stage_timings(model_, s.setup_seconds, output_->cpu());
       charge_memory("fields and curves");
       s.cost = costs_.finish(*model_.dynamics);
       output_->write_summary(s);
