@@ -3,11 +3,13 @@
 #include "nsfd/input/read_scene.h"
 #include "nsfd/law_path/run_law.h"
 #include "nsfd/simulation.h"
+#include "nsfd/stored/solve_command.h"
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
 #include <iostream>
+#include <string>
 
 namespace
 {
@@ -30,9 +32,10 @@ namespace
   }
 
   /** One process is enough; all end with its exit code. */
-  int run_law_on_root(const CommandLine &command, const bool root)
+  template <typename Work>
+  int run_on_root(const bool root, const Work &work)
   {
-    int code = root ? run_law(command) : exit_code::done;
+    int code = root ? work() : exit_code::done;
     MPI_Bcast(&code, 1, MPI_INT, 0, MPI_COMM_WORLD);
     return code;
   }
@@ -41,8 +44,12 @@ namespace
 int main(int argc, char **argv)
 {
   CommandLine command;
+  SolveCommand stored;
+  const bool solve = argc > 1 && argv[1] == std::string("solve");
   if (const auto code =
-        parse_command_line(argc, argv, command, std::cout, std::cerr))
+        solve ? parse_solve_command_line(argc - 1, argv + 1, stored, std::cout,
+                                         std::cerr)
+              : parse_command_line(argc, argv, command, std::cout, std::cerr))
     return *code;
 
   // what needs no bodies needs no MPI
@@ -54,8 +61,11 @@ int main(int argc, char **argv)
   const bool root =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   try {
+    if (solve)
+      return run_on_root(
+          root, [&] { return run_solve(stored, std::cout, std::cerr); });
     if (command.law)
-      return run_law_on_root(command, root);
+      return run_on_root(root, [&] { return run_law(command); });
     InputErrors errors;
     const auto input = read_scene(command.file, command.overrides(), errors);
     if (root)

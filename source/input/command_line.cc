@@ -26,6 +26,7 @@ namespace nsfd
         "  nsfd FILE.prm             run a scene\n"
         "  nsfd FILE.prm --check     only say whether it would run\n"
         "  nsfd law NAME             drive one point of a cohesive law\n"
+        "  nsfd solve PROBLEM.hdf5   solve stored contact problems\n"
         "  nsfd --help               all options\n";
 
     /** Options without a value, and what they switch on. */
@@ -40,10 +41,8 @@ namespace nsfd
     {
       for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        if (i == 1 && (word == "study" || word == "solve"))
-          return fmt::format("`nsfd {}` is not there yet: only single scenes "
-                             "and `nsfd law` can be run",
-                             word);
+        if (i == 1 && word == "study")
+          return "`nsfd study` is not there yet: only single scenes can be run";
         if (word.compare(0, 8, "--resume") == 0)
           return "--resume is not there yet: there are no checkpoints";
       }
@@ -111,7 +110,9 @@ namespace nsfd
     app.set_help_flag();
     app.allow_extras();
     app.footer("Or: nsfd law NAME, drive one interface point along a path; "
-               "nsfd law --help says more.");
+               "nsfd law --help says more.\n"
+               "    nsfd solve PROBLEM.hdf5, stored contact problems; "
+               "nsfd solve --help says more.");
     bool help = false, list = false, version = false;
     app.add_option("FILE.prm", command_line.file, "the scene to run");
     // one value per --set: further words are not its own

@@ -3,6 +3,7 @@
 #include "nsfd/interface/cohesive_law.h"
 #include "nsfd/mesh/mesh_types.h"
 #include "nsfd/scene/verification_case.h"
+#include "nsfd/stored/contact_solver.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -178,6 +179,8 @@ namespace nsfd
     append_registered("verification case", VerificationRegistry::instance());
     append("mesh", mesh_types());
     append("solver", known_solvers());
+    append_registered("solver of stored problems",
+                      ContactSolverRegistry::instance());
     return parts;
   }
 } // namespace nsfd

@@ -35,7 +35,6 @@ namespace end_to_end
         {"unknown_option", {"--sett", "Time/end=1"}, 2, "--sett"},
         {"unknown_option_after_file", {stop_scene, "--fast"}, 2, "--fast"},
         {"study", {"study", stop_scene}, 2, "not there yet"},
-        {"solve", {"solve", "problem.hdf5"}, 2, "not there yet"},
         {"law_without_a_name", {"law"}, 2, "no law is named"},
         {"law_option", {"law", "tvergaard", "--pth", "shear"}, 2, "`--path`"},
         {"two_laws", {"law", "tvergaard", "rcc"}, 2, "one law too many"},
@@ -157,7 +156,7 @@ end
   {
     const Workspace workspace;
     const std::string help = nsfd(workspace, {"--help"}).out;
-    for (const char *word : {"--resume", "nsfd study", "nsfd solve"})
+    for (const char *word : {"--resume", "nsfd study"})
       EXPECT_EQ(help.find(word), std::string::npos) << word;
     for (const char *word :
          {"--set", "--output", "--force", "--check", "--print-parameters",

@@ -821,7 +821,6 @@ end
     fails({"a.prm", "--set"}, "--set");
     fails({"a.prm", "--set", "theta"}, "there is no `=`");
     fails({"study", "a.prm"}, "`nsfd study` is not there yet");
-    fails({"solve", "a.hdf5"}, "`nsfd solve` is not there yet");
     fails({"law"}, "no law is named");
     fails({"law", "rcc", "--stpes=3"}, "did you mean `--steps`?");
     fails({"a.prm", "--resume"}, "--resume is not there yet");
