@@ -6,23 +6,35 @@ namespace nsfd::stored
 {
   namespace
   {
-    /** Sweeps as long as their contraction promises the tolerance soon. */
+    /** Products of blocks in a factorisation per block of W. */
+    template <int d>
+    double relative_work(Session<d> &s)
+    {
+      return s.factors().work() / double(s.problem.column.size());
+    }
+
+    /** Sweeps as long as their contraction promises the tolerance for less than
+     * Newton steps would cost. */
     template <int d>
     void hopeful_sweeps(Session<d> &s)
     {
       Sweeps<d> sweeps(s);
-      double last = s.error;
-      for (unsigned int k = 1; !s.solved(); ++k) {
+      std::vector<double> errors{s.error};
+      double affordable = 0.;
+      while (!s.solved()) {
         sweeps.run(1);
         s.judge();
-        const double rate = s.error / last;
-        last = s.error;
-        if (k < 3)
+        errors.push_back(s.error);
+        const std::size_t k = errors.size() - 1;
+        if (k < 3 || s.solved())
           continue;
-        const double left =
-            rate < 1. ? std::log(s.tolerance / s.error) / std::log(rate) : 1e9;
-        // a Newton step costs a few sweeps, and some are needed
-        if (k >= 10 ? left > 20. : left > 40.)
+        // measured: half a dozen Newton steps, each two sweeps and a half for
+        // what is linear in the size and one for three products of blocks
+        if (affordable == 0.)
+          affordable = 5. * (3. + relative_work(s));
+        const double rate = std::cbrt(errors[k] / errors[k - 3]);
+        const double left = std::log(s.tolerance / s.error) / std::log(rate);
+        if (!(rate < 1.) || left > affordable)
           break;
       }
     }
@@ -32,8 +44,9 @@ namespace nsfd::stored
   bool automatic(Session<d> &s)
   {
     s.attempt("gauss seidel", [&] { hopeful_sweeps(s); });
-    const double work = s.factors().work() / double(s.problem.column.size());
-    if (work > 20.)
+    if (s.solved())
+      return true;
+    if (relative_work(s) > 20.)
       s.attempt("admm", [&] { admm(s, 150); });
     s.attempt("dual newton", [&] {
       NewtonSettings settings;

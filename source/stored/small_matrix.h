@@ -69,11 +69,33 @@ namespace nsfd::stored
         y[i] -= a[d * i + k] * x[k];
   }
 
+  template <int d>
+  bool invert(const double *a, double *inverse);
+
+  /** A determinant that is round-off of its terms is replaced by it, and false
+   * returned. */
+  template <>
+  inline bool invert<2>(const double *a, double *inverse)
+  {
+    const double b[4] = {a[0], a[1], a[2], a[3]};
+    double determinant = b[0] * b[3] - b[1] * b[2];
+    const double size = std::abs(b[0] * b[3]) + std::abs(b[1] * b[2]);
+    const bool regular = std::abs(determinant) > 1e-15 * size;
+    if (!regular)
+      determinant = size > 0. ? 1e-15 * size : 1.;
+    inverse[0] = b[3] / determinant;
+    inverse[1] = -b[1] / determinant;
+    inverse[2] = -b[2] / determinant;
+    inverse[3] = b[0] / determinant;
+    return regular;
+  }
+
   /** By Gauss-Jordan with row pivots; a zero pivot is replaced by the round-off
    * of the block, and false returned. */
-  template <int d>
-  bool invert(const double *a, double *inverse)
+  template <>
+  inline bool invert<3>(const double *a, double *inverse)
   {
+    constexpr int d = 3;
     double m[d][2 * d];
     double largest = 0.;
     for (int i = 0; i < d; ++i)
