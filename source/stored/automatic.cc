@@ -1,6 +1,7 @@
 #include "session.h"
 
 #include <cmath>
+#include <utility>
 
 namespace nsfd::stored
 {
@@ -19,20 +20,19 @@ namespace nsfd::stored
     void hopeful_sweeps(Session<d> &s)
     {
       Sweeps<d> sweeps(s);
-      std::vector<double> errors{s.error};
+      double last[3] = {s.error}; // errors of three sweeps before, in turn
       double affordable = 0.;
-      while (!s.solved()) {
+      for (unsigned int k = 1; !s.solved(); ++k) {
         sweeps.run(1);
         s.judge();
-        errors.push_back(s.error);
-        const std::size_t k = errors.size() - 1;
+        const double before = std::exchange(last[k % 3], s.error);
         if (k < 3 || s.solved())
           continue;
         // measured: half a dozen Newton steps, each two sweeps and a half for
         // what is linear in the size and one for three products of blocks
         if (affordable == 0.)
           affordable = 5. * (3. + relative_work(s));
-        const double rate = std::cbrt(errors[k] / errors[k - 3]);
+        const double rate = std::cbrt(s.error / before);
         const double left = std::log(s.tolerance / s.error) / std::log(rate);
         if (!(rate < 1.) || left > affordable)
           break;

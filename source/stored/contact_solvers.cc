@@ -13,15 +13,29 @@ namespace nsfd
                          [](const double value) { return value == 0.; });
     }
 
+    /** The largest approach velocity in units of the largest |q|. */
+    double penetration(const std::vector<double> &q,
+                       const std::vector<double> &u, const unsigned int d)
+    {
+      double deepest = 0., largest = 0.;
+      for (std::size_t j = 0; j < u.size(); j += d)
+        deepest = std::max(deepest, -u[j]);
+      for (const double value : q)
+        largest = std::max(largest, std::abs(value));
+      return deepest > 0. ? deepest / largest : 0.;
+    }
+
     template <int d, typename Method>
     ContactReport run(const ContactProblem &problem,
                       const ContactControl &control,
                       std::vector<double> &impulse)
     {
       Session<d> s(problem, control.tolerance);
-      for (std::size_t j = 0; j < impulse.size(); ++j)
-        s.r[j] = impulse[j] / s.problem.impulse_unit;
-      s.judge();
+      if (!is_zero(impulse)) {
+        for (std::size_t j = 0; j < impulse.size(); ++j)
+          s.r[j] = impulse[j] / s.problem.impulse_unit;
+        s.judge();
+      }
       if (!s.solved())
         Method::run(s, control.maximum_iterations);
       for (std::size_t j = 0; j < impulse.size(); ++j)
@@ -144,6 +158,9 @@ namespace nsfd
       report.error = natural_map_error(problem, impulse);
       report.solved = report.error <= control.tolerance;
     }
+    std::vector<double> u;
+    relative_velocity(problem, impulse, u);
+    report.penetration = penetration(problem.q, u, problem.dimension);
     if (report.solver.empty())
       report.solver = report.iterations > 0 ? solver : "none";
     return report;

@@ -70,6 +70,8 @@ namespace nsfd
       line("residual", fmt::format("{:.2e}, {} {:.0e}", report.error,
                                    report.solved ? "solved to" : "NOT below",
                                    command.tolerance));
+      line("penetration",
+           fmt::format("{:.2e} of the largest |q|", report.penetration));
       line("CPU time",
            milliseconds(result.seconds) +
                (result.runs > 1

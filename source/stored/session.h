@@ -15,14 +15,14 @@ namespace nsfd::stored
   struct Session {
     Session(const ContactProblem &stored, const double tolerance)
         : problem(stored), tolerance(tolerance), r(std::size_t(d) * problem.n),
-          u(r.size())
+          u(problem.q), error(problem.error(r.data(), u.data()))
     {
     }
 
     BlockProblem<d> problem;
     double tolerance;
-    std::vector<double> r, u;
-    double error = 0.;
+    std::vector<double> r, u; ///< at first r = 0, u = q
+    double error;
     unsigned int iterations = 0, products = 0, factorisations = 0;
     std::string finisher;
     std::vector<std::string> switches;
@@ -121,8 +121,8 @@ namespace nsfd::stored
     std::vector<OneContact<d>> contacts_;
   };
 
-  // Every solver starts from session.r, which has been judged, and leaves it
-  // judged. @return whether it is solved
+  // Every solver starts from session.r with its u and error, and leaves them
+  // together. @return whether it is solved
 
   template <int d>
   bool gauss_seidel(Session<d> &session, unsigned int limit);

@@ -18,7 +18,10 @@ namespace nsfd
   /** What a solve has cost and how far it came. */
   struct ContactReport {
     bool solved = false;
-    double error = 0.;           ///< natural_map_error() of the result
+    double error = 0.; ///< natural_map_error() of the result
+    /// largest -u_N / max |q|. The error is relative to |r| as well: where no r
+    /// is a solution it can be made small by large r, and only this tells.
+    double penetration = 0.;
     std::string solver;          ///< the one that finished
     unsigned int iterations = 0; ///< of all solvers that took part
     unsigned int products = 0;   ///< with W, sweeps included
