@@ -55,6 +55,10 @@ namespace nsfd
                       "relative error of a step");
     solver.maximum_iterations =
         reader.integer("maximum iterations", "200", 1, any_count, "per step");
+    scene.save_problems = reader.choice(
+        "save problems", "none", {"none", "hard", "all"},
+        "contacts of a step for `nsfd solve`, in problems/: none, hard (rejected "
+        "or handed over) or all; one rank");
   }
 
   void read_output(ParameterFile &file, InputErrors &errors, SceneInput &scene)

@@ -34,6 +34,10 @@ namespace nsfd
           if (extension == ours)
             fs::remove(entry.path(), error);
       }
+      for (const auto &entry :
+           fs::directory_iterator(fs::path(directory) / "problems", error))
+        if (entry.path().extension() == ".hdf5")
+          fs::remove(entry.path(), error);
     }
     fs::create_directories(directory, error);
     if (error) {

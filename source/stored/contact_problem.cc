@@ -32,20 +32,27 @@ namespace nsfd
   }
 
   double natural_map_error(const ContactProblem &problem,
+                           const std::vector<double> &impulse,
+                           const std::vector<double> &velocity)
+  {
+    const unsigned int d = problem.dimension;
+    double sum = 0.;
+    for (std::size_t i = 0; i < problem.n_contacts(); ++i) {
+      const double *r = &impulse[d * i], *u = &velocity[d * i];
+      const double mu = problem.friction[i];
+      sum += d == 2 ? stored::squared_natural_map<2>(r, u, mu)
+                    : stored::squared_natural_map<3>(r, u, mu);
+    }
+    const double scale = std::sqrt(
+        std::max({squared(problem.q), squared(impulse), squared(velocity)}));
+    return scale < 2.2e-16 ? std::sqrt(sum) : std::sqrt(sum) / scale;
+  }
+
+  double natural_map_error(const ContactProblem &problem,
                            const std::vector<double> &impulse)
   {
     std::vector<double> u;
     relative_velocity(problem, impulse, u);
-    const unsigned int d = problem.dimension;
-    double sum = 0.;
-    for (std::size_t i = 0; i < problem.n_contacts(); ++i) {
-      const double *r_i = &impulse[d * i], *u_i = &u[d * i];
-      const double mu = problem.friction[i];
-      sum += d == 2 ? stored::squared_natural_map<2>(r_i, u_i, mu)
-                    : stored::squared_natural_map<3>(r_i, u_i, mu);
-    }
-    const double scale =
-        std::sqrt(std::max({squared(problem.q), squared(impulse), squared(u)}));
-    return scale < 2.2e-16 ? std::sqrt(sum) : std::sqrt(sum) / scale;
+    return natural_map_error(problem, impulse, u);
   }
 } // namespace nsfd

@@ -147,19 +147,20 @@ namespace nsfd
     if (impulse.size() != problem.n_rows())
       impulse.assign(problem.n_rows(), 0.);
     ContactReport report;
-    // nothing to do, found out without a product
-    if (is_zero(impulse)) {
-      report.error = natural_map_error(problem, impulse);
+    std::vector<double> u;
+    const auto judge = [&] {
+      relative_velocity(problem, impulse, u);
+      report.error = natural_map_error(problem, impulse, u);
       report.solved = report.error <= control.tolerance;
-    }
+    };
+    // nothing to do, found out without a product
+    if (is_zero(impulse))
+      judge();
     if (!report.solved) {
       report = ContactSolverRegistry::instance().create(solver)->solve(
           problem, control, impulse);
-      report.error = natural_map_error(problem, impulse);
-      report.solved = report.error <= control.tolerance;
+      judge();
     }
-    std::vector<double> u;
-    relative_velocity(problem, impulse, u);
     report.penetration = penetration(problem.q, u, problem.dimension);
     if (report.solver.empty())
       report.solver = report.iterations > 0 ? solver : "none";

@@ -5,6 +5,7 @@
 #include "crack_pressure.h"
 #include "initial_state.h"
 #include "ledger.h"
+#include "save_problem.h"
 #include "step_data.h"
 #include "uniqueness.h"
 
@@ -120,6 +121,8 @@ namespace nsfd
       control.may_sweep = dynamics_.bodies_are_apart();
       report.solver = solve(control, energy_scale, next.impulse, evaluation);
     }
+    save_problem<dim>(input_, problem_, dynamics_, evaluation, report.solver,
+                      old.step + 1, old.time);
     if (!report.solver.converged)
       throw StepRejected(fmt::format(
         "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "

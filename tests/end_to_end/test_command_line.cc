@@ -160,7 +160,7 @@ end
       EXPECT_EQ(help.find(word), std::string::npos) << word;
     for (const char *word :
          {"--set", "--output", "--force", "--check", "--print-parameters",
-          "--list", "--version", "--help", "--quiet", "nsfd law"})
+          "--list", "--version", "--help", "--quiet", "nsfd law", "nsfd solve"})
       EXPECT_NE(help.find(word), std::string::npos) << word;
   }
 

@@ -261,6 +261,8 @@ namespace nsfd
           return true;
       return false;
     }
+    /// none | hard | all: steps whose contacts become stored problems
+    std::string save_problems = "none";
     /** Whether a step in time can come. */
     bool may_move() const
     {

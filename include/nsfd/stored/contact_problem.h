@@ -52,4 +52,9 @@ namespace nsfd
    */
   double natural_map_error(const ContactProblem &problem,
                            const std::vector<double> &impulse);
+
+  /** The same where u = W r + q is known. */
+  double natural_map_error(const ContactProblem &problem,
+                           const std::vector<double> &impulse,
+                           const std::vector<double> &velocity);
 } // namespace nsfd
