@@ -57,8 +57,7 @@ namespace nsfd
         reader.integer("maximum iterations", "200", 1, any_count, "per step");
     scene.save_problems = reader.choice(
         "save problems", "none", {"none", "hard", "all"},
-        "contacts of a step for `nsfd solve`, in problems/: none, hard (rejected "
-        "or handed over) or all; one rank");
+        "for `nsfd solve`: none, hard (rejected or handed over), all");
   }
 
   void read_output(ParameterFile &file, InputErrors &errors, SceneInput &scene)

@@ -113,7 +113,9 @@ namespace end_to_end
   }
 
   INSTANTIATE_TEST_SUITE_P(All, SolveTest,
-                     XX
+                           testing::Values("auto", "admm", "dual newton",
+                                           "gauss seidel", "interior point",
+                                           "projected gradient", "proximal"),
                            [](const auto &info) {
                              std::string name = info.param;
                              for (char &c : name)

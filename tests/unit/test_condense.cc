@@ -88,12 +88,14 @@ end
 
   TEST(Condense, BrokenCellsOnAFloor) { expect_same_contacts<3>(heap, {}, 5); }
 
-  // springs, damage and friction with kappa(beta) next to the contact
+  // one half broken, the other half softens next to its contacts
   TEST(Condense, BreakingPlate)
   {
     for (const char *rule : {"end point", "exact"})
       expect_same_contacts<2>(test::breaking_plate,
-                              {std::string("Time/cohesion rule=") + rule}, 12);
+                              {std::string("Time/cohesion rule=") + rule,
+                               "Interface: all/broken=x > 1"},
+                              30);
   }
 
   TEST(Condense, NothingWithoutContact)
