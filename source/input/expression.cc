@@ -6,6 +6,8 @@
 #include <muParser.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace nsfd
 {
@@ -30,6 +32,28 @@ namespace nsfd
 
     double heaviside(const double x) { return x < 0. ? 0. : 1.; }
 
+    /**
+     * A number in [0, 1) that looks random and depends on the arguments alone,
+     * on every machine and number of ranks: a hash of their bits (finaliser of
+     * splitmix64, Steele, Lea and Flood 2014). For whole numbers such as a
+     * seed and the indices of a face: arguments a rounding error apart give
+     * unlike results.
+     */
+    double random(const double *arguments, const int count)
+    {
+      std::uint64_t hash = 0;
+      for (int k = 0; k < count; ++k) {
+        const double value = arguments[k] + 0.; // no -0
+        std::uint64_t bits;
+        std::memcpy(&bits, &value, sizeof bits);
+        std::uint64_t z = (hash ^ bits) + 0x9e3779b97f4a7c15u;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        hash = z ^ (z >> 31);
+      }
+      return double(hash >> 11) * 0x1p-53;
+    }
+
     /** Functions that muParser does not bring along. */
     void add_functions(mu::Parser &parser)
     {
@@ -43,6 +67,7 @@ namespace nsfd
       parser.DefineFun("ceil", static_cast<double (*)(double)>(std::ceil));
       parser.DefineFun("erf", static_cast<double (*)(double)>(std::erf));
       parser.DefineFun("erfc", static_cast<double (*)(double)>(std::erfc));
+      parser.DefineFun("random", random);
     }
   } // namespace
 

@@ -25,6 +25,7 @@ namespace nsfd::formula
         {"mod", 2, 2, Rule::keeps},       {"sqrt", 1, 1, Rule::root},
         {"pow", 2, 2, Rule::power},       {"sign", 1, 1, Rule::drops},
         {"heaviside", 1, 1, Rule::drops}, {"if", 3, 3, Rule::selects},
+        {"random", 1, many, Rule::drops},
     };
   } // namespace
 

@@ -1,0 +1,293 @@
+#include "body_system.h"
+
+#include <suitesparse/umfpack.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** No iterative refinement: every user of a solution measures it. */
+    const double *settings()
+    {
+      static const auto control = [] {
+        std::array<double, UMFPACK_CONTROL> c{};
+        umfpack_di_defaults(c.data());
+        c[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+        c[UMFPACK_IRSTEP] = 0;
+        return c;
+      }();
+      return control.data();
+    }
+  } // namespace
+
+  template <int dim>
+  BodySystem<dim>::BodySystem(const Dynamics<dim> &dynamics,
+                              const double time_step, const double theta)
+    : dynamics_(dynamics)
+  {
+    find_faces();
+    find_pattern();
+    reinit(time_step, theta);
+  }
+
+  template <int dim>
+  BodySystem<dim>::~BodySystem()
+  {
+    clear();
+    if (symbolic_)
+      umfpack_di_free_symbolic(&symbolic_);
+  }
+
+  template <int dim>
+  void BodySystem<dim>::clear()
+  {
+    if (numeric_)
+      umfpack_di_free_numeric(&numeric_);
+    numeric_ = nullptr;
+  }
+
+  template <int dim>
+  void BodySystem<dim>::reinit(const double time_step, const double theta)
+  {
+    time_step_ = time_step;
+    theta_ = theta;
+    factor_ = time_step * time_step * theta * theta;
+    clear();
+    fill_bodies();
+    find_impedance();
+  }
+
+  /** Rows of H at the points of every face, without the unknowns they miss. */
+  template <int dim>
+  void BodySystem<dim>::find_faces()
+  {
+    const auto &points = dynamics_.points();
+    const auto &bodies = dynamics_.bodies();
+    // (body, slot, sign) of every side of every point
+    struct Side
+    {
+      std::size_t body, slot;
+      double sign;
+    };
+    std::vector<std::vector<Side>> sides(points.n_points);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
+           ++s)
+        if (bodies.slot_point[s] < points.n_points)
+          sides[bodies.slot_point[s]].push_back(
+            {b, s - bodies.first_slot[b], double(bodies.slot_sign[s])});
+    for (const auto &[slot, point] : bodies.extra_points) {
+      const std::size_t b =
+        std::upper_bound(bodies.first_slot.begin(), bodies.first_slot.end(),
+                         slot) -
+        bodies.first_slot.begin() - 1;
+      sides[point].push_back({b, slot - bodies.first_slot[b], 1.});
+    }
+
+    faces_.resize(points.faces.size());
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const auto &face = points.faces[f];
+      Face &mine = faces_[f];
+      for (unsigned int p = face.first; p < face.first + face.count; ++p)
+        for (const Side &side : sides[p]) {
+          const auto &body = bodies.classes[bodies.class_of[side.body]];
+          double largest = 0.;
+          for (const double value : body.trace.values)
+            largest = std::max(largest, std::abs(value));
+          for (unsigned int j = 0; j < body.n_dofs; ++j)
+            for (unsigned int c = 0; c < dim; ++c)
+              if (std::abs(body.trace(unsigned(side.slot) * dim + c, j)) >
+                  1e-12 * largest) {
+                mine.dofs.push_back(int(bodies.first_dof[side.body] + j));
+                break;
+              }
+        }
+      std::sort(mine.dofs.begin(), mine.dofs.end());
+      mine.dofs.erase(std::unique(mine.dofs.begin(), mine.dofs.end()),
+                      mine.dofs.end());
+      const std::size_t n = mine.dofs.size();
+      mine.rows.assign(std::size_t(face.count) * dim * n, 0.);
+      for (unsigned int q = 0; q < face.count; ++q) {
+        const double *Q =
+          points.frame.data() + std::size_t(face.first + q) * dim * dim;
+        for (const Side &side : sides[face.first + q]) {
+          const auto &body = bodies.classes[bodies.class_of[side.body]];
+          for (std::size_t a = 0; a < n; ++a) {
+            const std::size_t dof = std::size_t(mine.dofs[a]);
+            if (dof < bodies.first_dof[side.body] ||
+                dof >= bodies.first_dof[side.body + 1])
+              continue;
+            const unsigned int j = unsigned(dof - bodies.first_dof[side.body]);
+            for (unsigned int k = 0; k < dim; ++k)
+              for (unsigned int c = 0; c < dim; ++c)
+                mine.rows[(q * dim + k) * n + a] +=
+                  side.sign * Q[k * dim + c] *
+                  body.trace(unsigned(side.slot) * dim + c, j);
+          }
+        }
+      }
+    }
+  }
+
+  template <int dim>
+  void BodySystem<dim>::find_pattern()
+  {
+    const auto &bodies = dynamics_.bodies();
+    std::vector<std::vector<int>> column(bodies.n_dofs());
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (std::size_t j = bodies.first_dof[b]; j < bodies.first_dof[b + 1];
+           ++j)
+        for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
+             ++i)
+          column[j].push_back(int(i));
+    for (const Face &face : faces_)
+      for (const int j : face.dofs)
+        column[j].insert(column[j].end(), face.dofs.begin(), face.dofs.end());
+    column_start_.assign(1, 0);
+    for (auto &rows : column) {
+      std::sort(rows.begin(), rows.end());
+      rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+      row_index_.insert(row_index_.end(), rows.begin(), rows.end());
+      column_start_.push_back(int(row_index_.size()));
+    }
+    const auto entry = [&](const int i, const int j) {
+      const auto begin = row_index_.begin() + column_start_[j],
+                 end = row_index_.begin() + column_start_[j + 1];
+      return int(std::lower_bound(begin, end, i) - row_index_.begin());
+    };
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (std::size_t j = bodies.first_dof[b]; j < bodies.first_dof[b + 1];
+           ++j)
+        for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
+             ++i)
+          body_entries_.push_back(entry(int(i), int(j)));
+    for (Face &face : faces_)
+      for (const int i : face.dofs)
+        for (const int j : face.dofs)
+          face.entries.push_back(entry(i, j));
+    const int n = int(bodies.n_dofs());
+    values_.assign(row_index_.size(), 0.);
+    if (umfpack_di_symbolic(n, n, column_start_.data(), row_index_.data(),
+                            nullptr, &symbolic_, settings(), nullptr) < 0)
+      throw std::bad_alloc();
+  }
+
+  template <int dim>
+  void BodySystem<dim>::fill_bodies()
+  {
+    const auto &bodies = dynamics_.bodies();
+    bodies_.assign(row_index_.size(), 0.);
+    std::size_t next = 0;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const auto &body = bodies.classes[bodies.class_of[b]];
+      for (unsigned int j = 0; j < body.n_dofs; ++j)
+        for (unsigned int i = 0; i < body.n_dofs; ++i)
+          bodies_[body_entries_[next++]] += matrix_entry(body, i, j);
+    }
+  }
+
+  template <int dim>
+  void BodySystem<dim>::find_impedance()
+  {
+    const auto &points = dynamics_.points();
+    const auto &bodies = dynamics_.bodies();
+    impedance_.assign(points.n_points * dim, 0.);
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const Face &face = faces_[f];
+      const std::size_t n = face.dofs.size();
+      for (unsigned int k = 0; k < points.faces[f].count * dim; ++k) {
+        const double *h = &face.rows[k * n];
+        double hh = 0., hMh = 0.;
+        for (std::size_t a = 0; a < n; ++a) {
+          hh += h[a] * h[a];
+          const std::size_t b =
+            std::upper_bound(bodies.first_dof.begin(), bodies.first_dof.end(),
+                             std::size_t(face.dofs[a])) -
+            bodies.first_dof.begin() - 1;
+          const auto &body = bodies.classes[bodies.class_of[b]];
+          for (std::size_t c = 0; c < n; ++c)
+            if (std::size_t(face.dofs[c]) >= bodies.first_dof[b] &&
+                std::size_t(face.dofs[c]) < bodies.first_dof[b + 1])
+              hMh += h[a] * h[c] *
+                     matrix_entry(
+                       body, unsigned(face.dofs[a] - bodies.first_dof[b]),
+                       unsigned(face.dofs[c] - bodies.first_dof[b]));
+        }
+        impedance_[std::size_t(points.faces[f].first) * dim + k] =
+          hh > 0. ? hMh / (hh * hh) : 0.;
+      }
+    }
+  }
+
+  template <int dim>
+  bool BodySystem<dim>::factorise(const std::vector<double> &S)
+  {
+    const auto &points = dynamics_.points();
+    values_ = bodies_;
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const Face &face = faces_[f];
+      const std::size_t n = face.dofs.size();
+      work_.resize(dim * n);
+      for (unsigned int q = 0; q < points.faces[f].count; ++q) {
+        const double *s = &S[std::size_t(points.faces[f].first + q) * dim * dim];
+        const double *h = &face.rows[q * dim * n];
+        if (std::all_of(s, s + dim * dim, [](const double x) {
+              return x == 0.;
+            }))
+          continue;
+        for (unsigned int k = 0; k < dim; ++k)
+          for (std::size_t a = 0; a < n; ++a) {
+            double value = 0.;
+            for (unsigned int c = 0; c < dim; ++c)
+              value += s[k * dim + c] * h[c * n + a];
+            work_[k * n + a] = value;
+          }
+        for (std::size_t a = 0; a < n; ++a)
+          for (unsigned int k = 0; k < dim; ++k) {
+            const double left = h[k * n + a];
+            if (left == 0.)
+              continue;
+            for (std::size_t b = 0; b < n; ++b)
+              values_[face.entries[a * n + b]] += left * work_[k * n + b];
+          }
+      }
+    }
+    clear();
+    const int status =
+      umfpack_di_numeric(column_start_.data(), row_index_.data(),
+                         values_.data(), symbolic_, &numeric_, settings(),
+                         nullptr);
+    return status == UMFPACK_OK;
+  }
+
+  template <int dim>
+  void BodySystem<dim>::solve(const std::vector<double> &b,
+                              std::vector<double> &x)
+  {
+    x.resize(b.size());
+    umfpack_di_solve(UMFPACK_A, column_start_.data(), row_index_.data(),
+                     values_.data(), x.data(), b.data(), numeric_, settings(),
+                     nullptr);
+  }
+
+  template <int dim>
+  void BodySystem<dim>::apply(const std::vector<double> &x,
+                              std::vector<double> &y)
+  {
+    y.resize(x.size());
+    work_.resize(x.size());
+    dynamics_.apply(Dynamics<dim>::Operator::mass, x.data(), y.data());
+    dynamics_.apply(Dynamics<dim>::Operator::stiffness, x.data(),
+                    work_.data());
+    for (std::size_t k = 0; k < x.size(); ++k)
+      y[k] += factor_ * work_[k];
+  }
+
+  template class BodySystem<2>;
+  template class BodySystem<3>;
+} // namespace nsfd

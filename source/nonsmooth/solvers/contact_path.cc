@@ -1,0 +1,473 @@
+#include "contact_path.h"
+
+#include "../springs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  template <int dim>
+  ContactPath<dim>::ContactPath(const OneStepProblem<dim> &problem,
+                                const Dynamics<dim> &dynamics,
+                                BodySystem<dim> &system,
+                                const SolverControl &control, Vector &impulse,
+                                LawEvaluation<dim> &evaluation,
+                                SolverReport &report)
+    : problem_(problem)
+    , dynamics_(dynamics)
+    , system_(system)
+    , control_(control)
+    , impulse_(impulse)
+    , evaluation_(evaluation)
+    , report_(report)
+    , frozen_(problem.n_points)
+    , is_candidate_(problem.n_points, 0)
+    , others_(problem.n_points, 1)
+    , best_error_(std::numeric_limits<double>::infinity())
+    , polished_(best_error_)
+  {
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      if (problem.contact[i] && has_frozen_law<dim>(problem, i) &&
+          problem.kind[i] != PointKind::prescribed) {
+        is_candidate_[i] = 1;
+        others_[i] = 0;
+      }
+    y_.assign(dynamics.bodies().n_dofs(), 0.);
+    b_ = residual_ = dy_ = y_;
+    U_.assign(problem.n_points * dim, 0.);
+    dU_ = U_;
+    evaluation_.update(impulse_);
+    judge();
+  }
+
+  /** Keep the best impulses; true below the tolerance. */
+  template <int dim>
+  bool ContactPath<dim>::judge()
+  {
+    if (evaluation_.error < best_error_) {
+      best_error_ = evaluation_.error;
+      best_ = impulse_;
+    }
+    return evaluation_.error <= control_.tolerance;
+  }
+
+  template <int dim>
+  void ContactPath<dim>::restore()
+  {
+    if (best_.empty())
+      return;
+    impulse_ = best_;
+    evaluation_.update(impulse_);
+  }
+
+  template <int dim>
+  bool ContactPath<dim>::polish()
+  {
+    restore();
+    const bool solved =
+      nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance, 6,
+                        impulse_, evaluation_, report_);
+    judge();
+    return solved;
+  }
+
+  /** Springs that stay as they are, and joints: the same in every step. */
+  template <int dim>
+  bool ContactPath<dim>::is_linear(const std::size_t i) const
+  {
+    return is_held(i) || evaluation_.linear(i) != nullptr;
+  }
+
+  template <int dim>
+  void ContactPath<dim>::alternate(const unsigned int count)
+  {
+    const std::size_t n = problem_.n_points;
+    // a stiffness as of an intact face in units of the bodies' own
+    double share = 0., most = 1.;
+    std::vector<char> linear(n);
+    for (std::size_t i = 0; i < n; ++i)
+      linear[i] = is_linear(i);
+    laws_.update(problem_, evaluation_, impulse_, linear);
+    std::size_t springs = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      if (linear[i] && !is_held(i) &&
+          laws_.stiffness[i * dim * dim] > 0.) {
+        share += std::log(laws_.stiffness[i * dim * dim] /
+                          system_.impedance()[i * dim]);
+        ++springs;
+      }
+    if (springs > 0)
+      most = std::min(30., std::max(1., std::exp(share / double(springs))));
+    S_ = laws_.stiffness;
+    Vector rho(n * dim, 0.), target(n * dim);
+    for (std::size_t i = 0; i < n; ++i)
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t j = i * dim + c;
+        if (is_held(i))
+          rho[j] = S_[j * dim + c];
+        else if (!linear[i]) // alike along the face
+          rho[j] = S_[j * dim + c] =
+            most * system_.impedance()[i * dim + std::min(c, 1u)];
+        target[j] = is_held(i) ? problem_.given_velocity[j]
+                               : evaluation_.solutions[i].velocity[c];
+      }
+    if (!system_.factorise(S_))
+      return;
+    ++report_.newton;
+
+    std::fill(y_.begin(), y_.end(), 0.);
+    dynamics_.add_velocity_change(impulse_.data(), y_.data());
+    U_ = evaluation_.velocity;
+    P_ = impulse_;
+    // the affine part of the linear points
+    Vector offset(n * dim, 0.);
+    for (std::size_t i = 0; i < n; ++i)
+      if (linear[i] && !is_held(i))
+        for (unsigned int c = 0; c < dim; ++c) {
+          offset[i * dim + c] = P_[i * dim + c] + laws_.change[i * dim + c];
+          for (unsigned int d = 0; d < dim; ++d)
+            offset[i * dim + c] +=
+              laws_.stiffness[(i * dim + c) * dim + d] * U_[i * dim + d];
+        }
+    std::vector<Reach> reach(n);
+    for (std::size_t i = 0; i < n; ++i)
+      reach[i] = evaluation_.solutions[i].reach;
+    Vector trial(n * dim);
+    for (unsigned int k = 0; k < count; ++k) {
+      for (std::size_t j = 0; j < n * dim; ++j) {
+        const std::size_t i = j / dim;
+        if (!linear[i] || is_held(i))
+          trial[j] = P_[j] + rho[j] * (target[j] - U_[j]);
+        else {
+          trial[j] = offset[j];
+          for (unsigned int d = 0; d < dim; ++d)
+            trial[j] -= laws_.stiffness[j * dim + d] * U_[i * dim + d];
+        }
+      }
+      dynamics_.generalised_impulse(trial.data(), b_.data());
+      system_.apply(y_, residual_);
+      for (std::size_t j = 0; j < b_.size(); ++j)
+        b_[j] -= residual_[j];
+      system_.solve(b_, dy_);
+      ++report_.krylov;
+      dynamics_.relative_velocity(dy_.data(), dU_.data());
+      for (std::size_t j = 0; j < y_.size(); ++j)
+        y_[j] += dy_[j];
+      for (std::size_t j = 0; j < n * dim; ++j)
+        U_[j] += dU_[j];
+      for (std::size_t i = 0; i < n; ++i) {
+        if (linear[i]) {
+          for (std::size_t j = i * dim; j < (i + 1) * dim; ++j)
+            if (is_held(i))
+              P_[j] += rho[j] * (target[j] - U_[j]);
+            else {
+              P_[j] = offset[j];
+              for (unsigned int d = 0; d < dim; ++d)
+                P_[j] -= laws_.stiffness[j * dim + d] * U_[i * dim + d];
+            }
+          continue;
+        }
+        std::array<double, dim> local;
+        for (unsigned int c = 0; c < dim; ++c)
+          local[c] = U_[i * dim + c] - P_[i * dim + c] / rho[i * dim + c];
+        const auto solution =
+          solve_point<dim>(problem_, i, local, 1. / rho[i * dim],
+                           1. / rho[i * dim + 1], reach[i]);
+        reach[i] = solution.reach;
+        for (unsigned int c = 0; c < dim; ++c) {
+          P_[i * dim + c] = solution.impulse[c];
+          target[i * dim + c] = solution.velocity[c];
+        }
+      }
+    }
+    impulse_ = P_;
+    evaluation_.update(impulse_);
+    judge();
+  }
+
+  /** Of the springs of a candidate at U: impulse and its slope. */
+  template <int dim>
+  void ContactPath<dim>::spring(const std::size_t i, double *impulse,
+                                double *slope) const
+  {
+    const auto &secant = frozen_[i].secant;
+    const double wh = problem_.weight[i] * problem_.time_step;
+    const auto normal = springs::normal_law<dim>(problem_, i, secant.normal);
+    impulse[0] = wh * normal.at(U_[i * dim]);
+    slope[0] = wh * normal.derivative(U_[i * dim]);
+    const auto tangential =
+      springs::tangential_spring<dim>(problem_, secant.tangential);
+    for (unsigned int c = 1; c < dim; ++c) {
+      slope[c] = wh * tangential.stiffness * tangential.slope;
+      impulse[c] = wh * tangential.stiffness *
+                   (springs::tangential_offset<dim>(problem_, i, c) +
+                    tangential.slope * U_[i * dim + c]);
+    }
+  }
+
+  /** Candidates with the damage of the best impulses, which now holds. */
+  template <int dim>
+  void ContactPath<dim>::find_candidates()
+  {
+    candidates_.clear();
+    for (std::size_t i = 0; i < problem_.n_points; ++i) {
+      if (!is_candidate_[i])
+        continue;
+      const auto &solution = evaluation_.solutions[i];
+      frozen_[i] = solution.frozen;
+      Candidate candidate{};
+      candidate.point = i;
+      candidate.friction =
+        frozen_state<dim>(problem_, i, solution.reach, 1.).threshold;
+      candidates_.push_back(candidate);
+    }
+  }
+
+  template <int dim>
+  void ContactPath<dim>::start(const double floor, const double centre)
+  {
+    find_candidates();
+    std::fill(y_.begin(), y_.end(), 0.);
+    dynamics_.add_velocity_change(impulse_.data(), y_.data());
+    U_ = evaluation_.velocity;
+    P_ = impulse_;
+    double sum = 0.;
+    for (auto &x : candidates_) {
+      const std::size_t i = x.point;
+      double pull[dim], slope[dim];
+      spring(i, pull, slope);
+      for (unsigned int c = 0; c < dim; ++c)
+        x.r[c] = (P_[i * dim + c] + pull[c]) / problem_.weight[i];
+      sum += std::abs(x.r[0]);
+    }
+    mean_impulse_ =
+      candidates_.empty() ? 0. : sum / double(candidates_.size());
+    for (auto &x : candidates_) {
+      const std::size_t i = x.point;
+      const double R_N = impedance(i, 0), R_T = impedance(i, 1);
+      const double u_N = U_[i * dim] - problem_.target[i];
+      double largest = std::max(std::abs(x.r[0]), R_N * std::abs(u_N));
+      for (unsigned int c = 1; c < dim; ++c)
+        largest = std::max({largest, std::abs(x.r[c]),
+                            R_T * std::abs(U_[i * dim + c] +
+                                           problem_.sliding_offset[i * dim + c])});
+      x.scale = floor == 1. || mean_impulse_ == 0.
+                  ? 1.
+                  : std::min(1., std::max(floor, largest / mean_impulse_));
+      const double y = x.r[0] - R_N * u_N;
+      const double q =
+        std::hypot(y, 2. * centre * mean_impulse_ * x.scale);
+      // the small one of the two without cancellation
+      const double big = (q + std::abs(y)) / 2.;
+      const double small =
+        big > 0. ? springs::square(centre * mean_impulse_ * x.scale) / big : 0.;
+      x.r[0] = y > 0. ? big : small;
+      x.z = (y > 0. ? small : big) / R_N;
+    }
+  }
+
+  template <int dim>
+  double ContactPath<dim>::mean_gap() const
+  {
+    double sum = 0.;
+    for (const auto &x : candidates_)
+      sum += x.z * x.r[0] / springs::square(x.scale);
+    return sum / double(candidates_.size());
+  }
+
+  /**
+   * z r_N = eps s^2,  eta r_T + mu r_N u_T = 0,  eta^2 = |u_T|^2 + delta^2 s^2.
+   */
+  template <int dim>
+  void ContactPath<dim>::linearise(Candidate &x, const double barrier,
+                                   const double smoothing)
+  {
+    const std::size_t i = x.point;
+    const double s2 = springs::square(x.scale), mu = x.friction;
+    const double u_N = U_[i * dim] - problem_.target[i];
+    const double stiff = x.r[0] / x.z;
+    std::fill(x.S, x.S + dim * dim, 0.);
+    std::fill(x.k, x.k + dim, 0.);
+    x.S[0] = stiff;
+    x.k[0] = (barrier * s2 - x.z * x.r[0]) / x.z + stiff * (x.z - u_N);
+    if (mu == 0.) {
+      for (unsigned int c = 1; c < dim; ++c)
+        x.k[c] = -x.r[c];
+      return;
+    }
+    double u[dim] = {}, eta = springs::square(smoothing) * s2;
+    for (unsigned int c = 1; c < dim; ++c) {
+      u[c] = U_[i * dim + c] + problem_.sliding_offset[i * dim + c];
+      eta += u[c] * u[c];
+    }
+    eta = std::sqrt(eta);
+    for (unsigned int c = 1; c < dim; ++c) {
+      x.k[c] = -x.r[c] - mu * u[c] / eta * (x.r[0] + x.k[0]);
+      x.S[c * dim] = -mu * u[c] / eta * stiff;
+      for (unsigned int d = 1; d < dim; ++d)
+        x.S[c * dim + d] =
+          ((c == d ? mu * x.r[0] : 0.) + x.r[c] * u[d] / eta) / eta;
+    }
+  }
+
+  /** The largest share of a step that keeps r_N and z positive. */
+  template <int dim>
+  double ContactPath<dim>::path_length(const Candidate &x, const double *dr,
+                                       const double dz) const
+  {
+    double length = 1.;
+    if (dr[0] < 0.)
+      length = std::min(length, -0.99 * x.r[0] / dr[0]);
+    if (dz < 0.)
+      length = std::min(length, -0.99 * x.z / dz);
+    return length;
+  }
+
+  template <int dim>
+  bool ContactPath<dim>::step(const double sigma, double &alpha)
+  {
+    const std::size_t n = problem_.n_points;
+    const double gap = mean_gap();
+    double mean = 0.;
+    for (const auto &x : candidates_)
+      mean += x.r[0];
+    mean /= double(candidates_.size());
+    const double smoothing = gap / mean;
+
+    laws_.update(problem_, evaluation_, P_, others_);
+    S_ = laws_.stiffness;
+    Vector P0(P_);
+    for (std::size_t j = 0; j < n * dim; ++j)
+      P0[j] += laws_.change[j];
+    for (auto &x : candidates_) {
+      const std::size_t i = x.point;
+      const double w = problem_.weight[i];
+      linearise(x, sigma * gap, smoothing);
+      double pull[dim], slope[dim];
+      spring(i, pull, slope);
+      for (unsigned int c = 0; c < dim; ++c) {
+        P0[i * dim + c] = w * (x.r[c] + x.k[c]) - pull[c];
+        for (unsigned int d = 0; d < dim; ++d)
+          S_[(i * dim + c) * dim + d] =
+            w * x.S[c * dim + d] + (c == d ? slope[c] : 0.);
+      }
+    }
+    if (!system_.factorise(S_))
+      return false;
+    ++report_.newton;
+    dynamics_.generalised_impulse(P0.data(), b_.data());
+    system_.apply(y_, residual_);
+    for (std::size_t j = 0; j < b_.size(); ++j)
+      b_[j] -= residual_[j];
+    system_.solve(b_, dy_);
+    ++report_.krylov;
+    dynamics_.relative_velocity(dy_.data(), dU_.data());
+
+    alpha = 1.;
+    const auto change = [&](const Candidate &x, double *dr) {
+      for (unsigned int c = 0; c < dim; ++c) {
+        dr[c] = x.k[c];
+        for (unsigned int d = 0; d < dim; ++d)
+          dr[c] -= x.S[c * dim + d] * dU_[x.point * dim + d];
+      }
+      const std::size_t j = x.point * dim;
+      return dU_[j] - (x.z - (U_[j] - problem_.target[x.point]));
+    };
+    double dr[dim];
+    for (const auto &x : candidates_) {
+      const double dz = change(x, dr);
+      alpha = std::min(alpha, path_length(x, dr, dz));
+    }
+    if (!(alpha > 0.))
+      return false;
+    for (auto &x : candidates_) {
+      const double dz = change(x, dr);
+      x.z += alpha * dz;
+      double size = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        x.r[c] += alpha * dr[c];
+        if (c > 0)
+          size += x.r[c] * x.r[c];
+      }
+      size = std::sqrt(size);
+      const double bound = x.friction * x.r[0];
+      if (size > bound)
+        for (unsigned int c = 1; c < dim; ++c)
+          x.r[c] *= bound / size;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      if (others_[i])
+        for (unsigned int c = 0; c < dim; ++c) {
+          double value = laws_.change[i * dim + c];
+          for (unsigned int d = 0; d < dim; ++d)
+            value -=
+              laws_.stiffness[(i * dim + c) * dim + d] * dU_[i * dim + d];
+          P_[i * dim + c] += alpha * value;
+        }
+    for (std::size_t j = 0; j < y_.size(); ++j)
+      y_[j] += alpha * dy_[j];
+    for (std::size_t j = 0; j < n * dim; ++j)
+      U_[j] += alpha * dU_[j];
+    collect();
+    return true;
+  }
+
+  /** All impulses, and what the full laws say about them. */
+  template <int dim>
+  void ContactPath<dim>::collect()
+  {
+    for (const auto &x : candidates_) {
+      double pull[dim], slope[dim];
+      spring(x.point, pull, slope);
+      for (unsigned int c = 0; c < dim; ++c)
+        P_[x.point * dim + c] = problem_.weight[x.point] * x.r[c] - pull[c];
+    }
+    impulse_ = P_;
+    evaluation_.update(impulse_);
+  }
+
+  template <int dim>
+  bool ContactPath<dim>::follow(const Stage &stage, const unsigned int limit)
+  {
+    start(stage.floor, stage.centre);
+    if (candidates_.empty() || !(mean_impulse_ > 0.))
+      return false;
+    const double first_gap = mean_gap();
+    double alpha = 1.;
+    unsigned int short_steps = 0;
+    for (unsigned int k = 0; k < limit; ++k) {
+      const double sigma = alpha > 0.9 ? 0.1 : alpha > 0.5 ? 0.3 :
+                           alpha > 0.1 ? 0.6 : 1.;
+      if (!step(sigma, alpha) || !(evaluation_.error < 1e300))
+        break;
+      if (getenv("NSFD_TRACE"))
+        fprintf(stderr, "   ip %u alpha %.3f gap %.2e error %.3e\n", k, alpha,
+                mean_gap() / first_gap, evaluation_.error);
+      if (judge())
+        return true;
+      short_steps = alpha < 0.1 ? short_steps + 1 : 0;
+      if (best_error_ < 1e-5 && best_error_ < 0.1 * polished_) {
+        polished_ = best_error_;
+        const Vector here(impulse_);
+        if (polish())
+          return true;
+        if (getenv("NSFD_TRACE"))
+          fprintf(stderr, "   polish to %.3e\n", best_error_);
+        impulse_ = here;
+        evaluation_.update(impulse_);
+      }
+      if (short_steps >= 4 && mean_gap() < 1e-9 * first_gap)
+        break;
+      if (short_steps >= 10)
+        break;
+      if (mean_gap() < 1e-15 * first_gap)
+        break;
+    }
+    return false;
+  }
+
+  template class ContactPath<2>;
+  template class ContactPath<3>;
+} // namespace nsfd

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "linearised_laws.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The state of a solve that keeps the bodies as unknowns next to the
+   * impulses: y = v - v_free, U = U_free + H y, and what both parts of the
+   * interior point method, its start and its path, need to know.
+   *
+   * Candidates are the points in unilateral contact whose law is convex once
+   * damage is given. The others, springs, joints and what else there is, are
+   * linearised as they are in every step.
+   */
+  template <int dim>
+  class ContactPath
+  {
+  public:
+    using Vector = std::vector<double>;
+
+    ContactPath(const OneStepProblem<dim> &problem,
+                const Dynamics<dim> &dynamics,
+                BodySystem<dim> &system,
+                const SolverControl &control,
+                Vector &impulse,
+                LawEvaluation<dim> &evaluation,
+                SolverReport &report);
+
+    /**
+     * @p count steps of the alternating direction method of multipliers, one
+     * factor for all: every candidate and every nonlinear point solves its own
+     * full law against a stiffness of the size of the bodies'.
+     */
+    void alternate(unsigned int count);
+
+    /** Where the path begins and how points are weighted along it. */
+    struct Stage
+    {
+      double floor;  ///< least local magnitude over the mean; 1: all alike
+      double centre; ///< distance from the boundary at the start
+    };
+    /**
+     * Primal-dual interior point steps along one stage of the central path.
+     * True as soon as the error is below the tolerance.
+     */
+    bool follow(const Stage &stage, unsigned int limit);
+
+    double error() const { return best_error_; }
+
+    /** Newton's method on the full laws from the best impulses. */
+    bool polish();
+
+    /** Back to the best impulses. */
+    void restore();
+
+  private:
+    struct Candidate
+    {
+      std::size_t point;
+      double friction;         // mu kappa
+      double scale;            // s
+      double r[dim], z;        // density of the contact impulse, slack
+      double k[dim];           // of the Newton step: dr = k - S dU
+      double S[dim * dim];
+    };
+
+    bool is_held(const std::size_t point) const
+    {
+      return problem_.kind[point] == PointKind::prescribed;
+    }
+    bool is_linear(std::size_t point) const;
+    void find_candidates();
+    void start(double floor, double centre);
+    bool step(double sigma, double &alpha);
+    void linearise(Candidate &candidate, double barrier, double smoothing);
+    double path_length(const Candidate &candidate, const double *dr,
+                       double dz) const;
+    void spring(std::size_t point, double *impulse, double *slope) const;
+    void collect();
+    bool judge();
+    double mean_gap() const;
+    double impedance(const std::size_t point, const unsigned int c) const
+    {
+      return system_.impedance()[point * dim + c] / problem_.weight[point];
+    }
+
+    const OneStepProblem<dim> &problem_;
+    const Dynamics<dim> &dynamics_;
+    BodySystem<dim> &system_;
+    const SolverControl &control_;
+    Vector &impulse_;
+    LawEvaluation<dim> &evaluation_;
+    SolverReport &report_;
+
+    std::vector<Candidate> candidates_;
+    std::vector<FrozenPoint> frozen_; // of candidates
+    std::vector<char> is_candidate_, others_;
+    LinearisedLaws<dim> laws_;
+    Vector y_, U_, S_, P_, best_, b_, residual_, dy_, dU_;
+    double best_error_;
+    double mean_impulse_ = 0., polished_ = 0.;
+  };
+} // namespace nsfd

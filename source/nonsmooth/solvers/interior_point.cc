@@ -1,0 +1,79 @@
+#include "contact_path.h"
+
+namespace nsfd
+{
+  namespace
+  {
+    /**
+     * Interior points for Coulomb friction on many points: a start by the
+     * alternating direction method, the central path with the friction law
+     * inside the Newton system, Newton's method on the full laws at its end.
+     * Coulomb's law is not convex: what is not solved is reported.
+     */
+    template <int dim>
+    class InteriorPoint final : public NonsmoothSolver<dim>
+    {
+    public:
+      SolverReport solve(const OneStepProblem<dim> &problem,
+                         Dynamics<dim> &dynamics,
+                         double,
+                         const SolverControl &control,
+                         std::vector<double> &impulse,
+                         LawEvaluation<dim> &evaluation) override
+      {
+        SolverReport report;
+        evaluation.update(impulse);
+        if (evaluation.error > control.tolerance &&
+            dynamics.communicator().size() == 1) {
+          if (!system_)
+            system_ = std::make_unique<BodySystem<dim>>(
+              dynamics, problem.time_step, problem.theta);
+          else if (system_->time_step() != problem.time_step ||
+                   system_->theta() != problem.theta)
+            system_->reinit(problem.time_step, problem.theta);
+          ContactPath<dim> path(problem, dynamics, *system_, control, impulse,
+                                evaluation, report);
+          run(path);
+          path.restore();
+        }
+        report.residual = evaluation.error;
+        report.converged = evaluation.error <= control.tolerance;
+        return report;
+      }
+
+    private:
+      using Stage = typename ContactPath<dim>::Stage;
+
+      bool run(ContactPath<dim> &path)
+      {
+        path.alternate(40);
+        if (getenv("NSFD_TRACE"))
+          fprintf(stderr, "admm %.3e\n", path.error());
+        if (path.polish() || path.follow({1., 1.}, 60) || path.polish())
+          return true;
+        for (const Stage stage : {Stage{1e-3, 3e-3}, Stage{1e-5, 3e-4}}) {
+          path.alternate(20);
+          if (getenv("NSFD_TRACE"))
+            fprintf(stderr, "admm %.3e\n", path.error());
+          if (path.follow(stage, 60) || path.polish())
+            return true;
+        }
+        path.alternate(200);
+        if (getenv("NSFD_TRACE"))
+          fprintf(stderr, "admm %.3e\n", path.error());
+        return path.polish() || path.follow({1., 1.}, 60) || path.polish();
+      }
+
+      std::unique_ptr<BodySystem<dim>> system_;
+    };
+
+    using InteriorPoint2 = InteriorPoint<2>;
+    using InteriorPoint3 = InteriorPoint<3>;
+    NSFD_REGISTER(SolverRegistry<2>, InteriorPoint2, "interior point",
+                  "central path with Coulomb friction inside, sparse factors; "
+                  "for many rubbing faces and long steps");
+    NSFD_REGISTER(SolverRegistry<3>, InteriorPoint3, "interior point",
+                  "central path with Coulomb friction inside, sparse factors; "
+                  "for many rubbing faces and long steps");
+  } // namespace
+} // namespace nsfd

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "body_system.h"
+
+#include "nsfd/nonsmooth/solver.h"
+
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The laws of all points at an evaluation, linearised as they are: friction
+   * and damage in the derivative. With Phi = P - P*(U - R P) the natural map
+   * and J = dP*\/dU_loc,
+   *
+   *     (I + J R) dP = J dU - Phi,   so   dP = -B Phi - S dU,
+   *     B = (I + J R)^{-1},   S = -B J.
+   *
+   * A point that sticks or is held has J R = -1: R is taken a share 1e-7
+   * smaller, which makes S a stiffness 1e7 / R and not infinite. It changes
+   * the way, not the solution, and where W is singular it chooses the impulses
+   * nearest to those before.
+   */
+  template <int dim>
+  class LinearisedLaws
+  {
+  public:
+    /** @p where: only at points with a nonzero entry; empty: everywhere. */
+    void update(const OneStepProblem<dim> &problem,
+                const LawEvaluation<dim> &evaluation,
+                const std::vector<double> &impulse,
+                const std::vector<char> &where = {});
+
+    std::vector<double> stiffness; ///< S, dim x dim per point
+    std::vector<double> change;    ///< -B Phi, dim per point
+
+  private:
+    static constexpr double softening = 1e-7;
+    std::array<double, dim * dim>
+    derivative(const OneStepProblem<dim> &problem,
+               const LawEvaluation<dim> &evaluation,
+               const std::vector<double> &impulse, std::size_t point) const;
+  };
+
+  /**
+   * At most @p limit steps of Newton's method on the natural map of the full
+   * laws, each with a factor of the bodies joined by S, kept while the error
+   * falls. True if it ends below the tolerance; @p impulse and the evaluation
+   * are those of the smallest error.
+   */
+  template <int dim>
+  bool polish(const OneStepProblem<dim> &problem,
+              BodySystem<dim> &system,
+              const Dynamics<dim> &dynamics,
+              double tolerance,
+              unsigned int limit,
+              std::vector<double> &impulse,
+              LawEvaluation<dim> &evaluation,
+              SolverReport &report);
+} // namespace nsfd
