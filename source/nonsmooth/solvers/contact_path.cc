@@ -38,8 +38,28 @@ namespace nsfd
     b_ = residual_ = dy_ = y_;
     U_.assign(problem.n_points * dim, 0.);
     dU_ = U_;
+    begin();
+  }
+
+  /** From the impulses at hand, with the velocities that follow. */
+  template <int dim>
+  void ContactPath<dim>::begin()
+  {
     evaluation_.update(impulse_);
     judge();
+    std::fill(y_.begin(), y_.end(), 0.);
+    dynamics_.add_velocity_change(impulse_.data(), y_.data());
+    U_ = evaluation_.velocity;
+    P_ = impulse_;
+  }
+
+  /** The laws at the state of the path, which need not be in equilibrium. */
+  template <int dim>
+  void ContactPath<dim>::look()
+  {
+    impulse_ = P_;
+    evaluation_.velocity = U_;
+    evaluation_.update_laws(impulse_);
   }
 
   /** Keep the best impulses; true below the tolerance. */
@@ -67,8 +87,9 @@ namespace nsfd
   {
     restore();
     const bool solved =
-      nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance, 6,
-                        impulse_, evaluation_, report_);
+      nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance,
+                        best_error_ < 1e-4 ? 6 : 2, impulse_, evaluation_,
+                        report_);
     judge();
     return solved;
   }
@@ -80,26 +101,30 @@ namespace nsfd
     return is_held(i) || evaluation_.linear(i) != nullptr;
   }
 
+  /**
+   * Between what the bodies oppose to a velocity of the point alone and to one
+   * of the whole of them.
+   */
   template <int dim>
-  void ContactPath<dim>::alternate(const unsigned int count)
+  double ContactPath<dim>::stiffness_at(const std::size_t i,
+                                        const unsigned int c,
+                                        const double balance) const
+  {
+    const double alone = system_.impedance()[i * dim + c],
+                 together = 1. / evaluation_.majorant(i, c);
+    return together * std::pow(std::max(1., alone / together), balance);
+  }
+
+  template <int dim>
+  bool ContactPath<dim>::alternate(const unsigned int count,
+                                   const double balance)
   {
     const std::size_t n = problem_.n_points;
-    // a stiffness as of an intact face in units of the bodies' own
-    double share = 0., most = 1.;
+    look();
     std::vector<char> linear(n);
     for (std::size_t i = 0; i < n; ++i)
       linear[i] = is_linear(i);
     laws_.update(problem_, evaluation_, impulse_, linear);
-    std::size_t springs = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      if (linear[i] && !is_held(i) &&
-          laws_.stiffness[i * dim * dim] > 0.) {
-        share += std::log(laws_.stiffness[i * dim * dim] /
-                          system_.impedance()[i * dim]);
-        ++springs;
-      }
-    if (springs > 0)
-      most = std::min(30., std::max(1., std::exp(share / double(springs))));
     S_ = laws_.stiffness;
     Vector rho(n * dim, 0.), target(n * dim);
     for (std::size_t i = 0; i < n; ++i)
@@ -109,18 +134,13 @@ namespace nsfd
           rho[j] = S_[j * dim + c];
         else if (!linear[i]) // alike along the face
           rho[j] = S_[j * dim + c] =
-            most * system_.impedance()[i * dim + std::min(c, 1u)];
-        target[j] = is_held(i) ? problem_.given_velocity[j]
-                               : evaluation_.solutions[i].velocity[c];
+            stiffness_at(i, std::min(c, 1u), balance);
+        target[j] = problem_.given_velocity[j]; // of points that are held
       }
     if (!system_.factorise(S_))
-      return;
+      return false;
     ++report_.newton;
 
-    std::fill(y_.begin(), y_.end(), 0.);
-    dynamics_.add_velocity_change(impulse_.data(), y_.data());
-    U_ = evaluation_.velocity;
-    P_ = impulse_;
     // the affine part of the linear points
     Vector offset(n * dim, 0.);
     for (std::size_t i = 0; i < n; ++i)
@@ -134,8 +154,25 @@ namespace nsfd
     std::vector<Reach> reach(n);
     for (std::size_t i = 0; i < n; ++i)
       reach[i] = evaluation_.solutions[i].reach;
+    const auto solve_law = [&](const std::size_t i) {
+      std::array<double, dim> local;
+      for (unsigned int c = 0; c < dim; ++c)
+        local[c] = U_[i * dim + c] - P_[i * dim + c] / rho[i * dim + c];
+      const auto solution =
+        solve_point<dim>(problem_, i, local, 1. / rho[i * dim],
+                         1. / rho[i * dim + 1], reach[i]);
+      reach[i] = solution.reach;
+      for (unsigned int c = 0; c < dim; ++c) {
+        P_[i * dim + c] = solution.impulse[c];
+        target[i * dim + c] = solution.velocity[c];
+      }
+    };
+    for (std::size_t i = 0; i < n; ++i)
+      if (!linear[i])
+        solve_law(i);
     Vector trial(n * dim);
-    for (unsigned int k = 0; k < count; ++k) {
+    bool solved = false;
+    for (unsigned int k = 0; k < count && !solved; ++k) {
       for (std::size_t j = 0; j < n * dim; ++j) {
         const std::size_t i = j / dim;
         if (!linear[i] || is_held(i))
@@ -169,22 +206,15 @@ namespace nsfd
             }
           continue;
         }
-        std::array<double, dim> local;
-        for (unsigned int c = 0; c < dim; ++c)
-          local[c] = U_[i * dim + c] - P_[i * dim + c] / rho[i * dim + c];
-        const auto solution =
-          solve_point<dim>(problem_, i, local, 1. / rho[i * dim],
-                           1. / rho[i * dim + 1], reach[i]);
-        reach[i] = solution.reach;
-        for (unsigned int c = 0; c < dim; ++c) {
-          P_[i * dim + c] = solution.impulse[c];
-          target[i * dim + c] = solution.velocity[c];
-        }
+        solve_law(i);
+      }
+      if (k % 10 == 9 || k + 1 == count) {
+        impulse_ = P_;
+        evaluation_.update(impulse_);
+        solved = judge();
       }
     }
-    impulse_ = P_;
-    evaluation_.update(impulse_);
-    judge();
+    return solved;
   }
 
   /** Of the springs of a candidate at U: impulse and its slope. */
@@ -229,10 +259,6 @@ namespace nsfd
   void ContactPath<dim>::start(const double floor, const double centre)
   {
     find_candidates();
-    std::fill(y_.begin(), y_.end(), 0.);
-    dynamics_.add_velocity_change(impulse_.data(), y_.data());
-    U_ = evaluation_.velocity;
-    P_ = impulse_;
     double sum = 0.;
     for (auto &x : candidates_) {
       const std::size_t i = x.point;
@@ -336,6 +362,7 @@ namespace nsfd
     mean /= double(candidates_.size());
     const double smoothing = gap / mean;
 
+    look();
     laws_.update(problem_, evaluation_, P_, others_);
     S_ = laws_.stiffness;
     Vector P0(P_);
@@ -431,6 +458,7 @@ namespace nsfd
   template <int dim>
   bool ContactPath<dim>::follow(const Stage &stage, const unsigned int limit)
   {
+    look();
     start(stage.floor, stage.centre);
     if (candidates_.empty() || !(mean_impulse_ > 0.))
       return false;
@@ -442,9 +470,6 @@ namespace nsfd
                            alpha > 0.1 ? 0.6 : 1.;
       if (!step(sigma, alpha) || !(evaluation_.error < 1e300))
         break;
-      if (getenv("NSFD_TRACE"))
-        fprintf(stderr, "   ip %u alpha %.3f gap %.2e error %.3e\n", k, alpha,
-                mean_gap() / first_gap, evaluation_.error);
       if (judge())
         return true;
       short_steps = alpha < 0.1 ? short_steps + 1 : 0;
@@ -453,8 +478,6 @@ namespace nsfd
         const Vector here(impulse_);
         if (polish())
           return true;
-        if (getenv("NSFD_TRACE"))
-          fprintf(stderr, "   polish to %.3e\n", best_error_);
         impulse_ = here;
         evaluation_.update(impulse_);
       }

@@ -33,9 +33,11 @@ namespace nsfd
     /**
      * @p count steps of the alternating direction method of multipliers, one
      * factor for all: every candidate and every nonlinear point solves its own
-     * full law against a stiffness of the size of the bodies'.
+     * full law against a stiffness that is the one of its bodies moved as a
+     * whole (@p balance 0), of the point moved alone (1) or between them.
+     * True as soon as the error is below the tolerance.
      */
-    void alternate(unsigned int count);
+    bool alternate(unsigned int count, double balance);
 
     /** Where the path begins and how points are weighted along it. */
     struct Stage
@@ -48,8 +50,6 @@ namespace nsfd
      * True as soon as the error is below the tolerance.
      */
     bool follow(const Stage &stage, unsigned int limit);
-
-    double error() const { return best_error_; }
 
     /** Newton's method on the full laws from the best impulses. */
     bool polish();
@@ -73,6 +73,10 @@ namespace nsfd
       return problem_.kind[point] == PointKind::prescribed;
     }
     bool is_linear(std::size_t point) const;
+    double stiffness_at(std::size_t point, unsigned int c,
+                        double balance) const;
+    void begin();
+    void look();
     void find_candidates();
     void start(double floor, double centre);
     bool step(double sigma, double &alpha);

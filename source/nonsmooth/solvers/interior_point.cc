@@ -44,24 +44,19 @@ namespace nsfd
     private:
       using Stage = typename ContactPath<dim>::Stage;
 
+      /** Dear parts last; each begins where the one before has come to. */
       bool run(ContactPath<dim> &path)
       {
-        path.alternate(40);
-        if (getenv("NSFD_TRACE"))
-          fprintf(stderr, "admm %.3e\n", path.error());
-        if (path.polish() || path.follow({1., 1.}, 60) || path.polish())
+        if (path.alternate(40, 0.5) || path.polish() ||
+            path.alternate(60, 1.) || path.polish() ||
+            path.follow({1., 1.}, 60) || path.polish())
           return true;
-        for (const Stage stage : {Stage{1e-3, 3e-3}, Stage{1e-5, 3e-4}}) {
-          path.alternate(20);
-          if (getenv("NSFD_TRACE"))
-            fprintf(stderr, "admm %.3e\n", path.error());
-          if (path.follow(stage, 60) || path.polish())
+        for (const Stage stage : {Stage{1e-3, 3e-3}, Stage{1e-5, 3e-4}})
+          if (path.alternate(20, 1.) || path.follow(stage, 60) ||
+              path.polish())
             return true;
-        }
-        path.alternate(200);
-        if (getenv("NSFD_TRACE"))
-          fprintf(stderr, "admm %.3e\n", path.error());
-        return path.polish() || path.follow({1., 1.}, 60) || path.polish();
+        return path.alternate(200, 0.5) || path.polish() ||
+               path.follow({1., 1.}, 60) || path.polish();
       }
 
       std::unique_ptr<BodySystem<dim>> system_;

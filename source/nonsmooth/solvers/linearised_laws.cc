@@ -124,7 +124,7 @@ namespace nsfd
   template <int dim>
   bool polish(const OneStepProblem<dim> &problem, BodySystem<dim> &system,
               const Dynamics<dim> &dynamics, const double tolerance,
-              const unsigned int limit, std::vector<double> &impulse,
+              const unsigned int patience, std::vector<double> &impulse,
               LawEvaluation<dim> &evaluation, SolverReport &report)
   {
     const std::size_t n = impulse.size();
@@ -132,7 +132,7 @@ namespace nsfd
     std::vector<double> b(dynamics.bodies().n_dofs()), dy, dU(n), best(impulse);
     double best_error = evaluation.error;
     unsigned int idle = 0;
-    for (unsigned int k = 0; k < limit && evaluation.error > tolerance; ++k) {
+    while (evaluation.error > tolerance && idle <= patience) {
       laws.update(problem, evaluation, impulse);
       if (!system.factorise(laws.stiffness))
         break;
@@ -149,14 +149,23 @@ namespace nsfd
           impulse[i * dim + r] += value;
         }
       evaluation.update(impulse);
+      const bool good = evaluation.error < 0.5 * best_error;
       if (evaluation.error < best_error) {
-        idle = evaluation.error < 0.5 * best_error ? 0 : idle + 1;
         best_error = evaluation.error;
         best = impulse;
-      } else
-        ++idle;
-      if (idle > 1)
-        break;
+      }
+      if (good) {
+        idle = 0;
+        laws.softening = std::max(1e-7, 0.1 * laws.softening);
+        continue;
+      }
+      ++idle;
+      laws.softening =
+        std::min(0.1, std::max(1e-3, 10. * laws.softening));
+      if (!(evaluation.error < 10. * best_error)) {
+        impulse = best;
+        evaluation.update(impulse);
+      }
     }
     if (!(evaluation.error <= best_error)) {
       impulse = best;

@@ -19,7 +19,7 @@ namespace nsfd
    * A point that sticks or is held has J R = -1: R is taken a share 1e-7
    * smaller, which makes S a stiffness 1e7 / R and not infinite. It changes
    * the way, not the solution, and where W is singular it chooses the impulses
-   * nearest to those before.
+   * nearest to those before. A larger softening makes the step a proximal one.
    */
   template <int dim>
   class LinearisedLaws
@@ -33,9 +33,9 @@ namespace nsfd
 
     std::vector<double> stiffness; ///< S, dim x dim per point
     std::vector<double> change;    ///< -B Phi, dim per point
+    double softening = 1e-7;
 
   private:
-    static constexpr double softening = 1e-7;
     std::array<double, dim * dim>
     derivative(const OneStepProblem<dim> &problem,
                const LawEvaluation<dim> &evaluation,
@@ -43,17 +43,19 @@ namespace nsfd
   };
 
   /**
-   * At most @p limit steps of Newton's method on the natural map of the full
-   * laws, each with a factor of the bodies joined by S, kept while the error
-   * falls. True if it ends below the tolerance; @p impulse and the evaluation
-   * are those of the smallest error.
+   * Newton's method on the natural map of the full laws, each step with a
+   * factor of the bodies joined by S. Where a step does not halve the error the
+   * next ones are softer, from 1e-3 on: proximal steps, which do not run off
+   * along impulses that move next to nothing. Given up after @p patience such
+   * steps in a row. True if it ends below the tolerance; @p impulse and the
+   * evaluation are those of the smallest error.
    */
   template <int dim>
   bool polish(const OneStepProblem<dim> &problem,
               BodySystem<dim> &system,
               const Dynamics<dim> &dynamics,
               double tolerance,
-              unsigned int limit,
+              unsigned int patience,
               std::vector<double> &impulse,
               LawEvaluation<dim> &evaluation,
               SolverReport &report);
