@@ -39,7 +39,7 @@ namespace nsfd
     build_dynamics(input, communicator);
     charge_memory("blocks of the bodies");
     method =
-        input.solver.method == "auto" ? "dual newton" : input.solver.method;
+        input.solver.method == "auto" ? "chain" : input.solver.method;
     solver = SolverRegistry<dim>::instance().create(method);
     stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
                                                 *dynamics, *solver, bonded);

@@ -475,11 +475,8 @@ namespace nsfd
       short_steps = alpha < 0.1 ? short_steps + 1 : 0;
       if (best_error_ < 1e-5 && best_error_ < 0.1 * polished_) {
         polished_ = best_error_;
-        const Vector here(impulse_);
         if (polish())
           return true;
-        impulse_ = here;
-        evaluation_.update(impulse_);
       }
       if (short_steps >= 4 && mean_gap() < 1e-9 * first_gap)
         break;

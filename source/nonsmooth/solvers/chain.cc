@@ -1,0 +1,125 @@
+#include "nsfd/nonsmooth/solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /**
+     * One solver after the other until the natural map is small: Newton's
+     * method on the dual problem (with its sweeps of Gauss-Seidel), then
+     * interior points where there is friction. At long steps, where Newton's
+     * method needs a global factor in every iteration and Coulomb friction
+     * makes it cycle, the interior points come first. Every hand-over is in
+     * the report. Steps in which points soften are not handed over: a shorter
+     * step is their cure.
+     */
+    template <int dim>
+    class Chain final : public NonsmoothSolver<dim>
+    {
+    public:
+      Chain()
+        : newton_(SolverRegistry<dim>::instance().create("dual newton"))
+      {}
+
+      SolverReport solve(const OneStepProblem<dim> &problem,
+                         Dynamics<dim> &dynamics,
+                         const double energy_scale,
+                         const SolverControl &control,
+                         std::vector<double> &impulse,
+                         LawEvaluation<dim> &evaluation) override
+      {
+        const bool rubs = dynamics.communicator().size() == 1 &&
+                          may_rub(problem);
+        if (!rubs)
+          return newton_->solve(problem, dynamics, energy_scale, control,
+                                impulse, evaluation);
+        if (!path_)
+          path_ = SolverRegistry<dim>::instance().create("interior point");
+        std::array<NonsmoothSolver<dim> *, 2> order{newton_.get(),
+                                                    path_.get()};
+        std::array<const char *, 2> names{"dual newton", "interior point"};
+        if (is_long(problem, dynamics)) {
+          std::swap(order[0], order[1]);
+          std::swap(names[0], names[1]);
+        }
+        const std::vector<double> start(impulse);
+        SolverReport report =
+          order[0]->solve(problem, dynamics, energy_scale, control, impulse,
+                          evaluation);
+        if (report.converged || softens(evaluation))
+          return report;
+        const std::vector<double> best(impulse);
+        impulse = start;
+        SolverReport next = order[1]->solve(
+          problem, dynamics, energy_scale, control, impulse, evaluation);
+        if (next.residual > report.residual) {
+          impulse = best;
+          evaluation.update(impulse);
+        } else {
+          report.residual = next.residual;
+          report.converged = next.converged;
+        }
+        report.newton += next.newton;
+        report.krylov += next.krylov;
+        report.sweeps += next.sweeps;
+        report.line_searches += next.line_searches;
+        report.switches.push_back(names[1]);
+        report.switches.insert(report.switches.end(), next.switches.begin(),
+                               next.switches.end());
+        return report;
+      }
+
+    private:
+      static bool may_rub(const OneStepProblem<dim> &problem)
+      {
+        for (std::size_t i = 0; i < problem.n_points; ++i)
+          if (problem.contact[i] && problem.kind[i] != PointKind::prescribed &&
+              problem.interactions[problem.interaction[i]].friction > 0.)
+            return true;
+        return false;
+      }
+
+      static bool softens(const LawEvaluation<dim> &evaluation)
+      {
+        return std::any_of(evaluation.solutions.begin(),
+                           evaluation.solutions.end(),
+                           [](const auto &s) { return s.damages; });
+      }
+
+      /**
+       * The bodies' stiffness, h^2 theta^2 K, is far more than their mass: on
+       * the diagonal of the bodies, in the mean.
+       */
+      static bool is_long(const OneStepProblem<dim> &problem,
+                          const Dynamics<dim> &dynamics)
+      {
+        const double factor = problem.time_step * problem.time_step *
+                              problem.theta * problem.theta;
+        double ratio = 0.;
+        std::size_t count = 0;
+        for (const auto &body : dynamics.bodies().classes)
+          if (!body.rigid)
+            for (unsigned int k = 0; k < body.n_dofs; ++k) {
+              ratio += factor * body.stiffness(k, k) / body.mass(k, k) *
+                       double(body.bodies.size());
+              count += body.bodies.size();
+            }
+        return count > 0 && ratio > 50. * double(count);
+      }
+
+      std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;
+    };
+
+    using Chain2 = Chain<2>;
+    using Chain3 = Chain<3>;
+    NSFD_REGISTER(SolverRegistry<2>, Chain2, "chain",
+                  "dual newton, then interior point where it fails on friction; "
+                  "at long steps the other way round");
+    NSFD_REGISTER(SolverRegistry<3>, Chain3, "chain",
+                  "dual newton, then interior point where it fails on friction; "
+                  "at long steps the other way round");
+  } // namespace
+} // namespace nsfd
