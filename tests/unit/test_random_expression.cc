@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 using namespace nsfd;
@@ -14,16 +15,24 @@ namespace
   {
     InputErrors errors;
     const auto input = read_scene_text(R"(
+      set dimension = 2
       subsection Mesh
-        set type = rectangle
+        set type         = rectangle
+        set lower corner = 0, 0
+        set upper corner = 1, 1
+        set cells        = 1, 1
       end
       subsection Material: bulk
+        set model         = linear elastic
         set Young modulus = 1
+        set Poisson ratio = 0.3
         set density       = 1
       end
       subsection Interface: faces
         set where  = all
-        set law    = contact
+        set law       = michel-suquet
+        set stiffness = 1
+        set strength  = 1
         set broken = )" + condition + R"(
       end
       subsection Time

@@ -10,7 +10,7 @@ namespace nsfd
     /**
      * One solver after the other until the natural map is small: Newton's
      * method on the dual problem (with its sweeps of Gauss-Seidel), then
-     * interior points where there is friction. At long steps, where Newton's
+     * interior points where points may touch. At long steps, where Newton's
      * method needs a global factor in every iteration and Coulomb friction
      * makes it cycle, the interior points come first. Every hand-over is in
      * the report. Steps in which points soften are not handed over: a shorter
@@ -31,9 +31,7 @@ namespace nsfd
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
-        const bool rubs = dynamics.communicator().size() == 1 &&
-                          may_rub(problem);
-        if (!rubs)
+        if (dynamics.communicator().size() > 1 || !may_touch(problem))
           return newton_->solve(problem, dynamics, energy_scale, control,
                                 impulse, evaluation);
         if (!path_)
@@ -41,7 +39,7 @@ namespace nsfd
         std::array<NonsmoothSolver<dim> *, 2> order{newton_.get(),
                                                     path_.get()};
         std::array<const char *, 2> names{"dual newton", "interior point"};
-        if (is_long(problem, dynamics)) {
+        if (may_rub(problem) && is_long(problem, dynamics)) {
           std::swap(order[0], order[1]);
           std::swap(names[0], names[1]);
         }
@@ -73,6 +71,12 @@ namespace nsfd
       }
 
     private:
+      static bool may_touch(const OneStepProblem<dim> &problem)
+      {
+        return std::any_of(problem.contact.begin(), problem.contact.end(),
+                           [](const auto contact) { return contact != 0; });
+      }
+
       static bool may_rub(const OneStepProblem<dim> &problem)
       {
         for (std::size_t i = 0; i < problem.n_points; ++i)
@@ -116,10 +120,10 @@ namespace nsfd
     using Chain2 = Chain<2>;
     using Chain3 = Chain<3>;
     NSFD_REGISTER(SolverRegistry<2>, Chain2, "chain",
-                  "dual newton, then interior point where it fails on friction; "
+                  "dual newton, then interior point where it fails on contact; "
                   "at long steps the other way round");
     NSFD_REGISTER(SolverRegistry<3>, Chain3, "chain",
-                  "dual newton, then interior point where it fails on friction; "
+                  "dual newton, then interior point where it fails on contact; "
                   "at long steps the other way round");
   } // namespace
 } // namespace nsfd
