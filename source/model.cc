@@ -145,6 +145,7 @@ namespace nsfd
       dynamics = std::move(joined);
       return;
     }
+    path = input.solver.path;
     if (path == "auto")
       path = crossing > 0. && dynamic_step(input) > 5. * crossing
                  ? "global"

@@ -5,6 +5,8 @@
 #include "condensed.h"
 #include "sparse_assembly.h"
 
+#include "nsfd/base/cost.h"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -132,6 +134,7 @@ namespace nsfd
     void Bonded<dim>::prepare(SpdSolver &solver, const SparseRows &matrix,
                               SparseRows &kept) const
     {
+      const Charge charge(Cost::preconditioner);
       const bool first = solver.counters().factorisations == 0;
       if (glued_) { // iterations go on looking at their matrix
         glue();
@@ -259,6 +262,7 @@ namespace nsfd
     void Bonded<dim>::apply_delassus(const double *impulse,
                                      double *velocity) const
     {
+      const Charge charge(Cost::delassus);
       ++this->counters_.delassus;
       if (condense()) {
         condensed_.apply(impulse, velocity);
@@ -336,6 +340,7 @@ namespace nsfd
     template <int dim>
     void Bonded<dim>::prepare_preconditioner(const std::vector<double> &D)
     {
+      const Charge charge(Cost::preconditioner);
       if (condense() && condensed_.can_factor()) {
         condensed_.factor(D);
         return;
@@ -365,6 +370,7 @@ namespace nsfd
     template <int dim>
     void Bonded<dim>::precondition(const double *r, double *z) const
     {
+      const Charge charge(Cost::precondition);
       if (!condensed_.empty() && condensed_.can_factor()) {
         condensed_.solve(r, z);
         return;

@@ -262,7 +262,7 @@ namespace nsfd
     if (read_start(reader, scene, quasi_static)) {
       scene.statics.emplace();
       scene.statics->tolerance =
-          reader.number("equilibrium tolerance", "1e-10", units::none,
+          reader.number("equilibrium tolerance", "1e-11", units::none,
                         {0., 1e-3, true, false},
                         "force left over, relative to the forces present");
     } else

@@ -242,7 +242,8 @@ end
     Vector Ku(n);
     scene.dynamics->apply(Operator::stiffness, u.data(), Ku.data());
     const double alone = bodies_alone(scene, u);
-    EXPECT_NEAR(dot(u, Ku), alone, 1e-11 * alone);
+    // a traction is a gradient: cells 1e3 times as long as high lose digits
+    EXPECT_NEAR(dot(u, Ku), alone, 1e-9 * alone);
 
     Vector traction(scene.state.jump.size());
     BulkTraction<dim>(*scene.dynamics).evaluate(u.data(), traction.data());
@@ -334,8 +335,9 @@ end
     for (unsigned int round = 0; round < 40; ++round) {
       scene.dynamics->apply_delassus(P.data(), U.data());
       for (std::size_t k = 0; k < n; ++k)
-        if (scene.state.kind[k / 2] != PointKind::bonded)
+        if (scene.state.kind[k / 2] != PointKind::bonded) {
           EXPECT_NEAR(U[k], expected[k], 1e-12) << k << " " << round;
+        }
     }
     // the blocks that majorants come from bound it
     for (std::size_t f = 0; f < scene.dynamics->points().faces.size(); ++f) {

@@ -211,7 +211,7 @@ namespace nsfd
     double until = 0.;  ///< s, end of the quasi-static steps
     double step = 0.;   ///< s, of the load
     SolutionJump at_jump = SolutionJump::stop;
-    double tolerance = 1e-10; ///< force left over, relative to those present
+    double tolerance = 1e-11; ///< force left over, relative to those present
   };
 
   struct SolverInput
