@@ -84,8 +84,9 @@ namespace nsfd
       , glued_(communicator, dim, assembly_.unknowns(), assembly_.node_pairs())
     {
       const auto n = communicator.sum_integer(bodies.n_dofs());
+      // not by the number of ranks: results must not depend on it
       direct_ = solver == "direct" ||
-                (solver == "auto" && communicator.size() == 1 &&
+                (solver == "auto" &&
                  static_cast<long long>(n) <= largest_factor<dim>);
       if (direct_)
         solver_ = make_cholesky_solver(communicator);
