@@ -19,6 +19,8 @@ namespace nsfd
     , side_1_((points.n_points + 1) * dim, 0.)
     , side_2_((points.n_points + 1) * dim, 0.)
   {
+    for (const BodyClass &body : bodies.classes)
+      blocks_.emplace_back().trace_transposed = body.trace.transposed();
     face_offset_.push_back(0);
     for (const auto &face : points.faces)
       face_offset_.push_back(face_offset_.back() +
@@ -33,7 +35,6 @@ namespace nsfd
     const Charge charge(Cost::blocks);
     time_step_ = time_step;
     theta_ = theta;
-    blocks_.resize(bodies_.classes.size());
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const BodyClass &body = bodies_.classes[k];
       Block matrix = body.mass;
@@ -48,7 +49,6 @@ namespace nsfd
       for (unsigned int i = 0; i < body.n_dofs; ++i)
         identity(i, i) = 1.;
       blocks_[k].inverse = gram(forward_solve(L, std::move(identity)));
-      blocks_[k].trace_transposed = body.trace.transposed();
       // Gram matrix of L^{-1} T^T: symmetric to the last bit
       blocks_[k].delassus =
         gram(forward_solve(L, blocks_[k].trace_transposed));

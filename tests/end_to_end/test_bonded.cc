@@ -93,6 +93,18 @@ namespace end_to_end
                              return "degree_" + std::to_string(info.param);
                            });
 
+  TEST(BondedEverywhere, IsChecked)
+  {
+    const Workspace workspace;
+    const Outcome outcome =
+        nsfd(workspace, {(std::filesystem::path(NSFD_SOURCE_DIR) / "prm" /
+                          "benchmarks" / "fracture_extrinsic.prm")
+                             .string(),
+                         "--check"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("nothing is run"), std::string::npos);
+  }
+
   // Every face may break, without compliance before.
   TEST(BondedEverywhere, TearsThePlateApart)
   {

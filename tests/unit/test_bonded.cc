@@ -384,6 +384,28 @@ end
                  std::runtime_error);
   }
 
+  /** Halves that are apart at the start: the bond stores it, and knows it. */
+  TEST(Bonded, JumpsAtTheStartAreInTheBooks)
+  {
+    const std::string right = R"(
+subsection Material: right
+  set where                  = x > 1
+  set model                  = linear elastic
+  set Young modulus          = 1
+  set Poisson ratio          = 0.3
+  set density                = 1
+  set initial displacement x = 1e-3
+end
+)";
+    Scene<2> scene("set dimension = 2\nsubsection Mesh\n"
+                   "  set type = rectangle\n  set upper corner = 2, 1\n"
+                   "  set cells = 4, 2\nend\n" +
+                   right + solid);
+    EXPECT_GT(scene.state.energy.elastic, 0.);
+    for (unsigned int k = 0; k < 20; ++k)
+      EXPECT_LE(scene.advance().ledger_defect, 1e-12);
+  }
+
   /** Pulled until all bonds are gone: the ledger closes at every step. */
   TEST(Bonded, BreaksWithClosedBooks)
   {
