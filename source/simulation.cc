@@ -70,6 +70,7 @@ namespace nsfd
       RunCosts<dim> costs_;
       double start_wall_, last_step_ = 0.;
       unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
+      unsigned long long released_ = 0; ///< bonds, in accepted steps
       unsigned int attempts_ = 0; // at the present step, all rejected
       double redo_until_ = 0., redo_step_ = 0.;
       std::map<std::string, unsigned int> switches_;
@@ -379,6 +380,7 @@ namespace nsfd
                                  const double time_step)
     {
       beyond_unique_ += report.beyond_unique;
+      released_ += report.released;
       costs_.record(report.solver, model_.dynamics->counters().delassus);
       for (const auto &name : report.solver.switches)
         ++switches_[name];
@@ -465,7 +467,7 @@ namespace nsfd
       c["load_assemblies"] = double(stepper.load_assemblies);
       c["activation_rounds"] = double(stepper.activation_rounds);
       if (model_.bonded)
-        c["released_bonds"] = double(stepper.released_bonds);
+        c["released_bonds"] = double(released_);
       c["rejected_steps"] = rejected_;
       c["redone_steps"] = redone_;
       c["steps_beyond_uniqueness"] = beyond_unique_;

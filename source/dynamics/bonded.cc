@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace nsfd
 {
@@ -69,7 +70,12 @@ namespace nsfd
       bool joined_valid_ = false;
       mutable std::size_t n_solves_ = 0; ///< with the present factor
       mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
-      std::vector<double> D_, inverse_D_;
+      std::vector<double> D_;         ///< of the system to precondition
+      std::vector<double> inverse_D_; ///< of the one that was factored
+      std::vector<double> diagonal_;  ///< of W, from above
+      /// applications after which a new factor is cheaper than going on
+      static constexpr unsigned int patience = 12;
+      mutable unsigned int n_applied_ = 0; ///< since the last system
       mutable std::vector<double> rows_, columns_, work_, point_work_,
         body_work_;
     };
@@ -348,13 +354,19 @@ namespace nsfd
       if (joined_valid_ && D == D_)
         return;
       D_ = D;
+      // an old factor is a good preconditioner until iterations say otherwise
+      const unsigned int applied = std::exchange(n_applied_, 0);
+      if (joined_valid_ && applied <= patience)
+        return;
       inverse_D_.assign(D.size(), 0.);
+      diagonal_.assign(D.size(), 0.);
       for (std::size_t f = 0; f < this->points_.faces.size(); ++f) {
         const auto &face = this->points_.faces[f];
         const unsigned int n = face.count * dim;
         const double *W = this->face_block(f);
         for (unsigned int k = 0; k < n; ++k) {
           const std::size_t row = std::size_t(face.first) * dim + k;
+          diagonal_[row] = W[k * n + k];
           if (D[row] >= 0. && is_row(row))
             inverse_D_[row] =
               1. / std::max(D[row], least_compliance(row, W[k * n + k]));
@@ -375,17 +387,25 @@ namespace nsfd
         condensed_.solve(r, z);
         return;
       }
+      ++n_applied_;
       const std::size_t n = inverse_D_.size();
       point_work_.resize(n);
       rows_.resize(this->bodies_.n_dofs());
       columns_.resize(rows_.size());
       for (std::size_t k = 0; k < n; ++k)
-        point_work_[k] = inverse_D_[k] * r[k];
+        point_work_[k] = D_[k] >= 0. ? inverse_D_[k] * r[k] : 0.;
       this->generalised_impulse(point_work_.data(), rows_.data());
       solve(*joined_, rows_.data(), columns_.data());
       this->relative_velocity(columns_.data(), z);
+      // a principal part of the inverse where the factor knows the row, and the
+      // bound of the diagonal where it does not: positive definite together
       for (std::size_t k = 0; k < n; ++k)
-        z[k] = inverse_D_[k] * (r[k] - z[k]);
+        if (D_[k] < 0.)
+          z[k] = 0.;
+        else if (inverse_D_[k] > 0.)
+          z[k] = inverse_D_[k] * (r[k] - z[k]);
+        else
+          z[k] = r[k] / (diagonal_[k] + D_[k]);
     }
   } // namespace
 

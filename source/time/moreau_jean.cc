@@ -158,7 +158,6 @@ namespace nsfd
       report.released = bonds.released;
       report.overshoot = bonds.overshoot;
       report.share = bonds.share;
-      counters_.released_bonds += bonds.released;
     }
     return report;
   }
