@@ -3,6 +3,7 @@
 #include "body_loops.h"
 #include "body_matrix.h"
 #include "condensed.h"
+#include "factor_limits.h"
 #include "sparse_assembly.h"
 
 #include "nsfd/base/cost.h"
@@ -15,13 +16,8 @@ namespace nsfd
 {
   namespace
   {
-    /** Unknowns up to which a factor is cheaper than iterations. */
-    template <int dim>
-    constexpr long long largest_factor = dim == 2 ? 200000 : 15000;
     /// of iterations: the ledger shows what a product with W leaves
     constexpr double tight = 1e-12;
-    template <int dim>
-    constexpr long long largest_coarse_factor = dim == 2 ? 300000 : 15000;
 
     template <int dim>
     class Bonded final : public BondedDynamics<dim>
@@ -68,6 +64,9 @@ namespace nsfd
       mutable bool is_glued_ = false; ///< for the step and the bonds
       mutable bool valid_ = false;        ///< factor_
       bool joined_valid_ = false;
+      /// the system was factored as a dense one: W may be condensed later,
+      /// within the iterations of a system prepared without
+      bool dense_system_ = false;
       mutable std::size_t n_solves_ = 0; ///< with the present factor
       mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
       std::vector<double> D_;         ///< of the system to precondition
@@ -76,7 +75,7 @@ namespace nsfd
       /// applications after which a new factor is cheaper than going on
       static constexpr unsigned int patience = 12;
       mutable unsigned int n_applied_ = 0; ///< since the last system
-      mutable std::vector<double> rows_, columns_, work_, point_work_,
+      mutable std::vector<double> rows_, columns_, point_work_,
         body_work_;
     };
 
@@ -347,7 +346,8 @@ namespace nsfd
     void Bonded<dim>::prepare_preconditioner(const std::vector<double> &D)
     {
       const Charge charge(Cost::preconditioner);
-      if (condense() && condensed_.can_factor()) {
+      dense_system_ = condense() && condensed_.can_factor();
+      if (dense_system_) {
         condensed_.factor(D);
         return;
       }
@@ -383,7 +383,7 @@ namespace nsfd
     void Bonded<dim>::precondition(const double *r, double *z) const
     {
       const Charge charge(Cost::precondition);
-      if (!condensed_.empty() && condensed_.can_factor()) {
+      if (dense_system_) {
         condensed_.solve(r, z);
         return;
       }

@@ -3,6 +3,7 @@
 #include "body_loops.h"
 
 #include "nsfd/base/cost.h"
+#include "nsfd/dynamics/point_places.h"
 
 #include <algorithm>
 
@@ -221,38 +222,16 @@ namespace nsfd
     for (auto &side : sides)
       side.assign(points_.n_points * stride, 0.);
 
-    // where in a body a point sits
-    struct Place
-    {
-      int body = -1;
-      unsigned int slot = 0;
-    };
-    std::array<std::vector<Place>, 2> place;
-    place.fill(std::vector<Place>(points_.n_points));
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-      for (std::size_t s = bodies_.first_slot[b]; s < bodies_.first_slot[b + 1];
-           ++s)
-        if (bodies_.slot_point[s] < points_.n_points)
-          place[bodies_.slot_sign[s] > 0][bodies_.slot_point[s]] = {
-            int(b), unsigned(s - bodies_.first_slot[b])};
-    for (const auto &extra : bodies_.extra_points) {
-      const std::size_t b =
-        std::upper_bound(bodies_.first_slot.begin(), bodies_.first_slot.end(),
-                         extra.first) -
-        bodies_.first_slot.begin() - 1;
-      place[1][extra.second] = {
-        int(b), unsigned(extra.first - bodies_.first_slot[b])};
-    }
-
+    const auto place = point_places(bodies_, points_.n_points);
     for (const auto &face : points_.faces)
       for (unsigned int side = 0; side < 2; ++side)
         for (unsigned int p = 0; p < face.count; ++p) {
-          const Place mine = place[side][face.first + p];
+          const PointPlace mine = place[side][face.first + p];
           if (mine.body < 0)
             continue;
           const Block &W = blocks_[bodies_.class_of[mine.body]].delassus;
           for (unsigned int q = 0; q < face.count; ++q) {
-            const Place other = place[side][face.first + q];
+            const PointPlace other = place[side][face.first + q];
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int d = 0; d < dim; ++d)
                 sides[side][(face.first + p) * stride + c * row + q * dim + d] =

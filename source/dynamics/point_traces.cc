@@ -1,5 +1,7 @@
 #include "point_traces.h"
 
+#include "nsfd/dynamics/point_places.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -73,27 +75,16 @@ namespace nsfd
     std::array<std::vector<double>, 2> side;
     for (auto &s : side)
       s.assign((points.n_points + 1) * stride, -1.);
-    const auto write = [&](const std::size_t b, const std::size_t slot,
-                           const std::size_t point, const double sign) {
-      write_trace<dim>(bodies.classes[bodies.class_of[b]], unsigned(slot), sign,
-                       points.frame.data() + point * dim * dim,
-                       double(first_dof) + double(bodies.first_dof[b]), width,
-                       with_traction,
-                       side[sign > 0.].data() + point * stride);
-    };
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
-           ++s)
-        if (bodies.slot_point[s] < points.n_points)
-          write(b, s - bodies.first_slot[b], bodies.slot_point[s],
-                bodies.slot_sign[s]);
-    for (const auto &[slot, point] : bodies.extra_points) {
-      const std::size_t b =
-        std::upper_bound(bodies.first_slot.begin(), bodies.first_slot.end(),
-                         slot) -
-        bodies.first_slot.begin() - 1;
-      write(b, slot - bodies.first_slot[b], point, 1.);
-    }
+    for_all_places(
+      bodies, points.n_points,
+      [&](const std::size_t b, const unsigned int slot, const std::size_t point,
+          const unsigned int s) {
+        write_trace<dim>(bodies.classes[bodies.class_of[b]], slot,
+                         s == 1 ? 1. : -1.,
+                         points.frame.data() + point * dim * dim,
+                         double(first_dof) + double(bodies.first_dof[b]), width,
+                         with_traction, side[s].data() + point * stride);
+      });
     dynamics.exchange({{side[0].data(), side[1].data()}}, stride);
 
     std::array<std::vector<PointTrace>, 2> traces;

@@ -1,3 +1,4 @@
+#include "factor_limits.h"
 #include "sparse_assembly.h"
 
 #include "nsfd/base/cost.h"
@@ -12,12 +13,6 @@ namespace nsfd
 {
   namespace
   {
-    /** Unknowns up to which a factor of A is cheaper than iterations. */
-    template <int dim>
-    constexpr long long largest_factor = dim == 2 ? 200000 : 15000;
-    /** The same for the coarse matrix, whose factor serves longer. */
-    template <int dim>
-    constexpr long long largest_coarse_factor = dim == 2 ? 300000 : 15000;
 
     /**
      * The sparse matrix of all bodies joined by what their faces carry,

@@ -1,5 +1,7 @@
 #include "sparse_assembly.h"
 
+#include "nsfd/dynamics/point_places.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,19 +32,11 @@ namespace nsfd
   void SparseAssembly<dim>::find_places()
   {
     places_.fill(std::vector<Place>(points_.n_points));
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-      for (std::size_t s = bodies_.first_slot[b]; s < bodies_.first_slot[b + 1];
-           ++s)
-        if (bodies_.slot_point[s] < points_.n_points)
-          places_[bodies_.slot_sign[s] > 0][bodies_.slot_point[s]] = {
-            int(b), -1, unsigned(s - bodies_.first_slot[b])};
-    for (const auto &[slot, point] : bodies_.extra_points) {
-      const std::size_t b =
-        std::upper_bound(bodies_.first_slot.begin(), bodies_.first_slot.end(),
-                         slot) -
-        bodies_.first_slot.begin() - 1;
-      places_[1][point] = {int(b), -1, unsigned(slot - bodies_.first_slot[b])};
-    }
+    for_all_places(bodies_, points_.n_points,
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t point, const unsigned int side) {
+                     places_[side][point] = {int(body), -1, slot};
+                   });
   }
 
   template <int dim>

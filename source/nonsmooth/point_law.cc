@@ -4,6 +4,7 @@
 #include "springs.h"
 
 #include "nsfd/interface/friction_weight.h"
+#include "nsfd/nonsmooth/pull_and_shear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -158,12 +159,10 @@ namespace nsfd
                      const std::array<double, dim> &impulse)
     {
       const double wh = problem.weight[i] * problem.time_step;
-      const double r2 =
-        problem.interactions[problem.interaction[i]].shear_weight;
-      double traction = square(positive(-impulse[0]));
-      for (unsigned int c = 1; c < dim; ++c)
-        traction += r2 > 0. ? square(impulse[c]) / r2 : 0.;
-      return std::sqrt(traction) <= wh * point_strength<dim>(problem, i);
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      return pull_and_shear<dim>(-impulse[0], impulse.data() + 1,
+                                 interaction.shear_weight) <=
+             wh * point_strength<dim>(problem, i);
     }
 
     /** One local problem: everything at a given frozen part. */

@@ -1,6 +1,7 @@
 #include "activation.h"
 
 #include "nsfd/nonsmooth/point_law.h"
+#include "nsfd/nonsmooth/pull_and_shear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,19 +71,6 @@ namespace nsfd
       }
       return x;
     }
-
-    /** Size of the pull and shear that the strength is compared with. */
-    template <int dim>
-    double effective_impulse(const Interaction &interaction, const double *P)
-    {
-      const double pull = std::max(0., -P[0]);
-      double square = pull * pull;
-      for (unsigned int c = 1; c < dim; ++c)
-        square += interaction.shear_weight > 0.
-                      ? P[c] * P[c] / interaction.shear_weight
-                      : 0.;
-      return std::sqrt(square);
-    }
   } // namespace
 
   template <int dim>
@@ -107,7 +95,8 @@ namespace nsfd
     bool any = false;
     for (const std::size_t i : candidates) {
       const auto &interaction = problem.interactions[problem.interaction[i]];
-      if (effective_impulse<dim>(interaction, &least[i * dim]) >
+      const double *P = &least[i * dim];
+      if (pull_and_shear<dim>(-P[0], P + 1, interaction.shear_weight) >
           problem.weight[i] * problem.time_step *
               point_strength<dim>(problem, i)) {
         problem.kind[i] = PointKind::rigid;

@@ -1,6 +1,7 @@
 #include "bond_release.h"
 
 #include "nsfd/nonsmooth/point_law.h"
+#include "nsfd/nonsmooth/pull_and_shear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,27 +15,26 @@ namespace nsfd
     double utilisation(const OneStepProblem<dim> &problem, const std::size_t i,
                        const double *traction)
     {
-      const double r2 =
-        problem.interactions[problem.interaction[i]].shear_weight;
-      const double pull = std::max(0., traction[0]);
-      double square = pull * pull;
-      for (unsigned int c = 1; c < dim; ++c)
-        square += r2 > 0. ? traction[c] * traction[c] / r2 : 0.;
-      return std::sqrt(square) / point_strength<dim>(problem, i);
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      return pull_and_shear<dim>(traction[0], traction + 1,
+                                 interaction.shear_weight) /
+             point_strength<dim>(problem, i);
     }
+
+    /// of the toughness, taken where a released point enters its law
+    constexpr double share_at_start = 1e-9;
+
     /**
      * A law that is set-valued at u = 0 leaves open what a point carries that
      * does not move; joined neighbours leave it open again. So the law starts
-     * on its envelope, at the opening that has taken this share of the
-     * toughness, with the jump that carries the traction of the bond there.
-     * Returns the energy that it stores with that, in J.
+     * on its envelope, a little way along it, with the jump that carries the
+     * traction of the bond there. Returns the energy that it stores with that,
+     * in J.
      */
-    constexpr double share_at_start = 1e-9;
-
     template <int dim>
     double start_law(const OneStepProblem<dim> &problem, const std::size_t i,
-                   const double utilisation, const double *traction,
-                   State &next)
+                     const double utilisation, const double *traction,
+                     State &next)
     {
       const auto &interaction = problem.interactions[problem.interaction[i]];
       const double opening = share_at_start * interaction.law->toughness() /

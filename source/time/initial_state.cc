@@ -1,5 +1,6 @@
 #include "initial_state.h"
 
+#include "bond_release.h"
 #include "step_data.h"
 
 #include "nsfd/input/scene_input.h"
@@ -111,7 +112,8 @@ namespace nsfd
   State initial_state(const SceneInput &input,
                       const Discretization<dim> &discretization,
                       const Dynamics<dim> &dynamics,
-                      const OneStepProblem<dim> &problem)
+                      const OneStepProblem<dim> &problem,
+                      BondedDynamics<dim> *bonded)
   {
     using Operator = typename Dynamics<dim>::Operator;
     const auto &points = discretization.points();
@@ -160,6 +162,8 @@ namespace nsfd
       }
     }
 
+    if (bonded)
+      bonded->set_bonds(bonded_points(state));
     auto &energy = state.energy;
     energy.kinetic = half_product(dynamics, Operator::mass, state.velocity);
     energy.elastic =
@@ -172,7 +176,9 @@ namespace nsfd
   }
 
   template State initial_state(const SceneInput &, const Discretization<2> &,
-                               const Dynamics<2> &, const OneStepProblem<2> &);
+                               const Dynamics<2> &, const OneStepProblem<2> &,
+                               BondedDynamics<2> *);
   template State initial_state(const SceneInput &, const Discretization<3> &,
-                               const Dynamics<3> &, const OneStepProblem<3> &);
+                               const Dynamics<3> &, const OneStepProblem<3> &,
+                               BondedDynamics<3> *);
 } // namespace nsfd

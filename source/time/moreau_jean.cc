@@ -49,21 +49,8 @@ namespace nsfd
   template <int dim>
   State MoreauJean<dim>::initial_state() const
   {
-    State state =
-      nsfd::initial_state(input_, discretization_, dynamics_, problem_);
-    if (bonded_) { // jumps at the start are in the stiffness of the bonds
-      bonded_->set_bonds(bonded_points(state));
-      std::vector<double> product(state.displacement.size());
-      dynamics_.apply(Dynamics<dim>::Operator::stiffness,
-                      state.displacement.data(), product.data());
-      const double elastic =
-        dynamics_.communicator().dot(state.displacement.data(), product.data(),
-                                     product.size()) /
-        2.;
-      state.initial_energy += elastic - state.energy.elastic;
-      state.largest_energy = state.initial_energy;
-      state.energy.elastic = elastic;
-    }
+    State state = nsfd::initial_state(input_, discretization_, dynamics_,
+                                      problem_, bonded_);
     if (bulk_)
       set_bond_tractions(*bulk_, state);
     return state;

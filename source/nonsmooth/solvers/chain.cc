@@ -31,7 +31,9 @@ namespace nsfd
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
-        if (dynamics.communicator().size() > 1 || !may_touch(problem))
+        // the interior points know the bodies' own matrices only
+        if (dynamics.communicator().size() > 1 ||
+            !dynamics.bodies_are_apart() || !may_touch(problem))
           return newton_->solve(problem, dynamics, energy_scale, control,
                                 impulse, evaluation);
         if (!path_)

@@ -1,6 +1,7 @@
 #include "nsfd/nonsmooth/solver.h"
 
 #include "nsfd/base/cost.h"
+#include "nsfd/dynamics/point_places.h"
 
 #include <algorithm>
 #include <limits>
@@ -104,26 +105,7 @@ namespace nsfd
 
     const Charge charge(Cost::sweeps);
     // where in its bodies a point sits
-    struct Place
-    {
-      int body = -1;
-      unsigned int slot = 0;
-    };
-    std::array<std::vector<Place>, 2> place;
-    place.fill(std::vector<Place>(points.n_points));
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
-           ++s)
-        if (bodies.slot_point[s] < points.n_points)
-          place[bodies.slot_sign[s] > 0][bodies.slot_point[s]] = {
-            int(b), unsigned(s - bodies.first_slot[b])};
-    for (const auto &[slot, point] : bodies.extra_points) {
-      const std::size_t b =
-        std::upper_bound(bodies.first_slot.begin(), bodies.first_slot.end(),
-                         slot) -
-        bodies.first_slot.begin() - 1;
-      place[1][point] = {int(b), unsigned(slot - bodies.first_slot[b])};
-    }
+    const auto place = point_places(bodies, points.n_points);
 
     // Cartesian velocity at every point from each side
     std::array<std::vector<double>, 2> side;
@@ -131,7 +113,7 @@ namespace nsfd
     const auto add = [&](const std::size_t i, const double *change) {
       const double *Q = points.frame.data() + i * dim * dim;
       for (unsigned int s = 0; s < 2; ++s) {
-        const Place mine = place[s][i];
+        const PointPlace mine = place[s][i];
         if (mine.body < 0)
           continue;
         const double sign = s == 1 ? 1. : -1.;
