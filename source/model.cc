@@ -1,10 +1,14 @@
 #include "model.h"
 
+#include "time/stable_step.h"
+
 #include "nsfd/base/cost.h"
 #include "nsfd/interface/point_factors.h"
 #include "nsfd/mesh/node_coordinates.h"
 
 #include <deal.II/grid/tria.h>
+
+#include <fmt/format.h>
 
 #include <iostream>
 
@@ -29,7 +33,7 @@ namespace nsfd
     if (problems.empty()) {
       find_unused_blocks(input, communicator, problems);
       check_point_factors(input, *discretization, communicator, problems);
-      build_control(input, problems);
+      build_control(input, communicator, problems);
     }
     if (!problems.empty()) {
       print_problems(communicator, input, "error", problems);
@@ -39,8 +43,11 @@ namespace nsfd
     build_dynamics(input, communicator);
     charge_memory("blocks of the bodies");
     method =
-        input.solver.method == "auto" ? "chain" : input.solver.method;
-    solver = SolverRegistry<dim>::instance().create(method);
+        input.time.scheme == Scheme::arkode ? "arkode"
+        : input.solver.method == "auto"     ? "chain"
+                                            : input.solver.method;
+    solver = SolverRegistry<dim>::instance().create(
+        input.solver.method == "auto" ? "chain" : input.solver.method);
     stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
                                                 *dynamics, *solver, bonded);
     if (input.statics)
@@ -97,6 +104,7 @@ namespace nsfd
 
   template <int dim>
   void Model<dim>::build_control(const SceneInput &input,
+                                 const Communicator &communicator,
                                  std::vector<std::string> &problems)
   {
     if (input.time.step_kind != StepKind::time &&
@@ -106,10 +114,33 @@ namespace nsfd
       return;
     }
     const bool quasi_static = input.statics && input.statics->steps;
+    if (input.time.scheme == Scheme::symplectic)
+      check_stability(input, communicator, problems);
     control = quasi_static ? std::make_unique<StepControl>(
                                  input.statics->until, input.statics->step,
                                  input.time.maximum_halvings)
                            : dynamic_control(input, 0.);
+  }
+
+  /** Bodies are explicit in the symplectic scheme. */
+  template <int dim>
+  void Model<dim>::check_stability(const SceneInput &input,
+                                   const Communicator &communicator,
+                                   std::vector<std::string> &problems) const
+  {
+    if (input.has_bonded_faces()) {
+      problems.push_back("Time/scheme = symplectic with bonded faces is not "
+                         "there yet: join them with the law `rigid`");
+      return;
+    }
+    const double limit =
+        communicator.min(stable_step(discretization->bodies()));
+    if (dynamic_step(input) > limit)
+      problems.push_back(fmt::format(
+          "Time/step is {:.4g} s, and the symplectic scheme is stable up to "
+          "{:.4g} s: write at most `{:.3f} crossings`",
+          dynamic_step(input), limit,
+          0.999 * limit / discretization->crossing_time()));
   }
 
   template <int dim>

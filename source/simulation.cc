@@ -12,6 +12,7 @@
 #include "nsfd/output/run_output.h"
 #include "nsfd/scene/case_observer.h"
 #include "nsfd/scene/check.h"
+#include "nsfd/time/smooth_motion.h"
 
 #include <fmt/format.h>
 
@@ -64,6 +65,7 @@ namespace nsfd
       std::unique_ptr<RunOutput<dim>> output_;
       std::unique_ptr<StaticRun<dim>> static_run_; ///< or null
       bool is_static_ = false; ///< the steps are those of static_run_
+      std::unique_ptr<SmoothMotion<dim>> smooth_; ///< or null
 
       State state_;
       Summary summary_;
@@ -104,7 +106,7 @@ namespace nsfd
       if (communicator_.any(!ours))
         return exit_code::bad_input;
 
-      model_.dynamics->reinit(model_.control->step(), input_.time.theta);
+      model_.dynamics->reinit(model_.control->step(), input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
       state_ = model_.stepper->initial_state();
       fragments_ = std::make_unique<Fragments<dim>>(*model_.discretization,
@@ -120,6 +122,9 @@ namespace nsfd
       std::string failure;
       const bool in_equilibrium =
           !model_.quasi_static || find_equilibrium(failure);
+      if (input_.time.scheme == Scheme::arkode)
+        smooth_ = std::make_unique<SmoothMotion<dim>>(
+            input_, *model_.discretization, *model_.dynamics, state_);
       start();
       return in_equilibrium ? step_to_the_end() : fail(failure);
     }
@@ -171,6 +176,7 @@ namespace nsfd
     const std::vector<double> &Simulation<dim>::reactions() const
     {
       return is_static_ ? model_.quasi_static->reactions()
+             : smooth_  ? smooth_->reactions()
                         : model_.stepper->reactions();
     }
 
@@ -195,7 +201,8 @@ namespace nsfd
         return false;
       }
       observer_ = std::make_unique<CaseObserver<dim>>(
-          *input_.verification, *model_.discretization, communicator_);
+          *input_.verification, input_.time, *model_.discretization,
+          communicator_);
       return true;
     }
 
@@ -321,8 +328,10 @@ namespace nsfd
           control.can_halve() ? std::min(attempts_, 10u) : 10;
       // the one place that catches StepRejected and shortens the step
       try {
-        report = model_.stepper->advance(
-            state_, h, next, SolverControl().idle_rounds << doublings);
+        report = smooth_ ? smooth_->advance(state_, h, next)
+                         : model_.stepper->advance(
+                               state_, h, next,
+                               SolverControl().idle_rounds << doublings);
       } catch (const StepRejected &rejected) {
         ++rejected_;
         ++attempts_;
@@ -472,6 +481,12 @@ namespace nsfd
       c["redone_steps"] = redone_;
       c["steps_beyond_uniqueness"] = beyond_unique_;
       c["penetration_excess"] = state_.penetration_excess;
+      if (smooth_) {
+        c["arkode_steps"] = double(smooth_->counters().steps);
+        c["arkode_evaluations"] = double(smooth_->counters().evaluations);
+        c["arkode_linear_solves"] = double(smooth_->counters().linear_solves);
+        c["krylov"] = double(smooth_->counters().iterations);
+      }
       count_points(input_, *model_.discretization, communicator_, c);
       c["body_classes"] = communicator_.max(
           double(model_.discretization->bodies().classes.size()));

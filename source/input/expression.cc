@@ -12,14 +12,15 @@
 namespace nsfd
 {
   /**
-   * A number, or a parser with its variables. muParser keeps its byte code and
+   * A number, a function, or a parser with its variables. muParser keeps its byte code and
    * stack inside, hence `mutable`: evaluation is not for several threads.
    */
   struct Expression::Compiled {
     std::string text;
     double constant = 0.;
     bool depends_on_time = false;
-    mutable std::unique_ptr<mu::Parser> parser; ///< null: a constant
+    mutable std::unique_ptr<mu::Parser> parser; ///< null: not a formula
+    Function function;                          ///< empty: not one either
     mutable double x = 0., y = 0., z = 0., t = 0.;
   };
 
@@ -118,9 +119,21 @@ namespace nsfd
   {
   }
 
+  Expression::Expression(Function function, const std::string &text,
+                         const bool depends_on_time)
+  {
+    auto compiled = std::make_shared<Compiled>();
+    compiled->text = text;
+    compiled->depends_on_time = depends_on_time;
+    compiled->function = std::move(function);
+    compiled_ = std::move(compiled);
+  }
+
   double Expression::operator()(const double x, const double y, const double z,
                                 const double t) const
   {
+    if (compiled_->function)
+      return compiled_->function(x, y, z, t);
     if (!compiled_->parser)
       return compiled_->constant;
     compiled_->x = x;
@@ -135,7 +148,10 @@ namespace nsfd
     return compiled_->depends_on_time;
   }
 
-  bool Expression::is_constant() const { return !compiled_->parser; }
+  bool Expression::is_constant() const
+  {
+    return !compiled_->parser && !compiled_->function;
+  }
 
   bool Expression::is_zero() const
   {

@@ -63,9 +63,19 @@ namespace nsfd
                      WhereUse::boundary_faces, scene,
                      "left, right, bottom, top, front, back, all, a group or "
                      "an expression");
-      bool has_effect = false;
-      for (unsigned int c = 0; c < scene.dimension; ++c)
-        has_effect = read_component(reader, c, boundary) || has_effect;
+      boundary.exact_motion =
+          reader.choice("motion", "given", {"given", "exact"},
+                        "given, or exact: that of the verification case") ==
+          "exact";
+      bool has_effect = boundary.exact_motion;
+      for (unsigned int c = 0; c < scene.dimension; ++c) {
+        const bool here = read_component(reader, c, boundary);
+        if (here && boundary.exact_motion)
+          reader.error("motion",
+                       "motion = exact leaves nothing else to prescribe",
+                       "keep one of the two");
+        has_effect = here || has_effect;
+      }
       refuse_third_component(reader, {"velocity", "displacement", "traction"},
                              scene);
       if (const auto pressure =

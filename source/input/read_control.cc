@@ -14,6 +14,33 @@ namespace nsfd
   namespace
   {
     constexpr unsigned int any_count = std::numeric_limits<unsigned int>::max();
+
+    void read_case(ParameterFile &file, InputErrors &errors, SceneInput &scene)
+    {
+      if (!file.has_section("Verification"))
+        return;
+      SectionReader reader(file.open("Verification"), errors);
+      const auto value = reader.raw("case", "", "what the run is compared with");
+      const auto &registry = VerificationRegistry::instance();
+      const std::string name = value ? collapse_blanks(value->text()) : "";
+      if (!registry.knows(name)) {
+        reader.accept_everything();
+        if (value)
+          reader.error("case",
+                       fmt::format("case = {} is not a verification case", name),
+                       did_you_mean(name, registry.names(),
+                                    "`nsfd --list` prints all names"));
+        return;
+      }
+      const unsigned int n_before = errors.n_errors();
+      try {
+        scene.verification = registry.create(name, reader);
+      } catch (const std::exception &exception) {
+        if (errors.n_errors() == n_before)
+          reader.error("case",
+                       fmt::format("case = {}: {}", name, exception.what()));
+      }
+    }
   } // namespace
 
   std::vector<NamedText> known_solvers()
@@ -55,7 +82,7 @@ namespace nsfd
                       "relative error of a step");
     solver.maximum_iterations =
         reader.integer("maximum iterations", "200", 1, any_count, "per step");
-    scene.save_problems = reader.choice(
+    scene.solver.save_problems = reader.choice(
         "save problems", "none", {"none", "hard", "all"},
         "for `nsfd solve`: none, hard (rejected or handed over), all");
   }
@@ -89,28 +116,22 @@ namespace nsfd
   void read_verification(ParameterFile &file, InputErrors &errors,
                          SceneInput &scene)
   {
-    if (!file.has_section("Verification"))
+    read_case(file, errors, scene);
+    for (const BoundaryInput &boundary : scene.boundaries)
+      if (boundary.exact_motion &&
+          (!scene.verification || !scene.verification->has_motion()))
+        errors.error(file.location(),
+                     fmt::format("`Boundary: {}`: motion = exact needs a "
+                                 "verification case that moves boundaries",
+                                 boundary.name),
+                     "write for example, in section Verification: set case = "
+                     "manufactured");
+    if (!scene.verification || errors.has_errors())
       return;
-    SectionReader reader(file.open("Verification"), errors);
-    const auto value = reader.raw("case", "", "what the run is compared with");
-    const auto &registry = VerificationRegistry::instance();
-    const std::string name = value ? collapse_blanks(value->text()) : "";
-    if (!registry.knows(name)) {
-      reader.accept_everything();
-      if (value)
-        reader.error("case",
-                     fmt::format("case = {} is not a verification case", name),
-                     did_you_mean(name, registry.names(),
-                                  "`nsfd --list` prints all names"));
-      return;
-    }
-    const unsigned int n_before = errors.n_errors();
     try {
-      scene.verification = registry.create(name, reader);
+      scene.verification->provide(scene);
     } catch (const std::exception &exception) {
-      if (errors.n_errors() == n_before)
-        reader.error("case",
-                     fmt::format("case = {}: {}", name, exception.what()));
+      errors.error(file.location(), exception.what());
     }
   }
 } // namespace nsfd

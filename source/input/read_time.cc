@@ -234,6 +234,56 @@ namespace nsfd
                        fmt::format("write at most {:g}", bound));
     }
 
+    /** Nothing may open, close or slip. */
+    void check_smooth(SectionReader &reader, const SceneInput &scene)
+    {
+      for (const InterfaceInput &interface : scene.interfaces) {
+        const bool smooth =
+            interface.law_name == "rigid" || interface.law_name == "bonded" ||
+            (interface.law_name == "elastic" &&
+             interface.intact == IntactFaces::spring && !interface.has_broken);
+        if (!smooth)
+          reader.error("scheme",
+                       fmt::format("scheme = arkode is for smooth motion, and "
+                                   "faces of `Interface: {}` can open, close "
+                                   "or slip",
+                                   interface.name),
+                       "write law = bonded, rigid or elastic there, or scheme "
+                       "= moreau-jean");
+      }
+      for (const ObstacleInput &obstacle : scene.obstacles)
+        reader.error("scheme",
+                     fmt::format("scheme = arkode is for smooth motion, and "
+                                 "`Obstacle: {}` can be touched",
+                                 obstacle.name),
+                     "write scheme = moreau-jean");
+    }
+
+    /** Runge-Kutta pairs of SUNDIALS for scenes without events. */
+    void read_smooth(SectionReader &reader, SceneInput &scene)
+    {
+      TimeInput &time = scene.time;
+      time.scheme = Scheme::arkode;
+      check_smooth(reader, scene);
+      reader.refuse({"theta", "forecast gamma1", "forecast gamma2",
+                     "cohesion rule", "contact target", "sliding",
+                     "maximum halvings", "largest overshoot"},
+                    "scheme = arkode has none");
+      time.implicit_pairs =
+          reader.choice("pairs", "explicit", {"explicit", "implicit"},
+                        "of Runge-Kutta: explicit or implicit") == "implicit";
+      // the pairs that ARKODE has
+      time.order = time.implicit_pairs
+                       ? reader.integer("order", "5", 2, 5, "2 to 5")
+                       : reader.integer("order", "5", 2, 8, "2 to 6, or 8");
+      if (time.order == 7)
+        reader.error("order", "order = 7 is not among the explicit pairs",
+                     "write 6 or 8");
+      time.tolerance = reader.number(
+          "integration tolerance", "1e-9", units::none, {0., 0.1, true, false},
+          "error of a step relative to the largest motion");
+    }
+
     template <typename T>
     T read_named(SectionReader &reader, const std::string &name,
                  const std::vector<std::pair<std::string, T>> &values,
@@ -256,9 +306,11 @@ namespace nsfd
     SectionReader reader(file.open("Time"), errors);
     TimeInput &time = scene.time;
     time.end = reader.number("end", "", units::time, Range::positive(), "s");
-    const bool quasi_static =
-        reader.choice("scheme", "moreau-jean", {"moreau-jean", "quasi-static"},
-                      "moreau-jean or quasi-static") == "quasi-static";
+    const std::string scheme = reader.choice(
+        "scheme", "moreau-jean",
+        {"moreau-jean", "symplectic", "arkode", "quasi-static"},
+        "moreau-jean, symplectic, arkode or quasi-static");
+    const bool quasi_static = scheme == "quasi-static";
     if (read_start(reader, scene, quasi_static)) {
       scene.statics.emplace();
       scene.statics->tolerance =
@@ -276,7 +328,16 @@ namespace nsfd
       read_step(reader, "step", time);
       check_step(reader, scene);
     }
-    read_theta(reader, scene, time);
+    if (scheme == "arkode")
+      return read_smooth(reader, scene);
+    reader.refuse({"pairs", "order", "integration tolerance"},
+                  "it belongs to scheme = arkode");
+    if (scheme == "symplectic") {
+      time.scheme = Scheme::symplectic;
+      time.theta = 1.;
+      reader.refuse({"theta"}, "scheme = symplectic has none");
+    } else
+      read_theta(reader, scene, time);
     time.forecast_gamma1 = reader.number(
         "forecast gamma1", "0.5", units::none, Range::closed(0., 1.),
         "weight of the old velocity in the forecast of the gap");

@@ -162,7 +162,7 @@ namespace nsfd
             std::sin(double(face.key % 10007) + (i - face.first) + 2.5 * c);
       }
     }
-    dynamics.reinit(h, input.time.theta);
+    dynamics.reinit(h, input.time.bulk_theta());
     const std::size_t n_owned = points.n_owned * dim;
     double result = 0.;
     for (unsigned int k = 0; k < 300; ++k) {

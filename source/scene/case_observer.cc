@@ -32,9 +32,10 @@ namespace nsfd
 
   template <int dim>
   CaseObserver<dim>::CaseObserver(VerificationCase &verification,
+                                  const TimeInput &time,
                                   const Discretization<dim> &discretization,
                                   const Communicator &communicator)
-      : case_(verification), discretization_(discretization),
+      : case_(verification), time_(time), discretization_(discretization),
         communicator_(communicator)
   {
   }
@@ -45,6 +46,7 @@ namespace nsfd
     StepView view;
     view.time = state.time;
     view.time_step = row.time_step;
+    time_step_ = row.time_step;
     view.row = &row;
     std::vector<CellState> cells;
     if (case_.wants_cells()) {
@@ -60,6 +62,8 @@ namespace nsfd
   {
     if (case_.has_fields())
       field_errors(state, errors);
+    if (case_.has_jump() && case_.has_fields())
+      face_errors(state, errors);
     case_.finish(errors);
   }
 
@@ -162,6 +166,66 @@ namespace nsfd
     errors["velocity_L1"] = relative(s[4], s[5]);
     if (case_.has_stress())
       errors["stress_L2"] = std::sqrt(relative(s[6], s[7]));
+  }
+
+  /**
+   * Over the points of faces that can open: the jump, and the traction where
+   * the stress is known, at the time at which the springs of the last step
+   * pull (the middle by the exact rule).
+   */
+  template <int dim>
+  void
+  CaseObserver<dim>::face_errors(const State &state,
+                                 std::map<std::string, double> &errors) const
+  {
+    const auto &points = discretization_.points();
+    const std::size_t n = points.n_owned;
+    std::vector<double> terms(4 * n, 0.);
+    const bool at_middle = time_.scheme != Scheme::arkode &&
+                           time_.cohesion_rule == CohesionRule::exact;
+    const double mean_time = state.time - (at_middle ? time_step_ / 2. : 0.);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (discretization_.origins()[i].kind != PointOrigin::Kind::interface ||
+          state.kind[i] == PointKind::prescribed ||
+          state.kind[i] == PointKind::bonded)
+        continue;
+      const double *Q = &points.frame[i * dim * dim];
+      std::array<double, 3> x{}, normal{};
+      for (unsigned int c = 0; c < dim; ++c) {
+        x[c] = points.position[i * dim + c];
+        normal[c] = Q[c];
+      }
+      const auto jump = case_.jump(x, normal, state.time);
+      std::array<double, 3> traction{};
+      if (case_.has_stress()) {
+        const auto s = case_.stress(x, mean_time);
+        const double sigma[3][3] = {
+            {s[0], s[3], s[4]}, {s[3], s[1], s[5]}, {s[4], s[5], s[2]}};
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            traction[c] += sigma[c][d] * normal[d];
+      }
+      const double w = points.weight[i];
+      for (unsigned int k = 0; k < dim; ++k) {
+        double known_jump = 0., known_traction = 0.;
+        for (unsigned int c = 0; c < dim; ++c) {
+          known_jump += Q[k * dim + c] * jump[c];
+          known_traction += Q[k * dim + c] * traction[c];
+        }
+        const double pull = -state.impulse[i * dim + k] / (w * time_step_);
+        const double du = state.jump[i * dim + k] - known_jump,
+                     dR = pull - known_traction;
+        terms[i] += w * du * du;
+        terms[n + i] += w * known_jump * known_jump;
+        terms[2 * n + i] += w * dR * dR;
+        terms[3 * n + i] += w * known_traction * known_traction;
+      }
+    }
+    const auto s = communicator_.sums(terms.data(), 4, n);
+    if (s[1] > 0.)
+      errors["jump_L2"] = std::sqrt(s[0] / s[1]);
+    if (case_.has_stress() && s[3] > 0. && time_step_ > 0.)
+      errors["traction_L2"] = std::sqrt(s[2] / s[3]);
   }
 
   template class CaseObserver<2>;

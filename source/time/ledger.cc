@@ -37,8 +37,8 @@ namespace nsfd
       PointBook(const Discretization<dim> &discretization,
                 const UniquenessBound<dim> &uniqueness,
                 const OneStepProblem<dim> &problem,
-                const LawEvaluation<dim> &evaluation, const State &old,
-                State &next);
+                const LawEvaluation<dim> &evaluation, double work_theta,
+                const State &old, State &next);
 
       void book(std::size_t point);
 
@@ -58,17 +58,26 @@ namespace nsfd
         if (i < n_owned)
           terms[row * n_owned + i] += value;
       }
+      /** By the rule of the positions. */
+      double moved(const std::size_t k) const
+      {
+        const double theta = problem_.theta;
+        return problem_.time_step *
+               (theta * next_.relative_velocity[k] +
+                (1. - theta) * old_.relative_velocity[k]);
+      }
       void book_prescribed(std::size_t i, const Vector &U_theta);
       void book_law(std::size_t i, const Vector &U_theta,
                     const PointEnergies<dim> &energies);
       double book_lift(std::size_t i);
       void remember(std::size_t i, const PointEnergies<dim> &energies);
-      void book_penetration(std::size_t i, const Vector &U_theta);
+      void book_penetration(std::size_t i);
 
       const Discretization<dim> &discretization_;
       const UniquenessBound<dim> &uniqueness_;
       const OneStepProblem<dim> &problem_;
       const LawEvaluation<dim> &evaluation_;
+      const double work_theta_; ///< of the velocity that impulses work with
       const State &old_;
       State &next_;
     };
@@ -91,14 +100,16 @@ namespace nsfd
                               const UniquenessBound<dim> &uniqueness,
                               const OneStepProblem<dim> &problem,
                               const LawEvaluation<dim> &evaluation,
-                              const State &old, State &next)
+                              const double work_theta, const State &old,
+                              State &next)
         : n_owned(problem.n_owned),
           n_rows(has_rates(problem) ? viscous + 1 : viscous),
           terms(n_rows * n_owned, 0.),
           reactions(discretization.driven_boundaries().size() * dim * n_owned,
                     0.),
           discretization_(discretization), uniqueness_(uniqueness),
-          problem_(problem), evaluation_(evaluation), old_(old), next_(next)
+          problem_(problem), evaluation_(evaluation), work_theta_(work_theta),
+          old_(old), next_(next)
     {
       carry_history(old, next);
       next.dilated = old.dilated;
@@ -110,12 +121,11 @@ namespace nsfd
     template <int dim>
     void PointBook<dim>::book(const std::size_t i)
     {
-      const double theta = problem_.theta;
       Vector U, U_theta;
       for (unsigned int c = 0; c < dim; ++c) {
         U[c] = next_.relative_velocity[i * dim + c];
-        U_theta[c] =
-            theta * U[c] + (1. - theta) * old_.relative_velocity[i * dim + c];
+        U_theta[c] = work_theta_ * U[c] +
+                     (1. - work_theta_) * old_.relative_velocity[i * dim + c];
       }
       if (problem_.kind[i] == PointKind::prescribed) {
         book_prescribed(i, U_theta);
@@ -125,7 +135,7 @@ namespace nsfd
           point_energies<dim>(problem_, i, U, evaluation_.solutions[i].frozen);
       book_law(i, U_theta, energies);
       remember(i, energies);
-      book_penetration(i, U_theta);
+      book_penetration(i);
     }
 
     template <int dim>
@@ -194,9 +204,11 @@ namespace nsfd
         next_.contact[i] = closed;
         if (closed) {
           double square = 0.;
-          for (unsigned int c = 1; c < dim; ++c)
-            square += U_theta[c] * U_theta[c];
-          next_.slip[i] += h * std::sqrt(square);
+          for (unsigned int c = 1; c < dim; ++c) {
+            const double step = moved(i * dim + c);
+            square += step * step;
+          }
+          next_.slip[i] += std::sqrt(square);
         }
         if (i < n_owned && (closed || solution.damages))
           ++active;
@@ -269,10 +281,9 @@ namespace nsfd
      * overlap of the spring where it turns into a contact.
      */
     template <int dim>
-    void PointBook<dim>::book_penetration(const std::size_t i,
-                                          const Vector &U_theta)
+    void PointBook<dim>::book_penetration(const std::size_t i)
     {
-      if (next_.two_sided[i])
+      if (next_.two_sided[i] || old_.kind[i] == PointKind::bonded)
         return;
       const double h = problem_.time_step;
       const double depth =
@@ -284,7 +295,7 @@ namespace nsfd
       if (problem_.contact[i])
         bound = std::max(bound, -h * old_.relative_velocity[i * dim]);
       else // approach that the forecast did not see
-        bound = std::max(bound, -h * U_theta[0]);
+        bound = std::max(bound, -moved(i * dim));
       penetration = std::max(penetration, depth);
       excess = std::max(excess, depth - bound);
     }
@@ -296,7 +307,8 @@ namespace nsfd
                       const Dynamics<dim> &dynamics,
                       const UniquenessBound<dim> &uniqueness)
       : discretization_(discretization), dynamics_(dynamics),
-        uniqueness_(uniqueness), theta_(input.time.theta),
+        uniqueness_(uniqueness), theta_(input.time.work_theta()),
+        symplectic_(input.time.scheme == Scheme::symplectic),
         reactions_(discretization.driven_boundaries().size() * dim, 0.)
   {
   }
@@ -318,7 +330,9 @@ namespace nsfd
     };
     put(kinetic, Operator::mass, next.velocity, 0.5);
     put(elastic, Operator::stiffness, next.displacement, 0.5);
-    if (theta_ > 0.5) {
+    if (symplectic_)
+      put_symplectic(terms, h, old, next);
+    else if (theta_ > 0.5) {
       for (std::size_t i = 0; i < n; ++i)
         change[i] = next.velocity[i] - old.velocity[i];
       put(theta_mass, Operator::mass, change, theta_ - 0.5);
@@ -332,6 +346,27 @@ namespace nsfd
             h * forces[i] *
             (theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i]);
     return dynamics_.communicator().sums(terms.data(), n_body_rows, n);
+  }
+
+  /**
+   * What the bodies take from h v.K q_k of the mean velocity beyond their own
+   * change of energy: h/2 (v_k - v).K q_k - dq.K dq / 2. It comes and goes.
+   */
+  template <int dim>
+  void Ledger<dim>::put_symplectic(std::vector<double> &terms, const double h,
+                                   const State &old, const State &next) const
+  {
+    using Operator = typename Dynamics<dim>::Operator;
+    const std::size_t n = next.velocity.size();
+    std::vector<double> change(n), product(n), force(n);
+    for (std::size_t i = 0; i < n; ++i)
+      change[i] = next.displacement[i] - old.displacement[i];
+    dynamics_.apply(Operator::stiffness, change.data(), product.data());
+    dynamics_.apply(Operator::stiffness, old.displacement.data(), force.data());
+    for (std::size_t i = 0; i < n; ++i)
+      terms[theta_stiffness * n + i] =
+          h / 2. * force[i] * (old.velocity[i] - next.velocity[i]) -
+          change[i] * product[i] / 2.;
   }
 
   /** w h p U_theta,N of the pressure in cracks. */
@@ -356,7 +391,7 @@ namespace nsfd
     const auto &communicator = dynamics_.communicator();
     const auto body = book_bodies(forces, problem.time_step, old, next);
     PointBook<dim> points(discretization_, uniqueness_, problem, evaluation,
-                          old, next);
+                          theta_, old, next);
     for (std::size_t i = 0; i < problem.n_points; ++i)
       points.book(i);
     const auto sums =

@@ -44,10 +44,14 @@ namespace nsfd
                                     double time_step, const State &old,
                                     const State &next) const;
 
+    void put_symplectic(std::vector<double> &terms, double time_step,
+                        const State &old, const State &next) const;
+
     const Discretization<dim> &discretization_;
     const Dynamics<dim> &dynamics_;
     const UniquenessBound<dim> &uniqueness_;
-    double theta_;
+    double theta_; ///< of the velocity that impulses and loads work with
+    bool symplectic_;
     std::vector<double> reactions_;
   };
 } // namespace nsfd

@@ -3,6 +3,7 @@
 #include "activation.h"
 #include "bond_release.h"
 #include "crack_pressure.h"
+#include "driven_motion.h"
 #include "initial_state.h"
 #include "ledger.h"
 #include "save_problem.h"
@@ -34,6 +35,7 @@ namespace nsfd
     , uniqueness_(std::make_unique<UniquenessBound<dim>>(input, dynamics))
     , ledger_(std::make_unique<Ledger<dim>>(input, discretization, dynamics,
                                             *uniqueness_))
+    , motion_(std::make_unique<DrivenMotion<dim>>(input, discretization))
     , crack_pressure_(CrackPressure<dim>::make(input, discretization))
     , forces_(discretization.bodies().n_dofs(), 0.)
   {
@@ -92,9 +94,9 @@ namespace nsfd
       const Charge charge(Cost::free_motion);
       if (bonded_)
         bonded_->set_bonds(bonded_points(old));
-      dynamics_.reinit(h, input_.time.theta);
-      set_step(input_, discretization_, dynamics_, old, h, problem_);
-      set_loads(old.time + input_.time.theta * h);
+      dynamics_.reinit(h, input_.time.bulk_theta());
+      set_step(input_, discretization_, dynamics_, *motion_, old, h, problem_);
+      set_loads(old.time + input_.time.bulk_theta() * h);
       if (crack_pressure_)
         crack_pressure_->evaluate(old, old.time + input_.time.theta * h,
                                   next.pressure);
@@ -173,7 +175,7 @@ namespace nsfd
   void MoreauJean<dim>::move_freely(const State &old,
                                     const std::vector<double> &pressure)
   {
-    const double h = problem_.time_step, theta = problem_.theta;
+    const double h = problem_.time_step, theta = input_.time.bulk_theta();
     const std::size_t n_dofs = old.velocity.size();
     work_.resize(n_dofs);
     v_free_.resize(n_dofs);

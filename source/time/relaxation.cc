@@ -1,6 +1,7 @@
 #include "relaxation.h"
 
 #include "crack_pressure.h"
+#include "driven_motion.h"
 #include "ledger.h"
 #include "step_data.h"
 #include "uniqueness.h"
@@ -16,6 +17,7 @@ namespace nsfd
   SceneInput static_scene(const SceneInput &input)
   {
     SceneInput scene = input;
+    scene.time.scheme = Scheme::moreau_jean;
     scene.time.theta = 1.;
     scene.time.cohesion_rule = CohesionRule::end_point;
     scene.time.contact_target = ContactTarget::position;
@@ -195,8 +197,8 @@ namespace nsfd
       at_.displacement = q;
       at_.time = time_ - h;
       dynamics.reinit(h, 1.);
-      set_step(this->input_, this->discretization_, dynamics, at_, h,
-               this->problem_);
+      set_step(this->input_, this->discretization_, dynamics, *this->motion_,
+               at_, h, this->problem_);
       constrain(h);
       soften(h);
       this->move_freely(at_, pressure_);
@@ -292,8 +294,8 @@ namespace nsfd
     start.time = time_ - h_;
     std::fill(start.relative_velocity.begin(), start.relative_velocity.end(),
               0.);
-    set_step(this->input_, this->discretization_, this->dynamics_, start, h_,
-             problem);
+    set_step(this->input_, this->discretization_, this->dynamics_,
+             *this->motion_, start, h_, problem);
     for (std::size_t i = 0; i < let_go_.size(); ++i)
       if (let_go_[i]) {
         problem.kind[i] = PointKind::rigid;

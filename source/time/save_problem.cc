@@ -30,7 +30,7 @@ namespace nsfd
                     const SolverReport &report, const unsigned int step,
                     const double time)
   {
-    const std::string &which = input.save_problems;
+    const std::string &which = input.solver.save_problems;
     const bool hard = !report.converged || !report.switches.empty();
     if (which == "none" || (which == "hard" && !hard))
       return;

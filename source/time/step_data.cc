@@ -1,5 +1,7 @@
 #include "step_data.h"
 
+#include "driven_motion.h"
+
 #include "nsfd/input/scene_input.h"
 #include "nsfd/interface/friction_weight.h"
 #include "nsfd/interface/point_factors.h"
@@ -62,7 +64,7 @@ namespace nsfd
       switch (time.contact_target) {
       case ContactTarget::energy_safe:
         return U_N <= 0. ? -restitution * U_N
-                         : -(1. - time.theta) / time.theta * U_N;
+                         : -(1. - time.work_theta()) / time.work_theta() * U_N;
       case ContactTarget::velocity:
         return -restitution * U_N;
       case ContactTarget::position:
@@ -186,29 +188,25 @@ namespace nsfd
 
     /** Velocities of driven boundaries at the end of the step. */
     template <int dim>
-    void set_motion(const SceneInput &input,
+    void set_motion(const DrivenMotion<dim> &motion,
                     const Discretization<dim> &discretization, const State &old,
                     OneStepProblem<dim> &problem)
     {
       const double h = problem.time_step, t = old.time + h;
       for (std::size_t i = 0; i < problem.n_points; ++i) {
-        const PointOrigin origin = discretization.origins()[i];
-        if (origin.kind != PointOrigin::Kind::motion)
+        if (discretization.origins()[i].kind != PointOrigin::Kind::motion)
           continue;
-        const auto &boundary = input.boundaries[origin.block];
-        const auto x = discretization.position(i);
         problem.mask[i] = 0;
         for (unsigned int c = 0; c < dim; ++c) {
+          if (!motion.drives(i, c))
+            continue;
           double &given = problem.given_velocity[i * dim + c];
-          if (boundary.velocity[c])
-            given = boundary.velocity[c]->at(x, t);
-          else if (boundary.displacement[c])
+          if (const Expression *velocity = motion.velocity(i, c))
+            given = motion.at(*velocity, i, t);
+          else if (const Expression *displacement = motion.displacement(i, c))
             // back to the path: what the last step missed is made up for
             given =
-                (boundary.displacement[c]->at(x, t) - old.jump[i * dim + c]) /
-                h;
-          else
-            continue;
+                (motion.at(*displacement, i, t) - old.jump[i * dim + c]) / h;
           problem.mask[i] |= std::uint8_t(1u << c);
         }
       }
@@ -311,8 +309,8 @@ namespace nsfd
   template <int dim>
   void set_step(const SceneInput &input,
                 const Discretization<dim> &discretization,
-                const Dynamics<dim> &dynamics, const State &old, const double h,
-                OneStepProblem<dim> &problem)
+                const Dynamics<dim> &dynamics, const DrivenMotion<dim> &motion,
+                const State &old, const double h, OneStepProblem<dim> &problem)
   {
     problem.time_step = h;
     problem.kind = old.kind;
@@ -326,7 +324,7 @@ namespace nsfd
       set_point(input.time, discretization.extent(), old, i, problem);
     set_viscosity(input, discretization, old, problem);
     set_dilatancy(input, discretization, old, problem);
-    set_motion(input, discretization, old, problem);
+    set_motion(motion, discretization, old, problem);
     set_majorants(dynamics, problem);
   }
 
@@ -337,9 +335,11 @@ namespace nsfd
   template OneStepProblem<3> constant_data(const SceneInput &,
                                            const Discretization<3> &);
   template void set_step(const SceneInput &, const Discretization<2> &,
-                         const Dynamics<2> &, const State &, double,
+                         const Dynamics<2> &, const DrivenMotion<2> &,
+                         const State &, double,
                          OneStepProblem<2> &);
   template void set_step(const SceneInput &, const Discretization<3> &,
-                         const Dynamics<3> &, const State &, double,
+                         const Dynamics<3> &, const DrivenMotion<3> &,
+                         const State &, double,
                          OneStepProblem<3> &);
 } // namespace nsfd

@@ -8,6 +8,8 @@ namespace nsfd
 {
   struct SceneInput;
   struct State;
+  template <int dim>
+  class DrivenMotion;
 
   /** C_N of a point before damage, in Pa/m. */
   template <int dim>
@@ -30,6 +32,6 @@ namespace nsfd
   template <int dim>
   void set_step(const SceneInput &input,
                 const Discretization<dim> &discretization,
-                const Dynamics<dim> &dynamics, const State &old,
-                double time_step, OneStepProblem<dim> &problem);
+                const Dynamics<dim> &dynamics, const DrivenMotion<dim> &motion,
+                const State &old, double time_step, OneStepProblem<dim> &problem);
 } // namespace nsfd

@@ -75,7 +75,7 @@ namespace nsfd
                                            : input->solver.method);
         stepper = std::make_unique<MoreauJean<dim>>(*input, *discretization,
                                                     *dynamics, *solver, bonded);
-        dynamics->reinit(time_step, input->time.theta);
+        dynamics->reinit(time_step, input->time.bulk_theta());
         state = stepper->initial_state();
         next = state;
       }

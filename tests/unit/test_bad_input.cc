@@ -346,7 +346,8 @@ end
          "set law = bonded\n  set friction = 0.1",
          "faces of the law `bonded` never open", "set friction = 0.1"},
         {"scheme", "set theta = 0.5", "set scheme = newmark",
-         "scheme = newmark is not one of: moreau-jean, quasi-static",
+         "scheme = newmark is not one of: moreau-jean, symplectic, arkode, "
+           "quasi-static",
          "set scheme = newmark"},
         {"mesh_type", "set type = rectangle", "set type = rectangel",
          "did you mean `rectangle`?", "set type = rectangel"},

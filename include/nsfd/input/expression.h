@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,6 +21,12 @@ namespace nsfd
 
     /** A constant, in SI units or the bare units of the scene. */
     Expression(double constant);
+
+    using Function = std::function<double(double, double, double, double)>;
+
+    /** A function of x, y, z, t, such as a part of an exact solution. */
+    Expression(Function function, const std::string &text,
+               bool depends_on_time);
 
     /** Value at (x, y, z) and time t; z is 0 in two dimensions. */
     double operator()(double x, double y, double z, double t = 0.) const;

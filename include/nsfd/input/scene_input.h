@@ -146,6 +146,7 @@ namespace nsfd
     bool has_traction = false;
     Expression pressure; ///< Pa, positive pushes on the body
     bool has_pressure = false;
+    bool exact_motion = false; ///< of the verification case
   };
 
   /** A fixed or moving rigid half space; boundary faces may touch it. */
@@ -182,8 +183,16 @@ namespace nsfd
     automatic
   };
 
+  enum class Scheme
+  {
+    moreau_jean,
+    symplectic, ///< Moreau-Jean with the forces of the bodies at t_k
+    arkode      ///< smooth scenes, by SUNDIALS
+  };
+
   struct TimeInput
   {
+    Scheme scheme = Scheme::moreau_jean;
     double end = 0.;
     StepKind step_kind = StepKind::crossings;
     double step = 0.5; ///< s, or cell crossings L/c_p; largest step for `auto`
@@ -194,6 +203,23 @@ namespace nsfd
     Sliding sliding = Sliding::velocity;
     unsigned int maximum_halvings = 10;
     double largest_overshoot = 0.05; ///< of the strength of a bonded point
+    /// of scheme = arkode: implicit (SDIRK) or explicit Runge-Kutta pairs,
+    /// their order and the error per step relative to the largest motion
+    bool implicit_pairs = false;
+    unsigned int order = 5;
+    double tolerance = 1e-9;
+
+    /** Weight of the new velocity in the forces of the bodies. */
+    double bulk_theta() const
+    {
+      return scheme == Scheme::symplectic ? 0. : theta;
+    }
+
+    /** Weight of the new velocity in the work of impulses and loads. */
+    double work_theta() const
+    {
+      return scheme == Scheme::symplectic ? 0.5 : theta;
+    }
   };
 
   /** What a run does where no equilibrium continues the last one. */
@@ -221,6 +247,8 @@ namespace nsfd
     std::string linear_solver = "auto"; ///< of the global path: auto | direct | cg
     double tolerance = 1e-8;
     unsigned int maximum_iterations = 200;
+    /// none | hard | all: steps whose contacts become stored problems
+    std::string save_problems = "none";
   };
 
   struct OutputInput
@@ -261,8 +289,6 @@ namespace nsfd
           return true;
       return false;
     }
-    /// none | hard | all: steps whose contacts become stored problems
-    std::string save_problems = "none";
     /** Whether a step in time can come. */
     bool may_move() const
     {

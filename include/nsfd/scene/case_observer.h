@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/discretization.h"
 #include "nsfd/scene/verification_case.h"
 #include "nsfd/time/state.h"
@@ -19,7 +20,7 @@ namespace nsfd
   class CaseObserver
   {
   public:
-    CaseObserver(VerificationCase &verification,
+    CaseObserver(VerificationCase &verification, const TimeInput &time,
                  const Discretization<dim> &discretization,
                  const Communicator &communicator);
 
@@ -33,8 +34,12 @@ namespace nsfd
     std::vector<CellState> gather_cells(const State &state) const;
     void field_errors(const State &state,
                       std::map<std::string, double> &errors) const;
+    void face_errors(const State &state,
+                     std::map<std::string, double> &errors) const;
 
     VerificationCase &case_;
+    const TimeInput &time_;
+    double time_step_ = 0.; ///< the last one
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
   };

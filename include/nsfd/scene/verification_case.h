@@ -40,6 +40,16 @@ namespace nsfd
   public:
     virtual ~VerificationCase() = default;
 
+    /**
+     * Put what follows from the exact solution into the scene, once it has
+     * been read: initial fields, body forces, motion of the boundaries that
+     * ask for it. @throws std::runtime_error with a sentence for the user.
+     */
+    virtual void provide(SceneInput &) const {}
+
+    /** True if provide() moves boundaries with `motion = exact`. */
+    virtual bool has_motion() const { return false; }
+
     /** Called once, after all of the input has been read. */
     virtual void initialise(const SceneInput &) {}
 
@@ -49,6 +59,15 @@ namespace nsfd
     using Vector = std::array<double, 3>;
     virtual Vector displacement(const Vector &, double) const { return {}; }
     virtual Vector velocity(const Vector &, double) const { return {}; }
+
+    /** Jump u2 - u1 at a point of a face with normal @p n from 1 to 2. */
+    virtual bool has_jump() const { return false; }
+    virtual Vector jump(const Vector & /*x*/, const Vector & /*n*/,
+                        double /*t*/) const
+    {
+      return {};
+    }
+
     /** xx, yy, zz, xy, xz, yz in Pa. */
     virtual std::array<double, 6> stress(const Vector &, double) const
     {

@@ -17,6 +17,8 @@ namespace nsfd
   template <int dim>
   class UniquenessBound;
   template <int dim>
+  class DrivenMotion;
+  template <int dim>
   class BondedDynamics;
   template <int dim>
   class BulkTraction;
@@ -95,7 +97,7 @@ namespace nsfd
     {
       unsigned long long solves = 0, newton = 0, krylov = 0, sweeps = 0,
                          law_sweeps = 0, line_searches = 0, load_assemblies = 0,
-                         activation_rounds = 0, released_bonds = 0;
+                         activation_rounds = 0;
     };
     const Counters &counters() const { return counters_; }
 
@@ -118,6 +120,7 @@ namespace nsfd
     OneStepProblem<dim> problem_;
     std::unique_ptr<UniquenessBound<dim>> uniqueness_;
     std::unique_ptr<Ledger<dim>> ledger_;
+    std::unique_ptr<DrivenMotion<dim>> motion_;
     std::unique_ptr<CrackPressure<dim>> crack_pressure_; ///< or null
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
     bool has_extrinsic_ = false;

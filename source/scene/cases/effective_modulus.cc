@@ -51,8 +51,17 @@ namespace nsfd
       const MaterialInput &material = input.materials[0];
       const bool plane_strain = plane_ && !input.plane_stress;
       const double nu = material.poisson;
-      exact_ = (plane_strain ? 1. - nu * nu : 1.) / material.young +
-               compliance_of_faces(input, elastic_interface(input));
+      bulk_ = (plane_strain ? 1. - nu * nu : 1.) / material.young;
+      const InterfaceInput &faces = elastic_interface(input);
+      exact_ = bulk_ + compliance_of_faces(input, faces);
+      const double pi = faces.normal_stiffness / faces.tangential_stiffness;
+      density_ = 5. / (1. + 4. / 3. * pi) * faces.normal_stiffness /
+                 material.young;
+      if (input.mesh.type == "crossed triangles" && plane_)
+        density_ *= extent(input, axis_) / n_cells(input, axis_) /
+                    (2. * (1. + std::sqrt(2.)));
+      else
+        density_ = 0.;
     }
 
     bool wants_cells() const override { return true; }
@@ -78,12 +87,19 @@ namespace nsfd
       errors["stress"] = stress_;
       errors["kinetic"] = kinetic_;
       errors["compliance"] = measured_; // 1/E_eff in 1/Pa
+      errors["modulus_ratio"] = bulk_ / measured_;
+      errors["exact_modulus_ratio"] = bulk_ / exact_;
+      if (density_ > 0.) {
+        errors["xi"] = density_;
+        errors["bound_79"] = density_ / (1. + density_);
+      }
     }
 
   private:
     unsigned int axis_ = 0;
     bool plane_ = true;
-    double tension_ = 0., volume_ = 0., exact_ = 0.;
+    double tension_ = 0., volume_ = 0., exact_ = 0., bulk_ = 0.;
+    double density_ = 0.; ///< xi as printed in (79), crossed triangles
     double measured_ = 0., kinetic_ = 0., stress_ = 0.;
 
     /** What the faces add to 1/E, by the lattice of the mesh. */

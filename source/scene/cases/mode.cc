@@ -54,6 +54,18 @@ namespace nsfd
       return shape(x, std::cos(frequency_ * t));
     }
 
+    bool has_jump() const override { return true; }
+
+    Vector jump(const Vector &x, const Vector &n, const double t) const override
+    {
+      Vector jump{};
+      if (std::abs(x[axis_] - start_ - half_) < 1e-9 * half_)
+        jump[axis_] = -2. * amplitude_ * std::cos(frequency_ * t) *
+                      std::sin(wave_number_ * half_) *
+                      (n[axis_] > 0. ? 1. : -1.);
+      return jump;
+    }
+
     Vector velocity(const Vector &x, const double t) const override
     {
       return shape(x, -frequency_ * std::sin(frequency_ * t));

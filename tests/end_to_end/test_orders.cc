@@ -1,0 +1,127 @@
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+// Orders of convergence on smooth solutions: p + 1 for the displacement, p for
+// the stress, 2 in the step for theta = 1/2 and 1 beyond, with bonded faces.
+
+namespace end_to_end
+{
+  namespace
+  {
+    double rate(const double coarse, const double fine)
+    {
+      return std::log2(coarse / fine);
+    }
+
+    Result manufactured(const Workspace &workspace, const std::string &name,
+                        const unsigned int degree, const unsigned int cells,
+                        std::vector<std::string> more)
+    {
+      const std::string n = std::to_string(cells);
+      more.insert(more.end(),
+                  {"Discretization/degree=" + std::to_string(degree),
+                   "Mesh/cells=" + n + ", " + n, "Output/fields=false"});
+      return good_run(workspace, name, {scene("manufactured"), more});
+    }
+  } // namespace
+
+  // The pairs of ARKODE leave no error of the time: what is seen is space.
+  TEST(OrdersTest, SpaceWithBondedFaces)
+  {
+    const Workspace workspace;
+    for (const unsigned int degree : {1u, 2u, 3u}) {
+      const unsigned int coarse = degree == 3 ? 4 : 8;
+      const std::string name = "p" + std::to_string(degree) + "_";
+      const std::vector<std::string> exact_time = {
+          "Time/scheme=arkode", "Time/end=0.1 ms", "Time/step=0.1 ms",
+          "Time/integration tolerance=1e-11"};
+      const Result a =
+          manufactured(workspace, name + "coarse", degree, coarse, exact_time);
+      const Result b = manufactured(workspace, name + "fine", degree,
+                                    2 * coarse, exact_time);
+      const double u = rate(a.error("displacement_L2"),
+                            b.error("displacement_L2")),
+                   stress = rate(a.error("stress_L2"), b.error("stress_L2")),
+                   jump = rate(a.error("jump_L2"), b.error("jump_L2"));
+      std::printf("  p = %u: u %.2f (%.2e), stress %.2f, jump %.2f\n", degree,
+                  u, b.error("displacement_L2"), stress, jump);
+      EXPECT_NEAR(u, degree + 1., 0.15);
+      EXPECT_NEAR(stress, degree, 0.15);
+      EXPECT_GT(jump, degree + 0.7); // p + 1 in the mean, it scatters
+    }
+  }
+
+  // The same mode, seen by both: what is left is the error of space, and the
+  // ledger, the frequency and the motion of joints of the pairs.
+  TEST(OrdersTest, PairsOfArkode)
+  {
+    const Workspace workspace;
+    for (const std::string pairs : {"explicit", "implicit"}) {
+      const Result result =
+          good_run(workspace, pairs,
+                   {scene("mode"),
+                    {"Time/scheme=arkode", "Time/pairs=" + pairs,
+                     "Time/integration tolerance=1e-11",
+                     "Time/step=20 us", "Output/fields=false"}});
+      // 32 quadratic cells, less than with steps of 0.05 crossings
+      expect_below(pairs + ": displacement", result.error("displacement_L2"),
+                   4e-5);
+      expect_below(pairs + ": frequency", result.error("frequency"), 2e-6);
+      expect_below(pairs + ": energy", result.error("energy"), 1e-9);
+      expect_below(pairs + ": drift of joints",
+                   result.number("rigid_drift_max"), 1e-6 * 1e-6);
+      EXPECT_GT(result.counter("arkode_steps"), 20.);
+    }
+  }
+
+  // The bound of the step is that of free cells: just below it is stable, and
+  // just above it refused.
+  TEST(OrdersTest, StableStepOfTheSymplecticScheme)
+  {
+    const Workspace workspace;
+    const auto with_step = [](const std::string &step) {
+      return Launch{scene("mode"),
+                    {"Time/scheme=symplectic", "Time/step=" + step,
+                     "Output/fields=false"}};
+    };
+    const Result refused = run(workspace, "refused", with_step("10 us"));
+    EXPECT_EQ(refused.outcome.exit_code, 1);
+    const std::string &text = refused.outcome.err;
+    const std::string before = "stable up to ";
+    const std::size_t at = text.find(before);
+    ASSERT_NE(at, std::string::npos) << text;
+    const double limit = std::stod(text.substr(at + before.size()));
+    const Result good =
+        good_run(workspace, "good",
+                 with_step(std::to_string(0.99 * limit * 1e9) + " ns"));
+    // order 1 at the times of the steps, no energy lost
+    expect_below("frequency", good.error("frequency"), 0.1);
+  }
+
+  TEST(OrdersTest, TimeStep)
+  {
+    const Workspace workspace;
+    struct Row {
+      std::string theta;
+      double order;
+    };
+    for (const Row &row : {Row{"0.5", 2.}, Row{"0.75", 1.}}) {
+      const auto error = [&](const std::string &step) {
+        return manufactured(workspace, "theta" + row.theta + "_" + step, 4, 4,
+                            {"Time/theta=" + row.theta,
+                             "Time/step=" + step + " us"})
+            .error("displacement_L2");
+      };
+      const double coarse = error("12.5"), fine = error("6.25");
+      std::printf("  theta = %s: %.2e %.2e, order %.2f\n", row.theta.c_str(),
+                  coarse, fine, rate(coarse, fine));
+      EXPECT_NEAR(rate(coarse, fine), row.order, 0.15);
+    }
+  }
+} // namespace end_to_end

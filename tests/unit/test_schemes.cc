@@ -1,0 +1,145 @@
+#include "breaking_plate.h"
+#include "make_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    const std::string plate = R"(
+set dimension = 2
+subsection Mesh
+  set lower corner = 0, 0
+  set upper corner = 2, 1
+  set cells        = 3, 2
+  set distortion   = 0.2
+end
+subsection Material: plate
+  set Young modulus      = 100
+  set Poisson ratio      = 0.3
+  set density            = 1
+  set initial velocity x = 0.8 * sin(4 * x)
+  set initial displacement y = 0.01 * x * y
+end
+subsection Interface: all
+  set law              = contact
+end
+subsection Time
+  set end    = 1
+  set step   = 0.2 crossings
+  set scheme = symplectic
+end
+)";
+
+    // v.Mv/2 + q.Kq/2 - h/2 v.Kq of free bodies (symplectic Euler).
+    TEST(SymplecticTest, KeepsItsEnergyWhereNothingTouches)
+    {
+      // contact within a plate that is torn apart: nothing closes
+      test::Scene<2> scene(plate, {"Material: plate/initial velocity x=9 * x",
+                                   "Material: plate/initial velocity y=7 * y"});
+      using Operator = Dynamics<2>::Operator;
+      const std::size_t n = scene.state.velocity.size();
+      std::vector<double> Mv(n), Kq(n);
+      const auto kept = [&] {
+        const State &s = scene.state;
+        scene.dynamics->apply(Operator::mass, s.velocity.data(), Mv.data());
+        scene.dynamics->apply(Operator::stiffness, s.displacement.data(),
+                              Kq.data());
+        double sum = 0.;
+        for (std::size_t i = 0; i < n; ++i)
+          sum += (s.velocity[i] * Mv[i] + s.displacement[i] * Kq[i] -
+                  scene.time_step * s.velocity[i] * Kq[i]) /
+                 2.;
+        return sum;
+      };
+      const double start = kept(), plain = scene.energy();
+      double swing = 0.;
+      for (unsigned int step = 0; step < 500; ++step) {
+        const StepReport report = scene.advance();
+        ASSERT_EQ(report.active, 0u);
+        EXPECT_NEAR(kept(), start, 1e-12 * start);
+        EXPECT_LT(report.ledger_defect, 1e-12);
+        swing = std::max(swing, std::abs(scene.energy() - plain));
+      }
+      EXPECT_GT(swing, 1e-4 * plain) << "the plain energy is not the one kept";
+    }
+
+    // e = 1 gives back what an impact takes, e = 0 does not.
+    TEST(SymplecticTest, ImpactsAreBookedAsTheyAre)
+    {
+      for (const double e : {0., 0.5, 1.}) {
+        test::Scene<2> scene(R"(
+set dimension = 2
+subsection Mesh
+  set lower corner = 0, 0
+  set upper corner = 1, 1
+  set cells        = 1, 1
+end
+subsection Material: block
+  set model              = rigid
+  set density            = 2
+  set initial velocity y = -3
+end
+subsection Interface: none
+  set law = rigid
+end
+subsection Obstacle: floor
+  set where       = bottom
+  set point       = 0, -0.05
+  set normal      = 0, 1
+  set restitution = )" + std::to_string(e) +
+                             R"(
+end
+subsection Time
+  set end    = 1
+  set step   = 0.01
+  set scheme = symplectic
+end
+)");
+        for (unsigned int step = 0; step < 20; ++step)
+          scene.advance();
+        EXPECT_NEAR(scene.state.velocity[1], 3. * e, 1e-8);
+        EXPECT_NEAR(scene.state.energy.impact, 9. * (1. - e * e), 1e-7);
+        EXPECT_NEAR(scene.state.energy.numerical, 0., 1e-7);
+      }
+    }
+
+    TEST(SymplecticTest, LedgerThroughFracture)
+    {
+      test::Scene<2> scene(test::breaking_plate, {"Time/scheme=symplectic",
+                                                  "Time/step=0.05 crossings"});
+      double defect = 0.;
+      for (unsigned int step = 0; step < 400; ++step) {
+        scene.advance_halving();
+        const auto &e = scene.state.energy;
+        EXPECT_GE(e.damage, scene.next.energy.damage - 1e-14);
+        EXPECT_GE(e.impact, scene.next.energy.impact - 1e-9);
+        const double sum = e.kinetic + e.elastic + e.cohesive + e.damage +
+                           e.friction + e.impact + e.numerical - e.work;
+        defect = std::max(defect, std::abs(sum - scene.state.initial_energy));
+      }
+      EXPECT_LT(defect, 1e-12 * scene.state.largest_energy);
+      EXPECT_GT(scene.state.energy.damage, 0.);
+      EXPECT_GT(scene.state.energy.friction, 0.);
+      // what the bodies borrow comes back
+      EXPECT_LT(std::abs(scene.state.energy.numerical),
+                0.1 * scene.state.largest_energy);
+    }
+
+    TEST(ArkodeTest, RefusesWhatIsNotSmooth)
+    {
+      InputErrors errors;
+      EXPECT_EQ(read_scene_text(test::breaking_plate, "test.prm",
+                                {"Time/scheme=arkode"}, errors),
+                nullptr);
+      EXPECT_NE(errors.report().find("faces of `Interface: all` can open, close "
+                                     "or slip"),
+                std::string::npos)
+          << errors.report();
+    }
+  } // namespace
+} // namespace nsfd
