@@ -4,6 +4,7 @@
 #include "nsfd/law_path/run_law.h"
 #include "nsfd/simulation.h"
 #include "nsfd/stored/solve_command.h"
+#include "nsfd/study/study_command.h"
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
@@ -31,6 +32,22 @@ namespace
     return errors.has_errors() ? exit_code::bad_input : exit_code::done;
   }
 
+  /** Without MPI: the cases are processes of their own. */
+  int study(const int argc, char **argv)
+  {
+    StudyCommand command;
+    const int skip = argv[1] == std::string("study") ? 1 : 0;
+    if (const auto code = parse_study_command_line(
+            argc - skip, argv + skip, command, std::cout, std::cerr))
+      return *code;
+    try {
+      return run_study(command, std::cout, std::cerr);
+    } catch (const std::exception &error) {
+      std::cerr << "nsfd study: " << error.what() << "\n";
+      return exit_code::internal_error;
+    }
+  }
+
   /** One process is enough; all end with its exit code. */
   template <typename Work>
   int run_on_root(const bool root, const Work &work)
@@ -43,6 +60,8 @@ namespace
 
 int main(int argc, char **argv)
 {
+  if (asks_for_study(argc, argv))
+    return study(argc, argv);
   CommandLine command;
   SolveCommand stored;
   const bool solve = argc > 1 && argv[1] == std::string("solve");

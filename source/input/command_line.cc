@@ -25,6 +25,7 @@ namespace nsfd
         "nsfd - nonsmooth fracture dynamics\n"
         "  nsfd FILE.prm             run a scene\n"
         "  nsfd FILE.prm --check     only say whether it would run\n"
+        "  nsfd study FILE.prm       vary its parameters: errors, orders, cost\n"
         "  nsfd law NAME             drive one point of a cohesive law\n"
         "  nsfd solve PROBLEM.hdf5   solve stored contact problems\n"
         "  nsfd --help               all options\n";
@@ -41,10 +42,9 @@ namespace nsfd
     {
       for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        if (i == 1 && word == "study")
-          return "`nsfd study` is not there yet: only single scenes can be run";
         if (word.compare(0, 8, "--resume") == 0)
-          return "--resume is not there yet: there are no checkpoints";
+          return "--resume is not there yet for scenes: there are no "
+                 "checkpoints; it resumes studies";
       }
       return "";
     }
@@ -59,7 +59,7 @@ namespace nsfd
     int fail_at(std::ostream &err, const std::string &word, const CLI::App &app)
     {
       return refuse_word(err, "nsfd", word, app, "file",
-                         "run one scene at a time");
+                         "run one scene at a time, or vary it: nsfd study");
     }
   } // namespace
 
@@ -109,7 +109,9 @@ namespace nsfd
                  "nsfd");
     app.set_help_flag();
     app.allow_extras();
-    app.footer("Or: nsfd law NAME, drive one interface point along a path; "
+    app.footer("Or: nsfd study FILE.prm --vary 'Section/name=a, b', every "
+               "combination of values; nsfd study --help says more.\n"
+               "    nsfd law NAME, drive one interface point along a path; "
                "nsfd law --help says more.\n"
                "    nsfd solve PROBLEM.hdf5, stored contact problems; "
                "nsfd solve --help says more.");

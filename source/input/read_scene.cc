@@ -19,12 +19,15 @@ namespace nsfd
         "Solver", "Output",         "Verification", "Constants"};
     const std::vector<std::string> block_kinds = {
         "Body", "Material", "Interface", "Boundary", "Obstacle"};
-    const std::vector<std::string> missing_sections = {"Study", "Adaptivity"};
+    /// of a study, which reads them itself, see study/study_input.h
+    const std::vector<std::string> study_kinds = {"Study", "Vary"};
+    const std::vector<std::string> missing_sections = {"Adaptivity"};
 
     std::vector<std::string> all_kinds()
     {
       std::vector<std::string> kinds = plain_sections;
       kinds.insert(kinds.end(), block_kinds.begin(), block_kinds.end());
+      kinds.insert(kinds.end(), study_kinds.begin(), study_kinds.end());
       return kinds;
     }
 
@@ -40,6 +43,8 @@ namespace nsfd
       const std::string &name = section.name();
       const std::string kind = section.kind();
       const bool is_block = name.find(':') != std::string::npos;
+      if (contains(study_kinds, kind))
+        return;
       if (contains(plain_sections, kind)) {
         if (is_block)
           errors.error(section.location(),

@@ -820,7 +820,6 @@ end
     fails({"--check"}, "no parameter file is named");
     fails({"a.prm", "--set"}, "--set");
     fails({"a.prm", "--set", "theta"}, "there is no `=`");
-    fails({"study", "a.prm"}, "`nsfd study` is not there yet");
     fails({"law"}, "no law is named");
     fails({"law", "rcc", "--stpes=3"}, "did you mean `--steps`?");
     fails({"a.prm", "--resume"}, "--resume is not there yet");

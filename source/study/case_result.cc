@@ -1,0 +1,208 @@
+#include "nsfd/study/case_result.h"
+
+#include "nsfd/output/summary_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+    Json read_json(const std::string &file)
+    {
+      std::ifstream stream(file);
+      return stream ? Json::parse(stream, nullptr, false) : Json();
+    }
+
+    /** NaN where a file has null. */
+    double number(const Json &json, const char *name)
+    {
+      const auto found = json.find(name);
+      if (found == json.end())
+        return 0.;
+      return found->is_number() ? found->get<double>()
+                                : std::numeric_limits<double>::quiet_NaN();
+    }
+
+    double sum(const Json &object)
+    {
+      double total = 0.;
+      for (const auto &value : object)
+        if (value.is_number())
+          total += value.get<double>();
+      return total;
+    }
+
+    /** CPU seconds of a run: all parts, its set-up and its output. */
+    void add_times(const Json &summary, CaseResult &result)
+    {
+      double total = 0., output = 0., setup = 0.;
+      for (const auto &[name, part] : summary["cost"]["parts"].items()) {
+        const double seconds = number(part, "seconds");
+        total += seconds;
+        output += name == "output" ? seconds : 0.;
+        setup += name == "set-up" ? seconds : 0.;
+      }
+      result.setup.push_back(setup);
+      result.solve.push_back(total - output - setup);
+      result.wall.push_back(number(summary, "wall_seconds"));
+    }
+
+    void fill(const Json &summary, CaseResult &result)
+    {
+      const double steps = std::max(1., number(summary, "steps"));
+      result.steps = number(summary, "steps");
+      result.dofs = number(summary, "dofs");
+      result.cells = number(summary, "cells");
+      const Json counters = summary.value("counters", Json::object());
+      result.newton = number(counters, "newton") / steps;
+      result.krylov = number(counters, "krylov") / steps;
+      result.applications = number(counters, "operator_applications") / steps;
+      result.block_factorisations = number(counters, "block_factorisations");
+      result.global_factorisations = number(counters, "global_factorisations");
+      result.ledger_defect = number(summary, "ledger_defect_max");
+      result.residual = number(summary, "residual_max");
+      const Json dissipated = summary.value("dissipated", Json::object());
+      const double energy =
+          sum(summary.value("energy", Json::object())) + sum(dissipated);
+      const double numerical = number(dissipated, "numerical");
+      result.numerical_dissipation = energy > 0. ? numerical / energy : 0.;
+      result.errors.clear();
+      const Json errors = summary.value("errors", Json::object());
+      for (const auto &[name, value] : errors.items())
+        result.errors[name] = value.is_number()
+                                  ? value.get<double>()
+                                  : std::numeric_limits<double>::quiet_NaN();
+    }
+
+    bool same(const std::map<std::string, double> &a,
+              const std::map<std::string, double> &b)
+    {
+      return a.size() == b.size() &&
+             std::equal(a.begin(), a.end(), b.begin(),
+                        [](const auto &x, const auto &y) {
+                          return x.first == y.first &&
+                                 (x.second == y.second ||
+                                  (std::isnan(x.second) &&
+                                   std::isnan(y.second)));
+                        });
+    }
+  } // namespace
+
+  double median(std::vector<double> values)
+  {
+    if (values.empty())
+      return 0.;
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    return 0.5 * (values[n / 2] + values[(n - 1) / 2]);
+  }
+
+  double CaseResult::setup_median() const { return median(setup); }
+  double CaseResult::solve_median() const { return median(solve); }
+
+  double CaseResult::solve_spread() const
+  {
+    if (solve.size() < 2 || solve_median() <= 0.)
+      return 0.;
+    const auto [low, high] = std::minmax_element(solve.begin(), solve.end());
+    return (*high - *low) / solve_median();
+  }
+
+  const char *name_of(const CaseResult::Status status)
+  {
+    switch (status) {
+    case CaseResult::Status::done:
+      return "done";
+    case CaseResult::Status::failed:
+      return "failed";
+    case CaseResult::Status::bad_input:
+      return "bad input";
+    case CaseResult::Status::broken:
+      return "broken";
+    case CaseResult::Status::stopped:
+      return "stopped";
+    default:
+      return "not run";
+    }
+  }
+
+  bool add_summary(const std::string &file, CaseResult &result)
+  {
+    const Json summary = read_json(file);
+    if (!summary.is_object() || !summary.contains("cost"))
+      return false;
+    const std::map<std::string, double> before = result.errors;
+    const bool first = result.solve.empty();
+    add_times(summary, result);
+    fill(summary, result);
+    const double memory = number(summary, "peak_memory_mb");
+    const double n = double(result.solve.size());
+    // the mean over the repeats, which hardly differ
+    result.peak_memory_mb += (memory - result.peak_memory_mb) / n;
+    result.reproducible =
+        result.reproducible && (first || same(before, result.errors));
+    const auto failure = summary.find("failure");
+    if (failure != summary.end() && failure->is_string())
+      result.failure = failure->get<std::string>();
+    return true;
+  }
+
+  void write_case(const std::string &file, const CaseStamp &stamp,
+                  const CaseResult &r)
+  {
+    Json json;
+    json["status"] = name_of(r.status);
+    json["failure"] = r.failure;
+    json["exit_code"] = r.exit_code;
+    json["version"] = stamp.version;
+    json["git_hash"] = stamp.git_hash;
+    json["ranks"] = stamp.ranks;
+    json["setup_seconds"] = r.setup;
+    json["solve_seconds"] = r.solve;
+    json["wall_seconds"] = r.wall;
+    json["peak_memory_mb"] = r.peak_memory_mb;
+    json["reproducible"] = r.reproducible;
+    write_file_atomically(file, json.dump(2) + "\n");
+  }
+
+  bool read_case(const std::string &file, const CaseStamp &stamp,
+                 const unsigned int repeats, CaseResult &result)
+  {
+    const Json json = read_json(file);
+    if (!json.is_object() || json.value("status", "") != "done" ||
+        json.value("version", "") != stamp.version ||
+        json.value("git_hash", "") != stamp.git_hash ||
+        json.value("ranks", 0u) != stamp.ranks)
+      return false;
+    const auto times = [&json](const char *name) {
+      return json.value(name, std::vector<double>());
+    };
+    if (times("solve_seconds").size() < repeats)
+      return false;
+    CaseResult found;
+    const std::string summary =
+        file.substr(0, file.size() - std::string("case.json").size()) +
+        "summary.json";
+    if (!add_summary(summary, found))
+      return false;
+    found.status = CaseResult::Status::done;
+    found.exit_code = 0;
+    found.failure.clear();
+    found.setup = times("setup_seconds");
+    found.solve = times("solve_seconds");
+    found.wall = times("wall_seconds");
+    found.peak_memory_mb = json.value("peak_memory_mb", 0.);
+    found.reproducible = json.value("reproducible", true);
+    found.taken_over = true;
+    result = found;
+    return true;
+  }
+} // namespace nsfd

@@ -1,0 +1,181 @@
+#include "nsfd/study/study_input.h"
+
+#include "study_numbers.h"
+
+#include "nsfd/input/parameter_file.h"
+#include "nsfd/input/read_scene.h"
+#include "nsfd/scene/verification_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Into @p errors what is not there yet: most cases share their mistakes.
+     */
+    class DistinctErrors
+    {
+    public:
+      explicit DistinctErrors(InputErrors &errors) : errors_(errors)
+      {
+        for (const Diagnostic &one : errors.diagnostics())
+          seen_.insert(key(one));
+      }
+
+      void add(const InputErrors &more)
+      {
+        for (const Diagnostic &one : more.diagnostics())
+          if (seen_.insert(key(one)).second) {
+            if (one.is_error)
+              errors_.error(one.location, one.message, one.advice);
+            else
+              errors_.warning(one.location, one.message, one.advice);
+          }
+      }
+
+    private:
+      using Key = std::tuple<std::string, unsigned int, std::string, std::string>;
+      static Key key(const Diagnostic &one)
+      {
+        return {one.location.source, one.location.line, one.location.text,
+                one.message};
+      }
+      InputErrors &errors_;
+      std::set<Key> seen_;
+    };
+
+    /** "Time/step" of "Time/step = 1 us". */
+    std::string path_of(const std::string &assignment)
+    {
+      return collapse_blanks(assignment.substr(0, assignment.find('=')));
+    }
+
+    bool is_for_scenes(const std::string &path)
+    {
+      return path.compare(0, 6, "Study/") != 0 && path != "Output/directory";
+    }
+
+    /** Assignments for the scene of a case; @p more replace others. */
+    std::vector<std::string>
+    assignments(const StudyInput &study, const Combination &combination,
+                const std::string &name, const std::vector<std::string> &set,
+                const std::vector<std::string> &more)
+    {
+      std::vector<std::string> all;
+      for (const std::string &assignment : set)
+        if (is_for_scenes(path_of(assignment)))
+          all.push_back(assignment);
+      for (const auto &[path, value] : combination.parameters)
+        all.push_back(path + "=" + value);
+      const auto find = [&all](const std::string &path) {
+        return std::find_if(all.begin(), all.end(),
+                            [&path](const std::string &assignment) {
+                              return path_of(assignment) == path;
+                            });
+      };
+      for (const std::string &assignment : more) {
+        const auto found = find(path_of(assignment));
+        if (found != all.end())
+          all.erase(found);
+        all.push_back(assignment);
+      }
+      if (!study.outputs)
+        for (const char *output : {"Output/fields", "Output/report"})
+          if (find(output) == all.end())
+            all.push_back(std::string(output) + "=false");
+      all.push_back("Output/directory=" + study.directory + "/" + name);
+      return all;
+    }
+
+    void fill_numbers(const SceneInput &scene, const Combination &combination,
+                      std::map<std::string, double> &numbers)
+    {
+      numbers["dimension"] = scene.dimension;
+      numbers["degree"] = scene.discretization.degree;
+      numbers["refinements"] = scene.mesh.refinements;
+      numbers["theta"] = scene.time.theta;
+      if (!scene.mesh.cells.empty())
+        numbers["cells"] = scene.mesh.cells[0];
+      if (scene.time.step_kind != StepKind::automatic)
+        numbers["step"] = scene.time.step;
+      for (const auto &[path, value] : combination.parameters)
+        if (const auto number = number_of_value(value))
+          numbers.emplace(formula_name(short_name(path)), *number);
+    }
+
+    StudyCase read_case(const StudyInput &study, const Combination &combination,
+                        const std::string &name,
+                        const std::vector<std::string> &set,
+                        const std::vector<std::string> &more,
+                        InputErrors &errors)
+    {
+      StudyCase one;
+      one.combination = combination;
+      one.combination.name = name;
+      const auto scene = read_scene(
+          study.file, assignments(study, combination, name, set, more), errors);
+      if (!scene)
+        return one;
+      try {
+        if (scene->verification)
+          scene->verification->initialise(*scene);
+      } catch (const std::runtime_error &error) {
+        errors.error({study.file, 0, 0, 0, ""},
+                     fmt::format("case {}: {}", name, error.what()));
+      }
+      one.scene = scene->echo;
+      one.tolerance = scene->solver.tolerance;
+      one.theta = scene->time.theta;
+      one.is_2d = scene->dimension == 2;
+      if (!scene->statics && scene->time.step_kind == StepKind::time)
+        one.half_step = fmt::format("{:.17g} s", 0.5 * scene->time.step);
+      if (!scene->statics && scene->time.step_kind == StepKind::crossings)
+        one.half_step = fmt::format("{:.17g} crossings", 0.5 * scene->time.step);
+      fill_numbers(*scene, combination, one.numbers);
+      return one;
+    }
+  } // namespace
+
+  std::vector<StudyCase> read_cases(const StudyInput &study,
+                                    const std::vector<std::string> &set,
+                                    InputErrors &errors)
+  {
+    std::vector<StudyCase> cases;
+    DistinctErrors distinct(errors);
+    for (const Combination &combination : combine(study.variations)) {
+      InputErrors of_case;
+      cases.push_back(
+          read_case(study, combination, combination.name, set, {}, of_case));
+      distinct.add(of_case);
+    }
+    if (errors.has_errors())
+      return cases;
+    std::string problem;
+    for (const StudyCase &one : cases) {
+      for (const auto &[error, formula] : study.expected_orders)
+        if (!evaluate(formula, one.numbers, problem))
+          errors.error({study.file, 0, 0, 0, ""},
+                       "expected orders: " + error + ": " + problem);
+      if (study.size != "auto" && !evaluate(study.size, one.numbers, problem))
+        errors.error({study.file, 0, 0, 0, ""}, "size: " + problem);
+      if (errors.has_errors())
+        break;
+    }
+    return cases;
+  }
+
+  StudyCase derived_case(const StudyInput &study, const StudyCase &original,
+                         const std::string &name,
+                         const std::vector<std::string> &set,
+                         const std::vector<std::string> &more,
+                         InputErrors &errors)
+  {
+    return read_case(study, original.combination, name, set, more, errors);
+  }
+} // namespace nsfd

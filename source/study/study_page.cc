@@ -1,0 +1,304 @@
+#include "cost_comparison.h"
+
+#include "../output/report_html.h"
+
+#include "nsfd/output/engineering.h"
+#include "nsfd/output/summary_file.h"
+#include "nsfd/output/svg.h"
+#include "nsfd/study/study_results.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Axis = LineChart::Axis;
+
+    std::vector<double> values(const std::vector<StudyPoint> &points,
+                               double StudyPoint::*member)
+    {
+      std::vector<double> result;
+      for (const StudyPoint &point : points)
+        result.push_back(point.*member);
+      return result;
+    }
+
+    const char *const cpu_label = "CPU time of the solve";
+
+    /** All points of an error over one of their numbers, by series. */
+    LineChart error_chart(const StudyResults &study, const std::string &error,
+                          const Axis &x, double StudyPoint::*member,
+                          const bool envelope)
+    {
+      LineChart chart(readable(error), x, {"relative error", "", true});
+      if (envelope) {
+        const auto lowest = lower_envelope(all_points(study, error));
+        if (lowest.size() > 1)
+          chart.add_line("lower envelope", values(lowest, member),
+                         values(lowest, &StudyPoint::error),
+                         LineChart::Colour::ink, true);
+      }
+      unsigned int colour = 0;
+      for (const StudySeries &series : series_of(study)) {
+        const auto points = points_of(study, series, error);
+        chart.add_line(series.name.empty() ? "error" : series.name,
+                       values(points, member),
+                       values(points, &StudyPoint::error),
+                       LineChart::palette(colour++));
+      }
+      return chart;
+    }
+
+    /** A line of the expected order, below the coarsest point. */
+    void add_expected(LineChart &chart, const StudyOrder &order)
+    {
+      if (!order.expected || order.points.size() < 2)
+        return;
+      const StudyPoint &coarse = order.points.front();
+      const double share = order.points.back().size / coarse.size;
+      constexpr unsigned int n = 30; // many points are drawn without dots
+      std::vector<double> size, error;
+      for (unsigned int i = 0; i < n; ++i) {
+        const double ratio = std::pow(share, double(i) / (n - 1));
+        size.push_back(coarse.size * ratio);
+        error.push_back(0.5 * coarse.error * std::pow(ratio, *order.expected));
+      }
+      chart.add_line(fmt::format("order {:.3g}", *order.expected), size, error,
+                     LineChart::Colour::grey, true);
+    }
+
+    /** Errors over the size with lines of the expected orders. */
+    LineChart order_chart(const StudyResults &study, const std::string &error)
+    {
+      LineChart chart(readable(error) + ": order", {size_label(study), "", true},
+                      {"relative error", "", true});
+      const std::vector<StudyOrder> orders = orders_of(study);
+      for (const StudyOrder &order : orders)
+        if (order.error == error)
+          add_expected(chart, order);
+      unsigned int colour = 0;
+      for (const StudyOrder &order : orders)
+        if (order.error == error)
+          chart.add_line(order.series.empty() ? "error" : order.series,
+                         values(order.points, &StudyPoint::size),
+                         values(order.points, &StudyPoint::error),
+                         LineChart::palette(colour++));
+      return chart;
+    }
+
+    /** A number of each case over its CPU time. */
+    LineChart balance_chart(const StudyResults &study, const std::string &title,
+                            const std::string &label,
+                            const std::function<double(const CaseResult &)> &y)
+    {
+      LineChart chart(title, {cpu_label, "s", true}, {label, "", true});
+      unsigned int colour = 0;
+      for (const StudySeries &series : series_of(study)) {
+        std::vector<double> seconds, number;
+        for (const std::size_t k : series.first)
+          if (study.results[k].done()) {
+            seconds.push_back(study.results[k].solve_median());
+            number.push_back(y(study.results[k]));
+          }
+        chart.add_line(series.name.empty() ? label : series.name, seconds,
+                       number, LineChart::palette(colour++));
+      }
+      return chart;
+    }
+
+    class Diagrams
+    {
+    public:
+      explicit Diagrams(const std::string &directory) : directory_(directory) {}
+
+      void add(const std::string &name, const LineChart &chart)
+      {
+        write_file_atomically(directory_ + "/" + name + ".svg",
+                              chart.svg(SvgUse::file));
+        html_ += "<figure class=\"card\">" + chart.svg(SvgUse::page) +
+                 "</figure>\n";
+      }
+
+      std::string html() const { return row_of(html_); }
+
+    private:
+      std::string directory_, html_;
+    };
+
+    std::string cells(const std::vector<std::string> &row, const char *tag)
+    {
+      std::string html = "<tr>";
+      for (const std::string &cell : row)
+        html += fmt::format("<{0}>{1}</{0}>", tag, escape_markup(cell));
+      return html + "</tr>\n";
+    }
+
+    std::string table(const std::vector<std::string> &head,
+                      const std::vector<std::vector<std::string>> &rows)
+    {
+      std::string html = "<section class=\"card\"><table><thead>" +
+                         cells(head, "th") + "</thead>\n";
+      for (const auto &row : rows)
+        html += cells(row, "td");
+      return html + "</table></section>\n";
+    }
+
+    std::string headline(const StudyResults &study)
+    {
+      std::string html =
+          "<h1>" + escape_markup(study.input.title) + "</h1>\n" +
+          paragraphs(study.input.description);
+      const std::size_t n = study.results.size(),
+                        done = count(study, CaseResult::Status::done);
+      html += fmt::format(
+          "<p class=\"state {}\">{} of {} cases done</p>\n",
+          done == n ? "good" : "bad", done, n);
+      const std::string verdict = verdict_text(study);
+      if (!verdict.empty())
+        html += "<p><b>Orders:</b> " + escape_markup(verdict) + "</p>\n";
+      html += "<p><b>Limit of this study:</b></p><ul>";
+      for (const std::string &line : limits_of(study))
+        html += "<li>" + escape_markup(line) + "</li>";
+      return html + "</ul>\n";
+    }
+
+    std::string order_rows(const StudyResults &study)
+    {
+      std::vector<std::vector<std::string>> rows;
+      for (const StudyOrder &order : orders_of(study)) {
+        std::string errors, rates;
+        for (const StudyPoint &point : order.points)
+          errors += fmt::format("{:.2e} ", point.error);
+        for (const double rate : order.fit.rates)
+          rates += fmt::format("{:.2f} ", rate);
+        rows.push_back({readable(order.error), order.series, errors, rates,
+                        order_line(order)});
+      }
+      return rows.empty() ? ""
+                          : section("Orders of convergence in " +
+                                        size_label(study),
+                                    table({"error", "series",
+                                           "errors, coarse to fine", "rates",
+                                           "verdict"},
+                                          rows));
+    }
+
+    std::string cost_rows_html(const StudyResults &study)
+    {
+      std::vector<std::vector<std::string>> rows;
+      for (const CostRow &row : cost_rows(study))
+        rows.push_back({fmt::format("{} = {:.2g}", readable(row.error),
+                                    row.target),
+                        row.series, cost_text(row)});
+      return rows.empty() ? ""
+                          : section("What an error costs",
+                                    table({"error", "series", "CPU time (s)"},
+                                          rows));
+    }
+
+    std::string case_rows(const StudyResults &study)
+    {
+      const std::vector<std::string> errors = shown_errors(study);
+      std::vector<std::string> head = {"case", "status", "unknowns", "steps",
+                                       "Newton", "Krylov", "factors",
+                                       "set-up (s)", "solve (s)", "spread",
+                                       "repeats", "memory (MB)", "ledger",
+                                       "numerical"};
+      for (const std::string &error : errors)
+        head.push_back(readable(error));
+      std::vector<std::vector<std::string>> rows;
+      for (std::size_t k = 0; k < study.cases.size(); ++k) {
+        const CaseResult &r = study.results[k];
+        std::vector<std::string> row = {
+            setting_of(study, k),
+            std::string(name_of(r.status)) +
+                (r.done() || r.failure.empty() ? "" : ": " + r.failure),
+            fmt::format("{:.0f}", r.dofs),
+            fmt::format("{:.0f}", r.steps),
+            fmt::format("{:.1f}", r.newton),
+            fmt::format("{:.1f}", r.krylov),
+            fmt::format("{:.0f} + {:.0f}", r.block_factorisations,
+                        r.global_factorisations),
+            fmt::format("{:.3g}", r.setup_median()),
+            fmt::format("{:.3g}", r.solve_median()),
+            percent(r.solve_spread()),
+            fmt::format("{}", r.solve.size()),
+            fmt::format("{:.0f}", r.peak_memory_mb),
+            fmt::format("{:.1e}", r.ledger_defect),
+            fmt::format("{:.1e}", r.numerical_dissipation)};
+        for (const std::string &error : errors) {
+          const auto found = r.errors.find(error);
+          row.push_back(found == r.errors.end()
+                            ? ""
+                            : fmt::format("{:.3e}", found->second));
+        }
+        rows.push_back(row);
+      }
+      return section("All cases",
+                     "<p class=\"muted\">Newton and Krylov iterations are "
+                     "means per step; factors are of blocks + of the whole "
+                     "system; times are medians over the repeats, without "
+                     "output.</p>\n" +
+                         table(head, rows));
+    }
+
+    std::string provenance(const StudyResults &study)
+    {
+      Table table;
+      table.add_text("command", study.command_line);
+      table.add_text("version", study.version + " " + study.git_hash + " " +
+                                    study.build_type);
+      table.add_text("compiler", study.compiler);
+      table.add_text("machine", fmt::format("{}, {}, {} cores", study.host,
+                                            study.processor, study.cores));
+      table.add_text("processes",
+                     fmt::format("{} rank(s) of one thread per case, {} case(s) "
+                                 "at a time",
+                                 study.input.ranks, study.input.jobs));
+      table.add_text("date", study.date);
+      for (const std::string &warning : study.warnings)
+        table.add_text("warning", warning);
+      return table.card("How it was made");
+    }
+  } // namespace
+
+  void write_study_page(const StudyResults &study, const std::string &directory)
+  {
+    Diagrams diagrams(directory);
+    const std::vector<std::string> errors = shown_errors(study);
+    const Axis cpu = {cpu_label, "s", true}, unknowns = {"unknowns", "", true};
+    constexpr std::size_t most_errors = 4;
+    for (std::size_t e = 0; e < std::min(errors.size(), most_errors); ++e) {
+      diagrams.add("error_time_" + errors[e],
+                   error_chart(study, errors[e], cpu, &StudyPoint::seconds,
+                               true));
+      diagrams.add("error_unknowns_" + errors[e],
+                   error_chart(study, errors[e], unknowns,
+                               &StudyPoint::unknowns, false));
+      if (study.input.abscissa >= 0)
+        diagrams.add("order_" + errors[e], order_chart(study, errors[e]));
+    }
+    diagrams.add("ledger_defect",
+                 balance_chart(study, "Ledger defect", "relative defect",
+                               [](const CaseResult &r) {
+                                 return r.ledger_defect;
+                               }));
+    diagrams.add("numerical_dissipation",
+                 balance_chart(study, "Numerical dissipation",
+                               "share of the energy, absolute value",
+                               [](const CaseResult &r) {
+                                 return std::abs(r.numerical_dissipation);
+                               }));
+    const std::string content =
+        headline(study) + section("Diagrams", diagrams.html()) +
+        order_rows(study) + cost_rows_html(study) + case_rows(study) +
+        provenance(study) + "<details><summary>Section Study</summary><pre>" +
+        escape_markup(study.input.echo) + "</pre></details>\n";
+    write_file_atomically(directory + "/study.html",
+                          page(study.input.title, content));
+  }
+} // namespace nsfd
