@@ -314,6 +314,18 @@ END
     --set 'Bar/mass=1.25 kg/m^2' --set 'Bar/speed=1 cm/s' --set 'Bar/step=1 us'
   cat <<'END'
 
+## A study: `nsfd study FILE.prm`, or a file with these sections
+
+[studies.md](studies.md) says what they mean.
+
+```
+END
+  ./nsfd study prm/verification/mode.prm --print-parameters \
+    --vary 'Discretization/degree=1..3' \
+    --vary 'Mesh/cells=[8*2^0..2, 1] & Time/step=4/2^0..2 us'
+  cat <<'END'
+```
+
 ## Exact values: `prm/verification/midplane.prm`
 
 END

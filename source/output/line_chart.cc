@@ -241,6 +241,8 @@ namespace nsfd
     double x = 8.;
     y += 18.;
     for (const auto &series : series_) {
+      if (series.name.empty())
+        continue;
       const double length = 22. + text_width(series.name, font_size) + 12.;
       if (x > 8. && x + length > width) {
         x = 8.;

@@ -13,11 +13,10 @@ namespace nsfd
     if (errors.empty())
       return rows;
     const std::string &error = errors[0];
-    const std::vector<StudySeries> series = series_of(study);
+    const std::vector<StudyGroup> groups = groups_of(study, error);
     std::vector<double> targets = study.input.targets;
-    const auto first =
-        lower_envelope(points_of(study, series.front(), error));
-    if (series.size() > 1 && !first.empty())
+    const auto first = lower_envelope(groups.front().points);
+    if (groups.size() > 1 && !first.empty())
       targets.push_back(first.back().error);
     std::sort(targets.rbegin(), targets.rend());
     for (const double target : targets) {
@@ -28,9 +27,9 @@ namespace nsfd
           rows.push_back({error, target, name, cost_of_error(points, target),
                           envelope.back().error});
       };
-      if (series.size() > 1)
-        for (const StudySeries &one : series)
-          add(one.name, points_of(study, one, error));
+      if (groups.size() > 1)
+        for (const StudyGroup &group : groups)
+          add(group.name, group.points);
       add("all", all_points(study, error));
     }
     return rows;

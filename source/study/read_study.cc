@@ -133,6 +133,12 @@ namespace nsfd
       return -1;
     }
 
+    int natural_comparison(const std::vector<Variation> &variations)
+    {
+      const int v = find_variation(variations, "Discretization/degree");
+      return v >= 0 && !variations[std::size_t(v)].is_constant() ? v : -1;
+    }
+
     /** "displacement_L2: degree + 1, energy: 1" */
     void read_expected(SectionReader &reader, StudyInput &study)
     {
@@ -192,6 +198,12 @@ namespace nsfd
       study.average =
           read_variation(reader, "average over", "none", study.variations,
                          "what varies only to average errors over it");
+      study.compare =
+          read_variation(reader, "compare", "auto", study.variations,
+                         "what varies where costs are compared; auto: the "
+                         "degree; or none: every series");
+      if (reader.word("compare", "auto", "") == "auto")
+        study.compare = natural_comparison(study.variations);
       study.size = reader.word("size", "auto",
                                "formula: errors are a power of it; auto: 1/cells, "
                                "2^-refinements, the step");

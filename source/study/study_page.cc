@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace nsfd
 {
@@ -29,26 +30,48 @@ namespace nsfd
 
     const char *const cpu_label = "CPU time of the solve";
 
-    /** All points of an error over one of their numbers, by series. */
+    /** Each value by itself: gaps in between, so that only dots are drawn. */
+    std::vector<double> with_gaps(const std::vector<double> &data)
+    {
+      std::vector<double> result;
+      for (const double value : data) {
+        result.push_back(value);
+        result.push_back(std::numeric_limits<double>::quiet_NaN());
+      }
+      return result;
+    }
+
+    /**
+     * All points of an error over one of their numbers as dots; lines are the
+     * lower envelopes of what is compared. Over the time also that of all.
+     */
     LineChart error_chart(const StudyResults &study, const std::string &error,
                           const Axis &x, double StudyPoint::*member,
-                          const bool envelope)
+                          const bool is_time)
     {
       LineChart chart(readable(error), x, {"relative error", "", true});
-      if (envelope) {
+      const auto envelope = [member](std::vector<StudyPoint> points) {
+        for (StudyPoint &point : points)
+          point.seconds = point.*member;
+        return lower_envelope(points);
+      };
+      const std::vector<StudyGroup> groups = groups_of(study, error);
+      if (is_time && groups.size() > 1) {
         const auto lowest = lower_envelope(all_points(study, error));
-        if (lowest.size() > 1)
-          chart.add_line("lower envelope", values(lowest, member),
-                         values(lowest, &StudyPoint::error),
-                         LineChart::Colour::ink, true);
+        chart.add_line("lower envelope", values(lowest, &StudyPoint::seconds),
+                       values(lowest, &StudyPoint::error),
+                       LineChart::Colour::ink, true);
       }
       unsigned int colour = 0;
-      for (const StudySeries &series : series_of(study)) {
-        const auto points = points_of(study, series, error);
-        chart.add_line(series.name.empty() ? "error" : series.name,
-                       values(points, member),
-                       values(points, &StudyPoint::error),
-                       LineChart::palette(colour++));
+      for (const StudyGroup &group : groups) {
+        const auto lowest = envelope(group.points);
+        const auto shade = LineChart::palette(colour++);
+        chart.add_line(group.name.empty() ? "error" : group.name,
+                       values(lowest, &StudyPoint::seconds),
+                       values(lowest, &StudyPoint::error), shade);
+        chart.add_line("", with_gaps(values(group.points, member)),
+                       with_gaps(values(group.points, &StudyPoint::error)),
+                       shade);
       }
       return chart;
     }
@@ -97,15 +120,18 @@ namespace nsfd
     {
       LineChart chart(title, {cpu_label, "s", true}, {label, "", true});
       unsigned int colour = 0;
-      for (const StudySeries &series : series_of(study)) {
+      const std::vector<std::string> errors = shown_errors(study);
+      for (const StudyGroup &group :
+           groups_of(study, errors.empty() ? "" : errors[0])) {
         std::vector<double> seconds, number;
-        for (const std::size_t k : series.first)
+        for (const std::size_t k : group.cases)
           if (study.results[k].done()) {
             seconds.push_back(study.results[k].solve_median());
             number.push_back(y(study.results[k]));
           }
-        chart.add_line(series.name.empty() ? label : series.name, seconds,
-                       number, LineChart::palette(colour++));
+        chart.add_line(group.name.empty() ? label : group.name,
+                       with_gaps(seconds), with_gaps(number),
+                       LineChart::palette(colour++));
       }
       return chart;
     }

@@ -218,6 +218,33 @@ namespace nsfd
     return all;
   }
 
+  std::vector<StudyGroup> groups_of(const StudyResults &study,
+                                    const std::string &error)
+  {
+    const int compare = study.input.compare;
+    std::vector<StudyGroup> groups;
+    std::map<std::size_t, std::size_t> places;
+    for (const StudySeries &series : series_of(study)) {
+      const std::size_t k = series.first[0];
+      std::string name = series.name;
+      std::size_t place = groups.size();
+      if (compare >= 0) {
+        const std::size_t v = std::size_t(compare);
+        const std::size_t i = study.cases[k].combination.index[v];
+        const auto &leader = study.input.variations[v].leader();
+        name = short_name(leader.path) + " = " + Variation::value(leader, i);
+        place = places.emplace(i, place).first->second;
+      }
+      if (place == groups.size())
+        groups.push_back({name, {}, {}});
+      groups[place].cases.insert(groups[place].cases.end(),
+                                 series.first.begin(), series.first.end());
+      for (const StudyPoint &point : points_of(study, series, error))
+        groups[place].points.push_back(point);
+    }
+    return groups;
+  }
+
   std::vector<StudyOrder> orders_of(const StudyResults &study)
   {
     std::vector<StudyOrder> orders;

@@ -142,6 +142,8 @@ namespace nsfd
 
   std::string order_line(const StudyOrder &order)
   {
+    if (order.fit.round_off)
+      return "no order: all errors are round-off";
     if (!order.fit.order)
       return order.expected
                  ? fmt::format("expected order {:.2f}: too few points",

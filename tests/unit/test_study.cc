@@ -188,6 +188,9 @@ namespace nsfd
     const OrderFit constant = fit_order(power_law(0., 1., 5));
     EXPECT_FALSE(constant.level);
     EXPECT_NEAR(*constant.order, 0., 1e-12);
+    const OrderFit exact = fit_order(power_law(0., 1e-14, 5));
+    EXPECT_TRUE(exact.round_off);
+    EXPECT_FALSE(exact.order);
   }
 
   TEST(StudyConvergence, Verdicts)

@@ -21,6 +21,7 @@ namespace nsfd
     std::optional<double> order; ///< slope of log error over log size
     /// error at which it stops falling; the points from there on are not fitted
     std::optional<double> level;
+    bool round_off = false; ///< all errors are: no order
   };
 
   enum class OrderVerdict { none, too_few, below, reached, above };
@@ -32,7 +33,8 @@ namespace nsfd
    * Rates and order of points sorted by falling size. Points that are not
    * positive and finite are left out. Where all further rates stay below half of
    * the median before, the error levels off; only the points before are fitted
-   * that are five times above the level. An order needs three points.
+   * that are five times above the level. An order needs three points, and
+   * errors above round-off (relative ones, 1000 times that of a double).
    */
   OrderFit fit_order(const std::vector<StudyPoint> &points);
 

@@ -27,6 +27,7 @@ namespace nsfd
     std::vector<std::string> errors; ///< to show; empty: all there are
     int abscissa = -1; ///< variation along which orders are taken, -1: none
     int average = -1;  ///< variation whose errors are averaged, -1: none
+    int compare = -1;  ///< variation whose costs are compared, -1: each series
     std::string size;  ///< formula: what errors are a power of
     std::map<std::string, std::string> expected_orders; ///< error to formula
     double order_tolerance = 0.15;

@@ -47,6 +47,15 @@ namespace nsfd
                                     const StudySeries &series,
                                     const std::string &error);
 
+  /** Points whose costs are compared: those of a degree, or of a series. */
+  struct StudyGroup {
+    std::string name;
+    std::vector<StudyPoint> points;
+    std::vector<std::size_t> cases; ///< first one of each point, done or not
+  };
+  std::vector<StudyGroup> groups_of(const StudyResults &study,
+                                    const std::string &error);
+
   /** The points of all series. */
   std::vector<StudyPoint> all_points(const StudyResults &study,
                                      const std::string &error);
