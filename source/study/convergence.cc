@@ -62,11 +62,11 @@ namespace nsfd
       }
     OrderFit fit;
     for (std::size_t i = 1; i < x.size(); ++i)
-      fit.rates.push_back(x[i] < x[i - 1] ? (y[i] - y[i - 1]) / (x[i] - x[i - 1])
-                                          : 0.);
-    fit.round_off =
-        !y.empty() && *std::max_element(y.begin(), y.end()) <
-                          std::log(1e3 * std::numeric_limits<double>::epsilon());
+      fit.rates.push_back(
+          x[i] < x[i - 1] ? (y[i] - y[i - 1]) / (x[i] - x[i - 1]) : 0.);
+    fit.round_off = !y.empty() &&
+                    *std::max_element(y.begin(), y.end()) <
+                        std::log(1e3 * std::numeric_limits<double>::epsilon());
     if (fit.round_off)
       return fit;
     std::size_t end = x.size();

@@ -13,7 +13,7 @@ namespace nsfd
     double target = 0.; ///< its value
     std::string series; ///< "all": the lower envelope of everything
     CostOfError cost;
-    double best = 0.;   ///< smallest error of the series
+    double best = 0.; ///< smallest error of the series
   };
 
   /**

@@ -40,7 +40,8 @@ namespace nsfd
       }
 
     private:
-      using Key = std::tuple<std::string, unsigned int, std::string, std::string>;
+      using Key =
+          std::tuple<std::string, unsigned int, std::string, std::string>;
       static Key key(const Diagnostic &one)
       {
         return {one.location.source, one.location.line, one.location.text,
@@ -62,10 +63,11 @@ namespace nsfd
     }
 
     /** Assignments for the scene of a case; @p more replace others. */
-    std::vector<std::string>
-    assignments(const StudyInput &study, const Combination &combination,
-                const std::string &name, const std::vector<std::string> &set,
-                const std::vector<std::string> &more)
+    std::vector<std::string> assignments(const StudyInput &study,
+                                         const Combination &combination,
+                                         const std::string &name,
+                                         const std::vector<std::string> &set,
+                                         const std::vector<std::string> &more)
     {
       std::vector<std::string> all;
       for (const std::string &assignment : set)
@@ -131,12 +133,11 @@ namespace nsfd
       }
       one.scene = scene->echo;
       one.tolerance = scene->solver.tolerance;
-      one.theta = scene->time.theta;
-      one.is_2d = scene->dimension == 2;
       if (!scene->statics && scene->time.step_kind == StepKind::time)
         one.half_step = fmt::format("{:.17g} s", 0.5 * scene->time.step);
       if (!scene->statics && scene->time.step_kind == StepKind::crossings)
-        one.half_step = fmt::format("{:.17g} crossings", 0.5 * scene->time.step);
+        one.half_step =
+            fmt::format("{:.17g} crossings", 0.5 * scene->time.step);
       fill_numbers(*scene, combination, one.numbers);
       return one;
     }

@@ -80,7 +80,8 @@ namespace nsfd
       std::size_t begin = 0;
       while (begin <= text.size()) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string word = collapse_blanks(text.substr(begin, end - begin));
+        const std::string word =
+            collapse_blanks(text.substr(begin, end - begin));
         if (!word.empty())
           result.push_back(word);
         begin = end + 1;
@@ -124,8 +125,7 @@ namespace nsfd
     /** Mesh, else step, else the last one that takes several values. */
     int natural_abscissa(const std::vector<Variation> &variations)
     {
-      for (const char *path :
-           {"Mesh/cells", "Mesh/refinements", "Time/step"}) {
+      for (const char *path : {"Mesh/cells", "Mesh/refinements", "Time/step"}) {
         const int v = find_variation(variations, path);
         if (v >= 0 && !variations[std::size_t(v)].is_constant())
           return v;
@@ -180,13 +180,13 @@ namespace nsfd
       study.ranks = reader.integer("ranks", "1", 1, any_count, "of each case");
       study.jobs = reader.integer(
           "jobs", "1", 1, 256, "cases at a time; times are honest with 1 only");
-      study.outputs = reader.boolean("outputs", false,
-                                     "fields and reports of every case");
+      study.outputs =
+          reader.boolean("outputs", false, "fields and reports of every case");
       study.limit_checks = reader.boolean(
           "limit checks", true,
           "the best cases again, with tolerance/100 and with half the step");
-      const std::string errors_text =
-          reader.word("errors", "all", "which ones to show; costs are those of the first");
+      const std::string errors_text = reader.word(
+          "errors", "all", "which ones to show; costs are those of the first");
       if (errors_text != "all")
         study.errors = words(errors_text);
       study.abscissa =
@@ -204,9 +204,10 @@ namespace nsfd
                          "degree; or none: every series");
       if (reader.word("compare", "auto", "") == "auto")
         study.compare = natural_comparison(study.variations);
-      study.size = reader.word("size", "auto",
-                               "formula: errors are a power of it; auto: 1/cells, "
-                               "2^-refinements, the step");
+      study.size =
+          reader.word("size", "auto",
+                      "formula: errors are a power of it; auto: 1/cells, "
+                      "2^-refinements, the step");
       read_expected(reader, study);
       study.order_tolerance = reader.number(
           "order tolerance", "0.15", units::none, Range::non_negative(),
@@ -224,8 +225,7 @@ namespace nsfd
           directory = entry->value.text();
       for (const std::string &assignment : set) {
         const std::size_t equals = assignment.find('=');
-        if (collapse_blanks(assignment.substr(0, equals)) ==
-            "Output/directory")
+        if (collapse_blanks(assignment.substr(0, equals)) == "Output/directory")
           directory = collapse_blanks(assignment.substr(equals + 1));
       }
       return directory == "auto"
@@ -265,9 +265,10 @@ namespace nsfd
     return false;
   }
 
-  std::unique_ptr<StudyInput>
-  read_study(const std::string &file, const std::vector<std::string> &set,
-             const std::vector<std::string> &vary, InputErrors &errors)
+  std::unique_ptr<StudyInput> read_study(const std::string &file,
+                                         const std::vector<std::string> &set,
+                                         const std::vector<std::string> &vary,
+                                         InputErrors &errors)
   {
     ParameterFile parsed;
     if (!parsed.read_file(file, errors))

@@ -36,8 +36,8 @@ namespace nsfd
     public:
       Runner(const StudyResults &study, const StudyCommand &command,
              std::ostream &out)
-          : study_(study), command_(command), out_(out),
-            stamp_{study.version, study.git_hash, study.input.ranks}
+          : study_(study), command_(command),
+            out_(out), stamp_{study.version, study.git_hash, study.input.ranks}
       {
       }
 
@@ -296,8 +296,7 @@ namespace nsfd
     write_file_atomically(directory + "/study.json", study_json(study));
     write_study_page(study, directory);
     if (!command.quiet)
-      out << "\n"
-          << study_text(study) << "  " << directory << "/study.html\n";
+      out << "\n" << study_text(study) << "  " << directory << "/study.html\n";
     const int code = code_of(study);
     if (code != exit_code::done)
       err << fmt::format("{}: {} of {} cases are not done\n", command.file,

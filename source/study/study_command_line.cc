@@ -22,12 +22,14 @@ namespace nsfd
         "  --vary 'Mesh/refinements=0..3 & Time/step=4/2^0..3 us'\n"
         "                                             values that go together\n"
         "  --vary 'Solver/method=dual newton, gauss seidel'\n"
-        "In a file: sections `Vary: name` with lines `set Mesh/cells = ...` that "
+        "In a file: sections `Vary: name` with lines `set Mesh/cells = ...` "
+        "that "
         "go together,\n"
         "and section `Study`; --print-parameters shows it, --set "
         "'Study/repeats=1' changes it.\n"
         "Results: a folder per case, study.csv, study.json, study.html.\n"
-        "Exit code: 0 all cases done, 1 one is no valid scene (nothing is run), "
+        "Exit code: 0 all cases done, 1 one is no valid scene (nothing is "
+        "run), "
         "3 one could not be\n"
         "solved (the others are there), 4 stopped, 5 one broke off.\n"
         "Example:\n"
@@ -155,8 +157,9 @@ namespace nsfd
                   "write for example: nsfd study prm/verification/mode.prm "
                   "--vary 'Discretization/degree=1..3'");
     if (command.force && command.resume)
-      return fail(err, "--force and --resume exclude each other",
-                  "--force runs all cases again, --resume only what is missing");
+      return fail(
+          err, "--force and --resume exclude each other",
+          "--force runs all cases again, --resume only what is missing");
     if (starts_more_than_one_process())
       return fail(err, "a study starts its cases itself, without mpirun",
                   "write: nsfd study FILE.prm --set Study/ranks=2");

@@ -97,7 +97,8 @@ namespace nsfd
     /** Errors over the size with lines of the expected orders. */
     LineChart order_chart(const StudyResults &study, const std::string &error)
     {
-      LineChart chart(readable(error) + ": order", {size_label(study), "", true},
+      LineChart chart(readable(error) + ": order",
+                      {size_label(study), "", true},
                       {"relative error", "", true});
       const std::vector<StudyOrder> orders = orders_of(study);
       for (const StudyOrder &order : orders)
@@ -145,8 +146,8 @@ namespace nsfd
       {
         write_file_atomically(directory_ + "/" + name + ".svg",
                               chart.svg(SvgUse::file));
-        html_ += "<figure class=\"card\">" + chart.svg(SvgUse::page) +
-                 "</figure>\n";
+        html_ +=
+            "<figure class=\"card\">" + chart.svg(SvgUse::page) + "</figure>\n";
       }
 
       std::string html() const { return row_of(html_); }
@@ -175,14 +176,12 @@ namespace nsfd
 
     std::string headline(const StudyResults &study)
     {
-      std::string html =
-          "<h1>" + escape_markup(study.input.title) + "</h1>\n" +
-          paragraphs(study.input.description);
+      std::string html = "<h1>" + escape_markup(study.input.title) + "</h1>\n" +
+                         paragraphs(study.input.description);
       const std::size_t n = study.results.size(),
                         done = count(study, CaseResult::Status::done);
-      html += fmt::format(
-          "<p class=\"state {}\">{} of {} cases done</p>\n",
-          done == n ? "good" : "bad", done, n);
+      html += fmt::format("<p class=\"state {}\">{} of {} cases done</p>\n",
+                          done == n ? "good" : "bad", done, n);
       const std::string verdict = verdict_text(study);
       if (!verdict.empty())
         html += "<p><b>Orders:</b> " + escape_markup(verdict) + "</p>\n";
@@ -204,36 +203,34 @@ namespace nsfd
         rows.push_back({readable(order.error), order.series, errors, rates,
                         order_line(order)});
       }
-      return rows.empty() ? ""
-                          : section("Orders of convergence in " +
-                                        size_label(study),
-                                    table({"error", "series",
-                                           "errors, coarse to fine", "rates",
-                                           "verdict"},
-                                          rows));
+      return rows.empty()
+                 ? ""
+                 : section("Orders of convergence in " + size_label(study),
+                           table({"error", "series", "errors, coarse to fine",
+                                  "rates", "verdict"},
+                                 rows));
     }
 
     std::string cost_rows_html(const StudyResults &study)
     {
       std::vector<std::vector<std::string>> rows;
       for (const CostRow &row : cost_rows(study))
-        rows.push_back({fmt::format("{} = {:.2g}", readable(row.error),
-                                    row.target),
-                        row.series, cost_text(row)});
-      return rows.empty() ? ""
-                          : section("What an error costs",
-                                    table({"error", "series", "CPU time (s)"},
-                                          rows));
+        rows.push_back(
+            {fmt::format("{} = {:.2g}", readable(row.error), row.target),
+             row.series, cost_text(row)});
+      return rows.empty()
+                 ? ""
+                 : section("What an error costs",
+                           table({"error", "series", "CPU time (s)"}, rows));
     }
 
     std::string case_rows(const StudyResults &study)
     {
       const std::vector<std::string> errors = shown_errors(study);
-      std::vector<std::string> head = {"case", "status", "unknowns", "steps",
-                                       "Newton", "Krylov", "factors",
-                                       "set-up (s)", "solve (s)", "spread",
-                                       "repeats", "memory (MB)", "ledger",
-                                       "numerical"};
+      std::vector<std::string> head = {
+          "case",    "status",      "unknowns",   "steps",     "Newton",
+          "Krylov",  "factors",     "set-up (s)", "solve (s)", "spread",
+          "repeats", "memory (MB)", "ledger",     "numerical"};
       for (const std::string &error : errors)
         head.push_back(readable(error));
       std::vector<std::vector<std::string>> rows;
@@ -281,10 +278,12 @@ namespace nsfd
       table.add_text("compiler", study.compiler);
       table.add_text("machine", fmt::format("{}, {}, {} cores", study.host,
                                             study.processor, study.cores));
-      table.add_text("processes",
-                     fmt::format("{} rank(s) of one thread per case, {} case(s) "
-                                 "at a time",
-                                 study.input.ranks, study.input.jobs));
+      table.add_text(
+          "processes",
+          fmt::format("{} rank(s) of one thread per case, {} case(s) "
+                      "at a time",
+                      study.input.ranks, study.input.jobs));
+      table.add_text("seeds", "in scene.prm of each case, if it has any");
       table.add_text("date", study.date);
       for (const std::string &warning : study.warnings)
         table.add_text("warning", warning);
@@ -299,20 +298,19 @@ namespace nsfd
     const Axis cpu = {cpu_label, "s", true}, unknowns = {"unknowns", "", true};
     constexpr std::size_t most_errors = 4;
     for (std::size_t e = 0; e < std::min(errors.size(), most_errors); ++e) {
-      diagrams.add("error_time_" + errors[e],
-                   error_chart(study, errors[e], cpu, &StudyPoint::seconds,
-                               true));
+      diagrams.add(
+          "error_time_" + errors[e],
+          error_chart(study, errors[e], cpu, &StudyPoint::seconds, true));
       diagrams.add("error_unknowns_" + errors[e],
                    error_chart(study, errors[e], unknowns,
                                &StudyPoint::unknowns, false));
       if (study.input.abscissa >= 0)
         diagrams.add("order_" + errors[e], order_chart(study, errors[e]));
     }
-    diagrams.add("ledger_defect",
-                 balance_chart(study, "Ledger defect", "relative defect",
-                               [](const CaseResult &r) {
-                                 return r.ledger_defect;
-                               }));
+    diagrams.add(
+        "ledger_defect",
+        balance_chart(study, "Ledger defect", "relative defect",
+                      [](const CaseResult &r) { return r.ledger_defect; }));
     diagrams.add("numerical_dissipation",
                  balance_chart(study, "Numerical dissipation",
                                "share of the energy, absolute value",

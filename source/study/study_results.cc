@@ -29,7 +29,8 @@ namespace nsfd
         return "";
       if (input.size != "auto")
         return input.size;
-      const Variation &variation = input.variations[std::size_t(input.abscissa)];
+      const Variation &variation =
+          input.variations[std::size_t(input.abscissa)];
       if (varies_with(variation, "Mesh/cells"))
         return "1/cells";
       if (varies_with(variation, "Mesh/refinements"))
@@ -59,8 +60,7 @@ namespace nsfd
           continue;
         const auto &leader = variations[v].leader();
         name += (name.empty() ? "" : ", ") + short_name(leader.path) + " = " +
-                Variation::value(leader,
-                                 study.cases[k].combination.index[v]);
+                Variation::value(leader, study.cases[k].combination.index[v]);
       }
       return name;
     }
@@ -123,15 +123,15 @@ namespace nsfd
     std::map<std::vector<std::size_t>, std::size_t> points;
     std::vector<StudySeries> all;
     for (std::size_t k = 0; k < study.cases.size(); ++k) {
-      const auto [place, is_new] = places.emplace(
-          key_without(study, k, along), all.size());
+      const auto [place, is_new] =
+          places.emplace(key_without(study, k, along), all.size());
       if (is_new) {
         all.emplace_back();
         all.back().name = name_without(study, k, along);
       }
       StudySeries &series = all[place->second];
-      const auto [point, first] = points.emplace(
-          key_without(study, k, {average}), series.first.size());
+      const auto [point, first] =
+          points.emplace(key_without(study, k, {average}), series.first.size());
       if (first) {
         series.first.push_back(k);
         series.members.emplace_back();
@@ -260,9 +260,8 @@ namespace nsfd
         const auto expected = study.input.expected_orders.find(error);
         std::string problem;
         if (expected != study.input.expected_orders.end())
-          order.expected = evaluate(expected->second,
-                                    study.cases[series.first[0]].numbers,
-                                    problem);
+          order.expected = evaluate(
+              expected->second, study.cases[series.first[0]].numbers, problem);
         order.verdict =
             judge(order.fit, order.expected, study.input.order_tolerance);
         orders.push_back(order);

@@ -34,7 +34,8 @@ namespace nsfd
     const std::vector<Column> &columns()
     {
       static const std::vector<Column> all = {
-          {"exit_code", [](const CaseResult &r) { return double(r.exit_code); }},
+          {"exit_code",
+           [](const CaseResult &r) { return double(r.exit_code); }},
           {"unknowns", [](const CaseResult &r) { return r.dofs; }},
           {"cells", [](const CaseResult &r) { return r.cells; }},
           {"steps", [](const CaseResult &r) { return r.steps; }},
@@ -85,12 +86,12 @@ namespace nsfd
     /** One series and error: sizes, errors, rates. */
     std::string order_table(const StudyResults &study, const StudyOrder &order)
     {
-      std::string text = fmt::format("\n{}{}{}\n", order.error,
-                                     order.series.empty() ? "" : ", ",
-                                     order.series);
-      text += fmt::format("  {:>12} {:>12} {:>7} {:>12} {:>10}\n",
-                          size_label(study), "error", "rate", "unknowns",
-                          "CPU s");
+      std::string text =
+          fmt::format("\n{}{}{}\n", order.error,
+                      order.series.empty() ? "" : ", ", order.series);
+      text +=
+          fmt::format("  {:>12} {:>12} {:>7} {:>12} {:>10}\n",
+                      size_label(study), "error", "rate", "unknowns", "CPU s");
       std::size_t rate = 0;
       for (std::size_t i = 0; i < order.points.size(); ++i) {
         const StudyPoint &point = order.points[i];
@@ -234,8 +235,8 @@ namespace nsfd
       one["error"] = row.error;
       one["target"] = row.target;
       one["series"] = row.series;
-      one["seconds"] = row.cost.reached ? number(row.cost.seconds)
-                                        : Json(nullptr);
+      one["seconds"] =
+          row.cost.reached ? number(row.cost.seconds) : Json(nullptr);
       one["at_most"] = row.cost.at_most;
       json["costs"].push_back(one);
     }

@@ -21,7 +21,8 @@ namespace nsfd
     }
 
     /** Parts between the separators outside of brackets; `&&` is none. */
-    std::vector<std::string> split(const std::string &text, const char separator)
+    std::vector<std::string> split(const std::string &text,
+                                   const char separator)
     {
       std::vector<std::string> parts(1);
       int depth = 0;
@@ -135,8 +136,8 @@ namespace nsfd
       const std::size_t n = ranges.empty() ? 1 : ranges[0].values.size();
       for (const auto &other : ranges)
         if (other.values.size() != n)
-          problem = fmt::format("the ranges in `{}` have {} and {} values", text,
-                                n, other.values.size());
+          problem = fmt::format("the ranges in `{}` have {} and {} values",
+                                text, n, other.values.size());
       if (!problem.empty() || ranges.empty())
         return {text};
       std::vector<std::string> values;

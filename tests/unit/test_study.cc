@@ -136,9 +136,9 @@ namespace nsfd
     const auto make = [&problem](const char *text) {
       return *parse_variation(text, problem);
     };
-    const auto all = combine({make("Discretization/degree=1,2"),
-                              make("Mesh/cells=[8, 1],[16, 1]"),
-                              make("Time/theta=0.5")});
+    const auto all =
+        combine({make("Discretization/degree=1,2"),
+                 make("Mesh/cells=[8, 1],[16, 1]"), make("Time/theta=0.5")});
     ASSERT_EQ(all.size(), 4u);
     EXPECT_EQ(all[0].name, "degree=1_cells=8-1");
     EXPECT_EQ(all[3].name, "degree=2_cells=16-1");
@@ -269,9 +269,8 @@ namespace nsfd
                              "end\n");
     EXPECT_TRUE(is_study(file.name(), {}));
     InputErrors errors;
-    const auto study =
-        read_study(file.name(), {"Study/jobs=2"},
-                   {"Discretization/degree=1,2"}, errors);
+    const auto study = read_study(file.name(), {"Study/jobs=2"},
+                                  {"Discretization/degree=1,2"}, errors);
     ASSERT_TRUE(study) << errors.report();
     EXPECT_EQ(study->repeats, 3u);
     EXPECT_EQ(study->jobs, 2u);
@@ -301,9 +300,8 @@ namespace nsfd
           "study.prm:6: error: `energy` has no `:`",
           "study.prm:7: error: nothing called `mush` varies",
           "`Time/theta` assigns nothing"})
-      EXPECT_NE(report.find(message), std::string::npos)
-          << message << "\n"
-          << report;
+      EXPECT_NE(report.find(message), std::string::npos) << message << "\n"
+                                                         << report;
   }
 
   TEST(StudyInputTest, EveryCombinationIsChecked)

@@ -8,7 +8,7 @@ namespace nsfd
 {
   /** One setting of a study, as diagrams show it. */
   struct StudyPoint {
-    double size = 0.;    ///< what the error is a power of; NaN if there is none
+    double size = 0.; ///< what the error is a power of; NaN if there is none
     double error = 0.;
     double seconds = 0.; ///< CPU time of the solve
     double unknowns = 0.;
@@ -31,10 +31,10 @@ namespace nsfd
 
   /**
    * Rates and order of points sorted by falling size. Points that are not
-   * positive and finite are left out. Where all further rates stay below half of
-   * the median before, the error levels off; only the points before are fitted
-   * that are five times above the level. An order needs three points, and
-   * errors above round-off (relative ones, 1000 times that of a double).
+   * positive and finite are left out. Where all further rates stay below half
+   * of the median before, the error levels off; only the points before are
+   * fitted that are five times above the level. An order needs three points,
+   * and errors above round-off (relative ones, 1000 times that of a double).
    */
   OrderFit fit_order(const std::vector<StudyPoint> &points);
 

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,10 +43,8 @@ namespace nsfd
     std::string scene; ///< complete parameter file, ready to run
     /// what formulas may name: degree, cells, ..., and what varies
     std::map<std::string, double> numbers;
-    double tolerance = 0.;  ///< of the solver
-    double theta = 0.;
-    std::string half_step;  ///< value of Time/step; empty if it has no half
-    bool is_2d = true;
+    double tolerance = 0.; ///< of the solver
+    std::string half_step; ///< value of Time/step; empty if it has no half
   };
 
   /** True if the file, or an option of --set, makes it a study. */
@@ -56,9 +55,10 @@ namespace nsfd
    * command line (@p vary). What is wrong goes into @p errors, and the result
    * is null.
    */
-  std::unique_ptr<StudyInput>
-  read_study(const std::string &file, const std::vector<std::string> &set,
-             const std::vector<std::string> &vary, InputErrors &errors);
+  std::unique_ptr<StudyInput> read_study(const std::string &file,
+                                         const std::vector<std::string> &set,
+                                         const std::vector<std::string> &vary,
+                                         InputErrors &errors);
 
   /**
    * Read and check the scenes of all combinations; everything that is wrong in

@@ -11,7 +11,7 @@ namespace nsfd
 {
   /** A case of the best run again to see what limits its error. */
   struct LimitCheck {
-    std::string name, reason; ///< of the case; "tolerance/100", "step/2"
+    std::string name, reason;       ///< of the case; "tolerance/100", "step/2"
     double before = 0., after = 0.; ///< the error
     bool done = false;
 
@@ -32,8 +32,9 @@ namespace nsfd
 
   /** Cases that differ along the abscissa only; averaged where asked for. */
   struct StudySeries {
-    std::string name;               ///< "degree = 2", empty if it is the only one
-    std::vector<std::size_t> first; ///< first case of each point, coarse to fine
+    std::string name; ///< "degree = 2", empty if it is the only one
+    std::vector<std::size_t>
+        first; ///< first case of each point, coarse to fine
     std::vector<std::vector<std::size_t>> members; ///< all cases of each point
   };
 

@@ -14,7 +14,8 @@ namespace nsfd
       std::string path;                ///< "Mesh/cells"
       std::vector<std::string> values; ///< as a parameter file would write them
     };
-    std::string name; ///< of its block, or the short name of its first parameter
+    std::string
+        name; ///< of its block, or the short name of its first parameter
     std::vector<Parameter> parameters;
 
     /** Number of values. */
@@ -61,7 +62,8 @@ namespace nsfd
   struct Combination {
     std::string name;               ///< of its folder: letters, digits, =_-+.
     std::vector<std::size_t> index; ///< value of each variation
-    std::vector<std::pair<std::string, std::string>> parameters; ///< path, value
+    std::vector<std::pair<std::string, std::string>>
+        parameters; ///< path, value
   };
 
   /** The first variation changes slowest. Names are unique. */
