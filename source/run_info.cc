@@ -2,6 +2,7 @@
 
 #include "nsfd/base/version.h"
 #include "nsfd/simulation.h"
+#include "scene/group_report.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -115,6 +116,8 @@ namespace nsfd
     std::cout << "\n";
     for (const auto &[kind, name] : info.parts)
       std::cout << fmt::format("  {:<24} {}\n", kind, name);
+    for (const auto &[keyword, sentence] : short_group_report(input))
+      std::cout << fmt::format("  {:<24} {}\n", keyword, sentence);
   }
 
   template RunInfo run_info(const SceneInput &, const RunOptions &,

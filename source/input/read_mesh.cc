@@ -1,4 +1,6 @@
 #include "nsfd/mesh/mesh_types.h"
+#include "nsfd/mesh/named_mesh.h"
+#include "read_named_mesh.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -34,7 +36,8 @@ namespace nsfd
       const auto value = reader.raw(
           "type", dimension == 2 ? "rectangle" : "brick",
           "rectangle, brick, notched plate, crossed triangles, diagonal "
-          "triangles, tetrahedra, bodies, or a generator of deal.II");
+          "triangles, tetrahedra, bodies, file, voronoi, or a generator of "
+          "deal.II");
       if (!value)
         return "";
       const std::string type = collapse_blanks(value->text());
@@ -42,7 +45,8 @@ namespace nsfd
         return type;
       std::vector<std::string> names;
       for (const MeshType &known : mesh_types())
-        if (known.kind != MeshType::Kind::bodies || !is_body)
+        if (!is_body || (known.kind != MeshType::Kind::bodies &&
+                         known.kind != MeshType::Kind::named))
           names.push_back(known.name);
 
       const MeshType *known = find_mesh_type(type);
@@ -53,8 +57,12 @@ namespace nsfd
                                  known->dimension, dimension),
                      dimension == 2 ? "write for example: rectangle"
                                     : "write for example: brick");
-      else if (type == "voronoi" || type == "file")
-        reader.error("type", fmt::format("type = {} is not there yet", type),
+      else if (known != nullptr && known->kind == MeshType::Kind::named &&
+               is_body)
+        reader.error("type",
+                     fmt::format("type = {} is for section Mesh: it brings its "
+                                 "own groups",
+                                 type),
                      "take rectangle, brick, triangles, tetrahedra or a "
                      "generator of deal.II");
       else if (std::find(names.begin(), names.end(), type) == names.end())
@@ -152,8 +160,14 @@ namespace nsfd
 
       mesh.refinements = reader.integer("refinements", "0", 0, 20,
                                         "times every cell is halved");
-      if (const MeshType *type = find_box_type(mesh.type))
+      if (const MeshType *type = find_box_type(mesh.type)) {
         read_box(reader, dimension, *type, mesh);
+        if (type->simplices)
+          mesh.split_simplices = read_split(reader);
+      } else if (mesh.type == "file")
+        read_mesh_from_file(reader, dimension, mesh);
+      else if (mesh.type == "voronoi")
+        read_voronoi(reader, mesh);
       else if (mesh.type != "bodies")
         mesh.generator_arguments = reader.word(
             "arguments", "", "of the generator, as deal.II takes them: a : b");
@@ -166,9 +180,13 @@ namespace nsfd
       return mesh;
     }
 
-    bool is_simplex_type(const std::string &name)
+    bool has_simplex_cells(const MeshInput &mesh)
     {
-      const MeshType *type = find_box_type(name);
+      if (mesh.split_simplices)
+        return false;
+      if (mesh.named)
+        return all_simplices(*mesh.named);
+      const MeshType *type = find_box_type(mesh.type);
       return type != nullptr && type->simplices;
     }
   } // namespace
@@ -181,9 +199,10 @@ namespace nsfd
 
   bool has_simplices(const SceneInput &scene)
   {
-    return is_simplex_type(scene.mesh.type == "bodies" && !scene.bodies.empty()
-                               ? scene.bodies.front().mesh.type
-                               : scene.mesh.type);
+    return has_simplex_cells(scene.mesh.type == "bodies" &&
+                                     !scene.bodies.empty()
+                                 ? scene.bodies.front().mesh
+                                 : scene.mesh);
   }
 
   void read_mesh(ParameterFile &file, InputErrors &errors, SceneInput &scene)
@@ -212,8 +231,8 @@ namespace nsfd
       body.name = block->block_name();
       body.mesh = read_one_mesh(body_reader, scene.dimension, true);
       if (!scene.bodies.empty() && !body.mesh.type.empty() &&
-          is_simplex_type(body.mesh.type) !=
-              is_simplex_type(scene.bodies.front().mesh.type))
+          has_simplex_cells(body.mesh) !=
+              has_simplex_cells(scene.bodies.front().mesh))
         body_reader.error("type",
                           fmt::format("type = {} does not go together with "
                                       "the cells of the first body",
@@ -235,7 +254,8 @@ namespace nsfd
       const char *const reason =
           simplices
               ? "deal.II 9.4.1 has no higher element for triangles and "
-                "tetrahedra"
+                "tetrahedra (`split simplices = true` makes quads or hexes of "
+                "them)"
               : (scene.dimension == 2 ? "quadrilaterals are tested to degree 8"
                                       : "hexahedra are tested to degree 4");
       reader.error("degree",

@@ -1,6 +1,7 @@
 #include "read_sections.h"
 
 #include "formula.h"
+#include "nsfd/mesh/named_mesh.h"
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@ namespace nsfd
                                             "top",  "front", "back"};
 
     const std::string between = "between materials";
+    const std::string between_groups = "between groups";
 
     bool is_number(const std::string &text)
     {
@@ -33,6 +35,32 @@ namespace nsfd
              });
     }
 
+    /** Words with blanks between them: the name of a group, not a formula. */
+    bool is_plain_text(const std::string &text)
+    {
+      std::string word;
+      bool any_word = false;
+      for (const char c : text + " ") {
+        if (c != ' ') {
+          word += c;
+          continue;
+        }
+        if (!is_number(word) && !is_plain_word(word))
+          return false;
+        any_word |= !is_number(word);
+        word.clear();
+      }
+      return any_word;
+    }
+
+    /** The file of the mesh could not be read: its groups are unknown. */
+    bool lacks_its_mesh(const SceneInput &scene)
+    {
+      return !scene.mesh.named &&
+             (scene.mesh.type == "file" || scene.mesh.type == "voronoi" ||
+              scene.mesh.type.empty());
+    }
+
     std::vector<std::string> body_names(const SceneInput &scene)
     {
       std::vector<std::string> names;
@@ -47,6 +75,102 @@ namespace nsfd
       for (const MaterialInput &material : scene.materials)
         names.push_back(material.name);
       return names;
+    }
+
+    /** What a mesh of its own calls its groups: names, and numbers. */
+    std::vector<std::string> group_names(const SceneInput &scene)
+    {
+      std::vector<std::string> names;
+      if (scene.mesh.named)
+        for (const NamedMesh::Group &group : scene.mesh.named->groups)
+          for (const std::string &word :
+               {group.name, std::to_string(group.number)})
+            if (!word.empty())
+              names.push_back(word);
+      return names;
+    }
+
+    /** A group that the mesh has must have what the section is about. */
+    void check_group(SectionReader &reader, const std::string &word,
+                     const WhereUse use, const NamedMesh &mesh)
+    {
+      const char *const noun = mesh.dimension == 2 ? "curve" : "surface";
+      bool has_cells = false, has_faces = false;
+      unsigned long long n_faces = 0, n_boundary = 0;
+      for (const NamedMesh::Group &group : mesh.groups) {
+        if (group.name != word && std::to_string(group.number) != word)
+          continue;
+        (group.dimension == mesh.dimension ? has_cells : has_faces) = true;
+        if (group.dimension == mesh.dimension)
+          continue;
+        n_faces += group.n_elements;
+        n_boundary += group.n_boundary;
+      }
+      if (use == WhereUse::cells && !has_cells)
+        reader.error("where",
+                     fmt::format("where = {}: this group is a {}, it has no "
+                                 "cells",
+                                 word, noun),
+                     "write a group of cells; `--check` lists all groups");
+      else if (has_faces && use == WhereUse::interior_faces &&
+               n_boundary == n_faces)
+        reader.error(
+            "where",
+            fmt::format("where = {}: this group is on the boundary, there are "
+                        "no faces between cells",
+                        word),
+            mesh.notes.empty()
+                ? "write a group inside the mesh"
+                : "write a group inside the mesh; vertices that are there "
+                  "twice part it: merge vertices = true joins them");
+      else if (has_faces && use == WhereUse::boundary_faces && n_boundary == 0)
+        reader.error("where",
+                     fmt::format("where = {}: this group is inside the mesh, "
+                                 "not on its boundary",
+                                 word),
+                     "use it in an Interface block");
+    }
+
+    /** `between groups`, `between groups [a, b]`. */
+    Where read_between_groups(SectionReader &reader, const std::string &value,
+                              const std::size_t length, const WhereUse use,
+                              const SceneInput &scene)
+    {
+      Where where;
+      where.kind = Where::Kind::between_groups;
+      if (use != WhereUse::interior_faces)
+        reader.error("where",
+                     fmt::format("where = {} is for Interface blocks", value),
+                     "write all, a group or an expression");
+      std::string rest = collapse_blanks(value.substr(length));
+      if (rest.empty())
+        return where;
+      if (rest.front() == '[' && rest.back() == ']')
+        rest = rest.substr(1, rest.size() - 2);
+      const std::size_t comma = rest.find(',');
+      if (comma == std::string::npos) {
+        reader.error("where",
+                     fmt::format("where = {} does not name two groups", value),
+                     "write for example: between groups [a, b]");
+        return where;
+      }
+      where.materials = {collapse_blanks(rest.substr(0, comma)),
+                         collapse_blanks(rest.substr(comma + 1))};
+      std::vector<std::string> known = body_names(scene);
+      if (scene.mesh.named)
+        for (const NamedMesh::Group &group : scene.mesh.named->groups)
+          if (group.dimension == scene.mesh.named->dimension) {
+            known.push_back(group.label());
+            known.push_back(std::to_string(group.number));
+          }
+      for (const std::string &name : where.materials)
+        if (!lacks_its_mesh(scene) &&
+            std::find(known.begin(), known.end(), name) == known.end())
+          reader.error(
+              "where",
+              fmt::format("the mesh has no group of cells `{}`", name),
+              did_you_mean(name, known, "`--check` lists the groups"));
+      return where;
     }
 
     /** `between materials`, `between materials [a, b]`; brackets optional. */
@@ -96,11 +220,21 @@ namespace nsfd
         known.push_back(between);
       for (const std::string &body : body_names(scene))
         known.push_back(body);
+      std::string groups;
+      if (scene.mesh.named)
+        for (const NamedMesh::Group &group : scene.mesh.named->groups) {
+          known.push_back(group.label());
+          groups += (groups.empty() ? "its groups are " : ", ") + group.label();
+        }
+      if (groups.size() > 200)
+        groups = "`--check` lists its groups";
       reader.error(
           "where",
           fmt::format("where = {}: the mesh `{}` has no such group", value,
                       scene.mesh.type),
-          did_you_mean(value, known, "write all or an expression of x, y, z"));
+          did_you_mean(value, known,
+                       groups.empty() ? "write all or an expression of x, y, z"
+                                      : groups));
     }
   } // namespace
 
@@ -141,10 +275,24 @@ namespace nsfd
     const bool is_body =
         std::find(bodies.begin(), bodies.end(), value) != bodies.end();
 
-    if (is_body || (is_number(value) && has_numbered_groups(scene))) {
+    const std::vector<std::string> groups = group_names(scene);
+    const bool is_group =
+        std::find(groups.begin(), groups.end(), value) != groups.end();
+    const bool is_grains =
+        scene.mesh.type == "voronoi" && value == "between grains";
+
+    if (is_body || is_group ||
+        (is_number(value) && has_numbered_groups(scene))) {
       where.kind = Where::Kind::group;
       where.name = value;
-    } else if (is_side(value)) {
+      if (is_group)
+        check_group(reader, value, use, *scene.mesh.named);
+    } else if (is_grains)
+      where = read_between_groups(reader, value, value.size(), use, scene);
+    else if (value.compare(0, between_groups.size(), between_groups) == 0)
+      where = read_between_groups(reader, value, between_groups.size(), use,
+                                  scene);
+    else if (is_side(value)) {
       where.kind = Where::Kind::side;
       where.name = value;
       if (scene.dimension == 2 && (value == "front" || value == "back"))
@@ -160,8 +308,12 @@ namespace nsfd
                      "write all, between materials or an expression");
     } else if (value.compare(0, between.size(), between) == 0)
       where = read_between(reader, value, use, scene);
-    else if (is_number(value) || is_plain_word(value))
-      report_unknown_group(reader, value, use, scene);
+    else if (is_number(value) || is_plain_word(value) ||
+             (scene.mesh.named && is_plain_text(value))) {
+      if (!lacks_its_mesh(scene))
+        report_unknown_group(reader, value, use, scene);
+    } else if (lacks_its_mesh(scene) && is_plain_text(value))
+      where.kind = Where::Kind::group;
     else {
       where.kind = Where::Kind::expression;
       where.condition =

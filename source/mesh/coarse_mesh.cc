@@ -106,6 +106,12 @@ namespace nsfd
       problems.push_back("the mesh has no cell");
       return;
     }
+    for (const auto &cell : mesh.cells)
+      if (cell.vertices.size() != mesh.cells[0].vertices.size()) {
+        problems.push_back("the mesh has cells of different shapes; write "
+                           "`split simplices = true`");
+        return;
+      }
     for (const auto &p : mesh.vertices)
       for (unsigned int d = 0; d < dim; ++d)
         if (!std::isfinite(p[d])) {

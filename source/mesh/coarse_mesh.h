@@ -16,7 +16,8 @@ namespace nsfd
   struct CoarseMesh {
     std::vector<dealii::Point<dim>> vertices;
     std::vector<dealii::CellData<dim>> cells;
-    dealii::SubCellData boundary; ///< faces whose boundary id is not 0
+    /// faces whose boundary id is not 0 or that have a manifold id
+    dealii::SubCellData boundary;
   };
 
   /** Edges, corner angles (degrees) and corner Jacobians of one cell. */
@@ -61,6 +62,18 @@ namespace nsfd
   CoarseMesh<dim> merge_bodies(const std::vector<BodyInput> &bodies,
                                const std::vector<CoarseMesh<dim>> &meshes,
                                std::vector<std::string> &problems);
+
+  /** What came from a file; cells may be of several shapes. */
+  template <int dim>
+  CoarseMesh<dim> coarse_mesh(const NamedMesh &named);
+
+  /**
+   * Cut every cell into one quad or hex per corner, at the midpoints of edges,
+   * faces and cells. Triangles, quads, tetrahedra, hexes and prisms, in any
+   * mixture; ids of cells and faces are inherited.
+   */
+  template <int dim>
+  CoarseMesh<dim> split_at_midpoints(const CoarseMesh<dim> &mesh);
 
   /** Empty mesh, stray values, inverted and degenerate cells, glued faces. */
   template <int dim>

@@ -75,7 +75,8 @@ namespace nsfd
       void add_boundary(const Cell &cell, unsigned int face_no);
       void add_interior(const Cell &cell, unsigned int face_no);
       unsigned int block_of(const Cell &first, const Cell &second,
-                            const Point<dim> &centre);
+                            const Point<dim> &centre,
+                            types::manifold_id face_id);
 
       const MeshGroups<dim> &groups_;
       const std::vector<unsigned int> &materials_, &driven_;
@@ -191,7 +192,8 @@ namespace nsfd
             cell->face(f)->vertex(v) / double(cell->face(f)->n_vertices());
       auto face = make_face(
           cell_1, first ? f : cell->neighbor_face_no(f),
-          {PointOrigin::Kind::interface, block_of(cell_1, cell_2, centre)});
+          {PointOrigin::Kind::interface,
+           block_of(cell_1, cell_2, centre, cell->face(f)->manifold_id())});
       face.face.bodies = {{body_of_[cell_1->active_cell_index()],
                            body_of_[cell_2->active_cell_index()]}};
       face.face.cells = {{cell_1->global_active_cell_index(),
@@ -215,7 +217,8 @@ namespace nsfd
     template <int dim>
     unsigned int FaceCollector<dim>::block_of(const Cell &first,
                                               const Cell &second,
-                                              const Point<dim> &centre)
+                                              const Point<dim> &centre,
+                                              const types::manifold_id face_id)
     {
       const auto material = [&](const Cell &cell) -> const std::string & {
         return input_.materials[materials_[cell->active_cell_index()]].name;
@@ -224,7 +227,7 @@ namespace nsfd
         if (groups_.holds_interior_face(
                 input_.interfaces[b].where, centre, material(first),
                 material(second),
-                {{first->material_id(), second->material_id()}}))
+                {{first->material_id(), second->material_id()}}, face_id))
           return b;
       if (!without_block || comes_before(centre, *without_block))
         without_block = centre;

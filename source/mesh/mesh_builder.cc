@@ -1,7 +1,9 @@
 #include "nsfd/mesh/mesh_builder.h"
 
-#include "coarse_mesh.h"
+#include "mesh_topology.h"
+#include "mix_bits.h"
 #include "nsfd/mesh/mesh_types.h"
+#include "nsfd/mesh/named_mesh.h"
 
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>
@@ -10,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fmt/format.h>
 #include <set>
 #include <sstream>
@@ -45,9 +49,13 @@ namespace nsfd
       return result;
     }
 
-    /** The active cells of a mesh without hanging nodes. */
+    /**
+     * The active cells of a mesh without hanging nodes. Manifold ids of faces
+     * are groups, or the curved boundaries of a generator.
+     */
     template <int dim>
-    CoarseMesh<dim> active_level(const Triangulation<dim> &triangulation)
+    CoarseMesh<dim> active_level(const Triangulation<dim> &triangulation,
+                                 const bool with_manifold_ids = false)
     {
       CoarseMesh<dim> mesh;
       std::vector<unsigned int> number(triangulation.n_vertices(),
@@ -65,12 +73,21 @@ namespace nsfd
         }
         for (const unsigned int f : cell->face_indices()) {
           const auto face = cell->face(f);
-          if (!face->at_boundary() || face->boundary_id() == 0)
+          const bool in_group =
+              with_manifold_ids &&
+              face->manifold_id() != numbers::flat_manifold_id;
+          if (!in_group && (!face->at_boundary() || face->boundary_id() == 0))
             continue;
           CellData<dim - 1> part(face->n_vertices());
           for (const unsigned int v : face->vertex_indices())
             part.vertices[v] = number[face->vertex_index(v)];
           part.boundary_id = face->boundary_id();
+          if (in_group) {
+            // from the first of its two cells
+            if (!face->at_boundary() && cell->neighbor(f) < cell)
+              continue;
+            part.manifold_id = face->manifold_id();
+          }
           if constexpr (dim == 2)
             mesh.boundary.boundary_lines.push_back(part);
           else
@@ -119,6 +136,104 @@ namespace nsfd
       }
     }
 
+    /**
+     * deal.II stores every line once; quads and hexes that share a line must
+     * agree on its direction. True for lattices, not for any merged mesh.
+     */
+    template <int dim>
+    bool lines_agree(const std::vector<CellData<dim>> &cells)
+    {
+      std::vector<std::pair<unsigned int, unsigned int>> lines;
+      for (const auto &cell : cells)
+        for (unsigned int v = 0; v < cell.vertices.size(); ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            if (!(v >> d & 1u))
+              lines.emplace_back(cell.vertices[v], cell.vertices[v | 1u << d]);
+      std::sort(lines.begin(), lines.end());
+      return std::none_of(lines.begin(), lines.end(), [&](const auto &line) {
+        return line.first < line.second &&
+               std::binary_search(lines.begin(), lines.end(),
+                                  std::pair(line.second, line.first));
+      });
+    }
+
+    /** deal.II wants to know which of the faces with an id are inside. */
+    template <int dim>
+    void mark_inner_faces(CoarseMesh<dim> &mesh)
+    {
+      const auto mark = [&](auto &objects) {
+        if (objects.empty())
+          return;
+        std::set<FaceKey> inner;
+        for_each_face(sorted_faces(mesh),
+                      [&](const CellFace &face, const std::size_t n) {
+                        if (n > 1)
+                          inner.insert(face.key);
+                      });
+        for (auto &object : objects)
+          if (inner.count(face_key(object.vertices)) != 0)
+            object.boundary_id = numbers::internal_face_boundary_id;
+      };
+      if constexpr (dim == 2)
+        mark(mesh.boundary.boundary_lines);
+      else
+        mark(mesh.boundary.boundary_quads);
+    }
+
+    /** The cells may be put into another order of their corners. */
+    template <int dim>
+    void fill(CoarseMesh<dim> &mesh, Triangulation<dim> &triangulation)
+    {
+      if (mesh.cells[0].vertices.size() != dim + 1 && !lines_agree(mesh.cells))
+        GridTools::consistently_order_cells(mesh.cells);
+      mark_inner_faces(mesh);
+      triangulation.create_triangulation(mesh.vertices, mesh.cells,
+                                         mesh.boundary);
+    }
+
+    template <int dim>
+    bool has_simplices(const CoarseMesh<dim> &mesh)
+    {
+      return std::any_of(
+          mesh.cells.begin(), mesh.cells.end(),
+          [](const auto &cell) { return cell.vertices.size() != 1u << dim; });
+    }
+
+    template <int dim>
+    CoarseMesh<dim> named_mesh(const MeshInput &input,
+                               const unsigned int refinements,
+                               std::vector<std::string> &problems)
+    {
+      if (!input.named || input.named->dimension != dim) {
+        problems.push_back(fmt::format("no mesh of {} dimensions was read for "
+                                       "the type `{}`",
+                                       dim, input.type));
+        return {};
+      }
+      CoarseMesh<dim> mesh = coarse_mesh<dim>(*input.named);
+      if (mesh.cells.size() * std::ldexp(1., dim * int(refinements)) > 5e8) {
+        problems.push_back("too many cells; reduce `refinements`");
+        return {};
+      }
+      if (refinements == 0)
+        return mesh;
+      // the split comes first: it knows all shapes
+      if (input.split_simplices && has_simplices(mesh))
+        mesh = split_at_midpoints(mesh);
+      check(mesh, problems);
+      if (!problems.empty())
+        return {};
+      try {
+        Triangulation<dim> triangulation;
+        fill(mesh, triangulation);
+        triangulation.refine_global(refinements);
+        return active_level(triangulation, true);
+      } catch (const std::exception &exception) {
+        problems.push_back("the mesh cannot be refined: " + message(exception));
+        return {};
+      }
+    }
+
     template <int dim>
     CoarseMesh<dim> one_mesh(const MeshInput &input,
                              const unsigned int refinements,
@@ -143,8 +258,13 @@ namespace nsfd
                                        input.type, type->dimension, dim));
       else if (type->kind == MeshType::Kind::generator)
         mesh = generated_mesh<dim>(input, refinements, problems);
+      else if (type->kind == MeshType::Kind::named)
+        mesh = named_mesh<dim>(input, refinements, problems);
       else
         mesh = lattice_mesh<dim>(input, refinements, problems);
+      // a mesh of one shape without simplices has been split, or need not be
+      if (problems.empty() && input.split_simplices && has_simplices(mesh))
+        mesh = split_at_midpoints(mesh);
       if (problems.empty() && input.distortion > 0.)
         distort(mesh, input.distortion, input.seed);
       return mesh;
@@ -182,25 +302,30 @@ namespace nsfd
       return mesh;
     }
 
-    /**
-     * deal.II stores every line once; quads and hexes that share a line must
-     * agree on its direction. True for lattices, not for any merged mesh.
-     */
+    /** Every rank has read the file, or made the mesh of its geometry. */
     template <int dim>
-    bool lines_agree(const std::vector<CellData<dim>> &cells)
+    bool is_same_on_all_ranks(const CoarseMesh<dim> &mesh,
+                              const MPI_Comm communicator)
     {
-      std::vector<std::pair<unsigned int, unsigned int>> lines;
-      for (const auto &cell : cells)
-        for (unsigned int v = 0; v < cell.vertices.size(); ++v)
-          for (unsigned int d = 0; d < dim; ++d)
-            if (!(v >> d & 1u))
-              lines.emplace_back(cell.vertices[v], cell.vertices[v | 1u << d]);
-      std::sort(lines.begin(), lines.end());
-      return std::none_of(lines.begin(), lines.end(), [&](const auto &line) {
-        return line.first < line.second &&
-               std::binary_search(lines.begin(), lines.end(),
-                                  std::pair(line.second, line.first));
-      });
+      std::uint64_t hash = 0;
+      const auto add = [&](const std::uint64_t bits) {
+        hash = mixed(hash + bits);
+      };
+      for (const auto &p : mesh.vertices)
+        for (unsigned int d = 0; d < dim; ++d) {
+          std::uint64_t bits;
+          std::memcpy(&bits, &p[d], sizeof bits);
+          add(bits);
+        }
+      for (const auto &cell : mesh.cells) {
+        add(cell.material_id);
+        for (const unsigned int v : cell.vertices)
+          add(v);
+      }
+      std::array<std::uint64_t, 2> ends = {{hash, ~hash}};
+      MPI_Allreduce(MPI_IN_PLACE, ends.data(), 2, MPI_UINT64_T, MPI_MIN,
+                    communicator);
+      return ends[0] == hash && ends[1] == ~hash;
     }
 
     template <int dim>
@@ -212,13 +337,10 @@ namespace nsfd
         result = std::make_unique<parallel::shared::Triangulation<dim>>(
             communicator, Triangulation<dim>::none, true,
             parallel::shared::Triangulation<dim>::partition_metis);
-      else {
-        if (!lines_agree(mesh.cells))
-          GridTools::consistently_order_cells(mesh.cells);
+      else
         result = std::make_unique<parallel::distributed::Triangulation<dim>>(
             communicator);
-      }
-      result->create_triangulation(mesh.vertices, mesh.cells, mesh.boundary);
+      fill(mesh, *result);
       return result;
     }
   } // namespace
@@ -240,6 +362,14 @@ namespace nsfd
                             found);
     if (found.empty())
       check(mesh, found);
+    if (mesh_input.named) {
+      const int differs = !is_same_on_all_ranks(mesh, communicator);
+      int any = differs;
+      MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, communicator);
+      if (any != 0)
+        found.push_back("the ranks have made different meshes; let Gmsh write "
+                        "a .msh and name that file");
+    }
     std::unique_ptr<Triangulation<dim>> result;
     if (found.empty())
       try {

@@ -3,6 +3,7 @@
 #include "nsfd/base/communicator.h"
 
 #include "coarse_mesh.h"
+#include "nsfd/mesh/named_mesh.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/tria.h>
@@ -57,6 +58,12 @@ namespace nsfd
     {
       return std::find(list.begin(), list.end(), name) != list.end();
     }
+
+    /** Ids that no file has given are in no set. */
+    bool is_in(const std::vector<bool> &sets, const unsigned int id)
+    {
+      return id < sets.size() && sets[id];
+    }
   } // namespace
 
   template <int dim>
@@ -89,6 +96,13 @@ namespace nsfd
     };
     material_ids_ = name(materials);
     boundary_ids_ = name(boundaries);
+
+    has_named_ = input.mesh.named != nullptr;
+    if (has_named_)
+      for (const auto &[group, sets] : sets_of_groups(*input.mesh.named)) {
+        named_[group].of_cells = sets.of_cells;
+        named_[group].of_faces = sets.of_faces;
+      }
   }
 
   template <int dim>
@@ -108,10 +122,27 @@ namespace nsfd
   bool MeshGroups<dim>::holds_material_id(const std::string &group,
                                           const types::material_id id) const
   {
+    if (has_named_) {
+      const auto found = named_.find(group);
+      return found != named_.end() && is_in(found->second.of_cells, id);
+    }
     const auto body = std::find(bodies_.begin(), bodies_.end(), group);
     return body != bodies_.end()
                ? id == types::material_id(body - bodies_.begin())
                : group == std::to_string(id);
+  }
+
+  template <int dim>
+  bool MeshGroups<dim>::between_groups(
+      const std::array<std::string, 2> &names,
+      const std::array<types::material_id, 2> &ids) const
+  {
+    if (names[0].empty() && names[1].empty())
+      return ids[0] != ids[1];
+    const auto in = [&](const unsigned int group, const unsigned int side) {
+      return holds_material_id(names[group], ids[side]);
+    };
+    return (in(0, 0) && in(1, 1)) || (in(0, 1) && in(1, 0));
   }
 
   template <int dim>
@@ -128,6 +159,7 @@ namespace nsfd
     case Where::Kind::group:
       return holds_material_id(where.name, cell->material_id());
     case Where::Kind::between_materials:
+    case Where::Kind::between_groups:
       return false;
     case Where::Kind::expression:
       return where.condition.at(cell->center()) != 0.;
@@ -149,10 +181,18 @@ namespace nsfd
     case Where::Kind::side:
       return holds_side(where.name, face->center());
     case Where::Kind::group:
+      if (has_named_) {
+        const auto group = named_.find(where.name);
+        return group != named_.end() &&
+               (group->second.of_faces.empty()
+                    ? is_in(group->second.of_cells, cell->material_id())
+                    : is_in(group->second.of_faces, face->manifold_id()));
+      }
       return contains(bodies_, where.name)
                  ? holds_material_id(where.name, cell->material_id())
                  : where.name == std::to_string(face->boundary_id());
     case Where::Kind::between_materials:
+    case Where::Kind::between_groups:
       return false;
     case Where::Kind::expression:
       return where.condition.at(face->center()) != 0.;
@@ -164,14 +204,20 @@ namespace nsfd
   bool MeshGroups<dim>::holds_interior_face(
       const Where &where, const Point<dim> &face_centre,
       const std::string &material_1, const std::string &material_2,
-      const std::array<types::material_id, 2> &material_ids) const
+      const std::array<types::material_id, 2> &material_ids,
+      const types::manifold_id face_id) const
   {
     switch (where.kind) {
     case Where::Kind::all:
       return true;
     case Where::Kind::side:
       return false;
+    case Where::Kind::between_groups:
+      return between_groups(where.materials, material_ids);
     case Where::Kind::group:
+      if (const auto group = named_.find(where.name);
+          group != named_.end() && !group->second.of_faces.empty())
+        return is_in(group->second.of_faces, face_id);
       return holds_material_id(where.name, material_ids[0]) &&
              holds_material_id(where.name, material_ids[1]);
     case Where::Kind::between_materials: {
@@ -194,8 +240,9 @@ namespace nsfd
       return fmt::format(
           "there is no side `{}` in {} dimensions; there are {}", where.name,
           dim, fmt::join(sides.begin(), sides.begin() + 2 * dim, ", "));
-    if (where.kind != Where::Kind::group || contains(bodies_, where.name) ||
-        contains(material_ids_, where.name) ||
+    // those of a mesh of its own have been compared when the file was read
+    if (where.kind != Where::Kind::group || has_named_ ||
+        contains(bodies_, where.name) || contains(material_ids_, where.name) ||
         contains(boundary_ids_, where.name))
       return "";
     return fmt::format(

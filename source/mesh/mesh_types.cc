@@ -16,6 +16,10 @@ namespace nsfd
          2, true},
         {"tetrahedra", "six tetrahedra per hexahedron", Kind::box, 3, 6, true},
         {"bodies", "the meshes of all blocks `Body: name`", Kind::bodies},
+        {"file", "a mesh or geometry file: Gmsh, STEP, Abaqus, UCD, VTK",
+         Kind::named},
+        {"voronoi", "quadrilaterals in the grains of a polycrystal",
+         Kind::named, 2},
     };
 
     struct Generator {

@@ -1,5 +1,7 @@
 #include "nsfd/scene/check.h"
 
+#include "group_report.h"
+
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
@@ -345,6 +347,8 @@ namespace nsfd
           "{:.3g} to {:.3g} degrees, volume {:.6g}\n",
           mesh.n_cells, mesh.smallest_edge, mesh.largest_edge,
           mesh.smallest_angle, mesh.largest_angle, mesh.volume);
+      for (const auto &[keyword, sentence] : group_report(input))
+        out << fmt::format("  {:<10} {}\n", keyword, sentence);
       out << fmt::format("  bodies     {} of {} different shapes, {} unknowns, "
                          "{} face points, {}\n",
                          mesh.n_cells, counts[0], counts[1], counts[2],

@@ -20,6 +20,7 @@ namespace nsfd
    * this and never the file. Vectors per component have `dim` used entries.
    */
   struct SceneInput;
+  struct NamedMesh; // see mesh/named_mesh.h
   class VerificationCase;
 
   /** `where`: all | boundary or material words | a group | a condition. */
@@ -31,18 +32,21 @@ namespace nsfd
       side,              ///< left right bottom top back front of the bounding box
       group,             ///< a named group of the mesh (material or boundary id)
       between_materials, ///< faces between two material blocks
+      between_groups,    ///< faces between two groups of cells
       expression         ///< non-zero at the midpoint of face or cell
     };
     Kind kind = Kind::all;
     std::string name;                     ///< side or group
-    std::array<std::string, 2> materials; ///< names; empty = any two different
+    /// names, of materials or groups; empty = any two different
+    std::array<std::string, 2> materials;
     Expression condition;
   };
 
   struct MeshInput
   {
     /// rectangle, brick, notched plate, crossed triangles, diagonal triangles,
-    /// tetrahedra, bodies (from `Body:` blocks), or a deal.II generator's name
+    /// tetrahedra, bodies (from `Body:` blocks), file, voronoi, or a deal.II
+    /// generator's name
     std::string type = "rectangle";
     std::vector<double> lower, upper; ///< dim entries
     std::vector<unsigned int> cells;  ///< per direction, dim entries
@@ -53,6 +57,10 @@ namespace nsfd
     /// pre-crack) from the left side to `notch_length` at height `notch_height`
     double notch_length = 0., notch_width = 0., notch_height = 0.;
     std::string generator_arguments; ///< "a : b : c" as deal.II takes them
+    /// file, voronoi: in the units of the scene
+    std::shared_ptr<const NamedMesh> named;
+    /// triangles into three quads, tetrahedra into four hexes, at the midpoints
+    bool split_simplices = false;
   };
 
   /** One of several bodies in a mesh of type `bodies`. */

@@ -6,6 +6,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <mpi.h>
 #include <string>
@@ -32,8 +33,10 @@ namespace nsfd
   /**
    * Decides which cells and faces a `where` means, by the centre of the cell
    * or face. Sides are those of the bounding box of the whole mesh. A group is
-   * the name of a body (mesh type `bodies`), or the number of a material id
-   * (cells) or boundary id (boundary faces).
+   * the name of a body (mesh type `bodies`), a name or number of a mesh that
+   * has its own (`file`, `voronoi`), or the number of a material id (cells) or
+   * boundary id (boundary faces). Cells of a mesh with groups of its own carry
+   * its set of groups as material id, faces as manifold id.
    */
   template <int dim>
   class MeshGroups
@@ -53,15 +56,18 @@ namespace nsfd
                              unsigned int face_no) const;
 
     /**
-     * Order of the two sides does not matter. A group holds for the faces
-     * whose two cells belong to it, which takes the material ids of both.
+     * Order of the two sides does not matter. A group of faces holds for its
+     * faces, which takes the manifold id; one of cells for the faces whose two
+     * cells belong to it, which takes the material ids of both.
      */
     bool holds_interior_face(
         const Where &where, const dealii::Point<dim> &face_centre,
         const std::string &material_1, const std::string &material_2,
-        const std::array<dealii::types::material_id, 2> &material_ids = {
-            {dealii::numbers::invalid_material_id,
-             dealii::numbers::invalid_material_id}}) const;
+        const std::array<dealii::types::material_id, 2> &material_ids =
+            {{dealii::numbers::invalid_material_id,
+              dealii::numbers::invalid_material_id}},
+        dealii::types::manifold_id face_id =
+            dealii::numbers::flat_manifold_id) const;
 
     /** Empty, or a sentence: this mesh has no such group or side. */
     std::string missing(const Where &where) const;
@@ -74,10 +80,20 @@ namespace nsfd
                     const dealii::Point<dim> &face_centre) const;
     bool holds_material_id(const std::string &group,
                            dealii::types::material_id id) const;
+    bool
+    between_groups(const std::array<std::string, 2> &names,
+                   const std::array<dealii::types::material_id, 2> &ids) const;
 
     std::pair<dealii::Point<dim>, dealii::Point<dim>> box_;
     std::vector<std::string> bodies_;
     std::vector<std::string> material_ids_, boundary_ids_;
+
+    /** Which sets of groups have a group, by its name and by its number. */
+    struct SetsOfGroup {
+      std::vector<bool> of_cells, of_faces; ///< empty: no such group
+    };
+    bool has_named_ = false; ///< the mesh has groups of its own
+    std::map<std::string, SetsOfGroup> named_;
   };
 
   /**

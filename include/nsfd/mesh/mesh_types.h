@@ -10,7 +10,8 @@ namespace nsfd
     enum class Kind {
       box,      ///< fills the box between two corners
       bodies,   ///< the meshes of all blocks `Body: name`
-      generator ///< of deal.II, by its name there
+      generator, ///< of deal.II, by its name there
+      named      ///< brings its own cells and groups: MeshInput::named
     };
 
     std::string name, text;

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * A mesh with groups of cells and of faces, as a file brings it: plain data,
+   * no mesh library. Cells may be triangles, quads, tetrahedra, hexes, prisms,
+   * in any mixture; their corners are in deal.II's order.
+   */
+  struct NamedMesh {
+    /** Cells, or faces of cells that belong to a group. */
+    struct Elements {
+      std::vector<std::size_t> first = {0};
+      std::vector<unsigned int> vertices; ///< element e from first[e] on
+      std::vector<unsigned int> set;      ///< per element, into `sets`
+
+      std::size_t size() const { return set.size(); }
+      unsigned int n_vertices(const std::size_t e) const
+      {
+        return unsigned(first[e + 1] - first[e]);
+      }
+      const unsigned int *begin(const std::size_t e) const
+      {
+        return vertices.data() + first[e];
+      }
+      void add(const std::vector<unsigned int> &corners, unsigned int in_set);
+    };
+
+    struct Group {
+      unsigned int dimension = 0; ///< that of its elements
+      int number = 0;
+      std::string name; ///< may be empty
+      unsigned long long n_elements = 0;
+      unsigned long long n_boundary = 0; ///< faces with a cell on one side only
+
+      /** Name, or number if it has none. */
+      std::string label() const;
+    };
+
+    unsigned int dimension = 2;
+    std::vector<double> coordinates; ///< x, y, z per vertex
+    Elements cells, faces;
+    std::vector<Group> groups;
+    /// what groups an element belongs to, as indices; the first is empty
+    std::vector<std::vector<unsigned int>> sets = {{}};
+    /// what has been changed, and what is odd: a sentence each
+    std::vector<std::string> notes;
+
+    std::size_t n_vertices() const { return coordinates.size() / 3; }
+    /** Index of the set of these groups, made if need be. */
+    unsigned int set_of(std::vector<unsigned int> groups_of_element);
+  };
+
+  /** By set; empty vectors if no element of this kind can belong to it. */
+  struct SetsOfNamedGroup {
+    std::vector<bool> of_cells, of_faces;
+  };
+
+  /**
+   * By name and by number. A name stands for all groups that have it; a number
+   * means nothing where it is the name of another group.
+   */
+  std::map<std::string, SetsOfNamedGroup> sets_of_groups(const NamedMesh &mesh);
+
+  /**
+   * Put a mesh as it comes out of a file in order: scaled by @p unit, plane in
+   * two dimensions, each cell and face once, cells of positive volume, no
+   * unused vertex; with @p merge_vertices those at one place become one. What
+   * was done goes into the notes, what cannot be repaired into @p problems.
+   */
+  void put_in_order(NamedMesh &mesh, double unit, bool merge_vertices,
+                    std::vector<std::string> &problems);
+
+  /** "120 quads, 3 triangles" */
+  std::string count_of_shapes(const NamedMesh &mesh);
+
+  /** True if all cells are triangles or tetrahedra. */
+  bool all_simplices(const NamedMesh &mesh);
+  bool mixed_shapes(const NamedMesh &mesh);
+} // namespace nsfd

@@ -1,0 +1,219 @@
+#include "read_named_mesh.h"
+
+#include "../mesh/mesh_file.h"
+#include "../mesh/voronoi.h"
+#include "nsfd/input/quantity.h"
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+
+namespace nsfd
+{
+  namespace
+  {
+    const std::map<std::string, MeshFormat> formats = {
+        {"gmsh", MeshFormat::gmsh_mesh}, {"geo", MeshFormat::gmsh_geometry},
+        {"cad", MeshFormat::cad},        {"abaqus", MeshFormat::abaqus},
+        {"ucd", MeshFormat::ucd},        {"vtk", MeshFormat::vtk},
+        {"vtu", MeshFormat::vtu}};
+
+    MeshFormat read_format(SectionReader &reader, const std::string &file)
+    {
+      std::vector<std::string> names = {"auto"};
+      for (const auto &[name, format] : formats)
+        names.push_back(name);
+      const std::string name = reader.choice(
+          "format", "auto", names,
+          "auto (by the name of the file), gmsh, geo (script of Gmsh), cad "
+          "(STEP, IGES, BREP), abaqus, ucd, vtk, vtu");
+      const auto found = formats.find(name);
+      return found == formats.end() ? guess_format(file) : found->second;
+    }
+
+    /** `mm`, or a number of scene units. */
+    double read_unit(SectionReader &reader)
+    {
+      const std::string text = "of the coordinates in the file: m, mm, um, ... "
+                               "or a number";
+      const auto raw = reader.raw("length unit", "m", text);
+      if (!raw)
+        return 1.;
+      const std::string word = collapse_blanks(raw->text());
+      if (const auto unit = find_unit(word)) {
+        if (unit->unit == units::length)
+          return *scaled_number("1", *unit);
+        reader.error("length unit",
+                     fmt::format("length unit = {} is no length", word),
+                     "write for example: mm");
+        return 1.;
+      }
+      return reader.number_in(*raw, "length unit", "mm", units::length,
+                              Range::positive());
+    }
+
+    bool can_be_opened(SectionReader &reader, const std::string &file)
+    {
+      if (file.empty())
+        return false;
+      if (std::filesystem::is_directory(file)) {
+        reader.error("file", fmt::format("`{}` is a folder", file),
+                     "write the name of a mesh in it");
+        return false;
+      }
+      if (!std::ifstream(file)) {
+        reader.error("file", fmt::format("there is no file `{}`", file),
+                     "paths are relative to the folder of the parameter file");
+        return false;
+      }
+      return true;
+    }
+
+    double read_element_size(SectionReader &reader, const bool is_geometry)
+    {
+      if (!is_geometry) {
+        reader.refuse({"element size", "cell shape"},
+                      "the file brings its own cells");
+        return 0.;
+      }
+      if (!reader.optional("element size",
+                           "m, everywhere; without it as the geometry says"))
+        return 0.;
+      return reader.number("element size", "", units::length,
+                           Range::positive(),
+                           "m, everywhere; without it as the geometry says");
+    }
+
+    MeshFileRequest::Shape read_shape(SectionReader &reader,
+                                      const unsigned int dimension)
+    {
+      using Shape = MeshFileRequest::Shape;
+      const std::string cubes = dimension == 2 ? "quads" : "hexes",
+                        simplices = dimension == 2 ? "triangles" : "tetrahedra";
+      const std::string word = reader.choice(
+          "cell shape", "as given", {"as given", cubes, simplices},
+          fmt::format("as given (by the geometry), {} or {}", cubes,
+                      simplices));
+      return word == cubes       ? Shape::cubes
+             : word == simplices ? Shape::simplices
+                                 : Shape::as_given;
+    }
+
+    /** What degree and law of the other sections rely on. */
+    void check_shapes(SectionReader &reader, const NamedMesh &named,
+                      const bool split)
+    {
+      if (split || !mixed_shapes(named))
+        return;
+      const bool has_prisms = named.dimension == 3;
+      reader.error(
+          "file",
+          fmt::format("the mesh has cells of different shapes: {}",
+                      count_of_shapes(named)),
+          has_prisms ? "add: set split simplices = true, which cuts all of "
+                       "them into hexes; or mesh with one shape"
+                     : "add: set split simplices = true, which cuts all of "
+                       "them into quads; or mesh with one shape");
+    }
+
+    void store(SectionReader &reader, const std::string &entry,
+               NamedMesh &&named, const std::vector<std::string> &problems,
+               MeshInput &mesh)
+    {
+      for (const std::string &problem : problems)
+        reader.error(entry, problem);
+      if (problems.empty())
+        mesh.named = std::make_shared<NamedMesh>(std::move(named));
+    }
+  } // namespace
+
+  bool read_split(SectionReader &reader)
+  {
+    return reader.boolean("split simplices", false,
+                          "cut triangles into three quads, tetrahedra into "
+                          "four hexes: opens every degree");
+  }
+
+  void read_mesh_from_file(SectionReader &reader, const unsigned int dimension,
+                           MeshInput &mesh)
+  {
+    const unsigned int n_before = reader.errors().n_errors();
+    MeshFileRequest request;
+    request.dimension = dimension;
+    request.file = reader.file("file", "mesh or geometry", "plate.msh");
+    const bool exists = can_be_opened(reader, request.file);
+    request.format = read_format(reader, request.file);
+    if (request.format == MeshFormat::cad)
+      reader.refuse({"length unit"}, "CAD files name their own unit");
+    else
+      request.unit = read_unit(reader);
+    const bool is_geometry = request.format == MeshFormat::cad ||
+                             request.format == MeshFormat::gmsh_geometry;
+    request.element_size = read_element_size(reader, is_geometry);
+    if (is_geometry)
+      request.shape = read_shape(reader, dimension);
+    request.merge_vertices = reader.boolean(
+        "merge vertices", false, "join vertices that are at one place");
+    mesh.split_simplices = read_split(reader);
+    if (!exists || reader.errors().n_errors() > n_before)
+      return;
+    std::vector<std::string> problems;
+    NamedMesh named = read_mesh_file(request, problems);
+    for (std::string &problem : problems)
+      problem.insert(0, fmt::format("`{}`: ", request.file));
+    if (problems.empty())
+      check_shapes(reader, named, mesh.split_simplices);
+    store(reader, "file", std::move(named), problems, mesh);
+  }
+
+  void read_voronoi(SectionReader &reader, MeshInput &mesh)
+  {
+    const unsigned int n_before = reader.errors().n_errors();
+    mesh.lower = reader.numbers("lower corner", "0, 0", units::length,
+                                Range::any(), 2, "m");
+    mesh.upper = reader.numbers("upper corner", "", units::length, Range::any(),
+                                2, "m");
+    VoronoiRequest request;
+    constexpr unsigned int most_grains = 100000;
+    request.grains =
+        reader.integer("grains", "", 1, most_grains, "number of them");
+    request.seed = reader.integer("seed", "1", 0,
+                                  std::numeric_limits<unsigned int>::max(),
+                                  "of the grains and the distortion");
+    request.relaxation = reader.integer(
+        "relaxation", "5", 0, 1000,
+        "steps of Lloyd: more of them make more equal grains");
+    request.element_size = reader.number("element size", "", units::length,
+                                         Range::positive(), "m");
+    if (reader.errors().n_errors() > n_before)
+      return;
+    double n_cells = 1.;
+    for (unsigned int d = 0; d < 2; ++d) {
+      request.lower[d] = mesh.lower[d];
+      request.upper[d] = mesh.upper[d];
+      n_cells *= (mesh.upper[d] - mesh.lower[d]) / request.element_size;
+      if (!(mesh.upper[d] > mesh.lower[d]))
+        return reader.error(
+            "upper corner",
+            fmt::format("upper corner: {} = {:g} must be greater than {:g} of "
+                        "the lower corner",
+                        "xy"[d], mesh.upper[d], mesh.lower[d]),
+            "exchange the two corners");
+    }
+    if (n_cells > 1e8)
+      return reader.error("element size",
+                          fmt::format("the mesh would have {:.2g} cells",
+                                      n_cells),
+                          "write a larger element size");
+    std::vector<std::string> problems;
+    NamedMesh named = voronoi_mesh(request, problems);
+    if (problems.empty())
+      put_in_order(named, 1., false, problems);
+    store(reader, "element size", std::move(named), problems, mesh);
+  }
+} // namespace nsfd

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "nsfd/mesh/named_mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  struct GmshRequest {
+    std::string file;
+    unsigned int dimension = 2;
+    bool is_geometry = false; ///< to be meshed, else a mesh
+    /// geometries: everywhere, in the unit of the file; 0: as the file says
+    double element_size = 0.;
+    enum class Shape { as_given, simplices, cubes };
+    Shape shape = Shape::as_given; ///< of the cells of a geometry
+  };
+
+  /**
+   * What the Gmsh library makes of a file, not yet in order. STEP and other CAD
+   * files come in millimetres. Elements of higher order keep their corners.
+   * Without physical groups every curve, surface or volume is a group, known
+   * by its number and, in CAD files, its name.
+   */
+  NamedMesh read_gmsh(const GmshRequest &request,
+                      std::vector<std::string> &problems);
+
+  /** Convex or not, without crossings; corners anticlockwise. */
+  struct PlaneRegions {
+    std::vector<double> x, y;
+    std::vector<std::vector<unsigned int>> corners; ///< of every region
+    std::vector<std::string> names;                 ///< of every region
+    std::string borders; ///< name of the group of faces between regions
+  };
+
+  /** Quads of about @p element_size in regions that cover a plane figure. */
+  NamedMesh mesh_regions(const PlaneRegions &regions, double element_size,
+                         std::vector<std::string> &problems);
+} // namespace nsfd

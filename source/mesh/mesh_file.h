@@ -1,0 +1,52 @@
+#pragma once
+
+#include "nsfd/mesh/named_mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  enum class MeshFormat {
+    gmsh_mesh,     ///< and all other meshes that Gmsh reads
+    gmsh_geometry, ///< a script: .geo
+    cad,           ///< STEP, IGES, BREP: names its own unit
+    abaqus,
+    ucd,
+    vtk,
+    vtu
+  };
+
+  /** By the name of the file, `.inp` by its first line. */
+  MeshFormat guess_format(const std::string &file);
+
+  /** Shown, with the text of `format`, to who writes something else. */
+  std::string name_of(MeshFormat format);
+
+  struct MeshFileRequest {
+    std::string file;
+    MeshFormat format = MeshFormat::gmsh_mesh;
+    unsigned int dimension = 2;
+    double unit = 1.;         ///< of the lengths in the file, scene units
+    double element_size = 0.; ///< scene units; 0: as the file says
+    enum class Shape { as_given, simplices, cubes };
+    Shape shape = Shape::as_given;
+    bool merge_vertices = false;
+  };
+
+  /** The mesh of a file, in order. Everything that is wrong is a sentence. */
+  NamedMesh read_mesh_file(const MeshFileRequest &request,
+                           std::vector<std::string> &problems);
+
+  /**
+   * `*NODE`, `*ELEMENT`, `*ELSET`, `*SURFACE` of an Abaqus input deck: element
+   * sets and surfaces become groups. Not yet in order.
+   */
+  NamedMesh read_abaqus(const std::string &file, unsigned int dimension,
+                        std::vector<std::string> &problems);
+
+  /** UCD, VTK and deal.II's VTU, not yet in order: groups have numbers. */
+  NamedMesh read_by_deal_ii(const std::string &file, MeshFormat format,
+                            unsigned int dimension,
+                            std::vector<std::string> &problems);
+} // namespace nsfd

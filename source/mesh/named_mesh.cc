@@ -1,0 +1,95 @@
+#include "nsfd/mesh/named_mesh.h"
+
+#include "cell_shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace nsfd
+{
+  void NamedMesh::Elements::add(const std::vector<unsigned int> &corners,
+                                const unsigned int in_set)
+  {
+    vertices.insert(vertices.end(), corners.begin(), corners.end());
+    first.push_back(vertices.size());
+    set.push_back(in_set);
+  }
+
+  std::string NamedMesh::Group::label() const
+  {
+    return name.empty() ? std::to_string(number) : name;
+  }
+
+  unsigned int
+  NamedMesh::set_of(std::vector<unsigned int> groups_of_element)
+  {
+    std::sort(groups_of_element.begin(), groups_of_element.end());
+    groups_of_element.erase(
+        std::unique(groups_of_element.begin(), groups_of_element.end()),
+        groups_of_element.end());
+    const auto found = std::find(sets.begin(), sets.end(), groups_of_element);
+    if (found == sets.end()) {
+      sets.push_back(groups_of_element);
+      return unsigned(sets.size() - 1);
+    }
+    return unsigned(found - sets.begin());
+  }
+
+  std::map<std::string, SetsOfNamedGroup> sets_of_groups(const NamedMesh &mesh)
+  {
+    std::map<std::string, SetsOfNamedGroup> result;
+    const auto mark = [&](const std::string &word, const unsigned int g) {
+      auto &[of_cells, of_faces] = result[word];
+      auto &of =
+          mesh.groups[g].dimension == mesh.dimension ? of_cells : of_faces;
+      of.resize(mesh.sets.size(), false);
+      for (std::size_t s = 0; s < mesh.sets.size(); ++s)
+        if (std::binary_search(mesh.sets[s].begin(), mesh.sets[s].end(), g))
+          of[s] = true;
+    };
+    for (unsigned int g = 0; g < mesh.groups.size(); ++g)
+      if (!mesh.groups[g].name.empty())
+        mark(mesh.groups[g].name, g);
+    const auto is_name = [&](const std::string &word) {
+      return std::any_of(mesh.groups.begin(), mesh.groups.end(),
+                         [&](const auto &group) { return group.name == word; });
+    };
+    for (unsigned int g = 0; g < mesh.groups.size(); ++g) {
+      const std::string number = std::to_string(mesh.groups[g].number);
+      if (!is_name(number))
+        mark(number, g);
+    }
+    return result;
+  }
+
+  std::string count_of_shapes(const NamedMesh &mesh)
+  {
+    std::map<unsigned int, std::size_t> count;
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+      ++count[mesh.cells.n_vertices(c)];
+    std::string result;
+    for (const auto &[n_corners, n] : count) {
+      const auto *shape = find_cell_shape(mesh.dimension, n_corners);
+      result += fmt::format("{}{} {}", result.empty() ? "" : ", ", n,
+                            shape != nullptr ? shape->name : "cells");
+    }
+    return result;
+  }
+
+  bool all_simplices(const NamedMesh &mesh)
+  {
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+      if (mesh.cells.n_vertices(c) != mesh.dimension + 1)
+        return false;
+    return true;
+  }
+
+  bool mixed_shapes(const NamedMesh &mesh)
+  {
+    for (std::size_t c = 1; c < mesh.cells.size(); ++c)
+      if (mesh.cells.n_vertices(c) != mesh.cells.n_vertices(0))
+        return true;
+    return false;
+  }
+} // namespace nsfd

@@ -1,0 +1,31 @@
+// A plate of 2 x 1, in millimetres: two materials, their seam, a crack from
+// the left side to the middle of the left half.
+h = 0.25;
+Point(1) = {0, 0, 0, h};
+Point(2) = {1, 0, 0, h};
+Point(3) = {2, 0, 0, h};
+Point(4) = {2, 1, 0, h};
+Point(5) = {1, 1, 0, h};
+Point(6) = {0, 1, 0, h};
+Point(7) = {0, 0.5, 0, h};
+Point(8) = {0.5, 0.5, 0, h};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 7};
+Line(7) = {7, 1};
+Line(8) = {2, 5};
+Line(9) = {7, 8};
+Curve Loop(1) = {1, 8, 5, 6, 7};
+Plane Surface(1) = {1};
+Curve{9} In Surface{1};
+Curve Loop(2) = {2, 3, 4, -8};
+Plane Surface(2) = {2};
+Physical Surface("steel", 1) = {1};
+Physical Surface("glue", 2) = {2};
+Physical Curve("left end", 11) = {6, 7};
+Physical Curve("right end", 12) = {3};
+Physical Curve("seam", 13) = {8};
+Physical Curve("crack", 14) = {9};
