@@ -1,6 +1,9 @@
 #include "nsfd/dynamics/dynamics.h"
 
+#include "lane_system.h"
+
 #include "nsfd/base/cost.h"
+#include "nsfd/dynamics/inner_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +17,8 @@ namespace nsfd
      * take part, zero on the others.
      */
     template <int dim>
-    class ElementwiseDynamics final : public Dynamics<dim>
+    class ElementwiseDynamics final : public Dynamics<dim>,
+                                      public InnerSolver
     {
     public:
       using Dynamics<dim>::Dynamics;
@@ -60,6 +64,32 @@ namespace nsfd
           else
             multiply(A, n, r + first, z + first);
         }
+      }
+
+      void reinit(const double time_step, const double theta) override
+      {
+        const bool changes =
+          time_step != this->time_step_ || theta != this->theta_;
+        Dynamics<dim>::reinit(time_step, theta);
+        if (!changes)
+          return;
+        const Charge charge(Cost::blocks);
+        if (!lanes_)
+          lanes_ = std::make_unique<LaneSystem<dim>>(
+            this->communicator_, this->bodies_, this->points_);
+        lanes_->reinit(*this);
+      }
+
+      unsigned int solve_inner(const InnerSystem &system,
+                               const std::vector<double> &r,
+                               std::vector<double> &x) override
+      {
+        const auto before = lanes_->applications();
+        const unsigned int iterations =
+          system.jacobian ? lanes_->gmres(system, r, x)
+                          : lanes_->conjugate_gradients(system, r, x);
+        this->counters_.delassus += lanes_->applications() - before;
+        return iterations;
       }
 
     private:
@@ -133,6 +163,7 @@ namespace nsfd
       }
 
       std::vector<double> factors_, inverse_;
+      std::unique_ptr<LaneSystem<dim>> lanes_;
     };
   } // namespace
 

@@ -49,7 +49,7 @@ namespace nsfd
         SolverReport report =
           order[0]->solve(problem, dynamics, energy_scale, control, impulse,
                           evaluation);
-        if (report.converged || softens(evaluation))
+        if (report.converged || softens(problem, evaluation))
           return report;
         const std::vector<double> best(impulse);
         impulse = start;
@@ -88,11 +88,23 @@ namespace nsfd
         return false;
       }
 
-      static bool softens(const LawEvaluation<dim> &evaluation)
+      /** Damage grows, or has begun and not come to its end. */
+      static bool softens(const OneStepProblem<dim> &problem,
+                          const LawEvaluation<dim> &evaluation)
       {
-        return std::any_of(evaluation.solutions.begin(),
-                           evaluation.solutions.end(),
-                           [](const auto &s) { return s.damages; });
+        for (std::size_t i = 0; i < problem.n_points; ++i) {
+          if (evaluation.solutions[i].damages)
+            return true;
+          if (problem.kind[i] != PointKind::cohesive)
+            continue;
+          const auto &interaction = problem.interactions[problem.interaction[i]];
+          const Reach history{problem.opening_max[i],
+                              problem.slip_max.empty() ? 0. :
+                                                         problem.slip_max[i]};
+          if (past_peak(*interaction.law, problem.opening_factor[i], history))
+            return true;
+        }
+        return false;
       }
 
       /**

@@ -1,3 +1,4 @@
+#include "nsfd/dynamics/inner_solver.h"
 #include "nsfd/nonsmooth/solver.h"
 
 #include <algorithm>
@@ -47,6 +48,7 @@ namespace nsfd
         SolverReport &report;
         std::size_t n, n_owned; // components
         const Vector *impulse;  // where the evaluation is
+        InnerSolver *inner;     // or null
       };
 
       bool differentiate(const Work &work, const Vector &impulse);
@@ -67,9 +69,20 @@ namespace nsfd
       Vector jacobian_; // dP*/dU_loc, dim x dim per point, where coupled
       std::vector<char> coupled_;
       Vector compliance_; // D, -1: does not take part
+      Vector majorants_;
+      std::vector<LocalSolution<dim>> solutions_; // before the step, with
+      Vector defect_, velocity_;                  // what follows from them
       Vector r_, z_, p_, Ap_, rhs_;
       std::vector<std::vector<unsigned int>> colours_;
     };
+
+    template <int dim>
+    bool softens(const LawEvaluation<dim> &evaluation)
+    {
+      return std::any_of(evaluation.solutions.begin(),
+                         evaluation.solutions.end(),
+                         [](const auto &s) { return s.damages; });
+    }
 
     template <int dim>
     bool DualNewton<dim>::differentiate(const Work &work,
@@ -119,6 +132,10 @@ namespace nsfd
       }
       // the compliance that preconditions either system
       compliance_.resize(work.n);
+      majorants_.resize(work.n);
+      for (std::size_t i = 0; i < problem.n_points; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          majorants_[i * dim + c] = work.evaluation.majorant(i, c);
       for (std::size_t k = 0; k < work.n; ++k)
         compliance_[k] =
           slopes_[k] > 0.
@@ -200,7 +217,7 @@ namespace nsfd
       const auto &communicator = work.dynamics.communicator();
       const Vector &defect = work.evaluation.defect;
       dP.assign(work.n, 0.);
-      if (spring_direction(work, tolerance, dP))
+      if (!work.inner && spring_direction(work, tolerance, dP))
         return;
       rhs_.assign(work.n, 0.);
       bool moved = false;
@@ -216,6 +233,14 @@ namespace nsfd
         if (compliance_[k] >= 0.)
           rhs_[k] = -(compliance_[k] + majorant(work, k)) * defect[k] - Ap_[k];
 
+      if (work.inner) {
+        z_.assign(work.n, 0.);
+        work.report.krylov += work.inner->solve_inner(
+          {compliance_, tolerance, 2000, nullptr, nullptr, 0.}, rhs_, z_);
+        for (std::size_t k = 0; k < work.n; ++k)
+          dP[k] += z_[k];
+        return;
+      }
       work.dynamics.prepare_preconditioner(compliance_);
       r_ = rhs_;
       z_.assign(work.n, 0.);
@@ -261,6 +286,22 @@ namespace nsfd
                                             Vector &dP)
     {
       const auto &communicator = work.dynamics.communicator();
+      if (work.inner) {
+        for (std::size_t i = 0; i < coupled_.size(); ++i)
+          if (!coupled_[i])
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                jacobian_[(i * dim + c) * dim + d] =
+                  c == d ? -slopes_[i * dim + c] : 0.;
+        rhs_ = work.evaluation.defect;
+        for (double &value : rhs_)
+          value = -value;
+        dP.assign(work.n, 0.);
+        work.report.krylov += work.inner->solve_inner(
+          {compliance_, tolerance, 120, &jacobian_, &majorants_, shift}, rhs_,
+          dP);
+        return;
+      }
       work.dynamics.prepare_preconditioner(compliance_);
       const auto precondition = [&](const Vector &in, Vector &out) {
         r_.assign(work.n, 0.);
@@ -479,7 +520,8 @@ namespace nsfd
                       report,
                       problem.n_points * dim,
                       problem.n_owned * dim,
-                      &impulse};
+                      &impulse,
+                      dynamic_cast<InnerSolver *>(&dynamics)};
       Vector dP, best, trial;
       evaluation.update(impulse);
       unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
@@ -507,9 +549,9 @@ namespace nsfd
         trial = impulse;
         for (std::size_t k = 0; k < work.n; ++k)
           trial[k] += dP[k];
-        const auto solutions = evaluation.solutions;
-        const auto defect = evaluation.defect;
-        const auto velocity = evaluation.velocity;
+        solutions_ = evaluation.solutions;
+        defect_ = evaluation.defect;
+        velocity_ = evaluation.velocity;
         evaluation.update(trial);
         if (evaluation.error < (coupled ? 0.7 : 0.5) * before ||
             evaluation.error <= control.tolerance) {
@@ -519,9 +561,9 @@ namespace nsfd
           continue;
         }
         shift = 1e-3;
-        evaluation.solutions = solutions;
-        evaluation.defect = defect;
-        evaluation.velocity = velocity;
+        evaluation.solutions = solutions_;
+        evaluation.defect = defect_;
+        evaluation.velocity = velocity_;
         evaluation.error = before;
         if (!control.may_sweep && coupled &&
             shorten(work, before, dP, impulse, trial)) {
@@ -552,10 +594,11 @@ namespace nsfd
         }
         ++stalled;
         // A cycle or several solutions: more of the same seldom helps, and a
-        // shorter step does.
+        // shorter step does, at once where points soften.
         idle_rounds = best_error < 0.5 * best_of_round ? 0 : idle_rounds + 1;
         best_of_round = best_error;
-        if (idle_rounds > control.idle_rounds ||
+        if (idle_rounds > (softens(evaluation) ? control.idle_rounds / 4
+                                               : control.idle_rounds) ||
             report.sweeps >= 5 * control.maximum_iterations)
           break;
         if (!control.may_sweep) {
