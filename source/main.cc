@@ -9,6 +9,8 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
+#include <malloc.h>
+
 #include <iostream>
 #include <string>
 
@@ -62,6 +64,9 @@ int main(int argc, char **argv)
 {
   if (asks_for_study(argc, argv))
     return study(argc, argv);
+  // Vectors come and go in every step: their pages stay with the process.
+  mallopt(M_MMAP_THRESHOLD, 1 << 28);
+  mallopt(M_TRIM_THRESHOLD, 1 << 28);
   CommandLine command;
   SolveCommand stored;
   const bool solve = argc > 1 && argv[1] == std::string("solve");

@@ -1,6 +1,7 @@
 #include "make_scene.h"
 
 #include "nsfd/dynamics/block_kernels.h"
+#include "nsfd/dynamics/inner_solver.h"
 
 #include <gtest/gtest.h>
 
@@ -621,6 +622,111 @@ end
     check_elementwise<3>(hexes);
     check_elementwise<3>(tets);
     check_elementwise<2>(mixed);
+  }
+
+  // --- Newton systems in single precision
+
+  /** Round-off of single precision times a condition number of some 1e3. */
+  constexpr double single_tolerance = 1e-4;
+
+  /** Largest |x_k - y_k| / s_k against the largest |y_k| / s_k. */
+  double scaled_difference(const Vector &x, const Vector &y, const Vector &s)
+  {
+    double difference = 0., size = 0.;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      difference = std::max(difference, std::abs(x[k] - y[k]) / s[k]);
+      size = std::max(size, std::abs(y[k]) / s[k]);
+    }
+    return difference / size;
+  }
+
+  template <int dim>
+  void check_inner(const std::string &text)
+  {
+    Scene<dim> scene(text);
+    auto &dynamics = *scene.dynamics;
+    auto *inner = dynamic_cast<InnerSolver *>(scene.dynamics.get());
+    ASSERT_NE(inner, nullptr);
+    const Vector diagonal = delassus_diagonal(dynamics);
+    const std::size_t n = diagonal.size();
+    Vector root(n);
+    for (std::size_t k = 0; k < n; ++k)
+      root[k] = std::sqrt(diagonal[k]);
+    for (const bool all : {true, false}) {
+      const Vector D = compliance(diagonal, all, 1e-1, 1e2);
+      Vector r = random_vector(n, 60), x(n, 3.);
+      for (std::size_t k = 0; k < n; ++k)
+        r[k] = D[k] >= 0. ? r[k] * root[k] : 0.;
+      EXPECT_GT(inner->solve_inner({D, 1e-6, 1000, nullptr, nullptr, 0.}, r, x),
+                0u);
+      Vector residual = delassus(dynamics, x);
+      for (std::size_t k = 0; k < n; ++k)
+        if (D[k] < 0.) {
+          EXPECT_EQ(x[k], 0.) << "does not take part";
+          residual[k] = 0.;
+        } else
+          residual[k] += D[k] * x[k];
+      EXPECT_LT(scaled_difference(residual, r, root), single_tolerance);
+
+      // (I - J (W + shift R - R)) x = r, J unsymmetric, no slope where D < 0
+      const double shift = 1e-3;
+      const Vector noise = random_vector(n * dim, 70);
+      Vector J(n * dim, 0.), R(diagonal), f = random_vector(n, 80), y(n, 3.);
+      for (std::size_t k = 0; k < n; ++k) {
+        R[k] *= 1.5;
+        f[k] /= root[k];
+        if (D[k] < 0.)
+          continue;
+        for (unsigned int c = 0; c < dim; ++c) {
+          const std::size_t j = k - k % dim + c;
+          J[k * dim + c] = c == k % dim ? -1. / (D[k] + R[k]) :
+                           D[j] < 0.    ? 0. :
+                                       0.2 * noise[k * dim + c] /
+                                         std::sqrt((D[k] + R[k]) * (D[j] + R[j]));
+        }
+      }
+      EXPECT_GT(inner->solve_inner({D, 1e-6, 400, &J, &R, shift}, f, y), 0u);
+      Vector Wy = delassus(dynamics, y), result(y), inverse(n);
+      for (std::size_t k = 0; k < n; ++k) {
+        inverse[k] = 1. / root[k];
+        Wy[k] -= (1. - shift) * R[k] * y[k];
+      }
+      for (std::size_t k = 0; k < n; ++k)
+        for (unsigned int c = 0; c < dim; ++c)
+          result[k] -= J[k * dim + c] * Wy[k - k % dim + c];
+      EXPECT_LT(scaled_difference(result, f, inverse), single_tolerance);
+    }
+  }
+
+  TEST(InnerSolver, SolvesWhatItIsGiven)
+  {
+    check_inner<2>(quads);
+    check_inner<2>(triangles);
+    check_inner<3>(hexes);
+    check_inner<3>(tets);
+    check_inner<2>(mixed);
+  }
+
+  TEST(InnerSolver, LargeClassesAndSmallOnes)
+  {
+    // all bodies share one block, or each has its own
+    std::string even = quads;
+    const std::string word = "distortion = 0.25";
+    even.replace(even.find(word), word.size(), "distortion = 0");
+    even.replace(even.find("cells = 3, 2"), 12, "cells = 9, 6");
+    check_inner<2>(even);
+  }
+
+  TEST(InnerSolver, NothingComesFromNothing)
+  {
+    Scene<2> scene(quads);
+    auto *inner = dynamic_cast<InnerSolver *>(scene.dynamics.get());
+    const Vector D = delassus_diagonal(*scene.dynamics);
+    Vector x(D.size(), 3.);
+    EXPECT_EQ(inner->solve_inner({D, 1e-6, 100, nullptr, nullptr, 0.},
+                                 Vector(D.size(), 0.), x),
+              0u);
+    EXPECT_EQ(largest(x), 0.);
   }
 
   TEST(Preconditioner, RigidRowsStayPositive)

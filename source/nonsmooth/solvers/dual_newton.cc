@@ -1,5 +1,4 @@
-#include "nsfd/dynamics/inner_solver.h"
-#include "nsfd/nonsmooth/solver.h"
+#include "dual_newton.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,73 +8,6 @@ namespace nsfd
 {
   namespace
   {
-    /**
-     * Newton's method on the natural map of the dual problem.
-     *
-     * With damage and friction thresholds fixed, the laws are monotone and the
-     * Newton system is (W + D) dP = -(D + R) Phi, D >= 0 the compliance of the
-     * law at its local solution: conjugate gradients. Components without
-     * compliance bound (open contacts, sliding friction) follow their law at
-     * once and leave the system. A step that does not reduce the natural map is
-     * replaced by an exact line search on the convex dual objective between
-     * two points of its domain.
-     *
-     * Where damage grows or a friction threshold follows its normal impulse,
-     * the local solutions are differentiated as they are, and the unsymmetric
-     * system (I - J (W - R)) dP = -Phi goes to GMRES. What that does not
-     * reduce goes to the convex step with the thresholds frozen, then to
-     * sweeps of Gauss-Seidel; every hand-over is judged by the natural map.
-     */
-    template <int dim>
-    class DualNewton final : public NonsmoothSolver<dim>
-    {
-    public:
-      SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics,
-                         const double energy_scale,
-                         const SolverControl &control,
-                         std::vector<double> &impulse,
-                         LawEvaluation<dim> &evaluation) override;
-
-    private:
-      using Vector = std::vector<double>;
-      struct Work
-      {
-        const OneStepProblem<dim> &problem;
-        Dynamics<dim> &dynamics;
-        const SolverControl &control;
-        LawEvaluation<dim> &evaluation;
-        SolverReport &report;
-        std::size_t n, n_owned; // components
-        const Vector *impulse;  // where the evaluation is
-        InnerSolver *inner;     // or null
-      };
-
-      bool differentiate(const Work &work, const Vector &impulse);
-      bool spring_direction(const Work &work, double tolerance, Vector &dP);
-      void symmetric_direction(const Work &work, double tolerance, Vector &dP);
-      void coupled_direction(const Work &work, double tolerance, double shift,
-                             Vector &dP);
-      bool shorten(const Work &work, double before, const Vector &dP,
-                   Vector &impulse, Vector &trial);
-      bool line_search(const Work &work, const Vector &direction,
-                       Vector &impulse);
-      double majorant(const Work &work, const std::size_t k) const
-      {
-        return work.evaluation.majorant(k / dim, k % dim);
-      }
-
-      Vector slopes_;   // -dP*/dU_loc, frozen
-      Vector jacobian_; // dP*/dU_loc, dim x dim per point, where coupled
-      std::vector<char> coupled_;
-      Vector compliance_; // D, -1: does not take part
-      Vector majorants_;
-      std::vector<LocalSolution<dim>> solutions_; // before the step, with
-      Vector defect_, velocity_;                  // what follows from them
-      Vector r_, z_, p_, Ap_, rhs_;
-      std::vector<std::vector<unsigned int>> colours_;
-    };
-
     template <int dim>
     bool softens(const LawEvaluation<dim> &evaluation)
     {
@@ -83,552 +15,238 @@ namespace nsfd
                          evaluation.solutions.end(),
                          [](const auto &s) { return s.damages; });
     }
+  } // namespace
 
-    template <int dim>
-    bool DualNewton<dim>::differentiate(const Work &work,
-                                        const Vector &impulse)
-    {
-      const auto &problem = work.problem;
-      slopes_.assign(work.n, 0.);
-      jacobian_.resize(work.n * dim);
-      coupled_.assign(problem.n_points, 0);
-      bool any = false;
-      for (std::size_t i = 0; i < problem.n_points; ++i) {
-        const auto &solution = work.evaluation.solutions[i];
-        const double R_N = work.evaluation.majorant(i, 0),
-                     R_T = work.evaluation.majorant(i, 1);
-        if (const auto *linear = work.evaluation.linear(i)) {
-          for (unsigned int c = 0; c < dim; ++c)
-            slopes_[i * dim + c] =
-              linear->slope * (c == 0 ? linear->normal : linear->tangential);
-          continue;
-        }
-        const auto s = frozen_slopes<dim>(problem, i, solution.frozen,
-                                          solution, R_N, R_T);
-        std::copy(s.begin(), s.end(), slopes_.begin() + i * dim);
-        if (work.evaluation.is_frozen(i) ||
-            !solution.coupled)
-          continue;
-        // difference quotients of the local solve, friction and damage in it
-        coupled_[i] = 1;
-        any = true;
-        const auto local = work.evaluation.local_velocity(impulse, i);
-        double size = 0.;
+  /**
+   * Exact line search on the convex dual objective with the thresholds of
+   * the current point frozen, between the local solutions at P and at
+   * P + dP, both in the domain of the objective. Its slope along the line is
+   *
+   *     d . (U_free + W P_alpha - U_law(P_alpha)),   increasing in alpha.
+   */
+  template <int dim>
+  bool DualNewton<dim>::line_search(const Work &work,
+                                    const Vector &direction,
+                                    Vector &impulse)
+  {
+    const auto &problem = work.problem;
+    const auto &communicator = work.dynamics.communicator();
+    std::vector<FrozenPoint> frozen(problem.n_points);
+    Vector start(work.n), d(work.n), Wd(work.n), U(work.n), moved(work.n);
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      frozen[i] = work.evaluation.solutions[i].frozen;
+      for (unsigned int c = 0; c < dim; ++c)
+        start[i * dim + c] = work.evaluation.solutions[i].impulse[c];
+    }
+    // U at P + dP, then its local solutions
+    for (std::size_t k = 0; k < work.n; ++k)
+      moved[k] = impulse[k] + direction[k];
+    work.dynamics.apply_delassus(moved.data(), U.data());
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      std::array<double, dim> local;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t k = i * dim + c;
+        local[c] =
+          U[k] + problem.free_velocity[k] - majorant(work, k) * moved[k];
+      }
+      const auto solution = solve_frozen_point<dim>(
+        problem, i, frozen[i], local, work.evaluation.majorant(i, 0),
+        work.evaluation.majorant(i, 1));
+      for (unsigned int c = 0; c < dim; ++c)
+        d[i * dim + c] = solution.impulse[c] - start[i * dim + c];
+    }
+    work.dynamics.apply_delassus(d.data(), Wd.data());
+    work.dynamics.apply_delassus(start.data(), U.data());
+    for (std::size_t k = 0; k < work.n; ++k)
+      U[k] += problem.free_velocity[k];
+
+    Vector terms(work.n_owned);
+    const auto slope = [&](const double alpha) {
+      for (std::size_t i = 0; i < problem.n_owned; ++i) {
+        std::array<double, dim> P;
         for (unsigned int c = 0; c < dim; ++c)
-          size = std::max({size, std::abs(local[c]),
-                           work.evaluation.majorant(i, c) *
-                             std::abs(solution.impulse[c])});
-        const double step = 1e-7 * size;
-        for (unsigned int c = 0; c < dim; ++c) {
-          auto moved = local;
-          moved[c] += step;
-          const double h = moved[c] - local[c];
-          const auto other = solve_point<dim>(problem, i, moved, R_N, R_T,
-                                              solution.reach);
-          for (unsigned int d = 0; d < dim; ++d)
-            jacobian_[(i * dim + d) * dim + c] =
-              h > 0. ? (other.impulse[d] - solution.impulse[d]) / h : 0.;
-        }
-      }
-      // the compliance that preconditions either system
-      compliance_.resize(work.n);
-      majorants_.resize(work.n);
-      for (std::size_t i = 0; i < problem.n_points; ++i)
-        for (unsigned int c = 0; c < dim; ++c)
-          majorants_[i * dim + c] = work.evaluation.majorant(i, c);
-      for (std::size_t k = 0; k < work.n; ++k)
-        compliance_[k] =
-          slopes_[k] > 0.
-            ? std::max(0., 1. / slopes_[k] - majorant(work, k))
-            : -1.;
-      return work.dynamics.communicator().any(any);
-    }
-
-    /**
-     * The same step in the velocities of the bodies, where that is possible.
-     * With linear laws only, all that is left of the error can go at once.
-     */
-    template <int dim>
-    bool DualNewton<dim>::spring_direction(const Work &work,
-                                           double tolerance, Vector &dP)
-    {
-      bool linear = true;
-      for (std::size_t i = 0; i < work.problem.n_owned && linear; ++i)
-        linear = work.evaluation.linear(i) != nullptr ||
-                 work.problem.kind[i] == PointKind::prescribed;
-      work.dynamics.prepare_preconditioner(compliance_);
-      if (!work.dynamics.communicator().any(!linear) &&
-          work.dynamics.inverts())
-        tolerance = std::min(tolerance, 0.1 * work.control.tolerance /
-                                          work.evaluation.error);
-      rhs_.assign(work.n, 0.);
-      for (std::size_t k = 0; k < work.n; ++k) {
-        const double defect = work.evaluation.defect[k];
-        if (compliance_[k] >= 0.)
-          rhs_[k] = (compliance_[k] + majorant(work, k)) * defect;
-        else
-          dP[k] = (*work.impulse)[k] - defect;
-      }
-      if (!work.dynamics.solve_springs(work.impulse->data(),
-                                       work.evaluation.velocity.data(),
-                                       rhs_.data(), tolerance, dP.data())) {
-        dP.assign(work.n, 0.);
-        return false;
-      }
-      // rows without compliance are approached by proximal steps
-      const auto &communicator = work.dynamics.communicator();
-      const auto size = [&](const Vector &r) {
-        z_.assign(work.n_owned, 0.);
-        for (std::size_t k = 0; k < work.n_owned; ++k)
-          if (compliance_[k] >= 0.)
-            z_[k] = r[k] * r[k] / majorant(work, k);
-        return std::sqrt(communicator.sum(z_.data(), work.n_owned));
-      };
-      if (!work.dynamics.inverts()) {
-        const double goal = tolerance * size(rhs_);
-        for (unsigned int round = 0; round < 5; ++round) {
-          Ap_.resize(work.n);
-          work.dynamics.apply_delassus(dP.data(), Ap_.data());
-          r_ = rhs_;
-          for (std::size_t k = 0; k < work.n; ++k) {
-            Ap_[k] += work.problem.free_velocity[k];
-            r_[k] += compliance_[k] * (dP[k] - (*work.impulse)[k]) + Ap_[k] -
-                     work.evaluation.velocity[k];
-          }
-          if (!(size(r_) > goal))
-            break;
-          ++work.report.krylov;
-          p_ = dP;
-          work.dynamics.solve_springs(p_.data(), Ap_.data(), r_.data(),
-                                      0.1, dP.data());
-        }
-      }
-      for (std::size_t k = 0; k < work.n; ++k)
-        dP[k] -= (*work.impulse)[k];
-      return true;
-    }
-
-    /** Conjugate gradients for (W + D) dP = -(D + R) Phi. */
-    template <int dim>
-    void DualNewton<dim>::symmetric_direction(const Work &work,
-                                              const double tolerance,
-                                              Vector &dP)
-    {
-      const auto &communicator = work.dynamics.communicator();
-      const Vector &defect = work.evaluation.defect;
-      dP.assign(work.n, 0.);
-      if (!work.inner && spring_direction(work, tolerance, dP))
-        return;
-      rhs_.assign(work.n, 0.);
-      bool moved = false;
-      for (std::size_t k = 0; k < work.n; ++k)
-        if (compliance_[k] < 0. && defect[k] != 0.) {
-          dP[k] = -defect[k];
-          moved = true;
-        }
-      Ap_.assign(work.n, 0.);
-      if (communicator.any(moved))
-        work.dynamics.apply_delassus(dP.data(), Ap_.data());
-      for (std::size_t k = 0; k < work.n; ++k)
-        if (compliance_[k] >= 0.)
-          rhs_[k] = -(compliance_[k] + majorant(work, k)) * defect[k] - Ap_[k];
-
-      if (work.inner) {
-        z_.assign(work.n, 0.);
-        work.report.krylov += work.inner->solve_inner(
-          {compliance_, tolerance, 2000, nullptr, nullptr, 0.}, rhs_, z_);
-        for (std::size_t k = 0; k < work.n; ++k)
-          dP[k] += z_[k];
-        return;
-      }
-      work.dynamics.prepare_preconditioner(compliance_);
-      r_ = rhs_;
-      z_.assign(work.n, 0.);
-      work.dynamics.precondition(r_.data(), z_.data());
-      p_ = z_;
-      double rz = communicator.dot(r_.data(), z_.data(), work.n_owned);
-      const double target = tolerance * tolerance * rz;
-      const unsigned int limit = 2000;
-      for (unsigned int k = 0; k < limit && rz > target; ++k) {
-        work.dynamics.apply_delassus(p_.data(), Ap_.data());
-        for (std::size_t j = 0; j < work.n; ++j)
-          Ap_[j] = compliance_[j] >= 0. ? Ap_[j] + compliance_[j] * p_[j] : 0.;
-        const double pAp =
-          communicator.dot(p_.data(), Ap_.data(), work.n_owned);
-        if (!(pAp > 0.))
-          break;
-        const double alpha = rz / pAp;
-        for (std::size_t j = 0; j < work.n; ++j) {
-          dP[j] += alpha * p_[j];
-          r_[j] -= alpha * Ap_[j];
-        }
-        work.dynamics.precondition(r_.data(), z_.data());
-        const double next =
-          communicator.dot(r_.data(), z_.data(), work.n_owned);
-        const double beta = next / rz;
-        rz = next;
-        for (std::size_t j = 0; j < work.n; ++j)
-          p_[j] = z_[j] + beta * p_[j];
-        ++work.report.krylov;
-      }
-    }
-
-    /**
-     * GMRES for (I - J (W + shift R - R)) dP = -Phi, preconditioned from the
-     * right. Faces that stick all around an edge make W singular, and the
-     * system without a shift may have no solution; with a shift, impulses move
-     * along the null space until one of these faces lets go.
-     */
-    template <int dim>
-    void DualNewton<dim>::coupled_direction(const Work &work,
-                                            const double tolerance,
-                                            const double shift,
-                                            Vector &dP)
-    {
-      const auto &communicator = work.dynamics.communicator();
-      if (work.inner) {
-        for (std::size_t i = 0; i < coupled_.size(); ++i)
-          if (!coupled_[i])
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int d = 0; d < dim; ++d)
-                jacobian_[(i * dim + c) * dim + d] =
-                  c == d ? -slopes_[i * dim + c] : 0.;
-        rhs_ = work.evaluation.defect;
-        for (double &value : rhs_)
-          value = -value;
-        dP.assign(work.n, 0.);
-        work.report.krylov += work.inner->solve_inner(
-          {compliance_, tolerance, 120, &jacobian_, &majorants_, shift}, rhs_,
-          dP);
-        return;
-      }
-      work.dynamics.prepare_preconditioner(compliance_);
-      const auto precondition = [&](const Vector &in, Vector &out) {
-        r_.assign(work.n, 0.);
-        for (std::size_t k = 0; k < work.n; ++k)
-          if (compliance_[k] >= 0.)
-            r_[k] = (compliance_[k] + majorant(work, k)) * in[k];
-        out.assign(work.n, 0.);
-        work.dynamics.precondition(r_.data(), out.data());
-        for (std::size_t k = 0; k < work.n; ++k)
-          if (compliance_[k] < 0.)
-            out[k] = in[k];
-      };
-      const auto matrix = [&](const Vector &in, Vector &out) {
-        out.resize(work.n);
-        Ap_.resize(work.n);
-        work.dynamics.apply_delassus(in.data(), Ap_.data());
-        for (std::size_t k = 0; k < work.n; ++k)
-          Ap_[k] -= (1. - shift) * majorant(work, k) * in[k];
-        for (std::size_t i = 0; i < coupled_.size(); ++i)
-          for (unsigned int c = 0; c < dim; ++c) {
-            const std::size_t k = i * dim + c;
-            double value = 0.;
-            if (coupled_[i])
-              for (unsigned int d = 0; d < dim; ++d)
-                value += jacobian_[k * dim + d] * Ap_[i * dim + d];
-            else
-              value = -slopes_[k] * Ap_[k];
-            out[k] = in[k] - value;
-          }
-      };
-      // scale by the square root of the majorant: energies are compared
-      Vector scale(work.n);
-      for (std::size_t k = 0; k < work.n; ++k)
-        scale[k] = majorant(work, k);
-      const auto dot = [&](const Vector &a, const Vector &b) {
-        p_.resize(work.n_owned);
-        for (std::size_t k = 0; k < work.n_owned; ++k)
-          p_[k] = scale[k] * a[k] * b[k];
-        return communicator.sum(p_.data(), work.n_owned);
-      };
-
-      const unsigned int limit = 120;
-      std::vector<Vector> V(1), Z;
-      V[0] = work.evaluation.defect;
-      for (double &value : V[0])
-        value = -value;
-      const double beta = std::sqrt(dot(V[0], V[0]));
-      dP.assign(work.n, 0.);
-      if (beta == 0.)
-        return;
-      for (double &value : V[0])
-        value /= beta;
-      std::vector<Vector> H;
-      Vector g{beta}, cosines, sines;
-      unsigned int k = 0;
-      for (; k < limit && std::abs(g[k]) > tolerance * beta; ++k) {
-        Z.emplace_back();
-        precondition(V[k], Z[k]);
-        V.emplace_back();
-        matrix(Z[k], V[k + 1]);
-        H.emplace_back(k + 2);
-        for (unsigned int j = 0; j <= k; ++j) {
-          H[k][j] = dot(V[k + 1], V[j]);
-          for (std::size_t i = 0; i < work.n; ++i)
-            V[k + 1][i] -= H[k][j] * V[j][i];
-        }
-        const double norm = std::sqrt(dot(V[k + 1], V[k + 1]));
-        H[k][k + 1] = norm;
-        ++work.report.krylov;
-        if (norm > 0.)
-          for (double &value : V[k + 1])
-            value /= norm;
-        for (unsigned int j = 0; j < k; ++j) {
-          const double a = H[k][j], b = H[k][j + 1];
-          H[k][j] = cosines[j] * a + sines[j] * b;
-          H[k][j + 1] = -sines[j] * a + cosines[j] * b;
-        }
-        const double length = std::hypot(H[k][k], norm);
-        if (length == 0.)
-          break;
-        cosines.push_back(H[k][k] / length);
-        sines.push_back(norm / length);
-        H[k][k] = length;
-        g.push_back(-sines[k] * g[k]);
-        g[k] *= cosines[k];
-        if (norm == 0.) {
-          ++k;
-          break;
-        }
-      }
-      Vector y(k);
-      for (unsigned int i = k; i-- > 0;) {
-        y[i] = g[i];
-        for (unsigned int j = i + 1; j < k; ++j)
-          y[i] -= H[j][i] * y[j];
-        y[i] /= H[i][i];
-      }
-      for (unsigned int j = 0; j < k; ++j)
-        for (std::size_t i = 0; i < work.n; ++i)
-          dP[i] += y[j] * Z[j][i];
-    }
-
-    /**
-     * Exact line search on the convex dual objective with the thresholds of
-     * the current point frozen, between the local solutions at P and at
-     * P + dP, both in the domain of the objective. Its slope along the line is
-     *
-     *     d . (U_free + W P_alpha - U_law(P_alpha)),   increasing in alpha.
-     */
-    template <int dim>
-    bool DualNewton<dim>::line_search(const Work &work,
-                                      const Vector &direction,
-                                      Vector &impulse)
-    {
-      const auto &problem = work.problem;
-      const auto &communicator = work.dynamics.communicator();
-      std::vector<FrozenPoint> frozen(problem.n_points);
-      Vector start(work.n), d(work.n), Wd(work.n), U(work.n), moved(work.n);
-      for (std::size_t i = 0; i < problem.n_points; ++i) {
-        frozen[i] = work.evaluation.solutions[i].frozen;
-        for (unsigned int c = 0; c < dim; ++c)
-          start[i * dim + c] = work.evaluation.solutions[i].impulse[c];
-      }
-      // U at P + dP, then its local solutions
-      for (std::size_t k = 0; k < work.n; ++k)
-        moved[k] = impulse[k] + direction[k];
-      work.dynamics.apply_delassus(moved.data(), U.data());
-      for (std::size_t i = 0; i < problem.n_points; ++i) {
-        std::array<double, dim> local;
+          P[c] = start[i * dim + c] + alpha * d[i * dim + c];
+        const auto law = frozen_velocity<dim>(problem, i, frozen[i], P);
         for (unsigned int c = 0; c < dim; ++c) {
           const std::size_t k = i * dim + c;
-          local[c] =
-            U[k] + problem.free_velocity[k] - majorant(work, k) * moved[k];
-        }
-        const auto solution = solve_frozen_point<dim>(
-          problem, i, frozen[i], local, work.evaluation.majorant(i, 0),
-          work.evaluation.majorant(i, 1));
-        for (unsigned int c = 0; c < dim; ++c)
-          d[i * dim + c] = solution.impulse[c] - start[i * dim + c];
-      }
-      work.dynamics.apply_delassus(d.data(), Wd.data());
-      work.dynamics.apply_delassus(start.data(), U.data());
-      for (std::size_t k = 0; k < work.n; ++k)
-        U[k] += problem.free_velocity[k];
-
-      Vector terms(work.n_owned);
-      const auto slope = [&](const double alpha) {
-        for (std::size_t i = 0; i < problem.n_owned; ++i) {
-          std::array<double, dim> P;
-          for (unsigned int c = 0; c < dim; ++c)
-            P[c] = start[i * dim + c] + alpha * d[i * dim + c];
-          const auto law = frozen_velocity<dim>(problem, i, frozen[i], P);
-          for (unsigned int c = 0; c < dim; ++c) {
-            const std::size_t k = i * dim + c;
-            terms[k] =
-              d[k] == 0. ? 0. : d[k] * (U[k] + alpha * Wd[k] - law[c]);
-          }
-        }
-        return communicator.sum(terms.data(), work.n_owned);
-      };
-      ++work.report.line_searches;
-      double low = 0., high = 1., at_low = slope(0.), at_high = slope(1.);
-      if (!(at_low < 0.))
-        return false;
-      double alpha = 1.;
-      if (at_high > 0.) {
-        const double aim = 1e-3 * std::abs(at_low);
-        for (unsigned int k = 0; k < 30; ++k) {
-          alpha = low - at_low * (high - low) / (at_high - at_low);
-          if (!(alpha > low && alpha < high) || k % 3 == 2)
-            alpha = 0.5 * (low + high);
-          const double value = slope(alpha);
-          if (std::abs(value) <= aim)
-            break;
-          (value < 0. ? low : high) = alpha;
-          (value < 0. ? at_low : at_high) = value;
+          terms[k] =
+            d[k] == 0. ? 0. : d[k] * (U[k] + alpha * Wd[k] - law[c]);
         }
       }
-      for (std::size_t k = 0; k < work.n; ++k)
-        impulse[k] = start[k] + alpha * d[k];
-      return true;
-    }
-
-    /** Shares of the step, down to a tenth, until one reduces the map. */
-    template <int dim>
-    bool DualNewton<dim>::shorten(const Work &work, const double before,
-                                  const Vector &dP, Vector &impulse,
-                                  Vector &trial)
-    {
-      for (const double share : {0.5, 0.25, 0.1}) {
-        for (std::size_t k = 0; k < work.n; ++k)
-          trial[k] = impulse[k] + share * dP[k];
-        work.evaluation.update(trial);
-        if (work.evaluation.error < (1. - 0.3 * share) * before) {
-          impulse.swap(trial);
-          return true;
-        }
-      }
-      work.evaluation.update(impulse);
+      return communicator.sum(terms.data(), work.n_owned);
+    };
+    ++work.report.line_searches;
+    double low = 0., high = 1., at_low = slope(0.), at_high = slope(1.);
+    if (!(at_low < 0.))
       return false;
+    double alpha = 1.;
+    if (at_high > 0.) {
+      const double aim = 1e-3 * std::abs(at_low);
+      for (unsigned int k = 0; k < 30; ++k) {
+        alpha = low - at_low * (high - low) / (at_high - at_low);
+        if (!(alpha > low && alpha < high) || k % 3 == 2)
+          alpha = 0.5 * (low + high);
+        const double value = slope(alpha);
+        if (std::abs(value) <= aim)
+          break;
+        (value < 0. ? low : high) = alpha;
+        (value < 0. ? at_low : at_high) = value;
+      }
     }
+    for (std::size_t k = 0; k < work.n; ++k)
+      impulse[k] = start[k] + alpha * d[k];
+    return true;
+  }
 
-    template <int dim>
-    SolverReport DualNewton<dim>::solve(const OneStepProblem<dim> &problem,
-                                        Dynamics<dim> &dynamics,
-                                        const double,
-                                        const SolverControl &control,
-                                        std::vector<double> &impulse,
-                                        LawEvaluation<dim> &evaluation)
-    {
-      SolverReport report;
-      const Work work{problem,
-                      dynamics,
-                      control,
-                      evaluation,
-                      report,
-                      problem.n_points * dim,
-                      problem.n_owned * dim,
-                      &impulse,
-                      dynamic_cast<InnerSolver *>(&dynamics)};
-      Vector dP, best, trial;
+  /** Shares of the step, down to a tenth, until one reduces the map. */
+  template <int dim>
+  bool DualNewton<dim>::shorten(const Work &work, const double before,
+                                const Vector &dP, Vector &impulse,
+                                Vector &trial)
+  {
+    for (const double share : {0.5, 0.25, 0.1}) {
+      for (std::size_t k = 0; k < work.n; ++k)
+        trial[k] = impulse[k] + share * dP[k];
+      work.evaluation.update(trial);
+      if (work.evaluation.error < (1. - 0.3 * share) * before) {
+        impulse.swap(trial);
+        return true;
+      }
+    }
+    work.evaluation.update(impulse);
+    return false;
+  }
+
+  template <int dim>
+  SolverReport DualNewton<dim>::solve(const OneStepProblem<dim> &problem,
+                                      Dynamics<dim> &dynamics,
+                                      const double,
+                                      const SolverControl &control,
+                                      std::vector<double> &impulse,
+                                      LawEvaluation<dim> &evaluation)
+  {
+    SolverReport report;
+    const Work work{problem,
+                    dynamics,
+                    control,
+                    evaluation,
+                    report,
+                    problem.n_points * dim,
+                    problem.n_owned * dim,
+                    &impulse,
+                    dynamic_cast<InnerSolver *>(&dynamics)};
+    Vector dP, best, trial;
+    evaluation.update(impulse);
+    unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
+    double best_error = std::numeric_limits<double>::infinity(),
+           best_of_round = best_error, shift = 0.;
+    const auto remember = [&] {
+      if (evaluation.error < best_error) {
+        best_error = evaluation.error;
+        best = impulse;
+      }
+    };
+    remember();
+    while (evaluation.error > control.tolerance &&
+           report.newton < control.maximum_iterations) {
+      ++report.newton;
+      const double before = evaluation.error;
+      // The inner tolerance falls with the error, never far below the goal.
+      const double forcing = std::min(
+        1e-2, std::max({before, 0.1 * control.tolerance / before, 1e-12}));
+      const bool coupled = differentiate(work, impulse);
+      if (coupled)
+        coupled_direction(work, forcing, shift, dP);
+      else
+        symmetric_direction(work, forcing, dP);
+      trial = impulse;
+      for (std::size_t k = 0; k < work.n; ++k)
+        trial[k] += dP[k];
+      solutions_ = evaluation.solutions;
+      defect_ = evaluation.defect;
+      velocity_ = evaluation.velocity;
+      evaluation.update(trial);
+      if (evaluation.error < (coupled ? 0.7 : 0.5) * before ||
+          evaluation.error <= control.tolerance) {
+        impulse.swap(trial);
+        stalled = 0;
+        remember();
+        continue;
+      }
+      shift = 1e-3;
+      evaluation.solutions = solutions_;
+      evaluation.defect = defect_;
+      evaluation.velocity = velocity_;
+      evaluation.error = before;
+      if (!control.may_sweep && coupled &&
+          shorten(work, before, dP, impulse, trial)) {
+        remember();
+        continue;
+      }
+      if (coupled)
+        symmetric_direction(work, forcing, dP);
+      bool moved = line_search(work, dP, impulse);
       evaluation.update(impulse);
-      unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
-      double best_error = std::numeric_limits<double>::infinity(),
-             best_of_round = best_error, shift = 0.;
-      const auto remember = [&] {
-        if (evaluation.error < best_error) {
-          best_error = evaluation.error;
-          best = impulse;
-        }
-      };
       remember();
-      while (evaluation.error > control.tolerance &&
-             report.newton < control.maximum_iterations) {
-        ++report.newton;
-        const double before = evaluation.error;
-        // The inner tolerance falls with the error, never far below the goal.
-        const double forcing = std::min(
-          1e-2, std::max({before, 0.1 * control.tolerance / before, 1e-12}));
-        const bool coupled = differentiate(work, impulse);
-        if (coupled)
-          coupled_direction(work, forcing, shift, dP);
-        else
-          symmetric_direction(work, forcing, dP);
-        trial = impulse;
-        for (std::size_t k = 0; k < work.n; ++k)
-          trial[k] += dP[k];
-        solutions_ = evaluation.solutions;
-        defect_ = evaluation.defect;
-        velocity_ = evaluation.velocity;
-        evaluation.update(trial);
-        if (evaluation.error < (coupled ? 0.7 : 0.5) * before ||
-            evaluation.error <= control.tolerance) {
-          impulse.swap(trial);
-          stalled = 0;
-          remember();
-          continue;
-        }
-        shift = 1e-3;
-        evaluation.solutions = solutions_;
-        evaluation.defect = defect_;
-        evaluation.velocity = velocity_;
-        evaluation.error = before;
-        if (!control.may_sweep && coupled &&
-            shorten(work, before, dP, impulse, trial)) {
-          remember();
-          continue;
-        }
-        if (coupled)
-          symmetric_direction(work, forcing, dP);
-        bool moved = line_search(work, dP, impulse);
-        evaluation.update(impulse);
-        remember();
-        // Monotone in the convex objective: let it run a few times, with
-        // thresholds that change only after sweeps have not helped.
-        if (moved && (coupled ? stalled >= 4 && stalled % 5 != 4 :
-                                stalled % 5 != 4)) {
-          ++stalled;
-          continue;
-        }
-        if (evaluation.is_frozen()) { // sweeps know the full laws only
-          if (!moved)
-            break;
-          ++stalled;
-          continue;
-        }
-        if (moved && evaluation.error < 0.7 * before) {
-          stalled = 0;
-          continue;
-        }
+      // Monotone in the convex objective: let it run a few times, with
+      // thresholds that change only after sweeps have not helped.
+      if (moved && (coupled ? stalled >= 4 && stalled % 5 != 4 :
+                              stalled % 5 != 4)) {
         ++stalled;
-        // A cycle or several solutions: more of the same seldom helps, and a
-        // shorter step does, at once where points soften.
-        idle_rounds = best_error < 0.5 * best_of_round ? 0 : idle_rounds + 1;
-        best_of_round = best_error;
-        if (idle_rounds > (softens(evaluation) ? control.idle_rounds / 4
-                                               : control.idle_rounds) ||
-            report.sweeps >= 5 * control.maximum_iterations)
-          break;
-        if (!control.may_sweep) {
-          if (stalled > 4)
-            break;
-          continue;
-        }
-        if (colours_.empty())
-          colours_ = colour_faces(dynamics);
-        if (report.sweeps == 0)
-          report.switches.push_back("gauss seidel");
-        if (best_error < 0.5 * evaluation.error)
-          impulse = best;
-        gauss_seidel(problem, dynamics, colours_, sweeps, impulse);
-        report.sweeps += sweeps;
-        sweeps = std::min(80u, sweeps * 2);
-        evaluation.update(impulse);
-        remember();
-        if (!(evaluation.error < std::numeric_limits<double>::infinity()))
-          break;
+        continue;
       }
-      if (evaluation.error > best_error) {
+      if (evaluation.is_frozen()) { // sweeps know the full laws only
+        if (!moved)
+          break;
+        ++stalled;
+        continue;
+      }
+      if (moved && evaluation.error < 0.7 * before) {
+        stalled = 0;
+        continue;
+      }
+      ++stalled;
+      // A cycle or several solutions: more of the same seldom helps, and a
+      // shorter step does, at once where points soften.
+      idle_rounds = best_error < 0.5 * best_of_round ? 0 : idle_rounds + 1;
+      best_of_round = best_error;
+      if (idle_rounds > (softens(evaluation) ? control.idle_rounds / 4
+                                             : control.idle_rounds) ||
+          report.sweeps >= 5 * control.maximum_iterations)
+        break;
+      if (!control.may_sweep) {
+        if (stalled > 4)
+          break;
+        continue;
+      }
+      if (colours_.empty())
+        colours_ = colour_faces(dynamics);
+      if (report.sweeps == 0)
+        report.switches.push_back("gauss seidel");
+      if (best_error < 0.5 * evaluation.error)
         impulse = best;
-        evaluation.update(impulse);
-      }
-      report.residual = evaluation.error;
-      report.converged = evaluation.error <= control.tolerance;
-      return report;
+      gauss_seidel(problem, dynamics, colours_, sweeps, impulse);
+      report.sweeps += sweeps;
+      sweeps = std::min(80u, sweeps * 2);
+      evaluation.update(impulse);
+      remember();
+      if (!(evaluation.error < std::numeric_limits<double>::infinity()))
+        break;
     }
+    if (evaluation.error > best_error) {
+      impulse = best;
+      evaluation.update(impulse);
+    }
+    report.residual = evaluation.error;
+    report.converged = evaluation.error <= control.tolerance;
+    return report;
+  }
 
+  template class DualNewton<2>;
+  template class DualNewton<3>;
+
+  namespace
+  {
     using DualNewton2 = DualNewton<2>;
     using DualNewton3 = DualNewton<3>;
     NSFD_REGISTER(SolverRegistry<2>, DualNewton2, "dual newton",
