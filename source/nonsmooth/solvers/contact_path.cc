@@ -83,15 +83,46 @@ namespace nsfd
   }
 
   template <int dim>
+  bool ContactPath<dim>::newton(const unsigned int patience)
+  {
+    nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance, patience,
+                      softening_, impulse_, evaluation_, report_);
+    return judge();
+  }
+
+  template <int dim>
   bool ContactPath<dim>::polish()
   {
     restore();
-    const bool solved =
-      nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance,
-                        best_error_ < 1e-4 ? 6 : 2, impulse_, evaluation_,
-                        report_);
-    judge();
-    return solved;
+    if (newton(best_error_ < 1e-4 ? 6 : 2))
+      return true;
+    for (unsigned int k = 0; k < 3 && best_error_ < 1e-5; ++k) {
+      const double before = best_error_;
+      bool moved;
+      if (mend(moved) || (moved && newton(3)))
+        return true;
+      if (!(best_error_ < 0.7 * before))
+        break;
+    }
+    return false;
+  }
+
+  /**
+   * The velocities that answer to @p P: M_hat (y + dy) = H^T (P - S dU), with
+   * y = 0 @p from_rest.
+   */
+  template <int dim>
+  void ContactPath<dim>::equilibrate(const Vector &P, const bool from_rest)
+  {
+    dynamics_.generalised_impulse(P.data(), b_.data());
+    if (!from_rest) {
+      system_.apply(y_, residual_);
+      for (std::size_t j = 0; j < b_.size(); ++j)
+        b_[j] -= residual_[j];
+    }
+    system_.solve(b_, dy_);
+    ++report_.krylov;
+    dynamics_.relative_velocity(dy_.data(), dU_.data());
   }
 
   /** Springs that stay as they are, and joints: the same in every step. */
@@ -183,13 +214,7 @@ namespace nsfd
             trial[j] -= laws_.stiffness[j * dim + d] * U_[i * dim + d];
         }
       }
-      dynamics_.generalised_impulse(trial.data(), b_.data());
-      system_.apply(y_, residual_);
-      for (std::size_t j = 0; j < b_.size(); ++j)
-        b_[j] -= residual_[j];
-      system_.solve(b_, dy_);
-      ++report_.krylov;
-      dynamics_.relative_velocity(dy_.data(), dU_.data());
+      equilibrate(trial, false);
       for (std::size_t j = 0; j < y_.size(); ++j)
         y_[j] += dy_[j];
       for (std::size_t j = 0; j < n * dim; ++j)
@@ -384,13 +409,7 @@ namespace nsfd
     if (!system_.factorise(S_))
       return false;
     ++report_.newton;
-    dynamics_.generalised_impulse(P0.data(), b_.data());
-    system_.apply(y_, residual_);
-    for (std::size_t j = 0; j < b_.size(); ++j)
-      b_[j] -= residual_[j];
-    system_.solve(b_, dy_);
-    ++report_.krylov;
-    dynamics_.relative_velocity(dy_.data(), dU_.data());
+    equilibrate(P0, false);
 
     alpha = 1.;
     const auto change = [&](const Candidate &x, double *dr) {

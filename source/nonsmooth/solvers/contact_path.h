@@ -51,11 +51,22 @@ namespace nsfd
      */
     bool follow(const Stage &stage, unsigned int limit);
 
-    /** Newton's method on the full laws from the best impulses. */
+    /**
+     * Newton's method on the full laws from the best impulses, and where it
+     * goes round between the states of a few points, mend().
+     */
     bool polish();
 
     /** Back to the best impulses. */
     void restore();
+
+    /**
+     * The contacts that hold the error up, and their neighbours, exactly by
+     * pivots; all other points as they are linearised at the best impulses. In
+     * two dimensions. True below the tolerance; false also if there is nothing
+     * to be done, and then @p moved is false.
+     */
+    bool mend(bool &moved);
 
   private:
     struct Candidate
@@ -77,6 +88,9 @@ namespace nsfd
                         double balance) const;
     void begin();
     void look();
+    void equilibrate(const Vector &P, bool from_rest);
+    bool newton(unsigned int patience);
+    std::vector<std::size_t> find_knot() const;
     void find_candidates();
     void start(double floor, double centre);
     bool step(double sigma, double &alpha);
@@ -106,6 +120,6 @@ namespace nsfd
     LinearisedLaws<dim> laws_;
     Vector y_, U_, S_, P_, best_, b_, residual_, dy_, dU_;
     double best_error_;
-    double mean_impulse_ = 0., polished_ = 0.;
+    double mean_impulse_ = 0., polished_ = 0., softening_ = 1e-7;
   };
 } // namespace nsfd

@@ -124,15 +124,18 @@ namespace nsfd
   template <int dim>
   bool polish(const OneStepProblem<dim> &problem, BodySystem<dim> &system,
               const Dynamics<dim> &dynamics, const double tolerance,
-              const unsigned int patience, std::vector<double> &impulse,
-              LawEvaluation<dim> &evaluation, SolverReport &report)
+              const unsigned int patience, double &softening,
+              std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
+              SolverReport &report)
   {
     const std::size_t n = impulse.size();
     LinearisedLaws<dim> laws;
+    laws.softening = softening;
     std::vector<double> b(dynamics.bodies().n_dofs()), dy, dU(n), best(impulse);
     double best_error = evaluation.error;
-    unsigned int idle = 0;
-    while (evaluation.error > tolerance && idle <= patience) {
+    unsigned int idle = 0, still = 0;
+    while (evaluation.error > tolerance && idle <= patience && still < 2) {
+      const double before = evaluation.error;
       laws.update(problem, evaluation, impulse);
       if (!system.factorise(laws.stiffness))
         break;
@@ -155,11 +158,16 @@ namespace nsfd
         best = impulse;
       }
       if (good) {
-        idle = 0;
+        idle = still = 0;
+        softening = laws.softening;
         laws.softening = std::max(1e-7, 0.1 * laws.softening);
         continue;
       }
       ++idle;
+      still = laws.softening > 0.09 && evaluation.error < 1.05 * before &&
+                  evaluation.error > 0.95 * before ?
+                still + 1 :
+                0;
       laws.softening =
         std::min(0.1, std::max(1e-3, 10. * laws.softening));
       if (!(evaluation.error < 10. * best_error)) {
@@ -177,11 +185,11 @@ namespace nsfd
   template class LinearisedLaws<2>;
   template class LinearisedLaws<3>;
   template bool polish<2>(const OneStepProblem<2> &, BodySystem<2> &,
-                          const Dynamics<2> &, double, unsigned int,
+                          const Dynamics<2> &, double, unsigned int, double &,
                           std::vector<double> &, LawEvaluation<2> &,
                           SolverReport &);
   template bool polish<3>(const OneStepProblem<3> &, BodySystem<3> &,
-                          const Dynamics<3> &, double, unsigned int,
+                          const Dynamics<3> &, double, unsigned int, double &,
                           std::vector<double> &, LawEvaluation<3> &,
                           SolverReport &);
 } // namespace nsfd

@@ -47,8 +47,10 @@ namespace nsfd
    * factor of the bodies joined by S. Where a step does not halve the error the
    * next ones are softer, from 1e-3 on: proximal steps, which do not run off
    * along impulses that move next to nothing. Given up after @p patience such
-   * steps in a row. True if it ends below the tolerance; @p impulse and the
-   * evaluation are those of the smallest error.
+   * steps in a row, or two at the largest softness that leave the error as it
+   * was. True if it ends below the tolerance; @p impulse and the evaluation are
+   * those of the smallest error, @p softening is what the last good step had:
+   * that of the first one.
    */
   template <int dim>
   bool polish(const OneStepProblem<dim> &problem,
@@ -56,6 +58,7 @@ namespace nsfd
               const Dynamics<dim> &dynamics,
               double tolerance,
               unsigned int patience,
+              double &softening,
               std::vector<double> &impulse,
               LawEvaluation<dim> &evaluation,
               SolverReport &report);

@@ -1,0 +1,146 @@
+#include "contact_path.h"
+#include "pivots.h"
+
+#include "../springs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  /**
+   * The points that hold the error up, worst first, and the contacts of the
+   * bodies they are on: rows of W that depend on each other, as around a
+   * vertex, have all their points on neighbouring bodies. Empty if the error is
+   * spread over too many of them.
+   */
+  template <int dim>
+  std::vector<std::size_t> ContactPath<dim>::find_knot() const
+  {
+    constexpr std::size_t most_bad = 60, most = 160;
+    const std::size_t n = problem_.n_points;
+    const auto &points = dynamics_.points();
+    std::vector<std::pair<double, std::size_t>> share(n);
+    double sum = 0.;
+    for (std::size_t i = 0; i < n; ++i) {
+      double e = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        e += evaluation_.majorant(i, c) *
+             springs::square(evaluation_.defect[i * dim + c]);
+      share[i] = {e, i};
+      sum += e;
+    }
+    std::sort(share.rbegin(), share.rend());
+    const double rest =
+      sum * springs::square(0.3 * control_.tolerance / evaluation_.error);
+    std::vector<std::vector<unsigned int>> faces_of(
+      dynamics_.bodies().size());
+    for (unsigned int f = 0; f < points.faces.size(); ++f)
+      for (const int body : points.faces[f].bodies)
+        if (body >= 0)
+          faces_of[body].push_back(f);
+
+    std::vector<char> taken(n, 0);
+    std::vector<std::size_t> knot;
+    for (std::size_t k = 0; k < n && sum > rest; sum -= share[k++].first) {
+      if (k == most_bad)
+        return {};
+      for (const int body : points.faces[points.face_of[share[k].second]].bodies)
+        if (body >= 0)
+          for (const unsigned int f : faces_of[body])
+            for (std::size_t i = points.faces[f].first;
+                 i < points.faces[f].first + points.faces[f].count; ++i) {
+              double pull[dim], slope[dim];
+              if (taken[i] || !is_candidate_[i])
+                continue;
+              spring(i, pull, slope);
+              if (std::any_of(slope, slope + dim,
+                              [](const double x) { return x != 0.; }))
+                continue;
+              taken[i] = 1;
+              knot.push_back(i);
+            }
+      if (knot.size() > most)
+        break;
+    }
+    return knot;
+  }
+
+  template <int dim>
+  bool ContactPath<dim>::mend(bool &moved)
+  {
+    moved = false;
+    if (dim != 2 || !problem_.dilatancy.empty())
+      return false;
+    restore();
+    const auto path = frozen_; // which goes on after this
+    for (std::size_t i = 0; i < problem_.n_points; ++i)
+      frozen_[i] = evaluation_.solutions[i].frozen;
+    const auto knot = find_knot();
+    frozen_ = path;
+    if (knot.empty())
+      return false;
+    const std::size_t n = problem_.n_points, m = knot.size();
+
+    laws_.softening = std::max(1e-4, softening_);
+    laws_.update(problem_, evaluation_, impulse_);
+    laws_.softening = 1e-7;
+    for (const std::size_t i : knot) {
+      std::fill_n(&laws_.stiffness[i * dim * dim], dim * dim, 0.);
+      std::fill_n(&laws_.change[i * dim], dim, 0.);
+    }
+    if (!system_.factorise(laws_.stiffness))
+      return false;
+    ++report_.newton;
+    // what the others do by themselves, and against an impulse in the knot
+    equilibrate(laws_.change, true);
+    std::vector<double> q(m * dim), W(m * dim * m * dim), mu(m), P(m * dim);
+    for (std::size_t a = 0; a < m; ++a) {
+      mu[a] = frozen_state<dim>(problem_, knot[a],
+                                evaluation_.solutions[knot[a]].reach, 1.)
+                .threshold;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t j = knot[a] * dim + c;
+        q[a * dim + c] = evaluation_.velocity[j] + dU_[j] -
+                         (c == 0 ? problem_.target[knot[a]] :
+                                   -problem_.sliding_offset[j]);
+        P[a * dim + c] = impulse_[j];
+      }
+    }
+    Vector unit(n * dim, 0.);
+    for (std::size_t b = 0; b < m * dim; ++b) {
+      unit[knot[b / dim] * dim + b % dim] = 1.;
+      equilibrate(unit, true);
+      unit[knot[b / dim] * dim + b % dim] = 0.;
+      for (std::size_t a = 0; a < m * dim; ++a) {
+        W[a * m * dim + b] = dU_[knot[a / dim] * dim + a % dim];
+        q[a] -= W[a * m * dim + b] * P[b];
+      }
+    }
+    std::vector<double> solution;
+    bool found = false;
+    for (unsigned int seed = 1; seed <= 4 && !found; ++seed)
+      found = solve_by_pivots(W, q, mu, seed, solution);
+    if (!found)
+      return false;
+
+    // all others follow
+    Vector change(laws_.change);
+    for (std::size_t b = 0; b < m * dim; ++b)
+      change[knot[b / dim] * dim + b % dim] = solution[b] - P[b];
+    equilibrate(change, true);
+    for (std::size_t j = 0; j < n * dim; ++j) {
+      impulse_[j] += change[j];
+      for (unsigned int d = 0; d < dim; ++d)
+        impulse_[j] -= laws_.stiffness[j * dim + d] * dU_[j / dim * dim + d];
+    }
+    evaluation_.update(impulse_);
+    moved = true;
+    return judge();
+  }
+
+  template std::vector<std::size_t> ContactPath<2>::find_knot() const;
+  template std::vector<std::size_t> ContactPath<3>::find_knot() const;
+  template bool ContactPath<2>::mend(bool &);
+  template bool ContactPath<3>::mend(bool &);
+} // namespace nsfd
