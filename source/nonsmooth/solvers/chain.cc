@@ -32,8 +32,8 @@ namespace nsfd
                          LawEvaluation<dim> &evaluation) override
       {
         // the interior points know the bodies' own matrices only
-        if (dynamics.communicator().size() > 1 ||
-            !dynamics.bodies_are_apart() || !may_touch(problem))
+        const Communicator &all = dynamics.communicator();
+        if (!dynamics.bodies_are_apart() || !all.any(may_touch(problem)))
           return newton_->solve(problem, dynamics, energy_scale, control,
                                 impulse, evaluation);
         if (!path_)
@@ -41,7 +41,7 @@ namespace nsfd
         std::array<NonsmoothSolver<dim> *, 2> order{newton_.get(),
                                                     path_.get()};
         std::array<const char *, 2> names{"dual newton", "interior point"};
-        if (may_rub(problem) && is_long(problem, dynamics)) {
+        if (all.any(may_rub(problem)) && is_long(problem, dynamics)) {
           std::swap(order[0], order[1]);
           std::swap(names[0], names[1]);
         }
@@ -49,7 +49,7 @@ namespace nsfd
         SolverReport report =
           order[0]->solve(problem, dynamics, energy_scale, control, impulse,
                           evaluation);
-        if (report.converged || softens(problem, evaluation))
+        if (report.converged || all.any(softens(problem, evaluation)))
           return report;
         const std::vector<double> best(impulse);
         impulse = start;
@@ -116,16 +116,18 @@ namespace nsfd
       {
         const double factor = problem.time_step * problem.time_step *
                               problem.theta * problem.theta;
-        double ratio = 0.;
-        std::size_t count = 0;
+        std::vector<double> ratio;
+        unsigned long long count = 0;
         for (const auto &body : dynamics.bodies().classes)
           if (!body.rigid)
             for (unsigned int k = 0; k < body.n_dofs; ++k) {
-              ratio += factor * body.stiffness(k, k) / body.mass(k, k) *
-                       double(body.bodies.size());
+              ratio.push_back(factor * body.stiffness(k, k) / body.mass(k, k) *
+                              double(body.bodies.size()));
               count += body.bodies.size();
             }
-        return count > 0 && ratio > 50. * double(count);
+        count = dynamics.communicator().sum_integer(count);
+        return count > 0 &&
+               dynamics.communicator().sum(ratio) > 50. * double(count);
       }
 
       std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;

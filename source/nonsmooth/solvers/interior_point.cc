@@ -1,4 +1,5 @@
 #include "contact_path.h"
+#include "gathered.h"
 
 namespace nsfd
 {
@@ -16,25 +17,19 @@ namespace nsfd
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
                          Dynamics<dim> &dynamics,
-                         double,
+                         const double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
         SolverReport report;
         evaluation.update(impulse);
-        if (evaluation.error > control.tolerance &&
-            dynamics.communicator().size() == 1) {
-          if (!system_)
-            system_ = std::make_unique<BodySystem<dim>>(
-              dynamics, problem.time_step, problem.theta);
-          else if (system_->time_step() != problem.time_step ||
-                   system_->theta() != problem.theta)
-            system_->reinit(problem.time_step, problem.theta);
-          ContactPath<dim> path(problem, dynamics, *system_, control, impulse,
-                                evaluation, report);
-          run(path);
-          path.restore();
+        if (evaluation.error > control.tolerance) {
+          if (dynamics.communicator().size() == 1)
+            follow(problem, dynamics, control, impulse, evaluation, report);
+          else
+            follow_gathered(problem, dynamics, energy_scale, control, impulse,
+                            evaluation, report);
         }
         report.residual = evaluation.error;
         report.converged = evaluation.error <= control.tolerance;
@@ -43,6 +38,50 @@ namespace nsfd
 
     private:
       using Stage = typename ContactPath<dim>::Stage;
+
+      void follow(const OneStepProblem<dim> &problem,
+                  const Dynamics<dim> &dynamics, const SolverControl &control,
+                  std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
+                  SolverReport &report)
+      {
+        if (!system_)
+          system_ = std::make_unique<BodySystem<dim>>(
+            dynamics, problem.time_step, problem.theta);
+        else if (system_->time_step() != problem.time_step ||
+                 system_->theta() != problem.theta)
+          system_->reinit(problem.time_step, problem.theta);
+        ContactPath<dim> path(problem, dynamics, *system_, control, impulse,
+                              evaluation, report);
+        run(path);
+        path.restore();
+      }
+
+      /** On the first rank, with the bodies of all. */
+      void follow_gathered(const OneStepProblem<dim> &problem,
+                           const Dynamics<dim> &dynamics,
+                           const double energy_scale,
+                           const SolverControl &control,
+                           std::vector<double> &impulse,
+                           LawEvaluation<dim> &evaluation,
+                           SolverReport &report)
+      {
+        if (!gathered_)
+          gathered_ = std::make_unique<Gathered<dim>>(dynamics);
+        const auto whole = gathered_->gather(problem);
+        auto all = gathered_->gather(impulse);
+        if (auto *bodies = gathered_->dynamics()) {
+          bodies->reinit(problem.time_step, problem.theta);
+          LawEvaluation<dim> laws(whole, *bodies, energy_scale,
+                                  control.tolerance);
+          follow(whole, *bodies, control, all, laws, report);
+        }
+        unsigned int counts[2] = {report.newton, report.krylov};
+        MPI_Bcast(counts, 2, MPI_UNSIGNED, 0, dynamics.communicator().mpi());
+        report.newton = counts[0];
+        report.krylov = counts[1];
+        gathered_->scatter(all, impulse);
+        evaluation.update(impulse);
+      }
 
       /** Dear parts last; each begins where the one before has come to. */
       bool run(ContactPath<dim> &path)
@@ -59,6 +98,7 @@ namespace nsfd
                path.follow({1., 1.}, 60) || path.polish();
       }
 
+      std::unique_ptr<Gathered<dim>> gathered_; // before what refers to it
       std::unique_ptr<BodySystem<dim>> system_;
     };
 

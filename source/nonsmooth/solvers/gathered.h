@@ -1,0 +1,48 @@
+#pragma once
+
+#include "nsfd/nonsmooth/solver.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * All bodies and points of a run on its first rank, for solvers whose factor
+   * is serial. The points that the ranks own come rank by rank; every member
+   * function is called by all ranks, what it returns counts on the first one.
+   */
+  template <int dim>
+  class Gathered
+  {
+  public:
+    explicit Gathered(const Dynamics<dim> &dynamics);
+
+    /** The bodies of all ranks, on this one alone; null on the others. */
+    Dynamics<dim> *dynamics() const { return dynamics_.get(); }
+
+    /** The problem of all points. */
+    OneStepProblem<dim> gather(const OneStepProblem<dim> &problem) const;
+
+    /** Impulses of all points from those of the ranks. */
+    std::vector<double> gather(const std::vector<double> &impulse) const;
+
+    /** And back, to the points a rank shares too. */
+    void scatter(const std::vector<double> &all,
+                 std::vector<double> &impulse) const;
+
+  private:
+    template <typename T>
+    void collect(const std::vector<T> &mine, std::size_t stride,
+                 std::vector<T> &all) const;
+    void build(const std::vector<std::vector<char>> &packages);
+
+    const Communicator &communicator_;
+    std::size_t n_points_, n_owned_;
+    std::vector<std::vector<unsigned int>> points_of_; ///< per rank: into all
+    Communicator alone_;
+    Bodies bodies_;
+    InterfacePoints<dim> points_;
+    std::unique_ptr<Dynamics<dim>> dynamics_;
+  };
+} // namespace nsfd
