@@ -169,6 +169,27 @@ namespace end_to_end
     }
   }
 
+  // Rubbing cracks at 2 crossings by interior points, whose factor is on the
+  // first rank: the energies of one rank to 1e-9 of the largest.
+  TEST(Ranks, InteriorPointsAgree)
+  {
+    const Workspace workspace;
+    const std::vector<std::string> set = {
+        "Constants/n=6",         "Mesh/cells=6, 6",
+        "Constants/share=0.4",   "Time/step=2 crossings",
+        "Time/end=1.4",          "Solver/method=interior point",
+        "Solver/tolerance=1e-11"};
+    const auto file =
+        quickstart().parent_path() / "benchmarks/broken_faces.prm";
+    const Result one = good_run(workspace, "1 rank", {file, set});
+    ASSERT_TRUE(one.completed());
+    const Result two = good_run(workspace, "2 ranks", {file, set, 2});
+    ASSERT_TRUE(two.completed());
+    EXPECT_EQ(one.summary["steps"], two.summary["steps"]);
+    expect_below("2 ranks: energies",
+                 energy_difference(one.history, two.history), 1e-9);
+  }
+
   INSTANTIATE_TEST_SUITE_P(Table, RanksTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
 
