@@ -134,6 +134,9 @@ namespace nsfd
       least_compliance_ = std::move(compliance);
     }
 
+    /** theta of M_hat = M + h^2 theta^2 K; that of the positions may differ. */
+    double bulk_theta() const { return theta_; }
+
     const InterfacePoints<dim> &points() const { return points_; }
     const Bodies &bodies() const { return bodies_; }
     const Communicator &communicator() const { return communicator_; }

@@ -114,8 +114,9 @@ namespace nsfd
       static bool is_long(const OneStepProblem<dim> &problem,
                           const Dynamics<dim> &dynamics)
       {
-        const double factor = problem.time_step * problem.time_step *
-                              problem.theta * problem.theta;
+        const double theta = dynamics.bulk_theta();
+        const double factor =
+          problem.time_step * problem.time_step * theta * theta;
         std::vector<double> ratio;
         unsigned long long count = 0;
         for (const auto &body : dynamics.bodies().classes)

@@ -46,10 +46,10 @@ namespace nsfd
       {
         if (!system_)
           system_ = std::make_unique<BodySystem<dim>>(
-            dynamics, problem.time_step, problem.theta);
+            dynamics, problem.time_step, dynamics.bulk_theta());
         else if (system_->time_step() != problem.time_step ||
-                 system_->theta() != problem.theta)
-          system_->reinit(problem.time_step, problem.theta);
+                 system_->theta() != dynamics.bulk_theta())
+          system_->reinit(problem.time_step, dynamics.bulk_theta());
         ContactPath<dim> path(problem, dynamics, *system_, control, impulse,
                               evaluation, report);
         run(path);
@@ -70,7 +70,7 @@ namespace nsfd
         const auto whole = gathered_->gather(problem);
         auto all = gathered_->gather(impulse);
         if (auto *bodies = gathered_->dynamics()) {
-          bodies->reinit(problem.time_step, problem.theta);
+          bodies->reinit(problem.time_step, dynamics.bulk_theta());
           LawEvaluation<dim> laws(whole, *bodies, energy_scale,
                                   control.tolerance);
           follow(whole, *bodies, control, all, laws, report);
