@@ -65,7 +65,7 @@ namespace nsfd
          "vectors of the solver", "laws of the points", "applications of W",
          "preconditioner, set-up", "preconditioner, applied",
          "sums over points", "Gauss-Seidel sweeps", "update of bodies",
-         "energy ledger", "output"}};
+         "energy ledger", "output", "W, single precision"}};
     return names[std::size_t(line)];
   }
 

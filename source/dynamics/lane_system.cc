@@ -435,7 +435,7 @@ namespace nsfd
     for (; k < system.limit && rz > target; ++k) {
       ExactSum pw(rz), next(rz);
       {
-        const Charge product(Cost::delassus);
+        const Charge product(Cost::delassus_single);
         apply(p_);
         for (const auto &group : face_groups_)
           lane::gather(group, Y_.data(), p_.data(), w_.data(), pw);
@@ -556,7 +556,7 @@ namespace nsfd
       for (const auto &group : face_groups_)
         lane::precondition(group, basis_[k].data(), z_.data());
       {
-        const Charge product(Cost::delassus);
+        const Charge product(Cost::delassus_single);
         apply(z_);
         for (const auto &group : face_groups_)
           lane::gather_coupled(group, Y_.data(), z_.data(),

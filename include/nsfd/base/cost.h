@@ -23,6 +23,7 @@ namespace nsfd
     update,          ///< of the bodies
     ledger,          ///< energies and history
     output,          ///< files, pictures, comparison with exact values
+    delassus_single, ///< applications of W in single precision
     count
   };
 

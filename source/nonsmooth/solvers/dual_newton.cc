@@ -126,6 +126,11 @@ namespace nsfd
                                       LawEvaluation<dim> &evaluation)
   {
     SolverReport report;
+    // small problems are solved to round-off where one step does it
+    auto *const inner =
+      dynamics.communicator().sum_integer(problem.n_owned) > 1000 ?
+        dynamic_cast<InnerSolver *>(&dynamics) :
+        nullptr;
     const Work work{problem,
                     dynamics,
                     control,
@@ -134,7 +139,7 @@ namespace nsfd
                     problem.n_points * dim,
                     problem.n_owned * dim,
                     &impulse,
-                    dynamic_cast<InnerSolver *>(&dynamics)};
+                    inner};
     Vector dP, best, trial;
     evaluation.update(impulse);
     unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
@@ -210,8 +215,8 @@ namespace nsfd
       // shorter step does, at once where points soften.
       idle_rounds = best_error < 0.5 * best_of_round ? 0 : idle_rounds + 1;
       best_of_round = best_error;
-      if (idle_rounds > (softens(evaluation) ? control.idle_rounds / 4
-                                             : control.idle_rounds) ||
+      const bool soft = dynamics.communicator().any(softens(evaluation));
+      if (idle_rounds > control.idle_rounds / (soft ? 4 : 1) ||
           report.sweeps >= 5 * control.maximum_iterations)
         break;
       if (!control.may_sweep) {
