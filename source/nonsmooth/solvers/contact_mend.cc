@@ -8,6 +8,31 @@
 
 namespace nsfd
 {
+  template <int dim>
+  bool ContactPath<dim>::newton(const unsigned int patience)
+  {
+    nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance, patience,
+                      softening_, impulse_, evaluation_, report_);
+    return judge();
+  }
+
+  template <int dim>
+  bool ContactPath<dim>::polish()
+  {
+    restore();
+    if (newton(best_error_ < 1e-4 ? 6 : 2))
+      return true;
+    for (unsigned int k = 0; k < 3 && best_error_ < 1e-5; ++k) {
+      const double before = best_error_;
+      bool moved;
+      if (mend(moved) || (moved && newton(3)))
+        return true;
+      if (!(best_error_ < 0.7 * before))
+        break;
+    }
+    return false;
+  }
+
   /**
    * The points that hold the error up, worst first, and the contacts of the
    * bodies they are on: rows of W that depend on each other, as around a
@@ -139,6 +164,8 @@ namespace nsfd
     return judge();
   }
 
+  template bool ContactPath<2>::polish();
+  template bool ContactPath<3>::polish();
   template std::vector<std::size_t> ContactPath<2>::find_knot() const;
   template std::vector<std::size_t> ContactPath<3>::find_knot() const;
   template bool ContactPath<2>::mend(bool &);

@@ -82,31 +82,6 @@ namespace nsfd
     evaluation_.update(impulse_);
   }
 
-  template <int dim>
-  bool ContactPath<dim>::newton(const unsigned int patience)
-  {
-    nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance, patience,
-                      softening_, impulse_, evaluation_, report_);
-    return judge();
-  }
-
-  template <int dim>
-  bool ContactPath<dim>::polish()
-  {
-    restore();
-    if (newton(best_error_ < 1e-4 ? 6 : 2))
-      return true;
-    for (unsigned int k = 0; k < 3 && best_error_ < 1e-5; ++k) {
-      const double before = best_error_;
-      bool moved;
-      if (mend(moved) || (moved && newton(3)))
-        return true;
-      if (!(best_error_ < 0.7 * before))
-        break;
-    }
-    return false;
-  }
-
   /**
    * The velocities that answer to @p P: M_hat (y + dy) = H^T (P - S dU), with
    * y = 0 @p from_rest.
