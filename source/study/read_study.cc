@@ -170,6 +170,30 @@ namespace nsfd
         study.targets = {0.1, 0.01, 0.001};
     }
 
+    /** "xi: modulus_ratio, bound_79; time: energy" */
+    void read_diagrams(SectionReader &reader, StudyInput &study)
+    {
+      const std::string entry = "diagrams";
+      const std::string text = reader.word(
+          entry, "none", "quantities over one of them: X: Y, Z; ...");
+      if (text == "none")
+        return;
+      std::size_t begin = 0;
+      while (begin <= text.size()) {
+        const std::size_t end = std::min(text.find(';', begin), text.size());
+        const std::string part = text.substr(begin, end - begin);
+        begin = end + 1;
+        const std::size_t colon = part.find(':');
+        if (colon == std::string::npos) {
+          reader.error(entry, fmt::format("`{}` has no `:`", part),
+                       "write for example: xi: modulus_ratio, bound_79");
+          continue;
+        }
+        study.diagrams.push_back({collapse_blanks(part.substr(0, colon)),
+                                  words(part.substr(colon + 1))});
+      }
+    }
+
     void read_section(ParameterSection &section, InputErrors &errors,
                       StudyInput &study)
     {
@@ -213,6 +237,7 @@ namespace nsfd
           "order tolerance", "0.15", units::none, Range::non_negative(),
           "by which an order may miss the expected one");
       read_targets(reader, study);
+      read_diagrams(reader, study);
     }
 
     /** Where the results go, before any scene is read. */

@@ -1,4 +1,5 @@
 #include "cost_comparison.h"
+#include "study_means.h"
 
 #include "../output/report_html.h"
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 namespace nsfd
 {
@@ -72,6 +74,34 @@ namespace nsfd
         chart.add_line("", with_gaps(values(group.points, member)),
                        with_gaps(values(group.points, &StudyPoint::error)),
                        shade);
+      }
+      return chart;
+    }
+
+    /** Quantities of all cases as dots, in the order of the abscissa. */
+    LineChart quantity_chart(const StudyResults &study,
+                             const StudyDiagram &diagram)
+    {
+      LineChart chart("Over " + readable(diagram.abscissa),
+                      {readable(diagram.abscissa), "", true},
+                      {readable(diagram.ordinates.front()), "", false});
+      unsigned int colour = 0;
+      for (const std::string &name : diagram.ordinates) {
+        std::map<double, double> places;
+        for (const CaseResult &result : study.results) {
+          const auto x = result.errors.find(diagram.abscissa),
+                     y = result.errors.find(name);
+          if (result.done() && x != result.errors.end() &&
+              y != result.errors.end() && x->second > 0.)
+            places.emplace(x->second, y->second);
+        }
+        std::vector<double> x, y;
+        for (const auto &[at, value] : places) {
+          x.push_back(at);
+          y.push_back(value);
+        }
+        chart.add_line(readable(name), with_gaps(x), with_gaps(y),
+                       LineChart::palette(colour++));
       }
       return chart;
     }
@@ -269,6 +299,14 @@ namespace nsfd
                          table(head, rows));
     }
 
+    std::string means_html(const StudyResults &study)
+    {
+      const std::string text = means_text(study);
+      return text.empty() ? ""
+                          : section("Means", "<pre>" + escape_markup(text) +
+                                                 "</pre>\n");
+    }
+
     std::string provenance(const StudyResults &study)
     {
       Table table;
@@ -317,9 +355,11 @@ namespace nsfd
                                [](const CaseResult &r) {
                                  return std::abs(r.numerical_dissipation);
                                }));
+    for (const StudyDiagram &diagram : study.input.diagrams)
+      diagrams.add("diagram_" + diagram.abscissa, quantity_chart(study, diagram));
     const std::string content =
         headline(study) + section("Diagrams", diagrams.html()) +
-        order_rows(study) + cost_rows_html(study) + case_rows(study) +
+        order_rows(study) + means_html(study) + cost_rows_html(study) + case_rows(study) +
         provenance(study) + "<details><summary>Section Study</summary><pre>" +
         escape_markup(study.input.echo) + "</pre></details>\n";
     write_file_atomically(directory + "/study.html",

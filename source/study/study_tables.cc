@@ -1,4 +1,5 @@
 #include "cost_comparison.h"
+#include "study_means.h"
 
 #include "nsfd/study/study_results.h"
 
@@ -278,6 +279,7 @@ namespace nsfd
       if (order.expected || study.input.errors.size() > 0 ||
           order.error == errors[0])
         text += order_table(study, order);
+    text += means_text(study);
     const std::string costs = cost_table(study);
     if (!costs.empty())
       text += "\nCPU time (s) of an error, from the lower envelopes\n" + costs;

@@ -12,6 +12,12 @@ namespace nsfd
 {
   class InputErrors;
 
+  /** Quantities of summary.json, all cases, over one of them. */
+  struct StudyDiagram {
+    std::string abscissa;
+    std::vector<std::string> ordinates;
+  };
+
   /** What a study is, checked and typed: section `Study` and what varies. */
   struct StudyInput {
     std::string file; ///< of the scene, as named
@@ -33,6 +39,7 @@ namespace nsfd
     std::map<std::string, std::string> expected_orders; ///< error to formula
     double order_tolerance = 0.15;
     std::vector<double> targets; ///< errors at which costs are compared
+    std::vector<StudyDiagram> diagrams; ///< beside those of errors
 
     std::string echo; ///< the sections of the study, complete
   };
