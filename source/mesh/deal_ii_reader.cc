@@ -78,7 +78,7 @@ namespace nsfd
     }
 
     template <int dim>
-    NamedMesh read(const std::string &file, const MeshFormat format,
+    NamedMesh read(const std::string &file,
                    std::vector<std::string> &problems)
     {
       NamedMesh mesh;
@@ -86,27 +86,21 @@ namespace nsfd
         Triangulation<dim> triangulation;
         GridIn<dim> reader(triangulation);
         std::ifstream in(file);
-        if (format == MeshFormat::ucd)
-          reader.read_ucd(in);
-        else if (format == MeshFormat::vtk)
-          reader.read_vtk(in);
-        else
-          reader.read_vtu(in);
+        reader.read_vtu(in);
         Converter<dim> converter;
         mesh = converter.convert(triangulation);
       } catch (const std::exception &exception) {
-        problems.push_back(fmt::format("the file cannot be read as a {}: {}",
-                                       name_of(format), one_line(exception)));
+        problems.push_back(fmt::format("the file cannot be read as VTU of deal.II: {}",
+                                        one_line(exception)));
       }
       return mesh;
     }
   } // namespace
 
-  NamedMesh read_by_deal_ii(const std::string &file, const MeshFormat format,
+  NamedMesh read_by_deal_ii(const std::string &file,
                             const unsigned int dimension,
                             std::vector<std::string> &problems)
   {
-    return dimension == 2 ? read<2>(file, format, problems)
-                          : read<3>(file, format, problems);
+    return dimension == 2 ? read<2>(file, problems) : read<3>(file, problems);
   }
 } // namespace nsfd

@@ -7,8 +7,11 @@
 
 namespace nsfd
 {
-  /** The Gmsh library, silent and single-threaded, from here to the end of the
-   * scope. Its messages are kept. */
+  /**
+   * The Gmsh library, silent and single-threaded, from here to the end of the
+   * scope. Its messages are kept. After a script (.geo) that failed, Gmsh 4.8
+   * reads what was left of it before the next script of the same process.
+   */
   class GmshSession
   {
   public:

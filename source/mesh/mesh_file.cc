@@ -115,10 +115,13 @@ namespace nsfd
       mesh = read_abaqus(request.file, request.dimension, problems);
       break;
     case MeshFormat::ucd:
+      mesh = read_ucd(request.file, request.dimension, problems);
+      break;
     case MeshFormat::vtk:
+      mesh = read_vtk(request.file, request.dimension, problems);
+      break;
     case MeshFormat::vtu:
-      mesh = read_by_deal_ii(request.file, request.format, request.dimension,
-                             problems);
+      mesh = read_by_deal_ii(request.file, request.dimension, problems);
       break;
     default:
       mesh = read_gmsh(gmsh_request(request, unit), problems);

@@ -45,8 +45,15 @@ namespace nsfd
   NamedMesh read_abaqus(const std::string &file, unsigned int dimension,
                         std::vector<std::string> &problems);
 
-  /** UCD, VTK and deal.II's VTU, not yet in order: groups have numbers. */
-  NamedMesh read_by_deal_ii(const std::string &file, MeshFormat format,
-                            unsigned int dimension,
+  /** UCD of AVS, not yet in order: groups are the numbers of materials. */
+  NamedMesh read_ucd(const std::string &file, unsigned int dimension,
+                     std::vector<std::string> &problems);
+
+  /** Legacy VTK, ASCII, not yet in order: groups are its `MaterialID`. */
+  NamedMesh read_vtk(const std::string &file, unsigned int dimension,
+                     std::vector<std::string> &problems);
+
+  /** VTU that deal.II has written, not yet in order: groups have numbers. */
+  NamedMesh read_by_deal_ii(const std::string &file, unsigned int dimension,
                             std::vector<std::string> &problems);
 } // namespace nsfd

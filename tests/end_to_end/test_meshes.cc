@@ -202,6 +202,13 @@ namespace end_to_end
       EXPECT_NE(outcome.err.find("bad.msh"), std::string::npos) << outcome.err;
       EXPECT_EQ(outcome.err.find("group"), std::string::npos) << outcome.err;
     }
+    write_text(workspace.path() / "bad.geo", "Point one is at the left.\n");
+    std::string script = text;
+    script.replace(script.find("bad.msh"), 7, "bad.geo");
+    const Outcome refused = check(workspace, script);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.err.find("line 1: syntax error"), std::string::npos)
+        << refused.err;
     fs::remove(bad);
     const Outcome missing = check(workspace, text);
     EXPECT_EQ(missing.exit_code, 1);
