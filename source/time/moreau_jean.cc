@@ -141,6 +141,13 @@ namespace nsfd
     const Stopwatch watch(timings_.ledger);
     const Charge charge(Cost::ledger);
     ledger_->book(problem_, evaluation, forces_, old, next, report);
+    // it closes for any impulses, unless they have lost their digits
+    if (report.ledger_defect > 1e-6)
+      throw StepRejected(fmt::format(
+        "the energies of the step of {:.4g} at t = {:.6g} do not add up "
+        "(relative defect {:.1e}): rows that ask for the same have made "
+        "impulses too large; worst face {}",
+        h, old.time, report.ledger_defect, describe(evaluation.worst_point)));
     if (bulk_) {
       const BondReport bonds =
         release_bonds(problem_, *bulk_, old, next);
