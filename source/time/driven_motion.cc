@@ -111,6 +111,8 @@ namespace nsfd
                    });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const BodyClass &body = bodies.classes[bodies.class_of[b]];
+      if (body.rigid)
+        continue; // held evenly by all of its points, least impulses decide
       std::vector<std::vector<double>> basis;
       for (const Row &row : rows[b]) {
         std::vector<double> x(body.n_dofs);

@@ -142,7 +142,8 @@ namespace nsfd
     const Charge charge(Cost::ledger);
     ledger_->book(problem_, evaluation, forces_, old, next, report);
     // it closes for any impulses, unless they have lost their digits
-    if (report.ledger_defect > 1e-6)
+    if (report.ledger_defect * next.largest_energy >
+        1e-6 * std::max(next.largest_energy, energy_scale))
       throw StepRejected(fmt::format(
         "the energies of the step of {:.4g} at t = {:.6g} do not add up "
         "(relative defect {:.1e}): rows that ask for the same have made "

@@ -14,7 +14,7 @@ namespace nsfd
      * method needs a global factor in every iteration and Coulomb friction
      * makes it cycle, the interior points come first. Every hand-over is in
      * the report. Steps in which points soften are not handed over: a shorter
-     * step is their cure.
+     * step is their cure, until four cuts have shown that it is none.
      */
     template <int dim>
     class Chain final : public NonsmoothSolver<dim>
@@ -49,7 +49,10 @@ namespace nsfd
         SolverReport report =
           order[0]->solve(problem, dynamics, energy_scale, control, impulse,
                           evaluation);
-        if (report.converged || all.any(softens(problem, evaluation)))
+        const bool early =
+          control.idle_rounds < (SolverControl().idle_rounds << 4);
+        if (report.converged ||
+            (all.any(softens(problem, evaluation)) && early))
           return report;
         const std::vector<double> best(impulse);
         impulse = start;
