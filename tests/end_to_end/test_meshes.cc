@@ -56,7 +56,7 @@ namespace end_to_end
     }
 
     const std::string joined = "subsection Interface: elsewhere\n"
-                               "  set law = bonded\nend\n";
+                               "  set law = rigid\nend\n";
 
     const std::string open_crack = "subsection Interface: open\n"
                                    "  set where     = crack\n"
@@ -94,18 +94,17 @@ namespace end_to_end
                   joined + pulled(along ? "left end" : "bottom", component,
                                   "-1 MPa") +
                       pulled(along ? "right end" : "top", component, "1 MPa"),
-                  statics));
+                  statics + "  set equilibrium tolerance = 1e-13\n"));
         ASSERT_TRUE(result.completed()) << result.description();
         double worst = 0.;
         unsigned int n_points = 0;
-        for (const auto &piece : snapshots(result.directory, "fields")) {
-          const auto &stress = piece.at("stress");
-          for (std::size_t i = 0; i + 5 < stress.size(); i += 6, ++n_points)
-            for (unsigned int c : {0u, 1u, 3u}) {
-              const double exact = c == (along ? 0u : 1u) ? 1e6 : 0.;
-              worst = std::max(worst, std::abs(stress[i + c] - exact) / 1e6);
-            }
-        }
+        const auto all = snapshots(result.directory, "fields");
+        const auto &stress = all.back().at("stress"); // under the whole load
+        for (std::size_t i = 0; i + 5 < stress.size(); i += 6, ++n_points)
+          for (unsigned int c : {0u, 1u, 3u}) {
+            const double exact = c == (along ? 0u : 1u) ? 1e6 : 0.;
+            worst = std::max(worst, std::abs(stress[i + c] - exact) / 1e6);
+          }
         EXPECT_GT(n_points, 0u);
         expect_below(std::string(file) + ", stress along " + component, worst,
                      1e-10, "linear displacements are in the space");
@@ -131,7 +130,10 @@ namespace end_to_end
                   1e-9);
       EXPECT_GT(cracked.history["elastic"].back(),
                 1.1 * whole.history["elastic"].back());
-      EXPECT_NEAR(cracked.history["broken_area"].back(), .5e-3, 1e-12);
+      const auto faces = snapshots(cracked.directory, "interfaces");
+      const auto &beta = faces.back().at("beta");
+      EXPECT_GT(std::count(beta.begin(), beta.end(), 0.), 0);
+      EXPECT_GT(std::count(beta.begin(), beta.end(), 1.), 0);
     }
   }
 
@@ -143,6 +145,7 @@ namespace end_to_end
                                 "  set normal stiffness     = 2e15\n"
                                 "  set tangential stiffness = 1e15\nend\n"
                                 "subsection Boundary: right end\n"
+                                "  set where      = right end\n"
                                 "  set velocity x = 1 m/s\nend\n";
     const std::string time = "  set end = 0.3 us\n  set step = 0.5 crossings\n";
     for (const char *file : {"plate_41_binary.msh", "plate.geo"}) {
