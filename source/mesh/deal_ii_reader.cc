@@ -1,3 +1,4 @@
+#include "deal_ii_message.h"
 #include "mesh_file.h"
 
 #include <deal.II/grid/grid_in.h>
@@ -63,20 +64,6 @@ namespace nsfd
       std::map<std::pair<unsigned int, int>, unsigned int> group_;
     };
 
-    std::string one_line(const std::exception &exception)
-    {
-      std::ostringstream out;
-      if (const auto *error = dynamic_cast<const ExceptionBase *>(&exception))
-        error->print_info(out);
-      else
-        out << exception.what();
-      std::istringstream words(out.str());
-      std::string result, word;
-      while (words >> word)
-        result += (result.empty() ? "" : " ") + word;
-      return result;
-    }
-
     template <int dim>
     NamedMesh read(const std::string &file,
                    std::vector<std::string> &problems)
@@ -91,7 +78,7 @@ namespace nsfd
         mesh = converter.convert(triangulation);
       } catch (const std::exception &exception) {
         problems.push_back(fmt::format("the file cannot be read as VTU of deal.II: {}",
-                                        one_line(exception)));
+                                        deal_ii_message(exception)));
       }
       return mesh;
     }

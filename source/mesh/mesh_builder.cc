@@ -1,5 +1,6 @@
 #include "nsfd/mesh/mesh_builder.h"
 
+#include "deal_ii_message.h"
 #include "mesh_topology.h"
 #include "mix_bits.h"
 #include "nsfd/mesh/mesh_types.h"
@@ -24,18 +25,10 @@ namespace nsfd
 
   namespace
   {
-    /** What deal.II says of an error, as one line. */
+    /** What deal.II says of an error, in words of the parameter file. */
     std::string message(const std::exception &exception)
     {
-      std::ostringstream out;
-      if (const auto *error = dynamic_cast<const ExceptionBase *>(&exception))
-        error->print_info(out);
-      else
-        out << exception.what();
-      std::istringstream words(out.str());
-      std::string result, word;
-      while (words >> word)
-        result += (result.empty() ? "" : " ") + word;
+      std::string result = deal_ii_message(exception);
       const std::array<std::pair<std::string, std::string>, 5> shorter = {
           {{"[Double -MAX_DOUBLE...MAX_DOUBLE (inclusive)]", "number"},
            {"[Integer]", "integer"},

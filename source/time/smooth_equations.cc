@@ -31,7 +31,7 @@ namespace nsfd
     free_->reinit(0., 1.);
     if (input.has_bonded_faces())
       bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
-    for (auto *vector : {&given_, &mu_, &lambda_, &jump_, &rows_})
+    for (auto *vector : {&given_, &mu_, &lambda_, &rows_})
       vector->assign(n_rows_, 0.);
     for (auto *vector : {&loads_, &force_, &rate_, &v_, &body_})
       vector->assign(n_, 0.);
@@ -140,9 +140,9 @@ namespace nsfd
     }
     mass = communicator_.sum(Values{mass});
     speed = communicator_.max(speed);
-    length_ = discretization_.extent();
+    const double length = discretization_.extent();
     const double end = input_.time.end;
-    const double crossing = speed > 0. ? std::min(end, length_ / speed) : end;
+    const double crossing = speed > 0. ? std::min(end, length / speed) : end;
     for (const double u : start.displacement)
       largest = std::max(largest, std::abs(u));
     velocity_scale_ = largest / crossing;

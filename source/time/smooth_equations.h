@@ -72,9 +72,9 @@ namespace nsfd
     double gamma_ = -1.;
     double velocity_scale_ = 0., displacement_scale_ = 0., energy_scale_ = 0.;
     double inner_step_ = 0.;
-    double length_ = 0., loads_time_ = 0.;
+    double loads_time_ = 0.;
     bool loads_known_ = false;
-    Values loads_, given_, mu_, lambda_, jump_, rows_, force_, rate_, v_,
+    Values loads_, given_, mu_, lambda_, rows_, force_, rate_, v_,
       body_;
   };
 } // namespace nsfd

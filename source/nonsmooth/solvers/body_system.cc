@@ -1,5 +1,7 @@
 #include "body_system.h"
 
+#include "nsfd/dynamics/point_places.h"
+
 #include <suitesparse/umfpack.h>
 
 #include <algorithm>
@@ -75,19 +77,11 @@ namespace nsfd
       double sign;
     };
     std::vector<std::vector<Side>> sides(points.n_points);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
-           ++s)
-        if (bodies.slot_point[s] < points.n_points)
-          sides[bodies.slot_point[s]].push_back(
-            {b, s - bodies.first_slot[b], double(bodies.slot_sign[s])});
-    for (const auto &[slot, point] : bodies.extra_points) {
-      const std::size_t b =
-        std::upper_bound(bodies.first_slot.begin(), bodies.first_slot.end(),
-                         slot) -
-        bodies.first_slot.begin() - 1;
-      sides[point].push_back({b, slot - bodies.first_slot[b], 1.});
-    }
+    for_all_places(bodies, points.n_points,
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t point, const unsigned int side) {
+                     sides[point].push_back({body, slot, side == 1 ? 1. : -1.});
+                   });
 
     faces_.resize(points.faces.size());
     for (std::size_t f = 0; f < faces_.size(); ++f) {
