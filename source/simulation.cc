@@ -446,6 +446,9 @@ namespace nsfd
       s.cpu_seconds = cpu_seconds();
       s.peak_memory_mb = peak_memory_mb();
       s.timings = stage_timings(model_, s.setup_seconds, output_->cpu());
+      if (smooth_)
+        s.timings.insert(s.timings.begin() + 1,
+                         {"integration", smooth_->counters().seconds});
       charge_memory("fields and curves");
       s.cost = costs_.finish(*model_.dynamics);
       output_->write_summary(s);
@@ -509,7 +512,9 @@ namespace nsfd
       std::cout << fmt::format(
           "  per step: {:.3g} ms, Newton {:.2f}, Krylov {:.1f}, sweeps {:.1f}; "
           "rejected {}, redone {}, beyond uniqueness {}\n",
-          1e3 * (t.assembly + t.solve + t.update + t.ledger) / steps,
+          1e3 * (t.assembly + t.solve + t.update + t.ledger +
+                 (smooth_ ? smooth_->counters().seconds : 0.)) /
+              steps,
           double(stepper.newton) / steps, double(stepper.krylov) / steps,
           double(stepper.sweeps) / steps, rejected_, redone_, beyond_unique_);
       std::cout << fmt::format(

@@ -1,5 +1,6 @@
 #include "nsfd/dynamics/dynamics.h"
 
+#include "block_inverse.h"
 #include "body_loops.h"
 
 #include "nsfd/base/cost.h"
@@ -38,21 +39,14 @@ namespace nsfd
     theta_ = theta;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const BodyClass &body = bodies_.classes[k];
-      Block matrix = body.mass;
-      const double factor = time_step * time_step * theta * theta;
-      if (!body.rigid)
-        for (std::size_t i = 0; i < matrix.values.size(); ++i)
-          matrix.values[i] +=
-            stiffness_share_ * factor * body.stiffness.values[i];
-      const Block L = cholesky(matrix);
+      const BlockInverse inverse(
+        body, stiffness_share_ * time_step * time_step * theta * theta);
       ++counters_.factorisations;
       Block identity(body.n_dofs, body.n_dofs);
       for (unsigned int i = 0; i < body.n_dofs; ++i)
         identity(i, i) = 1.;
-      blocks_[k].inverse = gram(forward_solve(L, std::move(identity)));
-      // Gram matrix of L^{-1} T^T: symmetric to the last bit
-      blocks_[k].delassus =
-        gram(forward_solve(L, blocks_[k].trace_transposed));
+      blocks_[k].inverse = inverse.form(identity);
+      blocks_[k].delassus = inverse.form(blocks_[k].trace_transposed);
       blocks_[k].velocity_change =
         product(blocks_[k].inverse, blocks_[k].trace_transposed);
     }

@@ -67,6 +67,14 @@ namespace nsfd
       return modes;
     }
 
+    /** The same motions R with R^T M R = 1. */
+    Block of_unit_mass(const Block &R, const Block &mass)
+    {
+      const Block RT = R.transposed();
+      return forward_solve(cholesky(product(RT, product(mass, R))), RT)
+          .transposed();
+    }
+
     /** To the unknowns of a rigid body, from the blocks of its nodes. */
     template <int dim>
     void make_rigid(const double size, BodyShape<dim> &shape, BodyClass &body)
@@ -111,6 +119,7 @@ namespace nsfd
       make_rigid(size, shape, body);
     else {
       body.stiffness = stiffness(shape, material);
+      body.rigid_motions = of_unit_mass(rigid_modes(shape, size), body.mass);
       if (input_.has_bonded_faces())
         set_traction(shape, body);
     }

@@ -53,7 +53,26 @@ namespace nsfd
       cells = gather_cells(state);
       view.cells = &cells;
     }
+    if (case_.wants_opening())
+      set_opening(state, view);
     case_.observe(view);
+  }
+
+  template <int dim>
+  void CaseObserver<dim>::set_opening(const State &state, StepView &view) const
+  {
+    const auto &points = discretization_.points();
+    const std::size_t n = points.n_owned;
+    std::vector<double> terms(3 * n, 0.);
+    for (std::size_t i = 0; i < n; ++i)
+      if (discretization_.origins()[i].kind == PointOrigin::Kind::obstacle) {
+        terms[i] = points.weight[i];
+        terms[n + i] = points.weight[i] * state.jump[i * dim];
+        terms[2 * n + i] = points.weight[i] * state.relative_velocity[i * dim];
+      }
+    const auto s = communicator_.sums(terms.data(), 3, n);
+    view.opening = relative(s[1], s[0]);
+    view.opening_rate = relative(s[2], s[0]);
   }
 
   template <int dim>

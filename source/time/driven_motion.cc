@@ -90,10 +90,67 @@ namespace nsfd
     return false;
   }
 
+  template <int dim>
+  std::vector<std::size_t>
+  DrivenMotion<dim>::dependent_rows(const Block &trace,
+                                    const std::vector<Row> &rows)
+  {
+    const unsigned int n = trace.cols;
+    struct Rest
+    {
+      std::size_t component;
+      std::vector<double> x; ///< what is left of the row
+      double before, now;    ///< its square
+    };
+    std::vector<Rest> left;
+    for (const Row &row : rows) {
+      Rest &rest = left.emplace_back(
+          Rest{row.component, std::vector<double>(n), 0., 0.});
+      for (unsigned int j = 0; j < n; ++j) {
+        rest.x[j] = trace(row.trace, j);
+        rest.before += rest.x[j] * rest.x[j];
+      }
+      rest.now = rest.before;
+    }
+    // to a relative length of 1e-8, round-off of as many subtractions
+    const auto gone = [](const Rest &rest) {
+      return rest.now <= 1e-16 * rest.before;
+    };
+    while (true) {
+      const auto next = std::max_element(
+          left.begin(), left.end(), [](const Rest &one, const Rest &other) {
+            return one.now < other.now;
+          });
+      if (next == left.end() || gone(*next))
+        break;
+      std::vector<double> e = std::move(next->x);
+      const double length = std::sqrt(next->now);
+      left.erase(next);
+      for (double &value : e)
+        value /= length;
+      for (Rest &rest : left) {
+        double share = 0.;
+        for (unsigned int j = 0; j < n; ++j)
+          share += rest.x[j] * e[j];
+        rest.now = 0.;
+        for (unsigned int j = 0; j < n; ++j) {
+          rest.x[j] -= share * e[j];
+          rest.now += rest.x[j] * rest.x[j];
+        }
+      }
+    }
+    std::vector<std::size_t> components;
+    for (const Rest &rest : left)
+      components.push_back(rest.component);
+    return components;
+  }
+
   /**
-   * Where two faces of a cell are driven, their points ask twice for the motion
-   * of the nodes that they share: rows that depend on those before them are
-   * left out (Gram-Schmidt), or W would be singular.
+   * Where two faces of a cell are driven, or a face has more points than nodes,
+   * points ask twice for the motion of the same nodes: rows that depend on
+   * others are left out, or W would be singular. The row that is farthest from
+   * those chosen comes next (Gram-Schmidt with pivots): the first points of a
+   * face alone would hold its far end by extrapolation.
    */
   template <int dim>
   void DrivenMotion<dim>::choose_rows()
@@ -111,34 +168,9 @@ namespace nsfd
                    });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const BodyClass &body = bodies.classes[bodies.class_of[b]];
-      if (body.rigid)
-        continue; // held evenly by all of its points, least impulses decide
-      std::vector<std::vector<double>> basis;
-      for (const Row &row : rows[b]) {
-        std::vector<double> x(body.n_dofs);
-        double before = 0., after = 0.;
-        for (unsigned int j = 0; j < body.n_dofs; ++j) {
-          x[j] = body.trace(row.trace, j);
-          before += x[j] * x[j];
-        }
-        for (unsigned int round = 0; round < 2; ++round)
-          for (const auto &e : basis) {
-            double share = 0.;
-            for (unsigned int j = 0; j < body.n_dofs; ++j)
-              share += x[j] * e[j];
-            for (unsigned int j = 0; j < body.n_dofs; ++j)
-              x[j] -= share * e[j];
-          }
-        for (const double value : x)
-          after += value * value;
-        if (after <= 1e-16 * before) {
-          chosen_[row.component] = 0;
-          continue;
-        }
-        for (double &value : x)
-          value /= std::sqrt(after);
-        basis.push_back(std::move(x));
-      }
+      if (!body.rigid) // else held evenly by all points, least impulses decide
+        for (const std::size_t row : dependent_rows(body.trace, rows[b]))
+          chosen_[row] = 0;
     }
   }
 

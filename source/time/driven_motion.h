@@ -45,6 +45,9 @@ namespace nsfd
       unsigned int trace;    ///< row of the trace of the body
     };
     void choose_rows();
+    /** Components of @p rows of @p trace that others of them determine. */
+    static std::vector<std::size_t>
+    dependent_rows(const Block &trace, const std::vector<Row> &rows);
     bool jumps_at(std::size_t i, const dealii::Point<dim> &place,
                   const dealii::Point<dim> &inside) const;
 

@@ -4,6 +4,7 @@
 #include "common_books.h"
 
 #include "nsfd/base/cost.h"
+#include "nsfd/base/stopwatch.h"
 #include "nsfd/input/scene_input.h"
 
 #include <deal.II/base/index_set.h>
@@ -114,6 +115,7 @@ namespace nsfd
                                                    const double h, State &next)
   {
     const Charge charge(Cost::solver);
+    const Stopwatch watch(counters.seconds);
     const bool holds_work = this->communicator_.is_root();
     const unsigned long long mine = 2 * this->n_ + (holds_work ? 1 : 0);
     unsigned long long last = 0, total = 0;

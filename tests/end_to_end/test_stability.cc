@@ -230,6 +230,119 @@ namespace end_to_end
                  "a load at once: at most twice the static displacement");
   }
 
+  // A beam in shear and bending: degree 3 is exact for any Poisson ratio, and
+  // the stiffness of degree 2 does not depend on it.
+  TEST(Stability, Incompressible)
+  {
+    const Workspace workspace;
+    const auto too_stiff = [&](const std::string &degree, const std::string &nu) {
+      const Result result =
+          run(workspace, degree + "_" + nu,
+              launch("incompressible", {"Discretization/degree=" + degree,
+                                        "Constants/nu=" + nu}));
+      EXPECT_TRUE(result.completed());
+      const double n = std::stod(nu);
+      // forces of the volume that cancel are lambda/mu times those of the shape
+      expect_below("degree " + degree + ", nu = " + nu + ": ledger",
+                   result.number("ledger_defect_max"),
+                   1e-9 + 1e-12 * 2. * n / (1. - 2. * n), "round-off");
+      const double E = 1e6, P = 1e3, l = 4., c = 0.5,
+                   I = 2. * c * c * c / 3.;
+      const double exact = P * P * l * l * l * (1. - n * n) / (6. * E * I) +
+                           0.6 * (1. + n) * P * P * l / (c * E);
+      return 1. - result.history["elastic"].back() / exact;
+    };
+    const double compressible = too_stiff("2", "0.3");
+    for (const std::string nu : {"0.4999", "0.499999"}) {
+      expect_below("degree 3, nu = " + nu + ": energy",
+                   std::abs(too_stiff("3", nu)), 1e-7,
+                   "round-off grows with the bulk modulus");
+      expect_below("degree 2, nu = " + nu + ": energy missing, over nu = 0.3",
+                   too_stiff("2", nu) / compressible, 1.1, "no locking");
+    }
+    // what the page says of degree 1
+    EXPECT_GT(too_stiff("1", "0.4999"), 0.5);
+  }
+
+  // The stress of the patch test is uniform: exact on any cells.
+  TEST(Stability, IncompressiblePatch)
+  {
+    const Workspace workspace;
+    for (const char *nu : {"0.4999", "0.499999"})
+      for (const char *degree : {"1", "2"})
+        expect_below(std::string("nu = ") + nu + ", degree " + degree,
+                     good_run(workspace, std::string(nu) + "_" + degree,
+                              {scene("patch_crossed"),
+                               {"plane=strain",
+                                std::string("Material: triangle/Poisson ratio=") +
+                                    nu,
+                                std::string("Discretization/degree=") + degree}})
+                         .error("modulus"),
+                     5e-9, "tolerance of the solver on single steps");
+  }
+
+  // Edges from 1e-6 to 1, angles of 0.06 degrees, and steps as long as the
+  // whole body needs them: 5e7 crossings of the smallest cell.
+  TEST(Stability, Slivers)
+  {
+    const Workspace workspace;
+    const double exact = 0.5 * 1.001 * 1e12 * (1. - 0.09) / 1e9;
+    struct Row {
+      const char *degree, *split;
+    };
+    for (const Row &row : {Row{"1", "false"}, Row{"2", "false"},
+                           Row{"3", "true"}}) {
+      const Result result = good_run(
+          workspace, row.degree,
+          launch("slivers",
+                 {std::string("Discretization/degree=") + row.degree,
+                  std::string("Mesh/split simplices=") + row.split}));
+      ASSERT_TRUE(result.completed());
+      EXPECT_EQ(result.number("steps"), 20.);
+      expect_below(std::string("degree ") + row.degree + ": elastic energy",
+                   std::abs(result.history["elastic"].back() / exact - 1.),
+                   1e-10);
+    }
+    for (const char *type : {"crossed triangles", "diagonal triangles"})
+      expect_below(std::string(type) + " of aspect 1e3: modulus",
+                   good_run(workspace, type,
+                            {scene("patch_crossed"),
+                             {std::string("Mesh/type=") + type,
+                              "Mesh/upper corner=4, 4e-3"}})
+                       .error("modulus"),
+                   5e-9, "tolerance of the solver on single steps");
+  }
+
+  // Errors fall with each degree up to 8, and more points on the faces than
+  // the degree + 1 of the default change nothing.
+  TEST(Stability, HighDegrees)
+  {
+    const Workspace workspace;
+    const auto error = [&](const int degree, const int points) {
+      const Result result = good_run(
+          workspace,
+          std::to_string(degree) + "_" + std::to_string(points),
+          {scene("manufactured"),
+           {"Discretization/degree=" + std::to_string(degree),
+            "Discretization/interface points=" + std::to_string(points),
+            "Constants/n=2", "Time/scheme=arkode", "Time/end=0.05 ms",
+            "Time/integration tolerance=1e-12", "Time/step=0.05 ms",
+            "Output/fields=false"}});
+      return result.error("displacement_L2");
+    };
+    double last = 1.;
+    for (int degree = 1; degree <= 8; ++degree) {
+      const double now = error(degree, degree + 1);
+      expect_below("degree " + std::to_string(degree) + ": error over the last",
+                   now / last, 0.1);
+      if (degree % 3 == 2)
+        expect_below("degree " + std::to_string(degree) + ": two points more",
+                     std::abs(error(degree, degree + 3) / now - 1.), 0.01);
+      last = now;
+    }
+    expect_below("degree 8", last, 1e-12);
+  }
+
   // theta = 1/2 <= 1 / (1 + e): no impact creates energy.
   TEST(Stability, HalfImpact)
   {

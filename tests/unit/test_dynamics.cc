@@ -1,3 +1,4 @@
+#include "../../source/dynamics/block_inverse.h"
 #include "make_scene.h"
 
 #include "nsfd/dynamics/block_kernels.h"
@@ -727,6 +728,69 @@ end
                                  Vector(D.size(), 0.), x),
               0u);
     EXPECT_EQ(largest(x), 0.);
+  }
+
+  // A^{-1} M R = R for the rigid motions R, and A^{-1} K q -> q / f for the
+  // strains, however little of the mass f K leaves in the entries of A.
+  template <int dim>
+  void check_inverse(const std::string &text)
+  {
+    Scene<dim> scene(text);
+    const BodyClass &body = scene.discretization->bodies().classes.front();
+    const unsigned int n = body.n_dofs;
+    const Block &R = body.rigid_motions;
+    ASSERT_EQ(R.cols, dim == 2 ? 3u : 6u);
+    Block identity(n, n);
+    double stiffness = 0., mass = 0.;
+    for (unsigned int i = 0; i < n; ++i) {
+      identity(i, i) = 1.;
+      stiffness += body.stiffness(i, i);
+      mass += body.mass(i, i);
+    }
+    Block q(n, 1); // a strain: no part of it moves rigidly
+    const Vector x = random_vector(n, 7);
+    const Block momenta = product(body.mass, R);
+    for (unsigned int i = 0; i < n; ++i)
+      q(i, 0) = x[i];
+    for (unsigned int k = 0; k < R.cols; ++k) {
+      double share = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        share += momenta(i, k) * x[i];
+      for (unsigned int i = 0; i < n; ++i)
+        q(i, 0) -= share * R(i, k);
+    }
+    const Block force = product(body.stiffness, q);
+    for (const double ratio : {1., 1e8, 1e16, 1e24, 1e32}) { // f K over M
+      SCOPED_TRACE(ratio);
+      const double f = ratio * mass / stiffness;
+      const Block inverse = BlockInverse(body, f).form(identity);
+      const Block motions = product(inverse, momenta);
+      // less than four digits are left of M where A itself is factorised
+      const double left = ratio < 1e12 ? 1e-14 * ratio : 0.;
+      double size = 0.;
+      for (unsigned int k = 0; k < R.cols; ++k)
+        for (unsigned int i = 0; i < n; ++i)
+          size = std::max(size, std::abs(R(i, k)));
+      for (unsigned int k = 0; k < R.cols; ++k)
+        for (unsigned int i = 0; i < n; ++i)
+          ASSERT_NEAR(motions(i, k), R(i, k), (1e-12 + 10. * left) * size);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < i; ++j)
+          ASSERT_EQ(inverse(i, j), inverse(j, i));
+      if (ratio != 1e8)
+        continue; // strains are seen where neither part hides the other
+      const Block back = product(inverse, force);
+      for (unsigned int i = 0; i < n; ++i)
+        EXPECT_NEAR(f * back(i, 0), q(i, 0), 1e-4);
+    }
+  }
+
+  TEST(Operators, LongStepsLeaveRigidMotionsAlone)
+  {
+    check_inverse<2>(quads);
+    check_inverse<2>(triangles);
+    check_inverse<3>(hexes);
+    check_inverse<3>(tets);
   }
 
   TEST(Preconditioner, RigidRowsStayPositive)

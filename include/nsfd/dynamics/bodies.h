@@ -51,6 +51,8 @@ namespace nsfd
     bool rigid = false;
     unsigned int material = 0;
     Block mass, stiffness, trace; ///< stiffness is empty for rigid bodies
+    /// of deformable bodies: the rigid motions R as columns, R^T mass R = 1
+    Block rigid_motions;
     /// of deformable bodies in scenes with bonded faces: the traction on the
     /// outward normal at the slots, (slot, component) x unknown, in Pa/m
     Block traction;

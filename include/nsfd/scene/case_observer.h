@@ -32,6 +32,7 @@ namespace nsfd
 
   private:
     std::vector<CellState> gather_cells(const State &state) const;
+    void set_opening(const State &state, StepView &view) const;
     void field_errors(const State &state,
                       std::map<std::string, double> &errors) const;
     void face_errors(const State &state,

@@ -28,6 +28,9 @@ namespace nsfd
     /// cells in an order that does not depend on the rank count; gathered only
     /// for cases that ask for it
     const std::vector<CellState> *cells = nullptr;
+    /// mean u_N and U_N over the points of the obstacles, m and m/s; only for
+    /// cases that ask for them
+    double opening = 0., opening_rate = 0.;
   };
 
   /**
@@ -76,6 +79,9 @@ namespace nsfd
 
     /** True if observe() wants StepView::cells after every step. */
     virtual bool wants_cells() const { return false; }
+
+    /** True if observe() wants the opening of the obstacles. */
+    virtual bool wants_opening() const { return false; }
 
     /** Called with the initial state (row->step = 0) and after each step. */
     virtual void observe(const StepView &) {}

@@ -47,6 +47,7 @@ namespace nsfd
     struct Counters {
       unsigned long long steps = 0, evaluations = 0, iterations = 0,
                          linear_solves = 0;
+      double seconds = 0.; ///< CPU time of advance()
     };
     const Counters &counters() const;
 

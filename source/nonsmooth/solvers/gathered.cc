@@ -79,6 +79,7 @@ namespace nsfd
         package.put(body.mass);
         package.put(body.stiffness);
         package.put(body.trace);
+        package.put(body.rigid_motions);
       }
       package.put(bodies.class_of);
       package.put(bodies.first_dof);
@@ -165,6 +166,7 @@ namespace nsfd
         package.get(body.mass);
         package.get(body.stiffness);
         package.get(body.trace);
+        package.get(body.rigid_motions);
       }
       package.get(bodies[r].class_of);
       package.get(bodies[r].first_dof);

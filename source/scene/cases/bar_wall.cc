@@ -59,9 +59,14 @@ namespace nsfd
     }
 
     bool wants_cells() const override { return true; }
+    bool wants_opening() const override { return true; }
 
     void observe(const StepView &view) override
     {
+      if (view.row->step == 0)
+        initial_opening_ = view.opening;
+      else if (view.time > 1.1 * (impact_time_ + 2. * crossing_))
+        compare_front(view);
       time_ = view.time;
       mean_velocity_ = direction_.sign *
                        mean(*view.cells, &CellState::velocity, direction_.axis);
@@ -70,7 +75,11 @@ namespace nsfd
         initial_energy_ = energy_;
     }
 
-    /** Impulse from the momentum of the bar, and the share of energy lost. */
+    /**
+     * Impulse from the momentum of the bar, the share of energy lost, and, if
+     * the run goes beyond 1.1 times the end of contact, the mean errors of the
+     * front end from then on, over its mean distance from the wall and speed.
+     */
     void finish(std::map<std::string, double> &errors) const override
     {
       // rho c v_0 for the time of contact, over the mass rho L
@@ -79,6 +88,11 @@ namespace nsfd
       if (exact > 0.)
         errors["impulse"] = relative_error(mean_velocity_ + speed_, exact);
       errors["energy"] = std::abs(1. - energy_ / initial_energy_);
+      if (front_speed_ > 0.) {
+        errors["front_displacement"] =
+            front_displacement_error_ / front_distance_;
+        errors["front_velocity"] = front_velocity_error_ / front_speed_;
+      }
     }
 
   private:
@@ -87,6 +101,26 @@ namespace nsfd
     double front_ = 0., length_ = 0., speed_ = 0.;
     double impact_time_ = 0., crossing_ = 0.;
     double time_ = 0., mean_velocity_ = 0., energy_ = 0., initial_energy_ = 0.;
+
+    double initial_opening_ = 0.;
+    /// sums over steps in free flight, weighted with the step
+    double front_displacement_error_ = 0., front_distance_ = 0.,
+           front_velocity_error_ = 0., front_speed_ = 0.;
+
+    void compare_front(const StepView &view)
+    {
+      Vector x{};
+      x[direction_.axis] = front_;
+      const unsigned int d = direction_.axis;
+      const double u = direction_.sign * displacement(x, view.time)[d],
+                   v = direction_.sign * velocity(x, view.time)[d],
+                   h = view.time_step;
+      const double distance = initial_opening_ + u;
+      front_distance_ += h * distance;
+      front_speed_ += h * std::abs(v);
+      front_displacement_error_ += h * std::abs(view.opening - distance);
+      front_velocity_error_ += h * std::abs(view.opening_rate - v);
+    }
 
     /** Time of a wave from the front end to x. */
     double delay_of(const Vector &x) const
