@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nsfd
 {
@@ -47,6 +48,8 @@ namespace nsfd
     view.time = state.time;
     view.time_step = row.time_step;
     time_step_ = row.time_step;
+    if (row.step == 0 && case_.wants_broken_points())
+      first_beta_ = state.beta;
     view.row = &row;
     std::vector<CellState> cells;
     if (case_.wants_cells()) {
@@ -83,6 +86,8 @@ namespace nsfd
       field_errors(state, errors);
     if (case_.has_jump() && case_.has_fields())
       face_errors(state, errors);
+    if (case_.wants_broken_points())
+      case_.see_broken_points(gather_broken(state));
     case_.finish(errors);
   }
 
@@ -134,6 +139,71 @@ namespace nsfd
                 return a.centre < b.centre;
               });
     return cells;
+  }
+
+  /** Faces are straight: the pieces of their points follow each other. */
+  template <int dim>
+  std::vector<BrokenPoint>
+  CaseObserver<dim>::gather_broken(const State &state) const
+  {
+    const auto &points = discretization_.points();
+    constexpr unsigned int width = 13; // position, normal, ends, area
+    std::vector<double> mine;
+    const auto add = [&](const double *x, const double shift,
+                         const double *along) {
+      for (unsigned int c = 0; c < 3; ++c)
+        mine.push_back(c < dim ? x[c] + shift * along[c] : 0.);
+    };
+    for (const auto &face : points.faces) {
+      if (face.boundary || face.first >= points.n_owned)
+        continue;
+      std::vector<unsigned int> order(face.count);
+      std::iota(order.begin(), order.end(), face.first);
+      const double *Q = &points.frame[face.first * dim * dim];
+      const auto place = [&](const unsigned int i) {
+        double s = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          s += Q[dim + c] * points.position[i * dim + c];
+        return s;
+      };
+      std::sort(order.begin(), order.end(),
+                [&](const unsigned int i, const unsigned int j) {
+                  return place(i) < place(j);
+                });
+      double length = 0., middle = 0.;
+      for (const unsigned int i : order) {
+        length += points.weight[i];
+        middle += points.weight[i] * place(i);
+      }
+      double begin = middle / length - length / 2.;
+      for (const unsigned int i : order) {
+        const double *x = &points.position[i * dim], s = place(i),
+                     end = begin + points.weight[i];
+        if (state.beta[i] == 0. && first_beta_[i] > 0.) {
+          add(x, 0., Q);
+          add(Q, 0., Q);
+          add(x, dim == 2 ? begin - s : 0., Q + dim);
+          add(x, dim == 2 ? end - s : 0., Q + dim);
+          mine.push_back(points.weight[i]);
+        }
+        begin = end;
+      }
+    }
+    const auto all = gather_all(communicator_, mine);
+    std::vector<BrokenPoint> broken(all.size() / width);
+    for (std::size_t i = 0; i < broken.size(); ++i) {
+      const double *in = &all[i * width];
+      std::copy_n(in, 3, broken[i].position.begin());
+      std::copy_n(in + 3, 3, broken[i].normal.begin());
+      for (unsigned int e = 0; e < 2; ++e)
+        std::copy_n(in + 6 + 3 * e, 3, broken[i].ends[e].begin());
+      broken[i].area = in[12];
+    }
+    std::sort(broken.begin(), broken.end(),
+              [](const BrokenPoint &a, const BrokenPoint &b) {
+                return a.position < b.position;
+              });
+    return broken;
   }
 
   template <int dim>

@@ -2,6 +2,7 @@
 
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/discretization.h"
+#include "nsfd/scene/crack_shape.h"
 #include "nsfd/scene/verification_case.h"
 #include "nsfd/time/state.h"
 
@@ -33,6 +34,7 @@ namespace nsfd
   private:
     std::vector<CellState> gather_cells(const State &state) const;
     void set_opening(const State &state, StepView &view) const;
+    std::vector<BrokenPoint> gather_broken(const State &state) const;
     void field_errors(const State &state,
                       std::map<std::string, double> &errors) const;
     void face_errors(const State &state,
@@ -41,6 +43,7 @@ namespace nsfd
     VerificationCase &case_;
     const TimeInput &time_;
     double time_step_ = 0.; ///< the last one
+    std::vector<double> first_beta_; ///< at the start, if the case asks for it
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
   };

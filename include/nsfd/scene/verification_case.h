@@ -6,9 +6,11 @@
 #include <array>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace nsfd
 {
+  struct BrokenPoint;
   struct SceneInput;
   class SectionReader;
 
@@ -85,6 +87,13 @@ namespace nsfd
 
     /** Called with the initial state (row->step = 0) and after each step. */
     virtual void observe(const StepView &) {}
+
+    /**
+     * True if the case is to be shown, before finish(), the points that have
+     * broken since the start, in an order that does not depend on the ranks.
+     */
+    virtual bool wants_broken_points() const { return false; }
+    virtual void see_broken_points(const std::vector<BrokenPoint> &) {}
 
     /** Relative errors and scene quantities, added to `errors`. */
     virtual void finish(std::map<std::string, double> &) const {}
