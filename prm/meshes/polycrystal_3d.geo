@@ -1,6 +1,6 @@
-// The grains of polycrystal.geo as columns, 15 um deep, in tetrahedra. See
+// The grains of polycrystal.geo as columns, 12 um deep, in tetrahedra. See
 // prm/benchmarks/grains_3d.prm.
-depth = 15;
+depth = 12;
 h = 14;
 Include "polycrystal.geo";
 For g In {1:grain}

@@ -84,6 +84,7 @@ namespace nsfd
       std::string caption() const;
       std::string flat_cells() const;
       std::string solid_cells() const;
+      std::string outline() const;
       std::string faces();
       std::string scale_bar(double y) const;
       std::string colour_bar(double y) const;
@@ -119,6 +120,8 @@ namespace nsfd
     {
       if (options.colouring == Colouring::fragment)
         fragments_ = fragment_colours(snapshot);
+      if (options.colouring == Colouring::crack)
+        any_broken_ = true;
       const double inner = options.width - 2. * border;
       scale_ = std::min(inner / extent_[0], options.max_height / extent_[1]);
       left_ = (options.width - scale_ * extent_[0]) / 2.;
@@ -138,6 +141,8 @@ namespace nsfd
       // a nested svg cuts off what leaves the frame
       body += fmt::format("<svg y=\"{}\" width=\"{}\" height=\"{}\">\n",
                           pixel(top), pixel(options_.width), pixel(height));
+      if (options_.colouring == Colouring::crack)
+        body += outline();
       body += "<g class=\"cells\">\n";
       body += three_dimensional_ ? solid_cells() : flat_cells();
       body += "</g>\n";
@@ -146,7 +151,8 @@ namespace nsfd
       body += "</svg>\n";
       double y = top + height + 8.;
       body += scale_bar(y);
-      if (options_.colouring != Colouring::fragment)
+      if (options_.colouring == Colouring::stress ||
+          options_.colouring == Colouring::speed)
         body += colour_bar(y);
       y += 48.;
       body += legend(y);
@@ -188,6 +194,8 @@ namespace nsfd
     {
       if (options_.colouring == Colouring::fragment)
         return fragments_.at(polygon.fragment);
+      if (options_.colouring == Colouring::crack)
+        return rgb(0xe3122b);
       const double value = coloured_value(polygon, options_.colouring);
       if (!std::isfinite(value))
         return no_value;
@@ -220,9 +228,13 @@ namespace nsfd
         std::vector<Vector3> corners;
       };
       std::vector<Facet> facets;
-      for (const auto &polygon : snapshot_.polygons) {
+      const auto shown = options_.colouring == Colouring::crack
+                             ? crack_flanks(snapshot_)
+                             : std::vector<char>(snapshot_.polygons.size(), 1);
+      for (std::size_t p = 0; p < shown.size(); ++p) {
+        const auto &polygon = snapshot_.polygons[p];
         auto corners = deformed_corners(polygon, projection_);
-        if (corners.empty())
+        if (corners.empty() || !shown[p])
           continue;
         double depth = 0.;
         for (const auto &x : corners)
@@ -246,6 +258,18 @@ namespace nsfd
         body += path_element("color=\"" + facets[begin].colour + "\"", path);
       }
       return body;
+    }
+
+    /** The edges of the body, as if it were of glass. */
+    std::string BodyPicture::outline() const
+    {
+      PathWriter path;
+      for (const auto &edge : sharp_edges(snapshot_, projection_)) {
+        const Vector3 p = to_pixel(edge[0]), q = to_pixel(edge[1]);
+        path.move(p[0], p[1]);
+        path.line(q[0], q[1]);
+      }
+      return path_element("class=\"frame\"", path);
     }
 
     /** Intact below, broken on the two flanks of the crack. */

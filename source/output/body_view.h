@@ -49,6 +49,19 @@ namespace nsfd
   /** 0.62 to 1.02 by the angle to the light, the same for both sides. */
   double shade(const std::vector<Vector3> &corners);
 
+  /**
+   * In space, which polygons are flanks of cracks and not of the outer surface:
+   * those that have a twin with the same undeformed corners.
+   */
+  std::vector<char> crack_flanks(const Snapshot &snapshot);
+
+  /**
+   * Where the outer surface of a body in space has an edge: lines between
+   * polygons whose undeformed planes meet at more than 30 degrees, deformed.
+   */
+  std::vector<std::array<Vector3, 2>>
+  sharp_edges(const Snapshot &snapshot, const Projection &projection);
+
   /** Finds the cell edges on both sides of a face by its undeformed ends. */
   class EdgeFinder
   {

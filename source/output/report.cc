@@ -1,5 +1,6 @@
 #include "nsfd/output/report.h"
 
+#include "body_view.h"
 #include "report_charts.h"
 #include "report_cost.h"
 #include "report_html.h"
@@ -122,6 +123,16 @@ namespace nsfd
         by_fragment.colouring = PictureOptions::Colouring::fragment;
         strip += figures.figure("fragments_final", [&](const SvgUse use) {
           return body_picture(snapshots.back(), by_fragment, use);
+        });
+      }
+      const auto flanks = snapshots.back().dimension == 3
+                              ? crack_flanks(snapshots.back())
+                              : std::vector<char>();
+      if (std::count(flanks.begin(), flanks.end(), 1) > 0) {
+        PictureOptions inside = options;
+        inside.colouring = PictureOptions::Colouring::crack;
+        strip += figures.figure("cracks_final", [&](const SvgUse use) {
+          return body_picture(snapshots.back(), inside, use);
         });
       }
       std::string note;

@@ -84,7 +84,8 @@ namespace nsfd
 
   /** How body_picture() draws; the same for all pictures of a series. */
   struct PictureOptions {
-    enum class Colouring { stress, speed, fragment };
+    /// crack: in space, the flanks of cracks inside the outline of the body
+    enum class Colouring { stress, speed, fragment, crack };
 
     Colouring colouring = Colouring::stress;
     /// the displacement is drawn this many times larger; its mean is not

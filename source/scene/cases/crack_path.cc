@@ -3,6 +3,8 @@
 #include "nsfd/input/section_reader.h"
 #include "nsfd/scene/crack_shape.h"
 
+#include <optional>
+
 namespace nsfd
 {
   using namespace cases;
@@ -10,8 +12,9 @@ namespace nsfd
   /**
    * Where a crack has gone: the length (in space the area) of what broke during
    * the run, the direction of its principal axis, its extent along it, what it
-   * covers of it, and how far from straight it is. See crack_shape.h. No exact value: the scene may
-   * name an angle that is expected of it.
+   * covers of it, how far from straight it is, and when the first point broke.
+   * See crack_shape.h. No exact value: the scene may name an angle that is
+   * expected of it, and a region outside of which nothing counts.
    *
    * In space `normal_x`, `_y`, `_z` are those of the mean plane, z >= 0.
    */
@@ -27,6 +30,9 @@ namespace nsfd
         expected_ = reader.number("expected angle", "", units::none,
                                   Range::closed(-180., 180.),
                                   "of the crack to the x axis, in degrees");
+      if (reader.optional("region", "condition on x, y, z: where points count"))
+        region_ = reader.expression("region", "", units::none,
+                                    "condition on x, y, z: where points count");
     }
 
     void initialise(const SceneInput &input) override
@@ -36,11 +42,23 @@ namespace nsfd
              "`expected angle` is for dimension = 2");
     }
 
+    void observe(const StepView &view) override
+    {
+      if (start_ < 0. && view.row->broken_area > 0.)
+        start_ = view.time;
+    }
+
     bool wants_broken_points() const override { return true; }
 
     void see_broken_points(const std::vector<BrokenPoint> &points) override
     {
-      shape_ = crack_shape(points, dimension_);
+      std::vector<BrokenPoint> inside;
+      for (const BrokenPoint &point : points) {
+        const auto &[x, y, z] = point.position;
+        if (!region_ || (*region_)(x, y, z) != 0.)
+          inside.push_back(point);
+      }
+      shape_ = crack_shape(inside, dimension_);
     }
 
     void finish(std::map<std::string, double> &errors) const override
@@ -50,6 +68,7 @@ namespace nsfd
       errors["crack_projected"] = shape_.projected;
       if (shape_.area == 0.)
         return; // nothing has broken: no direction
+      errors["crack_start"] = start_;
       errors["crack_tortuosity"] = shape_.tortuosity;
       if (dimension_ == 2) {
         errors["crack_angle"] = crack_angle(shape_);
@@ -68,7 +87,8 @@ namespace nsfd
   private:
     unsigned int dimension_ = 2;
     bool expects_ = false;
-    double expected_ = 0.;
+    double expected_ = 0., start_ = -1.;
+    std::optional<Expression> region_; ///< or everywhere
     CrackShape shape_;
   };
 
