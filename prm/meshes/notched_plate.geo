@@ -1,7 +1,7 @@
 // A plate of 20 x 10, in millimetres, with a V-shaped notch in its lower side,
 // a round inclusion and a slanted crack. See prm/benchmarks/notched_plate.prm.
-h = 0.5;
-fine = 0.25; // at the tip of the notch
+h = 0.7;
+fine = 0.35; // at the tip of the notch
 Point(1) = {0, 0, 0, h};
 Point(2) = {6.25, 0, 0, h};
 Point(3) = {7, 2.5, 0, fine}; // the tip

@@ -233,7 +233,7 @@ namespace nsfd
                              : std::vector<char>(snapshot_.polygons.size(), 1);
       for (std::size_t p = 0; p < shown.size(); ++p) {
         const auto &polygon = snapshot_.polygons[p];
-        auto corners = deformed_corners(polygon, projection_);
+        auto corners = corners_to_eye(polygon, projection_);
         if (corners.empty() || !shown[p])
           continue;
         double depth = 0.;

@@ -37,6 +37,13 @@ namespace nsfd
   std::vector<Vector3> deformed_corners(const Snapshot::Polygon &polygon,
                                         const Projection &projection);
 
+  /**
+   * The same, anticlockwise as the eye sees them: the two flanks of a closed
+   * crack in one path do not cancel.
+   */
+  std::vector<Vector3> corners_to_eye(const Snapshot::Polygon &polygon,
+                                      const Projection &projection);
+
   /** Axis-parallel box in space or, with two used entries, in the plane. */
   struct Box {
     Vector3 lower{HUGE_VAL, HUGE_VAL, HUGE_VAL},

@@ -76,6 +76,21 @@ namespace nsfd
     }
   } // namespace
 
+  std::vector<Vector3> corners_to_eye(const Snapshot::Polygon &polygon,
+                                      const Projection &projection)
+  {
+    auto corners = deformed_corners(polygon, projection);
+    double area = 0.;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vector3 p = projection.to_plane(corners[i]),
+                    q = projection.to_plane(corners[(i + 1) % corners.size()]);
+      area += p[0] * q[1] - p[1] * q[0];
+    }
+    if (area < 0.)
+      std::reverse(corners.begin(), corners.end());
+    return corners;
+  }
+
   std::vector<char> crack_flanks(const Snapshot &snapshot)
   {
     const Grid grid(snapshot);

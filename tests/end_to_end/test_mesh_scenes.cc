@@ -67,7 +67,7 @@ namespace end_to_end
           {"matrix (surface 1)", "used by Interface: rim",
            "used by Interface: crack", "used by Boundary: right"}},
          {"notched_plate",
-          {"matrix (surface 1)", "notch (curve 3): 16 faces on the boundary",
+          {"matrix (surface 1)", "notch (curve 3): 12 faces on the boundary",
            "used by Interface: rim", "used by Interface: crack",
            "used by Boundary: left"}},
          {"notched_plate_3d",

@@ -90,6 +90,23 @@ namespace nsfd
       EXPECT_EQ(bool(flanks[p]), p == 1 || p == 6) << p;
   }
 
+  TEST(CrackPicture, AllPolygonsTurnTheSameWay)
+  {
+    Snapshot snapshot = body();
+    add_box(snapshot, {0., 0., 0.}, {1e-3, 2e-3, 1e-3}, true);
+    const Projection projection(snapshot, 1.);
+    for (const auto &polygon : snapshot.polygons) {
+      const auto corners = corners_to_eye(polygon, projection);
+      double area = 0.;
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vector3 p = projection.to_plane(corners[i]),
+                      q = projection.to_plane(corners[(i + 1) % 3]);
+        area += p[0] * q[1] - p[1] * q[0];
+      }
+      EXPECT_GT(area, 0.);
+    }
+  }
+
   TEST(CrackPicture, ShowsNothingButCracks)
   {
     Snapshot whole = body(), cracked = body();
