@@ -351,7 +351,8 @@ namespace nsfd
         condensed_.factor(D);
         return;
       }
-      if (joined_valid_ && D == D_)
+      // all ranks take the same way: a factor is made by all of them
+      if (!this->communicator_.any(!joined_valid_ || D != D_))
         return;
       D_ = D;
       // an old factor is a good preconditioner until iterations say otherwise

@@ -190,6 +190,19 @@ namespace end_to_end
                  energy_difference(one.history, two.history), 1e-9);
   }
 
+  // Bonded faces let go on one rank while nothing changes on the other: both
+  // must make the new factor. A rank that waits for ever is ended.
+  TEST(Ranks, BondsThatBreakOnOneRankAgree)
+  {
+    const Workspace workspace;
+    const Result one = good_run(workspace, "1 rank", {scene("crack_path"), {}});
+    const Result two =
+        good_run(workspace, "2 ranks", {scene("crack_path"), {}, 2});
+    ASSERT_TRUE(one.completed() && two.completed());
+    for (const char *name : {"crack_length", "crack_extent", "crack_start"})
+      EXPECT_NEAR(two.error(name) / one.error(name), 1., 1e-12) << name;
+  }
+
   INSTANTIATE_TEST_SUITE_P(Table, RanksTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
 
