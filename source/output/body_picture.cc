@@ -115,13 +115,12 @@ namespace nsfd
           extent_{options.upper[0] - options.lower[0],
                   options.upper[1] - options.lower[1]},
           any_damaged_(options.explain_damaged),
-          any_broken_(options.explain_broken),
+          any_broken_(options.explain_broken ||
+                      options.colouring == Colouring::crack),
           any_contact_(options.explain_contact)
     {
       if (options.colouring == Colouring::fragment)
         fragments_ = fragment_colours(snapshot);
-      if (options.colouring == Colouring::crack)
-        any_broken_ = true;
       const double inner = options.width - 2. * border;
       scale_ = std::min(inner / extent_[0], options.max_height / extent_[1]);
       left_ = (options.width - scale_ * extent_[0]) / 2.;
@@ -228,12 +227,13 @@ namespace nsfd
         std::vector<Vector3> corners;
       };
       std::vector<Facet> facets;
-      const auto shown = options_.colouring == Colouring::crack
-                             ? crack_flanks(snapshot_)
-                             : std::vector<char>(snapshot_.polygons.size(), 1);
+      const bool glass = options_.colouring == Colouring::crack;
+      const std::vector<char> all(snapshot_.polygons.size(), 1);
+      const auto shown = glass ? crack_flanks(snapshot_) : all;
       for (std::size_t p = 0; p < shown.size(); ++p) {
         const auto &polygon = snapshot_.polygons[p];
-        auto corners = corners_to_eye(polygon, projection_);
+        auto corners = corners_to_eye(polygon, projection_,
+                                      glass ? Seen::both : Seen::front);
         if (corners.empty() || !shown[p])
           continue;
         double depth = 0.;

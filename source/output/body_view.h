@@ -37,12 +37,16 @@ namespace nsfd
   std::vector<Vector3> deformed_corners(const Snapshot::Polygon &polygon,
                                         const Projection &projection);
 
+  /** Which sides of the polygons in space are seen. */
+  enum class Seen { front, both };
+
   /**
    * The same, anticlockwise as the eye sees them: the two flanks of a closed
-   * crack in one path do not cancel.
+   * crack in one path do not cancel. Corners go round anticlockwise for who
+   * looks at the body; with Seen::front, what faces away is empty.
    */
   std::vector<Vector3> corners_to_eye(const Snapshot::Polygon &polygon,
-                                      const Projection &projection);
+                                      const Projection &projection, Seen seen);
 
   /** Axis-parallel box in space or, with two used entries, in the plane. */
   struct Box {

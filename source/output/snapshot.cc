@@ -114,6 +114,29 @@ namespace nsfd
       return part;
     }
 
+    /** Turn the corners so that they go round anticlockwise from outside. */
+    void turn_outwards(Part &part)
+    {
+      Vector3 normal{}, middle{};
+      const Vector3 *x = part.reference.data();
+      for (unsigned int i = 0; i < part.n_corners; ++i)
+        for (unsigned int d = 0; d < 3; ++d) {
+          const unsigned int e = (d + 1) % 3, f = (d + 2) % 3,
+                             j = (i + 1) % part.n_corners;
+          normal[d] += x[i][e] * x[j][f] - x[i][f] * x[j][e];
+          middle[d] += x[i][d] / part.n_corners;
+        }
+      double outwards = 0.;
+      for (unsigned int d = 0; d < 3; ++d)
+        outwards += normal[d] * (middle[d] - part.centre[d]);
+      if (outwards < 0.) {
+        std::reverse(part.reference.begin(),
+                     part.reference.begin() + part.n_corners);
+        std::reverse(part.displacement.begin(),
+                     part.displacement.begin() + part.n_corners);
+      }
+    }
+
     template <int dim>
     std::vector<Part> PartMaker<dim>::cells()
     {
@@ -149,6 +172,7 @@ namespace nsfd
                v < cell_.face_reference_cell(f).n_vertices(); ++v)
             vertices.push_back(cell_.face_to_cell_vertices(f, v, 1));
           parts.push_back(make(b, f, vertices));
+          turn_outwards(parts.back());
         }
       return parts;
     }

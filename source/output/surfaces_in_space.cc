@@ -77,7 +77,8 @@ namespace nsfd
   } // namespace
 
   std::vector<Vector3> corners_to_eye(const Snapshot::Polygon &polygon,
-                                      const Projection &projection)
+                                      const Projection &projection,
+                                      const Seen seen)
   {
     auto corners = deformed_corners(polygon, projection);
     double area = 0.;
@@ -86,6 +87,8 @@ namespace nsfd
                     q = projection.to_plane(corners[(i + 1) % corners.size()]);
       area += p[0] * q[1] - p[1] * q[0];
     }
+    if (area < 0. && seen == Seen::front)
+      return {};
     if (area < 0.)
       std::reverse(corners.begin(), corners.end());
     return corners;
@@ -111,8 +114,8 @@ namespace nsfd
     return flank;
   }
 
-  std::vector<std::array<Vector3, 2>>
-  sharp_edges(const Snapshot &snapshot, const Projection &projection)
+  std::vector<std::array<Vector3, 2>> sharp_edges(const Snapshot &snapshot,
+                                                  const Projection &projection)
   {
     const Grid grid(snapshot);
     std::vector<Side> sides;

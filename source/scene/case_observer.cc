@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
+#include <type_traits>
 
 namespace nsfd
 {
@@ -28,6 +30,51 @@ namespace nsfd
     double relative(const double error, const double reference)
     {
       return reference > 0. ? error / reference : error;
+    }
+
+    /**
+     * The points of a face. In the plane a face is straight, and the pieces
+     * that its points stand for follow each other along it.
+     */
+    template <int dim>
+    std::vector<BrokenPoint>
+    pieces_of(const InterfacePoints<dim> &points,
+              const typename InterfacePoints<dim>::Face &face)
+    {
+      const double *Q = &points.frame[face.first * dim * dim];
+      std::vector<BrokenPoint> pieces(face.count);
+      std::vector<double> place(face.count, 0.); // along the first tangent
+      double length = 0., middle = 0.;
+      for (unsigned int k = 0; k < face.count; ++k) {
+        const std::size_t i = face.first + k;
+        pieces[k].area = points.weight[i];
+        for (unsigned int c = 0; c < dim; ++c) {
+          pieces[k].position[c] = points.position[i * dim + c];
+          pieces[k].normal[c] = Q[c];
+          place[k] += Q[dim + c] * points.position[i * dim + c];
+        }
+        pieces[k].ends = {pieces[k].position, pieces[k].position};
+        length += points.weight[i];
+        middle += points.weight[i] * place[k];
+      }
+      if (dim == 3)
+        return pieces;
+      std::vector<unsigned int> order(face.count);
+      std::iota(order.begin(), order.end(), 0);
+      std::sort(order.begin(), order.end(),
+                [&](const unsigned int a, const unsigned int b) {
+                  return place[a] < place[b];
+                });
+      double begin = middle / length - length / 2.;
+      for (const unsigned int k : order) {
+        const double end = begin + pieces[k].area;
+        for (unsigned int c = 0; c < dim; ++c) {
+          pieces[k].ends[0][c] += (begin - place[k]) * Q[dim + c];
+          pieces[k].ends[1][c] += (end - place[k]) * Q[dim + c];
+        }
+        begin = end;
+      }
+      return pieces;
     }
   } // namespace
 
@@ -141,64 +188,31 @@ namespace nsfd
     return cells;
   }
 
-  /** Faces are straight: the pieces of their points follow each other. */
   template <int dim>
   std::vector<BrokenPoint>
   CaseObserver<dim>::gather_broken(const State &state) const
   {
     const auto &points = discretization_.points();
-    constexpr unsigned int width = 13; // position, normal, ends, area
-    std::vector<double> mine;
-    const auto add = [&](const double *x, const double shift,
-                         const double *along) {
-      for (unsigned int c = 0; c < 3; ++c)
-        mine.push_back(c < dim ? x[c] + shift * along[c] : 0.);
-    };
+    std::vector<BrokenPoint> broken;
     for (const auto &face : points.faces) {
       if (face.boundary || face.first >= points.n_owned)
         continue;
-      std::vector<unsigned int> order(face.count);
-      std::iota(order.begin(), order.end(), face.first);
-      const double *Q = &points.frame[face.first * dim * dim];
-      const auto place = [&](const unsigned int i) {
-        double s = 0.;
-        for (unsigned int c = 0; c < dim; ++c)
-          s += Q[dim + c] * points.position[i * dim + c];
-        return s;
-      };
-      std::sort(order.begin(), order.end(),
-                [&](const unsigned int i, const unsigned int j) {
-                  return place(i) < place(j);
-                });
-      double length = 0., middle = 0.;
-      for (const unsigned int i : order) {
-        length += points.weight[i];
-        middle += points.weight[i] * place(i);
-      }
-      double begin = middle / length - length / 2.;
-      for (const unsigned int i : order) {
-        const double *x = &points.position[i * dim], s = place(i),
-                     end = begin + points.weight[i];
-        if (state.beta[i] == 0. && first_beta_[i] > 0.) {
-          add(x, 0., Q);
-          add(Q, 0., Q);
-          add(x, dim == 2 ? begin - s : 0., Q + dim);
-          add(x, dim == 2 ? end - s : 0., Q + dim);
-          mine.push_back(points.weight[i]);
-        }
-        begin = end;
-      }
+      const auto pieces = pieces_of<dim>(points, face);
+      for (unsigned int k = 0; k < face.count; ++k)
+        if (state.beta[face.first + k] == 0. &&
+            first_beta_[face.first + k] > 0.)
+          broken.push_back(pieces[k]);
     }
+    constexpr unsigned int width = sizeof(BrokenPoint) / sizeof(double);
+    static_assert(std::is_trivially_copyable<BrokenPoint>::value &&
+                      width * sizeof(double) == sizeof(BrokenPoint),
+                  "a point travels as numbers");
+    std::vector<double> mine(broken.size() * width);
+    std::memcpy(mine.data(), broken.data(), mine.size() * sizeof(double));
     const auto all = gather_all(communicator_, mine);
-    std::vector<BrokenPoint> broken(all.size() / width);
-    for (std::size_t i = 0; i < broken.size(); ++i) {
-      const double *in = &all[i * width];
-      std::copy_n(in, 3, broken[i].position.begin());
-      std::copy_n(in + 3, 3, broken[i].normal.begin());
-      for (unsigned int e = 0; e < 2; ++e)
-        std::copy_n(in + 6 + 3 * e, 3, broken[i].ends[e].begin());
-      broken[i].area = in[12];
-    }
+    broken.resize(all.size() / width);
+    std::memcpy(static_cast<void *>(broken.data()), all.data(),
+                all.size() * sizeof(double));
     std::sort(broken.begin(), broken.end(),
               [](const BrokenPoint &a, const BrokenPoint &b) {
                 return a.position < b.position;

@@ -28,9 +28,10 @@ namespace end_to_end
       double volume = 0.;
     };
 
-    /** Of linear tetrahedra with four points each: V rho times mean velocity. */
+    /** Of linear tetrahedra with four points each: V rho times mean velocity.
+     */
     Body of_tetrahedra(const Snapshot &fields,
-                        const std::vector<double> &density_of_material)
+                       const std::vector<double> &density_of_material)
     {
       const auto &x = fields.at("Points"), &v = fields.at("velocity");
       const auto &material = fields.at("material");
@@ -44,21 +45,19 @@ namespace end_to_end
         double determinant = 0.;
         for (unsigned int c = 0; c < 3; ++c)
           determinant +=
-              edge[0][c] *
-              (edge[1][(c + 1) % 3] * edge[2][(c + 2) % 3] -
-               edge[1][(c + 2) % 3] * edge[2][(c + 1) % 3]);
+              edge[0][c] * (edge[1][(c + 1) % 3] * edge[2][(c + 2) % 3] -
+                            edge[1][(c + 2) % 3] * edge[2][(c + 1) % 3]);
         const double volume = std::abs(determinant) / 6.;
         sum.volume += volume;
         for (unsigned int c = 0; c < 3; ++c)
           for (unsigned int i = 0; i < 4; ++i)
-            sum.momentum[c] += density_of_material.at(
-                                   std::size_t(material[cell])) *
-                               volume * v[12 * cell + 3 * i + c] / 4.;
+            sum.momentum[c] +=
+                density_of_material.at(std::size_t(material[cell])) * volume *
+                v[12 * cell + 3 * i + c] / 4.;
       }
       return sum;
     }
   } // namespace
-
 
   TEST(Meshes, ScenesFindTheirGroups)
   {
@@ -93,9 +92,8 @@ namespace end_to_end
       EXPECT_EQ(outcome.out.find("mesh note"), std::string::npos)
           << outcome.out;
       for (const std::string &line : lines)
-        EXPECT_NE(outcome.out.find(line), std::string::npos)
-            << line << "\n"
-            << outcome.out;
+        EXPECT_NE(outcome.out.find(line), std::string::npos) << line << "\n"
+                                                             << outcome.out;
     }
   }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -58,7 +60,6 @@ namespace nsfd
     }
   } // namespace
 
-
   // Twelve edges, each found from two sides; diagonals of triangles are none.
   TEST(CrackPicture, OutlineOfABox)
   {
@@ -96,7 +97,7 @@ namespace nsfd
     add_box(snapshot, {0., 0., 0.}, {1e-3, 2e-3, 1e-3}, true);
     const Projection projection(snapshot, 1.);
     for (const auto &polygon : snapshot.polygons) {
-      const auto corners = corners_to_eye(polygon, projection);
+      const auto corners = corners_to_eye(polygon, projection, Seen::both);
       double area = 0.;
       for (std::size_t i = 0; i < corners.size(); ++i) {
         const Vector3 p = projection.to_plane(corners[i]),
@@ -105,6 +106,25 @@ namespace nsfd
       }
       EXPECT_GT(area, 0.);
     }
+  }
+
+  // Three sides of a box face the eye, which is at (1, -1, 1).
+  TEST(CrackPicture, WhatFacesAwayIsNotDrawn)
+  {
+    Snapshot snapshot = body();
+    add_box(snapshot, {0., 0., 0.}, {1e-3, 2e-3, 1e-3}, false);
+    // add_box goes round from outside on every other side only
+    for (std::size_t p = 0; p < 6; p += 2)
+      std::reverse(snapshot.polygons[p].reference.begin(),
+                   snapshot.polygons[p].reference.end());
+    const Projection projection(snapshot, 1.);
+    // left, right, front (low y), back, bottom, top
+    const std::array<bool, 6> seen = {false, true, true, false, false, true};
+    for (std::size_t p = 0; p < 6; ++p)
+      EXPECT_EQ(!corners_to_eye(snapshot.polygons[p], projection, Seen::front)
+                     .empty(),
+                seen[p])
+          << p;
   }
 
   TEST(CrackPicture, ShowsNothingButCracks)

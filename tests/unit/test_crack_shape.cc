@@ -68,7 +68,6 @@ namespace nsfd
     const double round_off = 1e-12;
   } // namespace
 
-
   TEST(CrackShape, StraightCracksAreMeasuredExactly)
   {
     for (const double angle : {-89., -45., 0., 15., 30., 45., 90.})

@@ -6,8 +6,7 @@
 namespace nsfd
 {
   /** A broken interface point, on the undeformed body. */
-  struct BrokenPoint
-  {
+  struct BrokenPoint {
     std::array<double, 3> position{}, normal{}; ///< m; unit vector
     double area = 0.; ///< its weight, m^2; m in two dimensions
     /// of the piece of the face that it stands for, m; in space the point
@@ -15,8 +14,7 @@ namespace nsfd
   };
 
   /** Length, direction and straightness of a set of broken points. */
-  struct CrackShape
-  {
+  struct CrackShape {
     double area = 0.; ///< of all points, m^2; m in two dimensions
     /// principal axes, from the longest to the shortest; in two dimensions the
     /// third is z
