@@ -69,6 +69,21 @@ namespace nsfd
   {
     const auto &points = discretization.points();
     std::vector<FaceFamily> families(input.interfaces.size());
+    // block x material: 1 where they touch
+    std::vector<char> touches(families.size() * input.materials.size(), 0);
+    for (const auto &face : points.faces) {
+      const PointOrigin origin = discretization.origins()[face.first];
+      if (origin.kind == PointOrigin::Kind::interface)
+        for (const int body : face.bodies)
+          if (body >= 0)
+            touches[origin.block * input.materials.size() +
+                    discretization.material_of(unsigned(body))] = 1;
+    }
+    for (unsigned int block = 0; block < families.size(); ++block)
+      for (unsigned int m = 0; m < input.materials.size(); ++m)
+        if (communicator.any(touches[block * input.materials.size() + m] != 0) &&
+            !input.materials[m].rigid)
+          families[block].materials.push_back(m);
     constexpr unsigned int n_rows = 1 + 2 * dim;
     for (unsigned int block = 0; block < families.size(); ++block) {
       std::vector<double> terms(n_rows * points.n_owned, 0.);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <numeric>
 
 namespace nsfd
 {
@@ -96,12 +97,14 @@ namespace nsfd
       /// steps with one solution, per block: 0 if there is none
       std::vector<double> unique_steps = {};
       double contraction = 0., contraction_step = 0.;
-      /// the stiffest elastic material around decides
+      /// of the stiffest elastic material, or the stiffest that an interface
+      /// touches while its advice is printed
       double young = 0., poisson = 0., plane_young = 0.;
 
-      void choose_material();
-      void print_interface(unsigned int b) const;
-      void print_resolution(const CohesiveLaw &law) const;
+      void choose_material(const std::vector<unsigned int> &among);
+      void print_interface(unsigned int b);
+      void print_resolution(const CohesiveLaw &law,
+                            const MaterialInput &softest) const;
       void print_bounds(const CohesiveLaw &law, double Z) const;
       void print_jumps(const CohesiveLaw &law) const;
       void print_step(const CohesiveLaw &law, double unique) const;
@@ -111,13 +114,17 @@ namespace nsfd
     };
 
     template <int dim>
-    void Advisor<dim>::choose_material()
+    void
+    Advisor<dim>::choose_material(const std::vector<unsigned int> &among)
     {
-      for (const auto &material : input.materials)
+      young = 0.;
+      for (const unsigned int m : among) {
+        const auto &material = input.materials[m];
         if (!material.rigid && material.young > young) {
           young = material.young;
           poisson = material.poisson;
         }
+      }
       plane_young = dim == 2 && !input.plane_stress
                         ? young / (1. - poisson * poisson)
                         : young;
@@ -132,8 +139,10 @@ namespace nsfd
     }
 
     template <int dim>
-    void Advisor<dim>::print_interface(const unsigned int b) const
+    void Advisor<dim>::print_interface(const unsigned int b)
     {
+      const auto &materials = families[b].materials;
+      choose_material(materials);
       const auto &block = input.interfaces[b];
       const auto &law = *block.law;
       std::cout << fmt::format(
@@ -143,7 +152,14 @@ namespace nsfd
         std::cout << fmt::format(", C_N {:.4g}", law.normal_stiffness());
       std::cout << "\n";
       if (young > 0.) {
-        print_resolution(law);
+        // a front runs through the softer side where it is shorter
+        print_resolution(
+            law, input.materials[*std::min_element(
+                     materials.begin(), materials.end(),
+                     [&](const unsigned int m, const unsigned int n) {
+                       return input.materials[m].young <
+                              input.materials[n].young;
+                     })]);
         // the compliance of some named faces belongs to the scene
         if (!law.extrinsic() &&
             families[b].density > 0.5 * mesh.interface_density)
@@ -156,9 +172,11 @@ namespace nsfd
 
     /** (49)-(52). */
     template <int dim>
-    void Advisor<dim>::print_resolution(const CohesiveLaw &law) const
+    void Advisor<dim>::print_resolution(const CohesiveLaw &law,
+                                        const MaterialInput &softest) const
     {
-      const double length = cohesive_length(young, poisson, law);
+      const double length =
+          cohesive_length(softest.young, softest.poisson, law);
       const double edges = length / mesh.largest_edge;
       const unsigned int per_edge = input.discretization.interface_points;
       const double points = edges * per_edge;
@@ -423,7 +441,9 @@ namespace nsfd
         step,
         discretization.crossing_time(),
         discretization.extent()};
-    advisor.choose_material();
+    std::vector<unsigned int> all(input.materials.size());
+    std::iota(all.begin(), all.end(), 0u);
+    advisor.choose_material(all);
     if (!bad) {
       const State state = stepper.initial_state();
       for (int b = 0; b < int(input.interfaces.size()); ++b) {
