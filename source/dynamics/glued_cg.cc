@@ -39,7 +39,6 @@ namespace nsfd
       BodyInverses bodies_;
 
       unsigned long long version_ = 0;
-      SparseRows coarse_matrix_;
       /// per own unknown: place among own coarse ones, then coarse ghosts
       std::vector<int> place_;
       long long n_coarse_ = 0;
@@ -72,7 +71,8 @@ namespace nsfd
         own[i] = double(coarse.number[i]);
       exchange_.fetch(own.data(), ghosts.data());
       const std::vector<long long> numbers(ghosts.begin(), ghosts.end());
-      coarse_matrix_ = coarse_rows(communicator_, *matrix_, coarse, numbers);
+      const SparseRows coarse_matrix =
+        coarse_rows(communicator_, *matrix_, coarse, numbers);
       ++counters_.coarse_spaces;
 
       // coarse unknowns of other ranks that own nodes are glued to
@@ -103,12 +103,12 @@ namespace nsfd
         multigrid_.reset();
         if (!factor_)
           factor_ = std::make_unique<Cholesky>(communicator_);
-        factor_->factorise(coarse_matrix_, true);
+        factor_->factorise(coarse_matrix, true);
       } else {
         factor_.reset();
         if (!multigrid_)
           multigrid_ = std::make_unique<Multigrid>(communicator_);
-        multigrid_->prepare(coarse_matrix_, coarse.modes, coarse.per_node);
+        multigrid_->prepare(coarse_matrix, coarse.modes, coarse.per_node);
       }
     }
 

@@ -52,6 +52,25 @@ namespace end_to_end
         }
   }
 
+  // every face in contact or open, nothing rubs: no step is cut, and W is
+  // applied less often than the bound of the solvers of A
+  TEST(LongSteps, ContactOnEveryFace)
+  {
+    for (const std::string step : {"10", "100"}) {
+      SCOPED_TRACE("step " + step);
+      const Workspace workspace;
+      auto set = settings("direct", "21", step, 5.);
+      set.push_back("Interface: faces/intact faces=unilateral");
+      const Result result = good_run(workspace, "run", {pulse(), set});
+      ASSERT_TRUE(result.completed());
+      EXPECT_EQ(result.counter("rejected_steps"), 0.);
+      expect_below("applications per step",
+                   result.counter("operator_applications") /
+                       result.number("steps"),
+                   150.);
+    }
+  }
+
   TEST(LongSteps, BothSolversOnAnyNumberOfRanks)
   {
     const Workspace workspace;

@@ -1,5 +1,7 @@
 #include "nsfd/nonsmooth/solver.h"
 
+#include "../../dynamics/factor_limits.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,9 +14,11 @@ namespace nsfd
      * method on the dual problem (with its sweeps of Gauss-Seidel), then
      * interior points where points may touch. At long steps, where Newton's
      * method needs a global factor in every iteration and Coulomb friction
-     * makes it cycle, the interior points come first. Every hand-over is in
-     * the report. Steps in which points soften are not handed over: a shorter
-     * step is their cure, until four cuts have shown that it is none.
+     * makes it cycle, the interior points come first; without friction, after
+     * a few steps of Newton's, which are enough where few contacts change.
+     * Every hand-over is in the report. Steps in which points soften are not
+     * handed over: a shorter step is their cure, until four cuts have shown
+     * that it is none.
      */
     template <int dim>
     class Chain final : public NonsmoothSolver<dim>
@@ -38,44 +42,70 @@ namespace nsfd
                                 impulse, evaluation);
         if (!path_)
           path_ = SolverRegistry<dim>::instance().create("interior point");
-        std::array<NonsmoothSolver<dim> *, 2> order{newton_.get(),
-                                                    path_.get()};
-        std::array<const char *, 2> names{"dual newton", "interior point"};
-        if (all.any(may_rub(problem)) && is_long(problem, dynamics)) {
-          std::swap(order[0], order[1]);
-          std::swap(names[0], names[1]);
+        const bool rubs = all.any(may_rub(problem)),
+                   lasts = is_long(problem, dynamics);
+        auto *first = newton_.get(), *second = path_.get();
+        const char *second_name = "interior point";
+        if (rubs && lasts) {
+          std::swap(first, second);
+          second_name = "dual newton";
+        }
+        // a Newton step costs a global factor here, as one of the path does
+        const auto n = all.sum_integer(dynamics.bodies().n_dofs());
+        const bool brief =
+          lasts && !rubs && static_cast<long long>(n) <= largest_factor<dim>;
+        SolverControl part = control;
+        if (brief) {
+          part.maximum_iterations = std::min(part.maximum_iterations, 10u);
+          part.may_sweep = false;
         }
         const std::vector<double> start(impulse);
-        SolverReport report =
-          order[0]->solve(problem, dynamics, energy_scale, control, impulse,
-                          evaluation);
+        SolverReport report = first->solve(problem, dynamics, energy_scale,
+                                           part, impulse, evaluation);
+        const auto go_on = [&](NonsmoothSolver<dim> &solver, const char *name,
+                               const bool from_start) {
+          const std::vector<double> best(impulse);
+          if (from_start)
+            impulse = start;
+          add(solver.solve(problem, dynamics, energy_scale, control, impulse,
+                           evaluation),
+              name, report);
+          if (evaluation.error > report.residual) {
+            impulse = best;
+            evaluation.update(impulse);
+          }
+          report.residual = evaluation.error;
+          report.converged = report.residual <= control.tolerance;
+        };
         const bool early =
           control.idle_rounds < (SolverControl().idle_rounds << 4);
-        if (report.converged ||
-            (all.any(softens(problem, evaluation)) && early))
+        if (!report.converged && early &&
+            all.any(softens(problem, evaluation))) {
+          if (brief)
+            go_on(*first, "dual newton", false);
           return report;
-        const std::vector<double> best(impulse);
-        impulse = start;
-        SolverReport next = order[1]->solve(
-          problem, dynamics, energy_scale, control, impulse, evaluation);
-        if (next.residual > report.residual) {
-          impulse = best;
-          evaluation.update(impulse);
-        } else {
-          report.residual = next.residual;
-          report.converged = next.converged;
         }
-        report.newton += next.newton;
-        report.krylov += next.krylov;
-        report.sweeps += next.sweeps;
-        report.line_searches += next.line_searches;
-        report.switches.push_back(names[1]);
-        report.switches.insert(report.switches.end(), next.switches.begin(),
-                               next.switches.end());
+        if (!report.converged)
+          go_on(*second, second_name, true);
+        if (!report.converged && brief)
+          go_on(*first, "dual newton", false);
         return report;
       }
 
     private:
+      /** What @p next did goes into @p report. */
+      static void add(const SolverReport &next, const char *name,
+                      SolverReport &report)
+      {
+        report.newton += next.newton;
+        report.krylov += next.krylov;
+        report.sweeps += next.sweeps;
+        report.line_searches += next.line_searches;
+        report.switches.push_back(name);
+        report.switches.insert(report.switches.end(), next.switches.begin(),
+                               next.switches.end());
+      }
+
       static bool may_touch(const OneStepProblem<dim> &problem)
       {
         return std::any_of(problem.contact.begin(), problem.contact.end(),
