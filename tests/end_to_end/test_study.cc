@@ -120,7 +120,7 @@ namespace end_to_end
     EXPECT_GE(n, 3u);
     const fs::path paper = fs::path(NSFD_SOURCE_DIR) / "prm" / "paper";
     for (const std::string name :
-         {"figure_10_modulus", "figure_11_rupture", "table_1"}) {
+         {"figure_10_modulus", "rupture", "figure_11_rupture", "table_1"}) {
       const Outcome outcome =
           nsfd(workspace, {(paper / (name + ".prm")).string(), "--check"});
       EXPECT_EQ(outcome.exit_code, 0) << name << outcome.err;
