@@ -1,6 +1,5 @@
 #include "block_inverse.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace nsfd

@@ -244,7 +244,6 @@ namespace nsfd
      * The largest eigenvalue of B u = Lambda K u for B = G^T G, both blind to
      * rigid motions @p modes: K is made definite on them.
      */
-    template <int dim>
     double largest_ratio(const Block &G, const Block &K, const Block &modes)
     {
       const unsigned int n = K.rows;
@@ -310,8 +309,8 @@ namespace nsfd
           }
       }
     }
-    body.traction_bound = largest_ratio<dim>(
-        weighted, body.stiffness, rigid_modes(shape, shape.height));
+    body.traction_bound =
+        largest_ratio(weighted, body.stiffness, body.rigid_motions);
   }
 
   template class ClassBuilder<2>;

@@ -70,7 +70,7 @@ namespace nsfd
     Block stiffness(const BodyShape<dim> &shape, unsigned int material) const;
     /** Also the slots. */
     Block trace(BodyShape<dim> &shape) const;
-    /** Traction block and its bound; needs stiffness and slots. */
+    /** Traction block and its bound; needs stiffness, motions and slots. */
     void set_traction(const BodyShape<dim> &shape, BodyClass &body) const;
 
     const dealii::FiniteElement<dim, dim> &element_;

@@ -58,7 +58,8 @@ namespace nsfd
       return face.beta < 1. - 1e-9 ? FaceState::damaged : FaceState::intact;
     }
 
-    const char *const broken_colour = "#e3122b";
+    const Rgb broken_rgb = rgb(0xe3122b);
+    const std::string broken_colour = hex(broken_rgb);
     const char *const contact_colour = "#2f9dff";
 
     std::string damage_colour(const double damage)
@@ -102,6 +103,7 @@ namespace nsfd
       const Projection projection_;
       const bool three_dimensional_;
       std::map<unsigned int, Rgb> fragments_; ///< if coloured by them
+      std::vector<char> flanks_; ///< of cracks, if they alone are drawn
       std::array<double, 2> extent_;
       double scale_ = 1., left_ = 0.; ///< pixels per metre, of the body
       bool any_damaged_, any_broken_, any_contact_;
@@ -121,6 +123,8 @@ namespace nsfd
     {
       if (options.colouring == Colouring::fragment)
         fragments_ = fragment_colours(snapshot);
+      if (options.colouring == Colouring::crack)
+        flanks_ = crack_flanks(snapshot);
       const double inner = options.width - 2. * border;
       scale_ = std::min(inner / extent_[0], options.max_height / extent_[1]);
       left_ = (options.width - scale_ * extent_[0]) / 2.;
@@ -194,7 +198,7 @@ namespace nsfd
       if (options_.colouring == Colouring::fragment)
         return fragments_.at(polygon.fragment);
       if (options_.colouring == Colouring::crack)
-        return rgb(0xe3122b);
+        return broken_rgb;
       const double value = coloured_value(polygon, options_.colouring);
       if (!std::isfinite(value))
         return no_value;
@@ -228,13 +232,13 @@ namespace nsfd
       };
       std::vector<Facet> facets;
       const bool glass = options_.colouring == Colouring::crack;
-      const std::vector<char> all(snapshot_.polygons.size(), 1);
-      const auto shown = glass ? crack_flanks(snapshot_) : all;
-      for (std::size_t p = 0; p < shown.size(); ++p) {
+      for (std::size_t p = 0; p < snapshot_.polygons.size(); ++p) {
+        if (glass && !flanks_[p])
+          continue;
         const auto &polygon = snapshot_.polygons[p];
         auto corners = corners_to_eye(polygon, projection_,
                                       glass ? Seen::both : Seen::front);
-        if (corners.empty() || !shown[p])
+        if (corners.empty())
           continue;
         double depth = 0.;
         for (const auto &x : corners)
@@ -264,7 +268,7 @@ namespace nsfd
     std::string BodyPicture::outline() const
     {
       PathWriter path;
-      for (const auto &edge : sharp_edges(snapshot_, projection_)) {
+      for (const auto &edge : sharp_edges(snapshot_, flanks_, projection_)) {
         const Vector3 p = to_pixel(edge[0]), q = to_pixel(edge[1]);
         path.move(p[0], p[1]);
         path.line(q[0], q[1]);

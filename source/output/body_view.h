@@ -69,9 +69,11 @@ namespace nsfd
   /**
    * Where the outer surface of a body in space has an edge: lines between
    * polygons whose undeformed planes meet at more than 30 degrees, deformed.
+   * @p flank is what crack_flanks() says.
    */
   std::vector<std::array<Vector3, 2>>
-  sharp_edges(const Snapshot &snapshot, const Projection &projection);
+  sharp_edges(const Snapshot &snapshot, const std::vector<char> &flank,
+              const Projection &projection);
 
   /** Finds the cell edges on both sides of a face by its undeformed ends. */
   class EdgeFinder

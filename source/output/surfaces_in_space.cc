@@ -114,12 +114,12 @@ namespace nsfd
     return flank;
   }
 
-  std::vector<std::array<Vector3, 2>> sharp_edges(const Snapshot &snapshot,
-                                                  const Projection &projection)
+  std::vector<std::array<Vector3, 2>>
+  sharp_edges(const Snapshot &snapshot, const std::vector<char> &flank,
+              const Projection &projection)
   {
     const Grid grid(snapshot);
     std::vector<Side> sides;
-    const auto flank = crack_flanks(snapshot);
     for (std::size_t p = 0; p < snapshot.polygons.size(); ++p) {
       const auto &polygon = snapshot.polygons[p];
       const auto corners = deformed_corners(polygon, projection);

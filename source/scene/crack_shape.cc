@@ -38,6 +38,7 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           shape.axes[a][c] = found[a].second[c];
     }
+
     /** Of the union of intervals. */
     double covered(std::vector<std::array<double, 2>> intervals)
     {

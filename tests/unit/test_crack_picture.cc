@@ -53,7 +53,8 @@ namespace nsfd
     double length_of_edges(const Snapshot &snapshot)
     {
       double length = 0.;
-      for (const auto &edge : sharp_edges(snapshot, Projection(snapshot, 1.)))
+      for (const auto &edge : sharp_edges(snapshot, crack_flanks(snapshot),
+                                          Projection(snapshot, 1.)))
         length += std::hypot(edge[1][0] - edge[0][0], edge[1][1] - edge[0][1],
                              edge[1][2] - edge[0][2]);
       return length;
