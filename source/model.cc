@@ -33,7 +33,7 @@ namespace nsfd
     if (problems.empty()) {
       find_unused_blocks(input, communicator, problems);
       check_point_factors(input, *discretization, communicator, problems);
-      build_control(input, communicator, problems);
+      build_control(input, problems);
     }
     if (!problems.empty()) {
       print_problems(communicator, input, "error", problems);
@@ -41,6 +41,12 @@ namespace nsfd
     }
     charge_memory("bodies and points");
     build_dynamics(input, communicator);
+    if (input.time.scheme == Scheme::symplectic)
+      check_stability(input, communicator, problems);
+    if (!problems.empty()) {
+      print_problems(communicator, input, "error", problems);
+      return false;
+    }
     charge_memory("blocks of the bodies");
     method =
         input.time.scheme == Scheme::arkode ? "arkode"
@@ -104,7 +110,6 @@ namespace nsfd
 
   template <int dim>
   void Model<dim>::build_control(const SceneInput &input,
-                                 const Communicator &communicator,
                                  std::vector<std::string> &problems)
   {
     if (input.time.step_kind != StepKind::time &&
@@ -114,27 +119,38 @@ namespace nsfd
       return;
     }
     const bool quasi_static = input.statics && input.statics->steps;
-    if (input.time.scheme == Scheme::symplectic)
-      check_stability(input, communicator, problems);
     control = quasi_static ? std::make_unique<StepControl>(
                                  input.statics->until, input.statics->step,
                                  input.time.maximum_halvings)
                            : dynamic_control(input, 0.);
   }
 
-  /** Bodies are explicit in the symplectic scheme. */
+  /** All bonds that the scene may have. */
+  template <int dim>
+  void Model<dim>::join_all(const SceneInput &input)
+  {
+    const auto &origins = discretization->origins();
+    std::vector<std::uint8_t> joined(origins.size(), 0);
+    for (std::size_t i = 0; i < origins.size(); ++i)
+      joined[i] = origins[i].kind == PointOrigin::Kind::interface &&
+                  input.interfaces[origins[i].block].intact ==
+                    IntactFaces::bonded;
+    bonded->set_bonds(joined);
+  }
+
+  /** Bodies, and bonds between them, are explicit in the symplectic scheme. */
   template <int dim>
   void Model<dim>::check_stability(const SceneInput &input,
                                    const Communicator &communicator,
-                                   std::vector<std::string> &problems) const
+                                   std::vector<std::string> &problems)
   {
-    if (input.has_bonded_faces()) {
-      problems.push_back("Time/scheme = symplectic with bonded faces is not "
-                         "there yet: join them with the law `rigid`");
-      return;
-    }
-    const double limit =
-        communicator.min(stable_step(discretization->bodies()));
+    double limit = 0.;
+    if (bonded) {
+      join_all(input);
+      dynamics->reinit(dynamic_step(input), 0.);
+      limit = stable_step(*dynamics);
+    } else
+      limit = communicator.min(stable_step(discretization->bodies()));
     if (dynamic_step(input) > limit)
       problems.push_back(fmt::format(
           "Time/step is {:.4g} s, and the symplectic scheme is stable up to "
@@ -167,6 +183,14 @@ namespace nsfd
     const auto &bodies = discretization->bodies();
     const auto &points = discretization->points();
     const double crossing = discretization->crossing_time();
+    if (input.has_bonded_faces() && input.time.scheme == Scheme::symplectic) {
+      path = "element-wise";
+      auto joined =
+          make_explicit_bonded_dynamics<dim>(communicator, bodies, points);
+      bonded = joined.get();
+      dynamics = std::move(joined);
+      return;
+    }
     if (input.has_bonded_faces()) {
       path = "global";
       auto joined = make_bonded_dynamics<dim>(

@@ -48,11 +48,11 @@ namespace nsfd
                           const Communicator &communicator,
                           std::vector<std::string> &problems);
     void build_control(const SceneInput &input,
-                       const Communicator &communicator,
                        std::vector<std::string> &problems);
     void check_stability(const SceneInput &input,
                          const Communicator &communicator,
-                         std::vector<std::string> &problems) const;
+                         std::vector<std::string> &problems);
+    void join_all(const SceneInput &input);
     double dynamic_step(const SceneInput &input) const;
     void build_dynamics(const SceneInput &input,
                         const Communicator &communicator);

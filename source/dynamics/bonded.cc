@@ -1,6 +1,5 @@
 #include "nsfd/dynamics/bonded.h"
 
-#include "body_loops.h"
 #include "body_matrix.h"
 #include "condensed.h"
 #include "factor_limits.h"
@@ -9,7 +8,6 @@
 #include "nsfd/base/cost.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 namespace nsfd
@@ -23,7 +21,7 @@ namespace nsfd
     class Bonded final : public BondedDynamics<dim>
     {
     public:
-      using Operator = typename Dynamics<dim>::Operator;
+      using typename BondedDynamics<dim>::Operator;
 
       Bonded(const Communicator &communicator,
              const Bodies &bodies,
@@ -32,7 +30,7 @@ namespace nsfd
              const std::vector<double> &coordinates);
 
       void reinit(double time_step, double theta) override;
-      void set_bonds(const std::vector<std::uint8_t> &bonded) override;
+      bool bodies_are_apart() const override { return false; }
       void apply_delassus(const double *impulse,
                           double *velocity) const override;
       void add_velocity_change(const double *impulse,
@@ -42,20 +40,23 @@ namespace nsfd
       void precondition(const double *r, double *z) const override;
 
     private:
-      void add_bonds(const double *x, double *y) const;
+      void bonds_changed() override
+      {
+        valid_ = joined_valid_ = is_glued_ = false;
+      }
       void solve(const double *b, double *x) const;
       void solve(SpdSolver &solver, const double *b, double *x) const;
       void glue() const;
       void prepare(SpdSolver &solver, const SparseRows &matrix,
                    SparseRows &kept) const;
       void update() const;
-      bool is_row(const std::size_t k) const { return !bonded_[k / dim]; }
+      bool is_row(const std::size_t k) const
+      {
+        return !this->bonded_[k / dim];
+      }
       double least_compliance(std::size_t row, double W) const;
       bool condense() const;
 
-      BulkTraction<dim> bulk_;
-      std::vector<Block> traction_transposed_; ///< per class
-      std::vector<std::uint8_t> bonded_; ///< per point
       mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
       std::unique_ptr<GluedSpace> glued_; ///< null: factors need none
       std::unique_ptr<SpdSolver> factor_; ///< of M_hat
@@ -75,8 +76,7 @@ namespace nsfd
       /// applications after which a new factor is cheaper than going on
       static constexpr unsigned int patience = 12;
       mutable unsigned int n_applied_ = 0; ///< since the last system
-      mutable std::vector<double> rows_, columns_, point_work_,
-        body_work_;
+      mutable std::vector<double> rows_, columns_, point_work_;
     };
 
     template <int dim>
@@ -86,18 +86,14 @@ namespace nsfd
                         const std::string &solver,
                         const std::vector<double> &coordinates)
       : BondedDynamics<dim>(communicator, bodies, points)
-      , bulk_(*this)
-      , bonded_(points.n_points, 0)
     {
       // K >= so much of the bodies' own: their blocks bound W from above
       this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
-      for (const auto &body : bodies.classes)
-        traction_transposed_.push_back(body.traction.transposed());
       const long long mine = static_cast<long long>(bodies.n_dofs());
       long long sum = 0;
       MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
       matrix_ = std::make_unique<BodyMatrix<dim>>(
-        bodies, points, point_traces(*this, sum - mine, true), bulk_.bonds(),
+        bodies, points, point_traces(*this, sum - mine, true), this->bulk_.bonds(),
         sum - mine);
       const auto n = communicator.sum_integer(bodies.n_dofs());
       const bool direct =
@@ -127,8 +123,8 @@ namespace nsfd
       std::vector<char> faces;
       for (const auto &face : this->points_.faces)
         faces.push_back(std::all_of(
-          bonded_.begin() + face.first,
-          bonded_.begin() + face.first + face.count,
+          this->bonded_.begin() + face.first,
+          this->bonded_.begin() + face.first + face.count,
           [](const std::uint8_t bonded) { return bonded != 0; }));
       glued_->glue(faces);
       glued_->touch();
@@ -158,21 +154,6 @@ namespace nsfd
       Dynamics<dim>::reinit(time_step, theta);
     }
 
-    template <int dim>
-    void Bonded<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
-    {
-      if (!this->communicator_.any(bonded != bonded_))
-        return;
-      bool impossible = false;
-      for (std::size_t i = 0; i < bonded.size(); ++i)
-        impossible |= bonded[i] && bulk_.bonds()[i].penalty == 0.;
-      if (this->communicator_.any(impossible))
-        throw std::runtime_error("two rigid bodies share a bonded face: join "
-                                 "them with the law `rigid`");
-      bonded_ = bonded;
-      valid_ = joined_valid_ = is_glued_ = false;
-    }
-
     /** Factor M_hat if the step or the bonds have changed. */
     template <int dim>
     void Bonded<dim>::update() const
@@ -181,7 +162,7 @@ namespace nsfd
         return;
       const double f =
         this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
-      prepare(*factor_, matrix_->assemble(f, bonded_, nullptr),
+      prepare(*factor_, matrix_->assemble(f, this->bonded_, nullptr),
               factor_matrix_);
       valid_ = true;
       n_solves_ = 0;
@@ -205,51 +186,6 @@ namespace nsfd
       ++this->counters_.global_solves;
     }
 
-    /** y += K_bonds x. */
-    template <int dim>
-    void Bonded<dim>::add_bonds(const double *x, double *y) const
-    {
-      const auto &points = this->points_;
-      const auto &bonds = bulk_.bonds();
-      const std::size_t n = points.n_points;
-      std::vector<double> jump(n * dim), traction(n * dim);
-      this->relative_velocity(x, jump.data());
-      bulk_.evaluate(x, traction.data());
-      for (std::size_t i = 0; i < n; ++i)
-        for (unsigned int c = 0; c < dim; ++c) {
-          double &u = jump[i * dim + c], &t = traction[i * dim + c];
-          const double w = bonded_[i] ? points.weight[i] : 0.;
-          t = w * (t + bonds[i].penalty * u);
-          u *= w;
-        }
-      body_work_.resize(this->bodies_.n_dofs());
-      this->generalised_impulse(traction.data(), body_work_.data());
-      for (std::size_t k = 0; k < body_work_.size(); ++k)
-        y[k] += body_work_[k];
-      // the tractions of the test functions, each body with its share
-      this->to_cartesian(jump.data());
-      const auto &bodies = this->bodies_;
-      const auto gather = [&](const unsigned int b, double *in,
-                              const unsigned int stride) {
-        const std::size_t first = bodies.first_slot[b],
-                          n_slots = bodies.first_slot[b + 1] - first;
-        for (std::size_t s = 0; s < n_slots; ++s) {
-          const std::size_t p = bodies.slot_point[first + s];
-          const bool second = bodies.slot_sign[first + s] > 0;
-          const double share = p == n     ? 0.
-                               : second ? -bonds[p].weight_2
-                                        : bonds[p].weight_1;
-          for (unsigned int c = 0; c < dim; ++c)
-            in[(s * dim + c) * stride] = share * this->cartesian_[p * dim + c];
-        }
-      };
-      for_all_bodies(
-        bodies, [this](const std::size_t k) -> const Block & {
-          return traction_transposed_[k];
-        },
-        gather, dof_scatter<true>(bodies, y));
-    }
-
     template <int dim>
     void Bonded<dim>::apply(const Operator op, const double *x,
                             double *y) const
@@ -258,9 +194,7 @@ namespace nsfd
         solve(x, y);
         return;
       }
-      Dynamics<dim>::apply(op, x, y);
-      if (op == Operator::stiffness)
-        add_bonds(x, y);
+      BondedDynamics<dim>::apply(op, x, y);
     }
 
     template <int dim>
@@ -305,7 +239,7 @@ namespace nsfd
       if (!condensed_.empty())
         return true;
       std::vector<std::size_t> rows;
-      for (std::size_t k = 0; k < bonded_.size() * dim; ++k)
+      for (std::size_t k = 0; k < this->bonded_.size() * dim; ++k)
         if (is_row(k))
           rows.push_back(k);
       // many columns at once cost a quarter of as many single ones
@@ -315,7 +249,7 @@ namespace nsfd
       const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
       constexpr std::size_t batch = 64; // columns fill the caches
       std::vector<double> B(n * batch), X(n * batch),
-        impulse(bonded_.size() * dim, 0.), velocity(impulse.size());
+        impulse(this->bonded_.size() * dim, 0.), velocity(impulse.size());
       condensed_.reset(impulse.size(), rows);
       for (std::size_t first = 0; first < m; first += batch) {
         const std::size_t count = std::min(batch, m - first);
@@ -375,7 +309,7 @@ namespace nsfd
       }
       const double f =
         this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
-      prepare(*joined_, matrix_->assemble(f, bonded_, inverse_D_.data()),
+      prepare(*joined_, matrix_->assemble(f, this->bonded_, inverse_D_.data()),
               joined_matrix_);
       joined_valid_ = true;
     }

@@ -1,4 +1,4 @@
-#include "nsfd/dynamics/dynamics.h"
+#include "nsfd/dynamics/bonded.h"
 
 #include "lane_system.h"
 
@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <type_traits>
 
 namespace nsfd
 {
@@ -14,14 +16,14 @@ namespace nsfd
   {
     /**
      * Block Jacobi by face: the inverses of W_ff + D_f on the components that
-     * take part, zero on the others.
+     * take part, zero on the others. @p Base is Dynamics, or BondedDynamics
+     * with explicit bodies.
      */
-    template <int dim>
-    class ElementwiseDynamics final : public Dynamics<dim>,
-                                      public InnerSolver
+    template <int dim, typename Base>
+    class ElementwiseDynamics final : public Base, public InnerSolver
     {
     public:
-      using Dynamics<dim>::Dynamics;
+      using Base::Base;
 
       void prepare_preconditioner(const std::vector<double> &D) override
       {
@@ -73,6 +75,8 @@ namespace nsfd
         Dynamics<dim>::reinit(time_step, theta);
         if (!changes)
           return;
+        if (theta != 0. && std::is_base_of_v<BondedDynamics<dim>, Base>)
+          throw std::logic_error("bodies with explicit bonds are explicit");
         const Charge charge(Cost::blocks);
         if (!lanes_)
           lanes_ = std::make_unique<LaneSystem<dim>>(
@@ -173,12 +177,26 @@ namespace nsfd
                             const Bodies &bodies,
                             const InterfacePoints<dim> &points)
   {
-    return std::make_unique<ElementwiseDynamics<dim>>(communicator, bodies,
-                                                      points);
+    return std::make_unique<ElementwiseDynamics<dim, Dynamics<dim>>>(
+      communicator, bodies, points);
+  }
+
+  template <int dim>
+  std::unique_ptr<BondedDynamics<dim>>
+  make_explicit_bonded_dynamics(const Communicator &communicator,
+                                const Bodies &bodies,
+                                const InterfacePoints<dim> &points)
+  {
+    return std::make_unique<ElementwiseDynamics<dim, BondedDynamics<dim>>>(
+      communicator, bodies, points);
   }
 
   template std::unique_ptr<Dynamics<2>> make_elementwise_dynamics<2>(
     const Communicator &, const Bodies &, const InterfacePoints<2> &);
   template std::unique_ptr<Dynamics<3>> make_elementwise_dynamics<3>(
+    const Communicator &, const Bodies &, const InterfacePoints<3> &);
+  template std::unique_ptr<BondedDynamics<2>> make_explicit_bonded_dynamics<2>(
+    const Communicator &, const Bodies &, const InterfacePoints<2> &);
+  template std::unique_ptr<BondedDynamics<3>> make_explicit_bonded_dynamics<3>(
     const Communicator &, const Bodies &, const InterfacePoints<3> &);
 } // namespace nsfd

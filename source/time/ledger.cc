@@ -121,6 +121,10 @@ namespace nsfd
     template <int dim>
     void PointBook<dim>::book(const std::size_t i)
     {
+      if (problem_.kind[i] == PointKind::bonded) {
+        next_.contact[i] = false;
+        return; // its energy is one of the bodies
+      }
       Vector U, U_theta;
       for (unsigned int c = 0; c < dim; ++c) {
         U[c] = next_.relative_velocity[i * dim + c];
@@ -330,8 +334,8 @@ namespace nsfd
     };
     put(kinetic, Operator::mass, next.velocity, 0.5);
     put(elastic, Operator::stiffness, next.displacement, 0.5);
-    if (symplectic_)
-      put_symplectic(terms, h, old, next);
+    if (symplectic_) // the product is K q
+      put_symplectic(terms, h, product, old, next);
     else if (theta_ > 0.5) {
       for (std::size_t i = 0; i < n; ++i)
         change[i] = next.velocity[i] - old.velocity[i];
@@ -351,22 +355,22 @@ namespace nsfd
   /**
    * What the bodies take from h v.K q_k of the mean velocity beyond their own
    * change of energy: h/2 (v_k - v).K q_k - dq.K dq / 2. It comes and goes.
+   * @p product is K q of the next state.
    */
   template <int dim>
   void Ledger<dim>::put_symplectic(std::vector<double> &terms, const double h,
+                                   const std::vector<double> &product,
                                    const State &old, const State &next) const
   {
     using Operator = typename Dynamics<dim>::Operator;
     const std::size_t n = next.velocity.size();
-    std::vector<double> change(n), product(n), force(n);
-    for (std::size_t i = 0; i < n; ++i)
-      change[i] = next.displacement[i] - old.displacement[i];
-    dynamics_.apply(Operator::stiffness, change.data(), product.data());
+    std::vector<double> force(n);
     dynamics_.apply(Operator::stiffness, old.displacement.data(), force.data());
     for (std::size_t i = 0; i < n; ++i)
       terms[theta_stiffness * n + i] =
           h / 2. * force[i] * (old.velocity[i] - next.velocity[i]) -
-          change[i] * product[i] / 2.;
+          (next.displacement[i] - old.displacement[i]) *
+              (product[i] - force[i]) / 2.;
   }
 
   /** w h p U_theta,N of the pressure in cracks. */

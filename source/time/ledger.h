@@ -45,6 +45,7 @@ namespace nsfd
                                     const State &next) const;
 
     void put_symplectic(std::vector<double> &terms, double time_step,
+                        const std::vector<double> &product,
                         const State &old, const State &next) const;
 
     const Discretization<dim> &discretization_;

@@ -5,11 +5,46 @@
 #include <deal.II/lac/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Largest eigenvalue of a symmetric matrix and its last component. */
+    std::array<double, 2> largest_eigenpair(const Block &A)
+    {
+      const unsigned int n = A.rows;
+      dealii::LAPACKFullMatrix<double> matrix(n);
+      double bound = 0.;
+      for (unsigned int i = 0; i < n; ++i) {
+        double row = 0.;
+        for (unsigned int j = 0; j < n; ++j) {
+          matrix(i, j) = (A(i, j) + A(j, i)) / 2.;
+          row += std::abs(matrix(i, j));
+        }
+        bound = std::max(bound, row);
+      }
+      dealii::Vector<double> values;
+      dealii::FullMatrix<double> vectors;
+      matrix.compute_eigenvalues_symmetric(-bound, 1.1 * bound, 0., values,
+                                           vectors);
+      unsigned int at = 0;
+      for (unsigned int k = 1; k < values.size(); ++k)
+        if (values[k] > values[at])
+          at = k;
+      return {{values[at], vectors(n - 1, at)}};
+    }
+
+    double step_of(const double largest) // omega^2
+    {
+      return largest > 0. ? 2. / std::sqrt(largest)
+                          : std::numeric_limits<double>::infinity();
+    }
+  } // namespace
+
   double stable_step(const Bodies &bodies)
   {
     double largest = 0.; // omega^2
@@ -20,21 +55,56 @@ namespace nsfd
       const Block L = cholesky(body.mass);
       const Block A =
         forward_solve(L, forward_solve(L, body.stiffness).transposed());
-      dealii::LAPACKFullMatrix<double> matrix(body.n_dofs);
-      double trace = 0.;
-      for (unsigned int i = 0; i < body.n_dofs; ++i) {
-        trace += A(i, i);
-        for (unsigned int j = 0; j < body.n_dofs; ++j)
-          matrix(i, j) = (A(i, j) + A(j, i)) / 2.;
-      }
-      dealii::Vector<double> eigenvalues;
-      dealii::FullMatrix<double> eigenvectors;
-      matrix.compute_eigenvalues_symmetric(0., 1.1 * trace, 0., eigenvalues,
-                                           eigenvectors);
-      largest = std::max(
-        largest, *std::max_element(eigenvalues.begin(), eigenvalues.end()));
+      largest = std::max(largest, largest_eigenpair(A)[0]);
     }
-    return largest > 0. ? 2. / std::sqrt(largest)
-                        : std::numeric_limits<double>::infinity();
+    return step_of(largest);
   }
+
+  /** Orthonormal with respect to M. */
+  template <int dim>
+  double stable_step(const Dynamics<dim> &dynamics)
+  {
+    using Operator = typename Dynamics<dim>::Operator;
+    const auto &communicator = dynamics.communicator();
+    const std::size_t n = dynamics.bodies().n_dofs();
+    std::vector<double> v(n), before(n, 0.), w(n), Kv(n), Mw(n);
+    for (std::size_t i = 0; i < n; ++i)
+      w[i] = std::sin(1. + 12.9898 * double(i % 4096)); // in all modes
+    std::vector<double> alpha, beta;
+    const auto norm = [&] {
+      dynamics.apply(Operator::mass, w.data(), Mw.data());
+      return std::sqrt(
+        std::max(0., communicator.dot(w.data(), Mw.data(), n)));
+    };
+    double length = norm(), bound = 0.;
+    for (unsigned int k = 0; k < 300 && length > 0.; ++k) {
+      v.swap(before);
+      for (std::size_t i = 0; i < n; ++i)
+        v[i] = w[i] / length;
+      dynamics.apply(Operator::stiffness, v.data(), Kv.data());
+      alpha.push_back(communicator.dot(v.data(), Kv.data(), n));
+      dynamics.apply(Operator::inverse, Kv.data(), w.data());
+      const double last = k > 0 ? length : 0.;
+      for (std::size_t i = 0; i < n; ++i)
+        w[i] -= alpha.back() * v[i] + last * before[i];
+      length = norm();
+      beta.push_back(length);
+      if (k % 10 != 9 && length > 0.)
+        continue;
+      Block T(k + 1, k + 1);
+      for (unsigned int j = 0; j <= k; ++j) {
+        T(j, j) = alpha[j];
+        if (j < k)
+          T(j, j + 1) = T(j + 1, j) = beta[j];
+      }
+      const auto [value, component] = largest_eigenpair(T);
+      bound = value + length * std::abs(component);
+      if (bound < 1.001 * value)
+        break;
+    }
+    return step_of(bound);
+  }
+
+  template double stable_step(const Dynamics<2> &);
+  template double stable_step(const Dynamics<3> &);
 } // namespace nsfd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/dynamics/bodies.h"
+#include "nsfd/dynamics/dynamics.h"
 
 namespace nsfd
 {
@@ -10,4 +10,12 @@ namespace nsfd
    * contacts are implicit in it and leave it as it is.
    */
   double stable_step(const Bodies &bodies);
+
+  /**
+   * The same of bodies that are joined by explicit bonds: the largest frequency
+   * of M^{-1} K from above, by Lanczos' method to a thousandth. @p dynamics is
+   * prepared for explicit bodies and has its bonds. Collective.
+   */
+  template <int dim>
+  double stable_step(const Dynamics<dim> &dynamics);
 } // namespace nsfd

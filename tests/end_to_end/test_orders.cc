@@ -80,28 +80,31 @@ namespace end_to_end
     }
   }
 
-  // The bound of the step is that of free cells: just below it is stable, and
-  // just above it refused.
+  // The bound of the step is that of free cells, or of all that bonds join:
+  // just below it is stable, and just above it refused.
   TEST(OrdersTest, StableStepOfTheSymplecticScheme)
   {
     const Workspace workspace;
-    const auto with_step = [](const std::string &step) {
-      return Launch{scene("mode"),
-                    {"Time/scheme=symplectic", "Time/step=" + step,
-                     "Output/fields=false"}};
-    };
-    const Result refused = run(workspace, "refused", with_step("10 us"));
-    EXPECT_EQ(refused.outcome.exit_code, 1);
-    const std::string &text = refused.outcome.err;
-    const std::string before = "stable up to ";
-    const std::size_t at = text.find(before);
-    ASSERT_NE(at, std::string::npos) << text;
-    const double limit = std::stod(text.substr(at + before.size()));
-    const Result good =
-        good_run(workspace, "good",
-                 with_step(std::to_string(0.99 * limit * 1e9) + " ns"));
-    // order 1 at the times of the steps, no energy lost
-    expect_below("frequency", good.error("frequency"), 0.1);
+    for (const std::string law : {"rigid", "bonded"}) {
+      const auto with_step = [&law](const std::string &step) {
+        return Launch{scene("mode"),
+                      {"Time/scheme=symplectic", "Time/step=" + step,
+                       "Interface: joints/law=" + law, "Output/fields=false"}};
+      };
+      const Result refused =
+          run(workspace, "refused_" + law, with_step("10 us"));
+      EXPECT_EQ(refused.outcome.exit_code, 1);
+      const std::string &text = refused.outcome.err;
+      const std::string before = "stable up to ";
+      const std::size_t at = text.find(before);
+      ASSERT_NE(at, std::string::npos) << text;
+      const double limit = std::stod(text.substr(at + before.size()));
+      const Result good =
+          good_run(workspace, "good_" + law,
+                   with_step(std::to_string(0.99 * limit * 1e9) + " ns"));
+      // order 1 at the times of the steps, no energy lost
+      expect_below(law + ": frequency", good.error("frequency"), 0.1);
+    }
   }
 
   TEST(OrdersTest, TimeStep)

@@ -203,6 +203,26 @@ namespace end_to_end
       EXPECT_NEAR(two.error(name) / one.error(name), 1., 1e-12) << name;
   }
 
+  // Explicit bonds are sums over one body, as all of the element-wise path.
+  TEST(Ranks, ExplicitBondsAreTheSameBitForBit)
+  {
+    const Workspace workspace;
+    const std::vector<std::string> set = {
+        "Mesh/cells=8, 8", "Time/step=0.05 crossings", "Time/end=9 ns",
+        "Time/scheme=symplectic", "Output/fields=false"};
+    const auto file =
+        quickstart().parent_path() / "benchmarks/fracture_extrinsic.prm";
+    const Result one = good_run(workspace, "1 rank", {file, set});
+    EXPECT_GT(one.counter("released_bonds"), 0.);
+    for (const unsigned int ranks : {2u, 3u}) {
+      const Result other = good_run(
+          workspace, std::to_string(ranks) + " ranks", {file, set, ranks});
+      EXPECT_EQ(energy_difference(one.history, other.history), 0.);
+      EXPECT_EQ(other.counter("released_bonds"),
+                one.counter("released_bonds"));
+    }
+  }
+
   INSTANTIATE_TEST_SUITE_P(Table, RanksTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
 

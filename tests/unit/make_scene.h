@@ -58,9 +58,16 @@ namespace nsfd
           time_step *= discretization->crossing_time();
 
         if (input->has_bonded_faces()) {
-          auto joined = make_bonded_dynamics<dim>(
-              communicator, discretization->bodies(), discretization->points(),
-              input->solver.linear_solver, node_coordinates(*discretization));
+          const auto &bodies = discretization->bodies();
+          const auto &points = discretization->points();
+          auto joined =
+              input->time.scheme == Scheme::symplectic
+                  ? make_explicit_bonded_dynamics<dim>(communicator, bodies,
+                                                       points)
+                  : make_bonded_dynamics<dim>(
+                        communicator, bodies, points,
+                        input->solver.linear_solver,
+                        node_coordinates(*discretization));
           bonded = joined.get();
           dynamics = std::move(joined);
         } else if (input->solver.path == "global")

@@ -1,5 +1,8 @@
+#include "../../source/time/stable_step.h"
 #include "breaking_plate.h"
 #include "make_scene.h"
+
+#include <deal.II/lac/lapack_full_matrix.h>
 
 #include <gtest/gtest.h>
 
@@ -35,37 +38,109 @@ subsection Time
 end
 )";
 
-    // v.Mv/2 + q.Kq/2 - h/2 v.Kq of free bodies (symplectic Euler).
+    using Operator = Dynamics<2>::Operator;
+
+    // v.Mv/2 + q.Kq/2 - h/2 v.Kq of bodies without impulses (symplectic Euler).
+    double kept_energy(const test::Scene<2> &scene)
+    {
+      const State &s = scene.state;
+      const std::size_t n = s.velocity.size();
+      std::vector<double> Mv(n), Kq(n);
+      scene.dynamics->apply(Operator::mass, s.velocity.data(), Mv.data());
+      scene.dynamics->apply(Operator::stiffness, s.displacement.data(),
+                            Kq.data());
+      double sum = 0.;
+      for (std::size_t i = 0; i < n; ++i)
+        sum += (s.velocity[i] * Mv[i] + s.displacement[i] * Kq[i] -
+                scene.time_step * s.velocity[i] * Kq[i]) /
+               2.;
+      return sum;
+    }
+
+    void expect_energy_kept(test::Scene<2> &scene)
+    {
+      const double start = kept_energy(scene), plain = scene.energy();
+      double swing = 0.;
+      for (unsigned int step = 0; step < 500; ++step) {
+        const StepReport report = scene.advance();
+        ASSERT_EQ(report.active, 0u);
+        EXPECT_NEAR(kept_energy(scene), start, 1e-12 * start);
+        EXPECT_LT(report.ledger_defect, 1e-12);
+        swing = std::max(swing, std::abs(scene.energy() - plain));
+      }
+      EXPECT_GT(swing, 1e-4 * plain) << "the plain energy is not the one kept";
+    }
+
     TEST(SymplecticTest, KeepsItsEnergyWhereNothingTouches)
     {
       // contact within a plate that is torn apart: nothing closes
       test::Scene<2> scene(plate, {"Material: plate/initial velocity x=9 * x",
                                    "Material: plate/initial velocity y=7 * y"});
-      using Operator = Dynamics<2>::Operator;
-      const std::size_t n = scene.state.velocity.size();
-      std::vector<double> Mv(n), Kq(n);
-      const auto kept = [&] {
-        const State &s = scene.state;
-        scene.dynamics->apply(Operator::mass, s.velocity.data(), Mv.data());
-        scene.dynamics->apply(Operator::stiffness, s.displacement.data(),
-                              Kq.data());
-        double sum = 0.;
-        for (std::size_t i = 0; i < n; ++i)
-          sum += (s.velocity[i] * Mv[i] + s.displacement[i] * Kq[i] -
-                  scene.time_step * s.velocity[i] * Kq[i]) /
-                 2.;
-        return sum;
-      };
-      const double start = kept(), plain = scene.energy();
-      double swing = 0.;
-      for (unsigned int step = 0; step < 500; ++step) {
-        const StepReport report = scene.advance();
-        ASSERT_EQ(report.active, 0u);
-        EXPECT_NEAR(kept(), start, 1e-12 * start);
-        EXPECT_LT(report.ledger_defect, 1e-12);
-        swing = std::max(swing, std::abs(scene.energy() - plain));
+      expect_energy_kept(scene);
+    }
+
+    TEST(SymplecticTest, KeepsItsEnergyWithBonds)
+    {
+      test::Scene<2> scene(
+          plate, {"Interface: all/law=bonded", "Time/step=0.04 crossings"});
+      expect_energy_kept(scene);
+    }
+
+    // Against all eigenvalues of M^{-1} K.
+    TEST(SymplecticTest, StableStepOfBonds)
+    {
+      test::Scene<2> scene(
+          plate, {"Interface: all/law=bonded", "Time/step=0.04 crossings"});
+      const unsigned int n = unsigned(scene.state.velocity.size());
+      dealii::LAPACKFullMatrix<double> matrix(n);
+      std::vector<double> unit(n, 0.), force(n), column(n);
+      for (unsigned int j = 0; j < n; ++j) {
+        unit[j] = 1.;
+        scene.dynamics->apply(Operator::stiffness, unit.data(), force.data());
+        scene.dynamics->apply(Operator::inverse, force.data(), column.data());
+        unit[j] = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          matrix(i, j) = column[i];
       }
-      EXPECT_GT(swing, 1e-4 * plain) << "the plain energy is not the one kept";
+      matrix.compute_eigenvalues();
+      double largest = 0.;
+      for (unsigned int j = 0; j < n; ++j)
+        largest = std::max(largest, matrix.eigenvalue(j).real());
+      const double exact = 2. / std::sqrt(largest),
+                   found = stable_step(*scene.dynamics);
+      EXPECT_LE(found, exact * (1. + 1e-10));
+      EXPECT_GE(found, exact * (1. - 1e-3));
+      EXPECT_LT(found, 0.5 * stable_step(scene.discretization->bodies()));
+    }
+
+    // Every face is bonded until it breaks.
+    TEST(SymplecticTest, BondsBreakWithClosedBooks)
+    {
+      std::string text = test::breaking_plate;
+      const std::string intrinsic =
+          "michel-suquet\n  set stiffness        = 2000";
+      text.replace(text.find(intrinsic), intrinsic.size(),
+                   "camacho-ortiz\n  set toughness        = 0.02");
+      test::Scene<2> scene(text, {"Time/scheme=symplectic",
+                                  "Time/step=0.02 crossings"});
+      ASSERT_NE(scene.bonded, nullptr);
+      for (unsigned int step = 0; step < 1500; ++step) {
+        const EnergyLines before = scene.state.energy;
+        scene.advance_halving();
+        const auto &e = scene.state.energy;
+        EXPECT_GE(e.damage, before.damage - 1e-14);
+        EXPECT_GE(e.impact, before.impact - 1e-9);
+        const double sum = e.kinetic + e.elastic + e.cohesive + e.damage +
+                           e.friction + e.impact + e.numerical - e.work;
+        EXPECT_LT(std::abs(sum - scene.state.initial_energy),
+                  1e-12 * scene.state.largest_energy);
+      }
+      EXPECT_GT(scene.state.energy.damage, 0.);
+      EXPECT_GT(scene.state.energy.friction, 0.);
+      const auto &kind = scene.state.kind;
+      EXPECT_NE(std::find(kind.begin(), kind.end(), PointKind::bonded),
+                kind.end())
+          << "and some points have to stay bonded";
     }
 
     // e = 1 gives back what an impact takes, e = 0 does not.

@@ -24,19 +24,38 @@ namespace nsfd
   class BondedDynamics : public Dynamics<dim>
   {
   public:
-    using Dynamics<dim>::Dynamics;
+    using Operator = typename Dynamics<dim>::Operator;
+
+    BondedDynamics(const Communicator &communicator, const Bodies &bodies,
+                   const InterfacePoints<dim> &points);
 
     /**
      * From now on these points are bonded (one per point, not zero: bonded).
      * Nothing happens if they were. Collective. @throws std::runtime_error if
      * two rigid bodies share one.
      */
-    virtual void set_bonds(const std::vector<std::uint8_t> &bonded) = 0;
+    void set_bonds(const std::vector<std::uint8_t> &bonded);
 
-    bool bodies_are_apart() const override { return false; }
+    void apply(Operator op, const double *x, double *y) const override;
+
+  protected:
+    /** Other points are bonded now. */
+    virtual void bonds_changed() {}
+
+    const BulkTraction<dim> bulk_;
+    std::vector<std::uint8_t> bonded_; ///< per point
+
+  private:
+    void add_bonds(const double *x, double *y) const;
+
+    std::vector<Block> traction_transposed_; ///< per class
+    mutable std::vector<double> jump_, traction_, force_;
   };
 
-  /** @p solver and @p coordinates as in make_sparse_dynamics(). */
+  /**
+   * For implicit steps: M_hat with the bonds in it has a factor or is inverted
+   * by iterations. @p solver and @p coordinates as in make_sparse_dynamics().
+   */
   template <int dim>
   std::unique_ptr<BondedDynamics<dim>>
   make_bonded_dynamics(const Communicator &communicator,
@@ -44,4 +63,14 @@ namespace nsfd
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
                        const std::vector<double> &coordinates);
+
+  /**
+   * For explicit bodies, theta = 0, where bonds are forces of the last
+   * displacement and M_hat = M: the element-wise path.
+   */
+  template <int dim>
+  std::unique_ptr<BondedDynamics<dim>>
+  make_explicit_bonded_dynamics(const Communicator &communicator,
+                                const Bodies &bodies,
+                                const InterfacePoints<dim> &points);
 } // namespace nsfd
