@@ -121,10 +121,8 @@ namespace nsfd
     template <int dim>
     void PointBook<dim>::book(const std::size_t i)
     {
-      if (problem_.kind[i] == PointKind::bonded) {
-        next_.contact[i] = false;
+      if (old_.kind[i] == PointKind::bonded)
         return; // its energy is one of the bodies
-      }
       Vector U, U_theta;
       for (unsigned int c = 0; c < dim; ++c) {
         U[c] = next_.relative_velocity[i * dim + c];
