@@ -120,7 +120,6 @@ namespace nsfd
       control.tolerance = input_.solver.tolerance;
       control.maximum_iterations = input_.solver.maximum_iterations;
       control.idle_rounds = idle_rounds;
-      control.may_sweep = dynamics_.bodies_are_apart();
       report.solver = solve(control, energy_scale, next.impulse, evaluation);
     }
     save_problem<dim>(input_, problem_, dynamics_, evaluation, report.solver,

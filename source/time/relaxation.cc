@@ -218,7 +218,6 @@ namespace nsfd
     control.tolerance = tolerance;
     control.maximum_iterations = this->input_.solver.maximum_iterations;
     control.idle_rounds = 1;
-    control.may_sweep = false;
     SolverReport report;
     {
       const Stopwatch watch(this->timings_.solve);

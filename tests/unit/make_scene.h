@@ -78,8 +78,7 @@ namespace nsfd
           dynamics = make_elementwise_dynamics<dim>(
               communicator, discretization->bodies(), discretization->points());
         solver = SolverRegistry<dim>::instance().create(
-            input->solver.method == "auto" ? "dual newton"
-                                           : input->solver.method);
+            input->solver.method == "auto" ? "chain" : input->solver.method);
         stepper = std::make_unique<MoreauJean<dim>>(*input, *discretization,
                                                     *dynamics, *solver, bonded);
         dynamics->reinit(time_step, input->time.bulk_theta());
@@ -91,9 +90,10 @@ namespace nsfd
       StepReport advance() { return advance(time_step); }
 
       /** @throws StepRejected */
-      StepReport advance(const double h)
+      StepReport advance(const double h, const unsigned int attempts = 0)
       {
-        const StepReport report = stepper->advance(state, h, next);
+        const StepReport report = stepper->advance(
+            state, h, next, SolverControl().idle_rounds << attempts);
         std::swap(state, next);
         return report;
       }
@@ -107,11 +107,11 @@ namespace nsfd
         double h = time_step;
         for (unsigned int halving = 0; halving < 10; ++halving, h /= 2.)
           try {
-            advance(h);
+            advance(h, halving);
             return h;
           } catch (const StepRejected &) {
           }
-        advance(h);
+        advance(h, 10);
         return h;
       }
 

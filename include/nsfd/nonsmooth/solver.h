@@ -12,9 +12,8 @@ namespace nsfd
   {
     double tolerance = 1e-8;              ///< of the relative natural map
     unsigned int maximum_iterations = 200; ///< Newton steps, or 100 sweeps each
-    unsigned int idle_rounds = 2; ///< of sweeps that did not halve the error,
-                                  ///< before the solve is given up
-    bool may_sweep = true; ///< the majorant is one of W, as Gauss-Seidel needs
+    unsigned int idle_rounds = 2; ///< line searches that did not halve the
+                                  ///< error before the solve is given up
   };
 
   /**

@@ -57,7 +57,6 @@ namespace nsfd
         SolverControl part = control;
         if (brief) {
           part.maximum_iterations = std::min(part.maximum_iterations, 10u);
-          part.may_sweep = false;
         }
         const std::vector<double> start(impulse);
         SolverReport report = first->solve(problem, dynamics, energy_scale,

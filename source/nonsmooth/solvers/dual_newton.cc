@@ -142,7 +142,7 @@ namespace nsfd
                     inner};
     Vector dP, best, trial;
     evaluation.update(impulse);
-    unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
+    unsigned int stalled = 0, idle_rounds = 0;
     double best_error = std::numeric_limits<double>::infinity(),
            best_of_round = best_error, shift = 0.;
     const auto remember = [&] {
@@ -183,8 +183,7 @@ namespace nsfd
       evaluation.defect = defect_;
       evaluation.velocity = velocity_;
       evaluation.error = before;
-      if (!control.may_sweep && coupled &&
-          shorten(work, before, dP, impulse, trial)) {
+      if (coupled && shorten(work, before, dP, impulse, trial)) {
         remember();
         continue;
       }
@@ -193,14 +192,13 @@ namespace nsfd
       bool moved = line_search(work, dP, impulse);
       evaluation.update(impulse);
       remember();
-      // Monotone in the convex objective: let it run a few times, with
-      // thresholds that change only after sweeps have not helped.
+      // Monotone in the convex objective: let it run a few times.
       if (moved && (coupled ? stalled >= 4 && stalled % 5 != 4 :
                               stalled % 5 != 4)) {
         ++stalled;
         continue;
       }
-      if (evaluation.is_frozen()) { // sweeps know the full laws only
+      if (evaluation.is_frozen()) {
         if (!moved)
           break;
         ++stalled;
@@ -217,25 +215,7 @@ namespace nsfd
       best_of_round = best_error;
       const bool soft = dynamics.communicator().any(softens(evaluation));
       if (idle_rounds > control.idle_rounds / (soft ? 4 : 1) ||
-          report.sweeps >= 5 * control.maximum_iterations)
-        break;
-      if (!control.may_sweep) {
-        if (stalled > 4)
-          break;
-        continue;
-      }
-      if (colours_.empty())
-        colours_ = colour_faces(dynamics);
-      if (report.sweeps == 0)
-        report.switches.push_back("gauss seidel");
-      if (best_error < 0.5 * evaluation.error)
-        impulse = best;
-      gauss_seidel(problem, dynamics, colours_, sweeps, impulse);
-      report.sweeps += sweeps;
-      sweeps = std::min(80u, sweeps * 2);
-      evaluation.update(impulse);
-      remember();
-      if (!(evaluation.error < std::numeric_limits<double>::infinity()))
+          stalled > 2 * control.idle_rounds)
         break;
     }
     if (evaluation.error > best_error) {

@@ -19,8 +19,8 @@ namespace nsfd
    * Where damage grows or a friction threshold follows its normal impulse,
    * the local solutions are differentiated as they are, and the unsymmetric
    * system (I - J (W - R)) dP = -Phi goes to GMRES. What that does not
-   * reduce goes to the convex step with the thresholds frozen, then to
-   * sweeps of Gauss-Seidel; every hand-over is judged by the natural map.
+   * reduce is tried in shares, then by the convex step with the thresholds
+   * frozen; all is judged by the natural map.
    * Newton systems are solved in single precision where the dynamics can.
    */
   template <int dim>
@@ -70,6 +70,5 @@ namespace nsfd
     std::vector<LocalSolution<dim>> solutions_; // before the step, with
     Vector defect_, velocity_;                  // what follows from them
     Vector r_, z_, p_, Ap_, rhs_;
-    std::vector<std::vector<unsigned int>> colours_;
   };
 } // namespace nsfd
