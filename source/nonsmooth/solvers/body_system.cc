@@ -1,5 +1,6 @@
 #include "body_system.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/dynamics/point_places.h"
 
 #include <suitesparse/umfpack.h>
@@ -8,22 +9,41 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <stdexcept>
+#include <utility>
 
 namespace nsfd
 {
   namespace
   {
-    /** No iterative refinement: every user of a solution measures it. */
+    /**
+     * No scaling of rows: next to a stiff row on one side of a face it makes
+     * the diagonal of the other side look small, and pivots off the diagonal
+     * cost ten times the factor and more. No iterative refinement: every user
+     * of a solution measures it.
+     */
     const double *settings()
     {
       static const auto control = [] {
         std::array<double, UMFPACK_CONTROL> c{};
         umfpack_di_defaults(c.data());
         c[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+        c[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;
         c[UMFPACK_IRSTEP] = 0;
         return c;
       }();
       return control.data();
+    }
+
+    template <int dim>
+    bool are_symmetric(const std::vector<double> &S)
+    {
+      for (std::size_t i = 0; i < S.size(); i += dim * dim)
+        for (unsigned int k = 0; k < dim; ++k)
+          for (unsigned int c = 0; c < k; ++c)
+            if (S[i + k * dim + c] != S[i + c * dim + k])
+              return false;
+      return true;
     }
   } // namespace
 
@@ -142,17 +162,17 @@ namespace nsfd
     for (const Face &face : faces_)
       for (const int j : face.dofs)
         column[j].insert(column[j].end(), face.dofs.begin(), face.dofs.end());
-    column_start_.assign(1, 0);
+    matrix_.start.assign(1, 0);
     for (auto &rows : column) {
       std::sort(rows.begin(), rows.end());
       rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-      row_index_.insert(row_index_.end(), rows.begin(), rows.end());
-      column_start_.push_back(int(row_index_.size()));
+      matrix_.column.insert(matrix_.column.end(), rows.begin(), rows.end());
+      matrix_.start.push_back(int(matrix_.column.size()));
     }
     const auto entry = [&](const int i, const int j) {
-      const auto begin = row_index_.begin() + column_start_[j],
-                 end = row_index_.begin() + column_start_[j + 1];
-      return int(std::lower_bound(begin, end, i) - row_index_.begin());
+      const auto begin = matrix_.column.begin() + matrix_.start[j],
+                 end = matrix_.column.begin() + matrix_.start[j + 1];
+      return int(std::lower_bound(begin, end, i) - matrix_.column.begin());
     };
     for (std::size_t b = 0; b < bodies.size(); ++b)
       for (std::size_t j = bodies.first_dof[b]; j < bodies.first_dof[b + 1];
@@ -164,18 +184,13 @@ namespace nsfd
       for (const int i : face.dofs)
         for (const int j : face.dofs)
           face.entries.push_back(entry(i, j));
-    const int n = int(bodies.n_dofs());
-    values_.assign(row_index_.size(), 0.);
-    if (umfpack_di_symbolic(n, n, column_start_.data(), row_index_.data(),
-                            nullptr, &symbolic_, settings(), nullptr) < 0)
-      throw std::bad_alloc();
   }
 
   template <int dim>
   void BodySystem<dim>::fill_bodies()
   {
     const auto &bodies = dynamics_.bodies();
-    bodies_.assign(row_index_.size(), 0.);
+    bodies_.assign(matrix_.column.size(), 0.);
     std::size_t next = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const auto &body = bodies.classes[bodies.class_of[b]];
@@ -221,8 +236,9 @@ namespace nsfd
   template <int dim>
   bool BodySystem<dim>::factorise(const std::vector<double> &S)
   {
+    const Charge charge(Cost::preconditioner);
     const auto &points = dynamics_.points();
-    values_ = bodies_;
+    matrix_.value = bodies_;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const Face &face = faces_[f];
       const std::size_t n = face.dofs.size();
@@ -247,15 +263,42 @@ namespace nsfd
             if (left == 0.)
               continue;
             for (std::size_t b = 0; b < n; ++b)
-              values_[face.entries[a * n + b]] += left * work_[k * n + b];
+              matrix_.value[face.entries[a * n + b]] += left * work_[k * n + b];
           }
       }
     }
     clear();
+    is_symmetric_ = are_symmetric<dim>(S) && factorise_symmetric();
+    return is_symmetric_ || factorise_general();
+  }
+
+  /** False if the matrix is not positive definite. */
+  template <int dim>
+  bool BodySystem<dim>::factorise_symmetric()
+  {
+    if (!cholesky_)
+      cholesky_ = make_cholesky_solver(dynamics_.communicator());
+    const bool analysed = std::exchange(is_analysed_, true);
+    try {
+      cholesky_->prepare(matrix_, CoarseSpace(), !analysed);
+    } catch (const std::runtime_error &) {
+      return false;
+    }
+    return true;
+  }
+
+  template <int dim>
+  bool BodySystem<dim>::factorise_general()
+  {
+    const int n = matrix_.n_rows();
+    if (!symbolic_ &&
+        umfpack_di_symbolic(n, n, matrix_.start.data(), matrix_.column.data(),
+                            nullptr, &symbolic_, settings(), nullptr) < 0)
+      throw std::bad_alloc();
     const int status =
-      umfpack_di_numeric(column_start_.data(), row_index_.data(),
-                         values_.data(), symbolic_, &numeric_, settings(),
-                         nullptr);
+      umfpack_di_numeric(matrix_.start.data(), matrix_.column.data(),
+                         matrix_.value.data(), symbolic_, &numeric_,
+                         settings(), nullptr);
     return status == UMFPACK_OK;
   }
 
@@ -263,10 +306,14 @@ namespace nsfd
   void BodySystem<dim>::solve(const std::vector<double> &b,
                               std::vector<double> &x)
   {
+    const Charge charge(Cost::precondition);
     x.resize(b.size());
-    umfpack_di_solve(UMFPACK_A, column_start_.data(), row_index_.data(),
-                     values_.data(), x.data(), b.data(), numeric_, settings(),
-                     nullptr);
+    if (is_symmetric_)
+      cholesky_->solve(b.data(), x.data(), 0.);
+    else
+      umfpack_di_solve(UMFPACK_A, matrix_.start.data(), matrix_.column.data(),
+                       matrix_.value.data(), x.data(), b.data(), numeric_,
+                       settings(), nullptr);
   }
 
   template <int dim>

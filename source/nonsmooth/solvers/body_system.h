@@ -1,7 +1,9 @@
 #pragma once
 
 #include "nsfd/dynamics/dynamics.h"
+#include "nsfd/dynamics/spd_solver.h"
 
+#include <memory>
 #include <vector>
 
 namespace nsfd
@@ -11,10 +13,11 @@ namespace nsfd
    *
    *     K = M_hat + sum_i H_i^T S_i H_i,      M_hat = M + h^2 theta^2 K_bulk,
    *
-   * as one sparse matrix with a direct factor (UMFPACK: S need not be
-   * symmetric nor positive). The pattern, found once, is tight: a face couples
-   * only the unknowns that its points see, and points may change S without a
-   * new analysis. On one rank.
+   * as one sparse matrix with a direct factor: Cholesky's where every S_i is
+   * symmetric and K is positive definite, else that of UMFPACK, for which S need
+   * not be either. The pattern, found once, is tight: a face couples only the
+   * unknowns that its points see, and points may change S without a new
+   * analysis. On one rank.
    */
   template <int dim>
   class BodySystem
@@ -67,14 +70,18 @@ namespace nsfd
       return body.mass(i, j) +
              (body.rigid ? 0. : factor_ * body.stiffness(i, j));
     }
+    bool factorise_symmetric();
+    bool factorise_general();
     void clear();
 
     const Dynamics<dim> &dynamics_;
     double time_step_, theta_, factor_;
     std::vector<Face> faces_;
-    std::vector<int> column_start_, row_index_; // compressed columns
+    SparseRows matrix_;             // its columns: the pattern is symmetric
     std::vector<int> body_entries_; // of M_hat, bodies in order, column-major
-    std::vector<double> bodies_, values_, impedance_, work_;
-    void *symbolic_ = nullptr, *numeric_ = nullptr;
+    std::vector<double> bodies_, impedance_, work_;
+    std::unique_ptr<SpdSolver> cholesky_;
+    bool is_symmetric_ = false, is_analysed_ = false; // for cholesky_
+    void *symbolic_ = nullptr, *numeric_ = nullptr;   // of UMFPACK
   };
 } // namespace nsfd
