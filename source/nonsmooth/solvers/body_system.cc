@@ -3,8 +3,6 @@
 #include "nsfd/base/cost.h"
 #include "nsfd/dynamics/point_places.h"
 
-#include <suitesparse/umfpack.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,23 +15,10 @@ namespace nsfd
   namespace
   {
     /**
-     * No scaling of rows: next to a stiff row on one side of a face it makes
-     * the diagonal of the other side look small, and pivots off the diagonal
-     * cost ten times the factor and more. No iterative refinement: every user
-     * of a solution measures it.
+     * Of a Newton step: its error adds to what is left of it, and the next step
+     * starts from the impulses as they are.
      */
-    const double *settings()
-    {
-      static const auto control = [] {
-        std::array<double, UMFPACK_CONTROL> c{};
-        umfpack_di_defaults(c.data());
-        c[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-        c[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;
-        c[UMFPACK_IRSTEP] = 0;
-        return c;
-      }();
-      return control.data();
-    }
+    constexpr double iteration_tolerance = 1e-4;
 
     template <int dim>
     bool are_symmetric(const std::vector<double> &S)
@@ -49,8 +34,9 @@ namespace nsfd
 
   template <int dim>
   BodySystem<dim>::BodySystem(const Dynamics<dim> &dynamics,
-                              const double time_step, const double theta)
-    : dynamics_(dynamics)
+                              const double time_step, const double theta,
+                              const long long largest_factor)
+    : dynamics_(dynamics), largest_factor_(largest_factor)
   {
     find_faces();
     find_pattern();
@@ -58,28 +44,11 @@ namespace nsfd
   }
 
   template <int dim>
-  BodySystem<dim>::~BodySystem()
-  {
-    clear();
-    if (symbolic_)
-      umfpack_di_free_symbolic(&symbolic_);
-  }
-
-  template <int dim>
-  void BodySystem<dim>::clear()
-  {
-    if (numeric_)
-      umfpack_di_free_numeric(&numeric_);
-    numeric_ = nullptr;
-  }
-
-  template <int dim>
   void BodySystem<dim>::reinit(const double time_step, const double theta)
   {
     time_step_ = time_step;
     theta_ = theta;
-    factor_ = time_step * time_step * theta * theta;
-    clear();
+    bulk_share_ = time_step * time_step * theta * theta;
     fill_bodies();
     find_impedance();
   }
@@ -106,7 +75,9 @@ namespace nsfd
     faces_.resize(points.faces.size());
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const auto &face = points.faces[f];
-      Face &mine = faces_[f];
+      FaceRows &mine = faces_[f];
+      mine.first = face.first;
+      mine.count = face.count;
       for (unsigned int p = face.first; p < face.first + face.count; ++p)
         for (const Side &side : sides[p]) {
           const auto &body = bodies.classes[bodies.class_of[side.body]];
@@ -159,7 +130,7 @@ namespace nsfd
         for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
              ++i)
           column[j].push_back(int(i));
-    for (const Face &face : faces_)
+    for (const FaceRows &face : faces_)
       for (const int j : face.dofs)
         column[j].insert(column[j].end(), face.dofs.begin(), face.dofs.end());
     matrix_.start.assign(1, 0);
@@ -180,10 +151,12 @@ namespace nsfd
         for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
              ++i)
           body_entries_.push_back(entry(int(i), int(j)));
-    for (Face &face : faces_)
+    for (const FaceRows &face : faces_) {
+      entries_.emplace_back();
       for (const int i : face.dofs)
         for (const int j : face.dofs)
-          face.entries.push_back(entry(i, j));
+          entries_.back().push_back(entry(i, j));
+    }
   }
 
   template <int dim>
@@ -207,7 +180,7 @@ namespace nsfd
     const auto &bodies = dynamics_.bodies();
     impedance_.assign(points.n_points * dim, 0.);
     for (std::size_t f = 0; f < faces_.size(); ++f) {
-      const Face &face = faces_[f];
+      const FaceRows &face = faces_[f];
       const std::size_t n = face.dofs.size();
       for (unsigned int k = 0; k < points.faces[f].count * dim; ++k) {
         const double *h = &face.rows[k * n];
@@ -234,13 +207,12 @@ namespace nsfd
   }
 
   template <int dim>
-  bool BodySystem<dim>::factorise(const std::vector<double> &S)
+  void BodySystem<dim>::assemble(const Vector &S)
   {
-    const Charge charge(Cost::preconditioner);
     const auto &points = dynamics_.points();
     matrix_.value = bodies_;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
-      const Face &face = faces_[f];
+      const FaceRows &face = faces_[f];
       const std::size_t n = face.dofs.size();
       work_.resize(dim * n);
       for (unsigned int q = 0; q < points.faces[f].count; ++q) {
@@ -263,24 +235,47 @@ namespace nsfd
             if (left == 0.)
               continue;
             for (std::size_t b = 0; b < n; ++b)
-              matrix_.value[face.entries[a * n + b]] += left * work_[k * n + b];
+              matrix_.value[entries_[f][a * n + b]] += left * work_[k * n + b];
           }
       }
     }
-    clear();
-    is_symmetric_ = are_symmetric<dim>(S) && factorise_symmetric();
-    return is_symmetric_ || factorise_general();
+  }
+
+  template <int dim>
+  bool BodySystem<dim>::factorise(const Vector &S)
+  {
+    const Charge charge(Cost::preconditioner);
+    stiffness_ = S;
+    const long long n = matrix_.n_rows();
+    assemble(S);
+    means_ = Means::cholesky;
+    if (n <= 10 * largest_factor_ && are_symmetric<dim>(S) &&
+        factorise_symmetric())
+      return true;
+    if (n <= largest_factor_) {
+      means_ = Means::factor;
+      const bool is_new = !factor_;
+      if (is_new)
+        factor_ = std::make_unique<SparseLU>();
+      return factor_->factorise(matrix_, is_new);
+    }
+    means_ = Means::iteration;
+    if (!iteration_)
+      iteration_ = std::make_unique<BodyKrylov>(
+        dim, dynamics_.bodies().first_dof, faces_);
+    assemble(iteration_->cap(S, impedance_));
+    return iteration_->prepare(matrix_, bodies_);
   }
 
   /** False if the matrix is not positive definite. */
   template <int dim>
   bool BodySystem<dim>::factorise_symmetric()
   {
-    if (!cholesky_)
+    const bool is_new = !cholesky_;
+    if (is_new)
       cholesky_ = make_cholesky_solver(dynamics_.communicator());
-    const bool analysed = std::exchange(is_analysed_, true);
     try {
-      cholesky_->prepare(matrix_, CoarseSpace(), !analysed);
+      cholesky_->prepare(matrix_, CoarseSpace(), is_new);
     } catch (const std::runtime_error &) {
       return false;
     }
@@ -288,37 +283,49 @@ namespace nsfd
   }
 
   template <int dim>
-  bool BodySystem<dim>::factorise_general()
-  {
-    const int n = matrix_.n_rows();
-    if (!symbolic_ &&
-        umfpack_di_symbolic(n, n, matrix_.start.data(), matrix_.column.data(),
-                            nullptr, &symbolic_, settings(), nullptr) < 0)
-      throw std::bad_alloc();
-    const int status =
-      umfpack_di_numeric(matrix_.start.data(), matrix_.column.data(),
-                         matrix_.value.data(), symbolic_, &numeric_,
-                         settings(), nullptr);
-    return status == UMFPACK_OK;
-  }
-
-  template <int dim>
-  void BodySystem<dim>::solve(const std::vector<double> &b,
-                              std::vector<double> &x)
+  unsigned int BodySystem<dim>::solve(const Vector &b, Vector &x)
   {
     const Charge charge(Cost::precondition);
     x.resize(b.size());
-    if (is_symmetric_)
+    if (means_ == Means::cholesky)
       cholesky_->solve(b.data(), x.data(), 0.);
-    else
-      umfpack_di_solve(UMFPACK_A, matrix_.start.data(), matrix_.column.data(),
-                       matrix_.value.data(), x.data(), b.data(), numeric_,
-                       settings(), nullptr);
+    else if (means_ == Means::factor)
+      factor_->solve(b.data(), x.data());
+    else {
+      const Vector none(dynamics_.points().n_points * dim, 0.);
+      Vector dP;
+      return iteration_->solve(b, none, iteration_tolerance, x, dP);
+    }
+    return 1;
   }
 
   template <int dim>
-  void BodySystem<dim>::apply(const std::vector<double> &x,
-                              std::vector<double> &y)
+  unsigned int BodySystem<dim>::respond(const Vector &b, const Vector &change,
+                                        Vector &x, Vector &dU, Vector &dP)
+  {
+    dU.resize(change.size());
+    if (means_ == Means::iteration) {
+      const Charge charge(Cost::precondition);
+      const auto count =
+        iteration_->solve(b, change, iteration_tolerance, x, dP);
+      dynamics_.relative_velocity(x.data(), dU.data());
+      return count;
+    }
+    work_.resize(b.size());
+    dynamics_.generalised_impulse(change.data(), work_.data());
+    for (std::size_t k = 0; k < b.size(); ++k)
+      work_[k] += b[k];
+    const auto count = solve(work_, x);
+    dynamics_.relative_velocity(x.data(), dU.data());
+    dP = change;
+    for (std::size_t j = 0; j < dP.size(); ++j)
+      for (unsigned int c = 0; c < dim; ++c)
+        dP[j] -= stiffness_[j * dim + c] * dU[j / dim * dim + c];
+    return count;
+  }
+
+  template <int dim>
+  void BodySystem<dim>::apply(const Vector &x, Vector &y)
   {
     y.resize(x.size());
     work_.resize(x.size());
@@ -326,7 +333,7 @@ namespace nsfd
     dynamics_.apply(Dynamics<dim>::Operator::stiffness, x.data(),
                     work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)
-      y[k] += factor_ * work_[k];
+      y[k] += bulk_share_ * work_[k];
   }
 
   template class BodySystem<2>;

@@ -1,5 +1,10 @@
 #pragma once
 
+#include "body_krylov.h"
+#include "sparse_lu.h"
+
+#include "../../dynamics/factor_limits.h"
+
 #include "nsfd/dynamics/dynamics.h"
 #include "nsfd/dynamics/spd_solver.h"
 
@@ -13,35 +18,47 @@ namespace nsfd
    *
    *     K = M_hat + sum_i H_i^T S_i H_i,      M_hat = M + h^2 theta^2 K_bulk,
    *
-   * as one sparse matrix with a direct factor: Cholesky's where every S_i is
-   * symmetric and K is positive definite, else that of UMFPACK, for which S need
-   * not be either. The pattern, found once, is tight: a face couples only the
-   * unknowns that its points see, and points may change S without a new
-   * analysis. On one rank.
+   * as one sparse matrix. Where every S_i is symmetric and K is positive definite
+   * it has Cholesky's factor. Else S need not be either: up to @p largest_factor
+   * unknowns the factor of UMFPACK, beyond it BodyKrylov, which takes the place
+   * of Cholesky's too beyond 10 times as many. The pattern, found once, is tight:
+   * a face couples only the unknowns that its points see, and points may change
+   * S without a new analysis. On one rank.
    */
   template <int dim>
   class BodySystem
   {
   public:
-    BodySystem(const Dynamics<dim> &dynamics, double time_step, double theta);
-    ~BodySystem();
-    BodySystem(const BodySystem &) = delete;
-    BodySystem &operator=(const BodySystem &) = delete;
+    using Vector = std::vector<double>;
+
+    BodySystem(const Dynamics<dim> &dynamics, double time_step, double theta,
+               long long largest_factor = nsfd::largest_factor<dim>);
 
     /** Other values on the same pattern, for another step. */
     void reinit(double time_step, double theta);
 
     /**
-     * Factorise with @p S, dim x dim row-major per point, in impulse per
+     * Get ready for @p S, dim x dim row-major per point, in impulse per
      * velocity (kg). False if the matrix is singular.
      */
-    bool factorise(const std::vector<double> &S);
+    bool factorise(const Vector &S);
 
-    /** K x = b with the last factor, over the unknowns of the bodies. */
-    void solve(const std::vector<double> &b, std::vector<double> &x);
+    /**
+     * K x = b over the unknowns of the bodies, iterations to 1e-4 of b. Returns
+     * their number, 1 for a factor.
+     */
+    unsigned int solve(const Vector &b, Vector &x);
+
+    /**
+     * The answer to momenta @p b and to changes of impulses that the velocities
+     * oppose: M_hat x = b + H^T dP, dP = change - S dU, dU = H x. Where S is
+     * large dP has more digits than change - S dU. Returns as solve() does.
+     */
+    unsigned int respond(const Vector &b, const Vector &change, Vector &x,
+                         Vector &dU, Vector &dP);
 
     /** y = M_hat x. */
-    void apply(const std::vector<double> &x, std::vector<double> &y);
+    void apply(const Vector &x, Vector &y);
 
     /**
      * h M_hat h^T / (h h^T)^2 of every row h of H, in kg: what a body opposes
@@ -53,13 +70,6 @@ namespace nsfd
     double theta() const { return theta_; }
 
   private:
-    /** The unknowns a face sees, and where their pairs are in the matrix. */
-    struct Face
-    {
-      std::vector<int> dofs;
-      std::vector<double> rows; ///< dim per point x dofs, in the local frame
-      std::vector<int> entries; ///< dofs x dofs, row-major
-    };
     void find_faces();
     void find_pattern();
     void fill_bodies();
@@ -68,20 +78,28 @@ namespace nsfd
                         unsigned int j) const
     {
       return body.mass(i, j) +
-             (body.rigid ? 0. : factor_ * body.stiffness(i, j));
+             (body.rigid ? 0. : bulk_share_ * body.stiffness(i, j));
     }
+    void assemble(const Vector &S);
     bool factorise_symmetric();
-    bool factorise_general();
-    void clear();
 
     const Dynamics<dim> &dynamics_;
-    double time_step_, theta_, factor_;
-    std::vector<Face> faces_;
+    double time_step_, theta_, bulk_share_;
+    const long long largest_factor_;
+    std::vector<FaceRows> faces_;
+    std::vector<std::vector<int>> entries_; // of a face, dofs x dofs, row-major
     SparseRows matrix_;             // its columns: the pattern is symmetric
     std::vector<int> body_entries_; // of M_hat, bodies in order, column-major
-    std::vector<double> bodies_, impedance_, work_;
-    std::unique_ptr<SpdSolver> cholesky_;
-    bool is_symmetric_ = false, is_analysed_ = false; // for cholesky_
-    void *symbolic_ = nullptr, *numeric_ = nullptr;   // of UMFPACK
+    Vector bodies_, impedance_, work_, stiffness_;
+
+    enum class Means
+    {
+      cholesky,
+      factor,
+      iteration
+    } means_ = Means::factor;
+    std::unique_ptr<SpdSolver> cholesky_; // each when it is needed first
+    std::unique_ptr<SparseLU> factor_;
+    std::unique_ptr<BodyKrylov> iteration_;
   };
 } // namespace nsfd

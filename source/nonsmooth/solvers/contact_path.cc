@@ -95,8 +95,7 @@ namespace nsfd
       for (std::size_t j = 0; j < b_.size(); ++j)
         b_[j] -= residual_[j];
     }
-    system_.solve(b_, dy_);
-    ++report_.krylov;
+    report_.krylov += system_.solve(b_, dy_);
     dynamics_.relative_velocity(dy_.data(), dU_.data());
   }
 
@@ -365,9 +364,7 @@ namespace nsfd
     look();
     laws_.update(problem_, evaluation_, P_, others_);
     S_ = laws_.stiffness;
-    Vector P0(P_);
-    for (std::size_t j = 0; j < n * dim; ++j)
-      P0[j] += laws_.change[j];
+    Vector wanted(laws_.change);
     for (auto &x : candidates_) {
       const std::size_t i = x.point;
       const double w = problem_.weight[i];
@@ -375,7 +372,8 @@ namespace nsfd
       double pull[dim], slope[dim];
       spring(i, pull, slope);
       for (unsigned int c = 0; c < dim; ++c) {
-        P0[i * dim + c] = w * (x.r[c] + x.k[c]) - pull[c];
+        P_[i * dim + c] = w * x.r[c] - pull[c];
+        wanted[i * dim + c] = w * x.k[c];
         for (unsigned int d = 0; d < dim; ++d)
           S_[(i * dim + c) * dim + d] =
             w * x.S[c * dim + d] + (c == d ? slope[c] : 0.);
@@ -384,16 +382,24 @@ namespace nsfd
     if (!system_.factorise(S_))
       return false;
     ++report_.newton;
-    equilibrate(P0, false);
+    dynamics_.generalised_impulse(P_.data(), b_.data());
+    system_.apply(y_, residual_);
+    for (std::size_t j = 0; j < b_.size(); ++j)
+      b_[j] -= residual_[j];
+    report_.krylov += system_.respond(b_, wanted, dy_, dU_, dP_);
 
     alpha = 1.;
+    // a stiff contact takes its slack from its impulse, which is the one of the
+    // two that is known to all digits
     const auto change = [&](const Candidate &x, double *dr) {
-      for (unsigned int c = 0; c < dim; ++c) {
-        dr[c] = x.k[c];
-        for (unsigned int d = 0; d < dim; ++d)
-          dr[c] -= x.S[c * dim + d] * dU_[x.point * dim + d];
-      }
       const std::size_t j = x.point * dim;
+      double pull[dim], slope[dim];
+      spring(x.point, pull, slope);
+      for (unsigned int c = 0; c < dim; ++c)
+        dr[c] = (dP_[j + c] + slope[c] * dU_[j + c]) / problem_.weight[x.point];
+      if (x.r[0] > x.z * impedance(x.point, 0))
+        return (sigma * gap * springs::square(x.scale) - x.z * dr[0]) / x.r[0] -
+               x.z;
       return dU_[j] - (x.z - (U_[j] - problem_.target[x.point]));
     };
     double dr[dim];
@@ -420,13 +426,8 @@ namespace nsfd
     }
     for (std::size_t i = 0; i < n; ++i)
       if (others_[i])
-        for (unsigned int c = 0; c < dim; ++c) {
-          double value = laws_.change[i * dim + c];
-          for (unsigned int d = 0; d < dim; ++d)
-            value -=
-              laws_.stiffness[(i * dim + c) * dim + d] * dU_[i * dim + d];
-          P_[i * dim + c] += alpha * value;
-        }
+        for (unsigned int c = 0; c < dim; ++c)
+          P_[i * dim + c] += alpha * dP_[i * dim + c];
     for (std::size_t j = 0; j < y_.size(); ++j)
       y_[j] += alpha * dy_[j];
     for (std::size_t j = 0; j < n * dim; ++j)

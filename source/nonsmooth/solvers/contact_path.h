@@ -118,7 +118,7 @@ namespace nsfd
     std::vector<FrozenPoint> frozen_; // of candidates
     std::vector<char> is_candidate_, others_;
     LinearisedLaws<dim> laws_;
-    Vector y_, U_, S_, P_, best_, b_, residual_, dy_, dU_;
+    Vector y_, U_, S_, P_, best_, b_, residual_, dy_, dU_, dP_;
     double best_error_;
     double mean_impulse_ = 0., polished_ = 0., softening_ = 1e-7;
   };

@@ -131,7 +131,8 @@ namespace nsfd
     const std::size_t n = impulse.size();
     LinearisedLaws<dim> laws;
     laws.softening = softening;
-    std::vector<double> b(dynamics.bodies().n_dofs()), dy, dU(n), best(impulse);
+    const std::vector<double> at_rest(dynamics.bodies().n_dofs(), 0.);
+    std::vector<double> dy, dU, dP, best(impulse);
     double best_error = evaluation.error;
     unsigned int idle = 0, still = 0;
     while (evaluation.error > tolerance && idle <= patience && still < 2) {
@@ -140,17 +141,9 @@ namespace nsfd
       if (!system.factorise(laws.stiffness))
         break;
       ++report.newton;
-      dynamics.generalised_impulse(laws.change.data(), b.data());
-      system.solve(b, dy);
-      ++report.krylov;
-      dynamics.relative_velocity(dy.data(), dU.data());
-      for (std::size_t i = 0; i < problem.n_points; ++i)
-        for (unsigned int r = 0; r < dim; ++r) {
-          double value = laws.change[i * dim + r];
-          for (unsigned int c = 0; c < dim; ++c)
-            value -= laws.stiffness[(i * dim + r) * dim + c] * dU[i * dim + c];
-          impulse[i * dim + r] += value;
-        }
+      report.krylov += system.respond(at_rest, laws.change, dy, dU, dP);
+      for (std::size_t j = 0; j < n; ++j)
+        impulse[j] += dP[j];
       evaluation.update(impulse);
       const bool good = evaluation.error < 0.5 * best_error;
       if (evaluation.error < best_error) {

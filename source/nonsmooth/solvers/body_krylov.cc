@@ -1,0 +1,329 @@
+#include "body_krylov.h"
+
+#include <deal.II/lac/lapack_templates.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Vector = std::vector<double>;
+
+    double dot(const Vector &a, const Vector &b)
+    {
+      double sum = 0.;
+      for (std::size_t i = 0; i < a.size(); ++i)
+        sum += a[i] * b[i];
+      return sum;
+    }
+
+    /** y = A x, A dim x dim row-major. */
+    void multiply_small(const unsigned int dim, const double *A, const double *x,
+                        double *y)
+    {
+      for (unsigned int r = 0; r < dim; ++r) {
+        y[r] = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          y[r] += A[r * dim + c] * x[c];
+      }
+    }
+
+    /** The solution of least residual in a Krylov space that grows. */
+    class LeastResidual
+    {
+    public:
+      explicit LeastResidual(const double residual)
+        : g_{residual}
+      {}
+
+      double residual() const { return std::abs(g_.back()); }
+
+      /** The next column of the Hessenberg matrix. */
+      void add(Vector column)
+      {
+        const std::size_t k = cosines_.size();
+        for (std::size_t j = 0; j < k; ++j) {
+          const double a = column[j], b = column[j + 1];
+          column[j] = cosines_[j] * a + sines_[j] * b;
+          column[j + 1] = -sines_[j] * a + cosines_[j] * b;
+        }
+        const double length = std::hypot(column[k], column[k + 1]);
+        const double c = length > 0. ? column[k] / length : 1.,
+                     s = length > 0. ? column[k + 1] / length : 0.;
+        cosines_.push_back(c);
+        sines_.push_back(s);
+        column[k] = length;
+        columns_.push_back(std::move(column));
+        g_.push_back(-s * g_[k]);
+        g_[k] *= c;
+      }
+
+      /** Coefficients of the basis. */
+      Vector solution() const
+      {
+        Vector y(cosines_.size());
+        for (std::size_t i = y.size(); i-- > 0;) {
+          y[i] = g_[i];
+          for (std::size_t j = i + 1; j < y.size(); ++j)
+            y[i] -= columns_[j][i] * y[j];
+          y[i] = columns_[i][i] > 0. ? y[i] / columns_[i][i] : 0.;
+        }
+        return y;
+      }
+
+    private:
+      std::vector<Vector> columns_;
+      Vector g_, cosines_, sines_;
+    };
+  } // namespace
+
+  BodyKrylov::BodyKrylov(const unsigned int dim,
+                         const std::vector<std::size_t> &first_dof,
+                         const std::vector<FaceRows> &faces)
+    : dim_(dim)
+    , first_dof_(first_dof)
+    , faces_(faces)
+    , soft_(dim, first_dof, faces)
+  {}
+
+  const Vector &BodyKrylov::cap(const Vector &S, const Vector &resistance)
+  {
+    const unsigned int n = dim_;
+    capped_ = S;
+    gain_.assign(S.size(), 0.);
+    cap_.assign(S.size() / (n * n), 0.);
+    stiff_.clear();
+    std::vector<double> A(n * n);
+    std::vector<dealii::types::blas_int> pivots(n);
+    for (std::size_t i = 0; i < cap_.size(); ++i) {
+      const double *s = &S[i * n * n];
+      double *G = &gain_[i * n * n];
+      cap_[i] = 20. * resistance[i * n];
+      for (unsigned int r = 0; r < n; ++r)
+        G[r * n + r] = 1.;
+      if (std::all_of(s, s + n * n, [&](const double x) {
+            return std::abs(x) <= cap_[i];
+          }))
+        continue;
+      stiff_.push_back(i);
+      // rows as columns throughout: the transposed system
+      for (unsigned int r = 0; r < n; ++r)
+        for (unsigned int c = 0; c < n; ++c)
+          A[r * n + c] = (r == c ? 1. : 0.) + s[r * n + c] / cap_[i];
+      const dealii::types::blas_int m = n;
+      dealii::types::blas_int info = 0;
+      dealii::getrf(&m, &m, A.data(), &m, pivots.data(), &info);
+      dealii::getrs("N", &m, &m, A.data(), &m, pivots.data(), G, &m, &info);
+      // I - G = S_c/c without the cancellation of S G
+      for (unsigned int r = 0; r < n; ++r)
+        for (unsigned int c = 0; c < n; ++c)
+          capped_[(i * n + r) * n + c] =
+            cap_[i] * ((r == c ? 1. : 0.) - G[r * n + c]);
+    }
+    return capped_;
+  }
+
+  bool BodyKrylov::prepare(const SparseRows &K, const Vector &bodies)
+  {
+    K_ = &K;
+    soft_.build(K, bodies);
+    coarse_r_.resize(soft_.size());
+    coarse_z_.resize(soft_.size());
+    work_.resize(first_dof_.back());
+    return coarse_.factorise(soft_.matrix(), true) && factorise_bodies();
+  }
+
+  bool BodyKrylov::factorise_bodies()
+  {
+    blocks_.clear();
+    pivots_.resize(first_dof_.back());
+    std::size_t largest = 0;
+    for (std::size_t b = 0; b + 1 < first_dof_.size(); ++b) {
+      const int first = int(first_dof_[b]), end = int(first_dof_[b + 1]);
+      const dealii::types::blas_int n = end - first;
+      const std::size_t offset = blocks_.size();
+      blocks_.resize(offset + std::size_t(n) * n, 0.);
+      for (int j = first; j < end; ++j)
+        for (int k = K_->start[j]; k < K_->start[j + 1]; ++k)
+          if (K_->column[k] >= first && K_->column[k] < end)
+            blocks_[offset + std::size_t(j - first) * n + K_->column[k] - first] =
+              K_->value[k];
+      dealii::types::blas_int info = 0;
+      dealii::getrf(&n, &n, &blocks_[offset], &n, &pivots_[first], &info);
+      if (info != 0)
+        return false;
+      largest = std::max(largest, std::size_t(n));
+    }
+    body_.resize(largest);
+    return true;
+  }
+
+  void BodyKrylov::solve_bodies(const double *r, double *z) const
+  {
+    std::size_t offset = 0;
+    const dealii::types::blas_int one = 1;
+    for (std::size_t b = 0; b + 1 < first_dof_.size(); ++b) {
+      const std::size_t first = first_dof_[b];
+      const dealii::types::blas_int n = first_dof_[b + 1] - first;
+      std::copy_n(r + first, n, body_.begin());
+      dealii::types::blas_int info = 0;
+      dealii::getrs("N", &n, &one, &blocks_[offset], &n, &pivots_[first],
+                    body_.data(), &n, &info);
+      for (dealii::types::blas_int i = 0; i < n; ++i)
+        z[first + i] += body_[i];
+      offset += std::size_t(n) * n;
+    }
+  }
+
+  void BodyKrylov::multiply(const double *x, double *y) const
+  {
+    const int n = K_->n_rows();
+    std::fill_n(y, n, 0.);
+    for (int j = 0; j < n; ++j)
+      for (int k = K_->start[j]; k < K_->start[j + 1]; ++k)
+        y[K_->column[k]] += K_->value[k] * x[j];
+  }
+
+  void BodyKrylov::relative_velocity(const double *x, Vector &U) const
+  {
+    for (const FaceRows &face : faces_) {
+      const std::size_t n = face.dofs.size();
+      for (unsigned int k = 0; k < face.count * dim_; ++k) {
+        double value = 0.;
+        for (std::size_t a = 0; a < n; ++a)
+          value += face.rows[k * n + a] * x[face.dofs[a]];
+        U[face.first * dim_ + k] = value;
+      }
+    }
+  }
+
+  void BodyKrylov::add_momentum(const Vector &P, double *r) const
+  {
+    for (const FaceRows &face : faces_) {
+      const std::size_t n = face.dofs.size();
+      for (unsigned int k = 0; k < face.count * dim_; ++k) {
+        const double p = P[face.first * dim_ + k];
+        for (std::size_t a = 0; p != 0. && a < n; ++a)
+          r[face.dofs[a]] += face.rows[k * n + a] * p;
+      }
+    }
+  }
+
+  /** Both rows; x is followed by the Q of the stiff points. */
+  void BodyKrylov::apply(const double *x, double *y)
+  {
+    const std::size_t n = first_dof_.back();
+    multiply(x, y);
+    relative_velocity(x, U_);
+    std::fill(impulse_.begin(), impulse_.end(), 0.);
+    double a[3], b[3], c[3];
+    for (std::size_t k = 0; k < stiff_.size(); ++k) {
+      const std::size_t i = stiff_[k];
+      const double *Q = x + n + k * dim_;
+      std::copy_n(Q, dim_, &impulse_[i * dim_]);
+      multiply_small(dim_, &capped_[i * dim_ * dim_], &U_[i * dim_], a);
+      multiply_small(dim_, &capped_[i * dim_ * dim_], a, b);
+      multiply_small(dim_, &gain_[i * dim_ * dim_], Q, c);
+      for (unsigned int r = 0; r < dim_; ++r)
+        y[n + k * dim_ + r] = b[r] / cap_[i] - c[r];
+    }
+    add_momentum(impulse_, y);
+  }
+
+  void BodyKrylov::precondition(const double *r, double *z)
+  {
+    const std::size_t n = first_dof_.back();
+    soft_.restrict_to(r, coarse_r_.data());
+    coarse_.solve(coarse_r_.data(), coarse_z_.data());
+    soft_.prolong(coarse_z_.data(), z);
+    multiply(z, work_.data());
+    for (std::size_t i = 0; i < n; ++i)
+      work_[i] = r[i] - work_[i];
+    solve_bodies(work_.data(), z);
+    relative_velocity(z, U_);
+    double a[3], b[3];
+    for (std::size_t k = 0; k < stiff_.size(); ++k) {
+      const std::size_t i = stiff_[k];
+      multiply_small(dim_, &capped_[i * dim_ * dim_], &U_[i * dim_], a);
+      multiply_small(dim_, &capped_[i * dim_ * dim_], a, b);
+      for (unsigned int c = 0; c < dim_; ++c)
+        z[n + k * dim_ + c] = b[c] / cap_[i] - r[n + k * dim_ + c];
+    }
+  }
+
+  unsigned int BodyKrylov::solve(const Vector &b, const Vector &d,
+                                 const double tolerance, Vector &x, Vector &P)
+  {
+    const std::size_t n = first_dof_.back(), size = n + stiff_.size() * dim_;
+    const unsigned int limit = 200;
+    U_.resize(d.size());
+    impulse_.assign(d.size(), 0.);
+    Vector held(d.size()); // G d
+    for (std::size_t i = 0; i < cap_.size(); ++i)
+      multiply_small(dim_, &gain_[i * dim_ * dim_], &d[i * dim_],
+                     &held[i * dim_]);
+    std::vector<Vector> basis(1, b);
+    basis[0].resize(size, 0.);
+    add_momentum(held, basis[0].data());
+    for (std::size_t k = 0; k < stiff_.size(); ++k) {
+      const std::size_t i = stiff_[k];
+      double *right = &basis[0][n + k * dim_];
+      multiply_small(dim_, &capped_[i * dim_ * dim_], &held[i * dim_], right);
+      for (unsigned int r = 0; r < dim_; ++r)
+        right[r] /= cap_[i];
+    }
+
+    Vector z(size);
+    const double start = std::sqrt(dot(basis[0], basis[0]));
+    LeastResidual least(start);
+    unsigned int count = 0;
+    if (start > 0.)
+      for (double &value : basis[0])
+        value /= start;
+    while (count < limit && least.residual() > tolerance * start) {
+      precondition(basis[count].data(), z.data());
+      Vector next(size), column(count + 2, 0.);
+      apply(z.data(), next.data());
+      for (unsigned int pass = 0; pass < 2; ++pass) // orthogonal to round-off
+        for (unsigned int j = 0; j <= count; ++j) {
+          const double share = dot(next, basis[j]);
+          column[j] += share;
+          for (std::size_t i = 0; i < size; ++i)
+            next[i] -= share * basis[j][i];
+        }
+      const double norm = std::sqrt(dot(next, next));
+      if (!std::isfinite(norm))
+        break;
+      column[count + 1] = norm;
+      least.add(std::move(column));
+      ++count;
+      if (norm == 0.)
+        break;
+      for (double &value : next)
+        value /= norm;
+      basis.push_back(std::move(next));
+    }
+    const Vector y = least.solution();
+    Vector sum(size, 0.), all(size);
+    for (std::size_t j = 0; j < y.size(); ++j)
+      for (std::size_t i = 0; i < size; ++i)
+        sum[i] += y[j] * basis[j][i];
+    precondition(sum.data(), all.data());
+
+    x.assign(all.begin(), all.begin() + n);
+    relative_velocity(x.data(), U_);
+    P = held;
+    double a[3];
+    for (std::size_t i = 0; i < cap_.size(); ++i) {
+      multiply_small(dim_, &capped_[i * dim_ * dim_], &U_[i * dim_], a);
+      for (unsigned int r = 0; r < dim_; ++r)
+        P[i * dim_ + r] -= a[r];
+    }
+    for (std::size_t k = 0; k < stiff_.size(); ++k)
+      for (unsigned int r = 0; r < dim_; ++r)
+        P[stiff_[k] * dim_ + r] -= all[n + k * dim_ + r];
+    return count;
+  }
+} // namespace nsfd
