@@ -132,48 +132,46 @@ namespace nsfd
     coarse_r_.resize(soft_.size());
     coarse_z_.resize(soft_.size());
     work_.resize(first_dof_.back());
-    return coarse_.factorise(soft_.matrix(), true) && factorise_bodies();
+    return coarse_.factorise(soft_.matrix(), true) && invert_bodies();
   }
 
-  bool BodyKrylov::factorise_bodies()
+  bool BodyKrylov::invert_bodies()
   {
     blocks_.clear();
-    pivots_.resize(first_dof_.back());
-    std::size_t largest = 0;
+    Vector block;
+    std::vector<dealii::types::blas_int> pivots;
     for (std::size_t b = 0; b + 1 < first_dof_.size(); ++b) {
       const int first = int(first_dof_[b]), end = int(first_dof_[b + 1]);
       const dealii::types::blas_int n = end - first;
-      const std::size_t offset = blocks_.size();
-      blocks_.resize(offset + std::size_t(n) * n, 0.);
-      for (int j = first; j < end; ++j)
+      const std::size_t offset = blocks_.size(), m = std::size_t(n);
+      block.assign(m * m, 0.);
+      pivots.resize(m);
+      blocks_.resize(offset + m * m, 0.);
+      for (int j = first; j < end; ++j) {
+        blocks_[offset + std::size_t(j - first) * (m + 1)] = 1.;
         for (int k = K_->start[j]; k < K_->start[j + 1]; ++k)
           if (K_->column[k] >= first && K_->column[k] < end)
-            blocks_[offset + std::size_t(j - first) * n + K_->column[k] - first] =
+            block[std::size_t(j - first) * m + K_->column[k] - first] =
               K_->value[k];
+      }
       dealii::types::blas_int info = 0;
-      dealii::getrf(&n, &n, &blocks_[offset], &n, &pivots_[first], &info);
+      dealii::getrf(&n, &n, block.data(), &n, pivots.data(), &info);
       if (info != 0)
         return false;
-      largest = std::max(largest, std::size_t(n));
+      dealii::getrs("N", &n, &n, block.data(), &n, pivots.data(),
+                    &blocks_[offset], &n, &info);
     }
-    body_.resize(largest);
     return true;
   }
 
-  void BodyKrylov::solve_bodies(const double *r, double *z) const
+  void BodyKrylov::add_bodies(const double *r, double *z) const
   {
-    std::size_t offset = 0;
-    const dealii::types::blas_int one = 1;
+    const double *column = blocks_.data();
     for (std::size_t b = 0; b + 1 < first_dof_.size(); ++b) {
-      const std::size_t first = first_dof_[b];
-      const dealii::types::blas_int n = first_dof_[b + 1] - first;
-      std::copy_n(r + first, n, body_.begin());
-      dealii::types::blas_int info = 0;
-      dealii::getrs("N", &n, &one, &blocks_[offset], &n, &pivots_[first],
-                    body_.data(), &n, &info);
-      for (dealii::types::blas_int i = 0; i < n; ++i)
-        z[first + i] += body_[i];
-      offset += std::size_t(n) * n;
+      const std::size_t first = first_dof_[b], n = first_dof_[b + 1] - first;
+      for (std::size_t j = 0; j < n; ++j, column += n)
+        for (std::size_t i = 0; i < n; ++i)
+          z[first + i] += column[i] * r[first + j];
     }
   }
 
@@ -241,7 +239,7 @@ namespace nsfd
     multiply(z, work_.data());
     for (std::size_t i = 0; i < n; ++i)
       work_[i] = r[i] - work_[i];
-    solve_bodies(work_.data(), z);
+    add_bodies(work_.data(), z);
     relative_velocity(z, U_);
     double a[3], b[3];
     for (std::size_t k = 0; k < stiff_.size(); ++k) {

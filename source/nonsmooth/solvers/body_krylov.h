@@ -63,8 +63,8 @@ namespace nsfd
     void apply(const double *x, double *y);
     void precondition(const double *r, double *z);
     void multiply(const double *x, double *y) const;
-    void solve_bodies(const double *r, double *z) const;
-    bool factorise_bodies();
+    void add_bodies(const double *r, double *z) const;
+    bool invert_bodies();
 
     const unsigned int dim_;
     const std::vector<std::size_t> &first_dof_;
@@ -74,9 +74,7 @@ namespace nsfd
     SparseLU coarse_;
     Vector capped_, gain_, cap_; // S_c, G, c; of all points
     std::vector<std::size_t> stiff_; // points with Q
-    Vector blocks_;
-    std::vector<int> pivots_;
+    Vector blocks_; // inverse, column-major, of the bodies in order
     Vector U_, impulse_, coarse_r_, coarse_z_, work_;
-    mutable Vector body_;
   };
 } // namespace nsfd

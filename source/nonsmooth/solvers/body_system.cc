@@ -14,12 +14,6 @@ namespace nsfd
 {
   namespace
   {
-    /**
-     * Of a Newton step: its error adds to what is left of it, and the next step
-     * starts from the impulses as they are.
-     */
-    constexpr double iteration_tolerance = 1e-4;
-
     template <int dim>
     bool are_symmetric(const std::vector<double> &S)
     {
@@ -283,7 +277,8 @@ namespace nsfd
   }
 
   template <int dim>
-  unsigned int BodySystem<dim>::solve(const Vector &b, Vector &x)
+  unsigned int BodySystem<dim>::solve(const Vector &b, Vector &x,
+                                      const double tolerance)
   {
     const Charge charge(Cost::precondition);
     x.resize(b.size());
@@ -294,20 +289,20 @@ namespace nsfd
     else {
       const Vector none(dynamics_.points().n_points * dim, 0.);
       Vector dP;
-      return iteration_->solve(b, none, iteration_tolerance, x, dP);
+      return iteration_->solve(b, none, tolerance, x, dP);
     }
     return 1;
   }
 
   template <int dim>
   unsigned int BodySystem<dim>::respond(const Vector &b, const Vector &change,
-                                        Vector &x, Vector &dU, Vector &dP)
+                                        Vector &x, Vector &dU, Vector &dP,
+                                        const double tolerance)
   {
     dU.resize(change.size());
     if (means_ == Means::iteration) {
       const Charge charge(Cost::precondition);
-      const auto count =
-        iteration_->solve(b, change, iteration_tolerance, x, dP);
+      const auto count = iteration_->solve(b, change, tolerance, x, dP);
       dynamics_.relative_velocity(x.data(), dU.data());
       return count;
     }

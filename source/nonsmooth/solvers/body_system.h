@@ -44,10 +44,11 @@ namespace nsfd
     bool factorise(const Vector &S);
 
     /**
-     * K x = b over the unknowns of the bodies, iterations to 1e-4 of b. Returns
-     * their number, 1 for a factor.
+     * K x = b over the unknowns of the bodies, iterations to @p tolerance of b:
+     * of a Newton step, whose error is found again by the next one. Returns their
+     * number, 1 for a factor.
      */
-    unsigned int solve(const Vector &b, Vector &x);
+    unsigned int solve(const Vector &b, Vector &x, double tolerance = 1e-4);
 
     /**
      * The answer to momenta @p b and to changes of impulses that the velocities
@@ -55,7 +56,7 @@ namespace nsfd
      * large dP has more digits than change - S dU. Returns as solve() does.
      */
     unsigned int respond(const Vector &b, const Vector &change, Vector &x,
-                         Vector &dU, Vector &dP);
+                         Vector &dU, Vector &dP, double tolerance = 1e-4);
 
     /** y = M_hat x. */
     void apply(const Vector &x, Vector &y);
