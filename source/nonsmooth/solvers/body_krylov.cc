@@ -284,14 +284,19 @@ namespace nsfd
       precondition(basis[count].data(), z.data());
       Vector next(size), column(count + 2, 0.);
       apply(z.data(), next.data());
-      for (unsigned int pass = 0; pass < 2; ++pass) // orthogonal to round-off
+      double before = std::sqrt(dot(next, next)), norm = before;
+      for (unsigned int pass = 0; pass < 2; ++pass) {
         for (unsigned int j = 0; j <= count; ++j) {
           const double share = dot(next, basis[j]);
           column[j] += share;
           for (std::size_t i = 0; i < size; ++i)
             next[i] -= share * basis[j][i];
         }
-      const double norm = std::sqrt(dot(next, next));
+        norm = std::sqrt(dot(next, next));
+        if (norm > 0.1 * before)
+          break; // no digits were lost
+        before = norm;
+      }
       if (!std::isfinite(norm))
         break;
       column[count + 1] = norm;

@@ -48,7 +48,7 @@ namespace nsfd
      * of a Newton step, whose error is found again by the next one. Returns their
      * number, 1 for a factor.
      */
-    unsigned int solve(const Vector &b, Vector &x, double tolerance = 1e-4);
+    unsigned int solve(const Vector &b, Vector &x, double tolerance = 1e-3);
 
     /**
      * The answer to momenta @p b and to changes of impulses that the velocities
@@ -56,7 +56,7 @@ namespace nsfd
      * large dP has more digits than change - S dU. Returns as solve() does.
      */
     unsigned int respond(const Vector &b, const Vector &change, Vector &x,
-                         Vector &dU, Vector &dP, double tolerance = 1e-4);
+                         Vector &dU, Vector &dP, double tolerance = 1e-3);
 
     /** y = M_hat x. */
     void apply(const Vector &x, Vector &y);
