@@ -43,6 +43,13 @@ namespace nsfd
      */
     bool build(const SceneInput &input, const Communicator &communicator);
 
+    /** Bodies and points are all that a run needs of it. */
+    void forget_mesh()
+    {
+      groups.reset();
+      triangulation.reset();
+    }
+
   private:
     void build_mesh_parts(const SceneInput &input,
                           const Communicator &communicator,

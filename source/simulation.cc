@@ -100,6 +100,7 @@ namespace nsfd
             input_, *model_.triangulation, *model_.discretization,
             *model_.stepper, *model_.dynamics,
             model_.dynamic_control(input_, 0.)->base_step(), communicator_);
+      model_.forget_mesh();
       bool ours = true;
       if (communicator_.is_root())
         ours = claim_directory(input_.output.directory, options_.force);

@@ -1,6 +1,9 @@
 #include "cholesky.h"
 
+#include "nsfd/base/large_pages.h"
+
 #include <cholmod.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -16,6 +19,10 @@ namespace nsfd
 
     Library()
     {
+      SuiteSparse_config.malloc_func = allocate_large;
+      // CHOLMOD asks for four threads of its own whatever the environment
+      // says; ranks are what shares the cores
+      omp_set_max_active_levels(0);
       cholmod_start(&common);
       common.supernodal = CHOLMOD_SUPERNODAL;
       common.print = 0;

@@ -111,6 +111,7 @@ namespace nsfd
     space_.number.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       space_.number[i] = static_cast<long long>(value[i]);
+    parent_ = std::vector<int>();
     set_modes();
   }
 

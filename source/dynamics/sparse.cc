@@ -78,6 +78,7 @@ namespace nsfd
       , assembly_(communicator, bodies, points, coordinates)
       , glued_(communicator, dim, assembly_.unknowns(), assembly_.node_pairs())
     {
+      assembly_.forget_coordinates();
       const auto n = communicator.sum_integer(bodies.n_dofs());
       // not by the number of ranks: results must not depend on it
       direct_ = solver == "direct" ||

@@ -54,6 +54,8 @@ namespace nsfd
     /** Nodes at the same place on both sides of a face. */
     NodePairs node_pairs() const;
     Unknowns unknowns() const;
+    /** Nothing but node_pairs() and unknowns() looks at them. */
+    void forget_coordinates() { coordinates_ = std::vector<double>(); }
 
   private:
     /** One side of a point: a slot of a body, here or on another rank. */
@@ -91,7 +93,7 @@ namespace nsfd
     const Communicator &communicator_;
     const Bodies &bodies_;
     const InterfacePoints<dim> &points_;
-    const std::vector<double> coordinates_;
+    std::vector<double> coordinates_;
     std::array<std::vector<Place>, 2> places_; ///< per point
     std::vector<Remote> remote_;
     SparseRows matrix_;

@@ -293,6 +293,15 @@ namespace nsfd
     demand_blocks(communicator, collector.without_block);
     FacePoints<dim> result;
     auto &points = result.points;
+    std::size_t n = 0;
+    for (const auto &face : collector.faces)
+      n += face.positions.size();
+    points.position.reserve(n * dim);
+    points.frame.reserve(n * dim * dim);
+    points.weight.reserve(n);
+    points.face_of.reserve(n);
+    points.faces.reserve(collector.faces.size());
+    result.origins.reserve(n);
     for (auto &face : collector.faces) {
       const unsigned int f = unsigned(points.faces.size());
       face.face.first = unsigned(points.n_points);

@@ -322,32 +322,52 @@ namespace nsfd
                            const State &old, const State &next) const
   {
     using Operator = typename Dynamics<dim>::Operator;
+    const auto &communicator = dynamics_.communicator();
     const std::size_t n = next.velocity.size();
-    std::vector<double> change(n), product(n), terms(n_body_rows * n);
-    const auto put = [&](const BodyRow row, const Operator op,
-                         const std::vector<double> &x, const double factor) {
-      dynamics_.apply(op, x.data(), product.data());
+    // row by row: all terms of all rows at once would be the largest thing of
+    // the whole step
+    std::vector<double> terms(n), change, result(n_body_rows, 0.);
+    const auto energy = [&](const Operator op, const std::vector<double> &x) {
+      dynamics_.apply(op, x.data(), terms.data());
       for (std::size_t i = 0; i < n; ++i)
-        terms[row * n + i] = factor * x[i] * product[i];
+        terms[i] *= x[i];
+      return communicator.sum(terms);
     };
-    put(kinetic, Operator::mass, next.velocity, 0.5);
-    put(elastic, Operator::stiffness, next.displacement, 0.5);
-    if (symplectic_) // the product is K q
-      put_symplectic(terms, h, product, old, next);
-    else if (theta_ > 0.5) {
+    const auto change_of = [&](const std::vector<double> &after,
+                               const std::vector<double> &before)
+        -> const std::vector<double> & {
+      change.resize(n);
       for (std::size_t i = 0; i < n; ++i)
-        change[i] = next.velocity[i] - old.velocity[i];
-      put(theta_mass, Operator::mass, change, theta_ - 0.5);
+        change[i] = after[i] - before[i];
+      return change;
+    };
+    result[kinetic] = 0.5 * energy(Operator::mass, next.velocity);
+    if (symplectic_) {
+      std::vector<double> product(n);
+      dynamics_.apply(Operator::stiffness, next.displacement.data(),
+                      product.data());
       for (std::size_t i = 0; i < n; ++i)
-        change[i] = next.displacement[i] - old.displacement[i];
-      put(theta_stiffness, Operator::stiffness, change, theta_ - 0.5);
+        terms[i] = 0.5 * next.displacement[i] * product[i];
+      result[elastic] = communicator.sum(terms);
+      result[theta_stiffness] = symplectic_share(h, product, old, next);
+    } else
+      result[elastic] = 0.5 * energy(Operator::stiffness, next.displacement);
+    if (!symplectic_ && theta_ > 0.5) {
+      const double share = theta_ - 0.5;
+      result[theta_mass] =
+          share *
+          energy(Operator::mass, change_of(next.velocity, old.velocity));
+      result[theta_stiffness] =
+          share * energy(Operator::stiffness,
+                         change_of(next.displacement, old.displacement));
     }
-    if (discretization_.has_loads())
+    if (discretization_.has_loads()) {
       for (std::size_t i = 0; i < n; ++i)
-        terms[loads * n + i] =
-            h * forces[i] *
-            (theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i]);
-    return dynamics_.communicator().sums(terms.data(), n_body_rows, n);
+        terms[i] = h * forces[i] * (theta_ * next.velocity[i] +
+                                    (1. - theta_) * old.velocity[i]);
+      result[loads] = communicator.sum(terms);
+    }
+    return result;
   }
 
   /**
@@ -356,19 +376,20 @@ namespace nsfd
    * @p product is K q of the next state.
    */
   template <int dim>
-  void Ledger<dim>::put_symplectic(std::vector<double> &terms, const double h,
-                                   const std::vector<double> &product,
-                                   const State &old, const State &next) const
+  double Ledger<dim>::symplectic_share(const double h,
+                                       const std::vector<double> &product,
+                                       const State &old,
+                                       const State &next) const
   {
     using Operator = typename Dynamics<dim>::Operator;
     const std::size_t n = next.velocity.size();
     std::vector<double> force(n);
     dynamics_.apply(Operator::stiffness, old.displacement.data(), force.data());
     for (std::size_t i = 0; i < n; ++i)
-      terms[theta_stiffness * n + i] =
-          h / 2. * force[i] * (old.velocity[i] - next.velocity[i]) -
-          (next.displacement[i] - old.displacement[i]) *
-              (product[i] - force[i]) / 2.;
+      force[i] = h / 2. * force[i] * (old.velocity[i] - next.velocity[i]) -
+                 (next.displacement[i] - old.displacement[i]) *
+                     (product[i] - force[i]) / 2.;
+    return dynamics_.communicator().sum(force);
   }
 
   /** w h p U_theta,N of the pressure in cracks. */

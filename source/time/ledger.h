@@ -44,9 +44,9 @@ namespace nsfd
                                     double time_step, const State &old,
                                     const State &next) const;
 
-    void put_symplectic(std::vector<double> &terms, double time_step,
-                        const std::vector<double> &product,
-                        const State &old, const State &next) const;
+    double symplectic_share(double time_step,
+                            const std::vector<double> &product,
+                            const State &old, const State &next) const;
 
     const Discretization<dim> &discretization_;
     const Dynamics<dim> &dynamics_;

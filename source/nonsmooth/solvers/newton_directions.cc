@@ -11,7 +11,6 @@ namespace nsfd
   {
     const auto &problem = work.problem;
     slopes_.assign(work.n, 0.);
-    jacobian_.resize(work.n * dim);
     coupled_.assign(problem.n_points, 0);
     bool any = false;
     for (std::size_t i = 0; i < problem.n_points; ++i) {
@@ -33,6 +32,7 @@ namespace nsfd
       // difference quotients of the local solve, friction and damage in it
       coupled_[i] = 1;
       any = true;
+      jacobian_.resize(work.n * dim);
       const auto local = work.evaluation.local_velocity(impulse, i);
       double size = 0.;
       for (unsigned int c = 0; c < dim; ++c)
@@ -53,16 +53,15 @@ namespace nsfd
     }
     // the compliance that preconditions either system
     compliance_.resize(work.n);
-    majorants_.resize(work.n);
-    for (std::size_t i = 0; i < problem.n_points; ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        majorants_[i * dim + c] = work.evaluation.majorant(i, c);
     for (std::size_t k = 0; k < work.n; ++k)
       compliance_[k] =
         slopes_[k] > 0.
           ? std::max(0., 1. / slopes_[k] - majorant(work, k))
           : -1.;
-    return work.dynamics.communicator().any(any);
+    const bool anywhere = work.dynamics.communicator().any(any);
+    if (anywhere)
+      jacobian_.resize(work.n * dim);
+    return anywhere;
   }
 
   /**
@@ -218,6 +217,9 @@ namespace nsfd
       for (double &value : rhs_)
         value = -value;
       dP.assign(work.n, 0.);
+      majorants_.resize(work.n);
+      for (std::size_t k = 0; k < work.n; ++k)
+        majorants_[k] = majorant(work, k);
       work.report.krylov += work.inner->solve_inner(
         {compliance_, tolerance, 120, &jacobian_, &majorants_, shift}, rhs_,
         dP);
