@@ -25,12 +25,20 @@ namespace nsfd
       void prepare(const SparseRows &matrix,
                    const CoarseSpace &coarse,
                    bool new_pattern) override;
+      void prepare_coarse(const SparseRows &matrix, const CoarseSpace &coarse,
+                          const Product &add_product) override;
       unsigned int
       solve(const double *b, double *x, double tolerance) override;
+      unsigned int solve_parts(const double *b, std::size_t rows, double *rest,
+                               double *coarse, double tolerance) override;
 
     private:
-      void prepare_coarse(const CoarseSpace &coarse);
+      void build_coarse(const SparseRows &matrix, const CoarseSpace &coarse);
       void precondition(const double *r, double *z);
+      void multiply_direction();
+      double dot(const double *a, const double *b, const double *coarse_a,
+                 const double *coarse_b) const;
+      unsigned int iterate(double *rest, double tolerance);
 
       const Communicator &communicator_;
       const long long largest_factor_;
@@ -45,7 +53,9 @@ namespace nsfd
       GhostValues coarse_exchange_;
       std::unique_ptr<Cholesky> factor_;
       std::unique_ptr<Multigrid> multigrid_;
-      std::vector<double> r_, z_, p_, q_, coarse_r_, coarse_z_;
+      Product add_product_; // with A on the coarse space, if known apart
+      std::vector<double> r_, z_, p_, q_;
+      std::vector<double> coarse_r_, coarse_z_, coarse_p_, coarse_q_, coarse_x_;
     };
 
     void GluedCg::prepare(const SparseRows &matrix, const CoarseSpace &coarse,
@@ -57,22 +67,35 @@ namespace nsfd
       matrix_ = &matrix;
       bodies_.prepare(matrix);
       ++counters_.factorisations;
-      if (version_ != coarse.version) {
-        prepare_coarse(coarse);
-        version_ = coarse.version;
-      }
+      if (version_ != coarse.version)
+        build_coarse(matrix, coarse);
     }
 
-    void GluedCg::prepare_coarse(const CoarseSpace &coarse)
+    void GluedCg::prepare_coarse(const SparseRows &matrix,
+                                 const CoarseSpace &coarse,
+                                 const Product &add_product)
     {
-      const std::size_t n = std::size_t(matrix_->n_rows());
-      std::vector<double> own(n), ghosts(matrix_->ghosts.size());
+      add_product_ = add_product;
+      if (version_ == coarse.version)
+        return;
+      if (!matrix_)
+        exchange_ = GhostValues(communicator_, matrix.first_row,
+                                std::size_t(matrix.n_rows()), matrix.ghosts);
+      build_coarse(matrix, coarse);
+    }
+
+    void GluedCg::build_coarse(const SparseRows &matrix,
+                               const CoarseSpace &coarse)
+    {
+      version_ = coarse.version;
+      const std::size_t n = std::size_t(matrix.n_rows());
+      std::vector<double> own(n), ghosts(matrix.ghosts.size());
       for (std::size_t i = 0; i < n; ++i)
         own[i] = double(coarse.number[i]);
       exchange_.fetch(own.data(), ghosts.data());
       const std::vector<long long> numbers(ghosts.begin(), ghosts.end());
       const SparseRows coarse_matrix =
-        coarse_rows(communicator_, *matrix_, coarse, numbers);
+        coarse_rows(communicator_, matrix, coarse, numbers);
       ++counters_.coarse_spaces;
 
       // coarse unknowns of other ranks that own nodes are glued to
@@ -112,12 +135,12 @@ namespace nsfd
       }
     }
 
+    /** The part of the bodies into @p z, the other one into coarse_z_. */
     void GluedCg::precondition(const double *r, double *z)
     {
-      const std::size_t n = place_.size();
       bodies_.apply(r, z);
       std::fill(coarse_r_.begin(), coarse_r_.end(), 0.);
-      for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t i = 0; i < place_.size(); ++i)
         coarse_r_[place_[i]] += r[i];
       coarse_exchange_.add_back(coarse_r_.data() + n_coarse_, coarse_r_.data());
       if (factor_)
@@ -125,63 +148,135 @@ namespace nsfd
       else
         multigrid_->apply(coarse_r_.data(), coarse_z_.data());
       coarse_exchange_.fetch(coarse_z_.data(), coarse_z_.data() + n_coarse_);
+    }
+
+    /** a.b + coarse_a.coarse_b over own unknowns. */
+    double GluedCg::dot(const double *a, const double *b,
+                        const double *coarse_a, const double *coarse_b) const
+    {
+      double sum = 0.;
+      for (std::size_t i = 0; i < place_.size(); ++i)
+        sum += a[i] * b[i];
+      for (long long i = 0; i < n_coarse_; ++i)
+        sum += coarse_a[i] * coarse_b[i];
+      if (communicator_.size() > 1)
+        MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM,
+                      communicator_.mpi());
+      return sum;
+    }
+
+    /** q = A (p + P p_c), and P^T q of it. */
+    void GluedCg::multiply_direction()
+    {
+      const std::size_t n = place_.size();
       for (std::size_t i = 0; i < n; ++i)
-        z[i] += coarse_z_[place_[i]];
+        z_[i] = coarse_p_[place_[i]];
+      if (add_product_) {
+        multiply(*matrix_, exchange_, p_.data(), q_.data());
+        add_product_(z_.data(), q_.data());
+      } else {
+        for (std::size_t i = 0; i < n; ++i) {
+          std::swap(p_[i], z_[i]);
+          p_[i] += z_[i];
+        }
+        multiply(*matrix_, exchange_, p_.data(), q_.data());
+        std::copy_n(z_.begin(), n, p_.begin());
+      }
+      std::fill(coarse_q_.begin(), coarse_q_.end(), 0.);
+      for (std::size_t i = 0; i < n; ++i)
+        coarse_q_[place_[i]] += q_[i];
+      coarse_exchange_.add_back(coarse_q_.data() + n_coarse_, coarse_q_.data());
+    }
+
+    /**
+     * Conjugate gradients from the residual r_ on; what is found is rest + P
+     * coarse_x_. Directions are kept in these two parts as well: springs that
+     * vanish on the coarse space are larger than what A is there by more than
+     * the digits of a sum.
+     */
+    unsigned int GluedCg::iterate(double *rest, const double tolerance)
+    {
+      const std::size_t n = place_.size(), n_coarse = coarse_z_.size();
+      ++counters_.solves;
+      z_.resize(n);
+      q_.resize(n);
+      p_.assign(n + matrix_->ghosts.size(), 0.);
+      std::fill_n(rest, n, 0.);
+      coarse_q_.resize(n_coarse);
+      coarse_p_.assign(n_coarse, 0.);
+      coarse_x_.assign(n_coarse, 0.);
+      double rz = 1.;
+      const auto turn = [&](const bool first) {
+        precondition(r_.data(), z_.data());
+        const double next =
+          dot(r_.data(), z_.data(), coarse_r_.data(), coarse_z_.data());
+        const double beta = first ? 0. : next / rz;
+        rz = next;
+        for (std::size_t i = 0; i < n; ++i)
+          p_[i] = z_[i] + beta * p_[i];
+        for (std::size_t i = 0; i < n_coarse; ++i)
+          coarse_p_[i] = coarse_z_[i] + beta * coarse_p_[i];
+      };
+      turn(true);
+      const double target = tolerance * tolerance * rz;
+      // a sum that is not above round-off any more ends it as well
+      const unsigned int limit = 1000;
+      unsigned int k = 0;
+      for (; k < limit && rz > target; ++k) {
+        multiply_direction();
+        const double pAp =
+          dot(q_.data(), p_.data(), coarse_q_.data(), coarse_p_.data());
+        if (!(pAp > 0.))
+          break;
+        const double alpha = rz / pAp;
+        for (std::size_t i = 0; i < n; ++i) {
+          rest[i] += alpha * p_[i];
+          r_[i] -= alpha * q_[i];
+        }
+        for (std::size_t i = 0; i < n_coarse; ++i)
+          coarse_x_[i] += alpha * coarse_p_[i];
+        turn(false);
+      }
+      converged_ = rz <= target;
+      counters_.iterations += k;
+      return k;
+    }
+
+    unsigned int GluedCg::solve_parts(const double *b, const std::size_t rows,
+                                      double *rest, double *coarse,
+                                      const double tolerance)
+    {
+      r_.assign(b, b + rows);
+      const unsigned int k = iterate(rest, tolerance);
+      for (std::size_t i = 0; i < rows; ++i)
+        coarse[i] = coarse_x_[place_[i]];
+      return k;
     }
 
     unsigned int GluedCg::solve(const double *b, double *x,
                                 const double tolerance)
     {
-      const std::size_t n = std::size_t(matrix_->n_rows());
-      const auto dot = [&](const std::vector<double> &a,
-                           const std::vector<double> &c) {
-        double sum = 0.;
-        for (std::size_t i = 0; i < n; ++i)
-          sum += a[i] * c[i];
-        if (communicator_.size() > 1)
-          MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM,
-                        communicator_.mpi());
-        return sum;
-      };
-      ++counters_.solves;
+      const std::size_t n = place_.size();
       r_.assign(b, b + n);
-      z_.resize(n);
-      q_.resize(n);
-      p_.resize(n + matrix_->ghosts.size());
       bool started = false;
       for (std::size_t i = 0; i < n; ++i)
         started = started || x[i] != 0.;
-      if (communicator_.any(started)) {
-        std::copy_n(x, n, p_.begin());
-        multiply(*matrix_, exchange_, p_.data(), q_.data());
+      if (!communicator_.any(started)) {
+        const unsigned int k = iterate(x, tolerance);
         for (std::size_t i = 0; i < n; ++i)
-          r_[i] -= q_[i];
+          x[i] += coarse_x_[place_[i]];
+        return k;
       }
-      precondition(r_.data(), z_.data());
-      double rz = dot(r_, z_);
-      const double target = tolerance * tolerance * rz;
-      std::copy(z_.begin(), z_.end(), p_.begin());
-      // a sum that is not above round-off any more ends it as well
-      const unsigned int limit = 1000;
-      unsigned int k = 0;
-      for (; k < limit && rz > target; ++k) {
-        multiply(*matrix_, exchange_, p_.data(), q_.data());
-        const double pAp = dot(p_, q_);
-        if (!(pAp > 0.))
-          break;
-        const double alpha = rz / pAp;
-        for (std::size_t i = 0; i < n; ++i) {
-          x[i] += alpha * p_[i];
-          r_[i] -= alpha * q_[i];
-        }
-        precondition(r_.data(), z_.data());
-        const double next = dot(r_, z_), beta = next / rz;
-        rz = next;
-        for (std::size_t i = 0; i < n; ++i)
-          p_[i] = z_[i] + beta * p_[i];
-      }
-      converged_ = rz <= target;
-      counters_.iterations += k;
+      p_.resize(n + matrix_->ghosts.size());
+      q_.resize(n);
+      std::copy_n(x, n, p_.begin());
+      multiply(*matrix_, exchange_, p_.data(), q_.data());
+      for (std::size_t i = 0; i < n; ++i)
+        r_[i] -= q_[i];
+      std::vector<double> rest(n);
+      const unsigned int k = iterate(rest.data(), tolerance);
+      for (std::size_t i = 0; i < n; ++i)
+        x[i] += rest[i] + coarse_x_[place_[i]];
       return k;
     }
   } // namespace

@@ -115,6 +115,14 @@ namespace nsfd
     set_modes();
   }
 
+  std::vector<char> GluedSpace::without_jump() const
+  {
+    std::vector<char> result(glued_);
+    for (std::size_t f = 0; f < result.size(); ++f)
+      result[f] = result[f] && pairs_.complete[f];
+    return result;
+  }
+
   /** Translations and rotations of the deformable bodies. */
   void GluedSpace::set_modes()
   {

@@ -17,6 +17,9 @@ namespace nsfd
     std::vector<std::size_t> start{0}; ///< per face and one more
     std::vector<int> own;              ///< on this rank
     std::vector<long long> other;      ///< global number, of any rank
+    /// per face: every node on either side has its partner, so that there is
+    /// no jump once it is glued
+    std::vector<char> complete;
   };
 
   /** Where an unknown of a deformable body sits. */
@@ -49,6 +52,9 @@ namespace nsfd
     void touch() { ++space_.version; }
 
     const CoarseSpace &space() const { return space_; }
+
+    /** Glued faces across which functions of the space do not jump. */
+    std::vector<char> without_jump() const;
 
   private:
     int root(int unknown);

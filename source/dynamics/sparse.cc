@@ -1,3 +1,4 @@
+#include "body_loops.h"
 #include "factor_limits.h"
 #include "sparse_assembly.h"
 
@@ -54,8 +55,12 @@ namespace nsfd
       void set_body_stiffness();
       void set_springs(const std::vector<double> &D);
       bool loose_springs_changed(const std::vector<char> &glued) const;
-      void glue();
+      void glue(const std::vector<char> &faces);
       void use_cg();
+      void prepare_cg();
+      void add_bodies(const double *x, double *y) const;
+      void add_smooth(const double *x, double *y) const;
+      void add_jump(const std::vector<double> &change, double *next);
 
       SparseAssembly<dim> assembly_;
       GluedSpace glued_;
@@ -66,6 +71,9 @@ namespace nsfd
       bool valid_ = false, coarse_valid_ = false, inverts_ = false;
       mutable std::vector<double> work_, right_, solution_;
       std::vector<double> difference_, velocity_; ///< of the last solve_springs()
+      std::vector<double> jump_; ///< H velocity_, to more than its round-off
+      std::vector<char> without_jump_; ///< per point: the glued space has none
+      bool all_without_jump_ = false;
     };
 
     template <int dim>
@@ -178,9 +186,8 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::glue()
+    void SparseDynamics<dim>::glue(const std::vector<char> &faces)
     {
-      const auto faces = assembly_.carrying(share(), inverse_D_);
       const auto before = glued_.space().version;
       glued_.glue(faces);
       if (glued_.space().version == before &&
@@ -205,20 +212,87 @@ namespace nsfd
       D_ = D;
       valid_ = true;
       set_springs(D);
-      assembly_.assemble(share(), inverse_D_);
       ++this->counters_.global_factorisations;
       if (direct_)
         try {
+          assembly_.assemble(share(), inverse_D_);
           solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
           coarse_valid_ = prepared_ = true;
           return;
         } catch (const std::runtime_error &) {
           use_cg();
         }
-      glue();
+      prepare_cg();
+    }
+
+    /**
+     * Springs of glued faces vanish on the glued space, and come into the
+     * matrix after the coarse one has been formed: of what is left of the mass
+     * beside them, their round-off would leave nothing.
+     */
+    template <int dim>
+    void SparseDynamics<dim>::prepare_cg()
+    {
+      glue(assembly_.carrying(share(), inverse_D_));
+      const auto &points = this->points_;
+      const auto faces = glued_.without_jump();
+      without_jump_.resize(points.n_points);
+      bool all = true;
+      for (std::size_t i = 0; i < points.n_points; ++i) {
+        without_jump_[i] = faces[points.face_of[i]];
+        for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+          all = all && (without_jump_[i] || inverse_D_[k] == 0.);
+      }
+      all_without_jump_ = !this->communicator_.any(!all);
+      assembly_.assemble(share(), inverse_D_, faces);
+      solver_->prepare_coarse(assembly_.matrix(), glued_.space(),
+                              [this](const double *x, double *y) {
+                                add_smooth(x, y);
+                              });
+      assembly_.add_springs(inverse_D_, faces);
       solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
       prepared_ = true;
       this->counters_.coarse_spaces = solver_->counters().coarse_spaces;
+    }
+
+    /** y += M_hat x. */
+    template <int dim>
+    void SparseDynamics<dim>::add_bodies(const double *x, double *y) const
+    {
+      const auto &bodies = this->bodies_;
+      for_all_bodies(
+        bodies, [&](const std::size_t k) -> const Block & {
+          return bodies.classes[k].mass;
+        },
+        dof_gather(bodies, x), dof_scatter<true>(bodies, y));
+      const double s = share();
+      for_all_bodies(
+        bodies, [&](const std::size_t k) -> const Block & {
+          return bodies.classes[k].stiffness;
+        },
+        dof_gather(bodies, x),
+        [&](const unsigned int b, const double *Kx, const unsigned int stride) {
+          const std::size_t first = bodies.first_dof[b],
+                            n = bodies.first_dof[b + 1] - first;
+          for (std::size_t i = 0; i < n; ++i)
+            y[first + i] += s * Kx[i * stride];
+        });
+    }
+
+    /** y += A x for x in the glued space. */
+    template <int dim>
+    void SparseDynamics<dim>::add_smooth(const double *x, double *y) const
+    {
+      add_bodies(x, y);
+      if (all_without_jump_)
+        return;
+      std::vector<double> jump(inverse_D_.size()), forces(this->bodies_.n_dofs());
+      this->relative_velocity(x, jump.data());
+      for (std::size_t k = 0; k < jump.size(); ++k)
+        jump[k] *= without_jump_[k / dim] ? 0. : inverse_D_[k];
+      this->generalised_impulse(jump.data(), forces.data());
+      for (std::size_t i = 0; i < forces.size(); ++i)
+        y[i] += forces[i];
     }
 
     template <int dim>
@@ -241,6 +315,17 @@ namespace nsfd
     }
 
     template <int dim>
+    void SparseDynamics<dim>::add_jump(const std::vector<double> &change,
+                                       double *next)
+    {
+      for (std::size_t k = 0; k < change.size(); ++k) {
+        jump_[k] += change[k];
+        if (D_[k] >= 0.)
+          next[k] -= inverse_D_[k] * change[k];
+      }
+    }
+
+    template <int dim>
     bool SparseDynamics<dim>::solve_springs(const double *P, const double *U,
                                             const double *r,
                                             const double tolerance,
@@ -253,34 +338,32 @@ namespace nsfd
       right_.resize(m);
       difference_.resize(m);
       velocity_.resize(m, 0.);
+      jump_.resize(n, 0.);
       // A dv = M_hat (v_free - v) + H^T P, P = P^ - D^{-1} H v of the last v:
       // the residual without A, whose round-off grows with the stiffness
-      this->relative_velocity(velocity_.data(), work_.data());
       for (std::size_t k = 0; k < n; ++k)
         if (D_[k] >= 0.)
-          next[k] = P[k] - inverse_D_[k] * (r[k] - U[k] + work_[k]);
+          next[k] =
+            P[k] - inverse_D_[k] * (r[k] - (U ? U[k] : 0.) + jump_[k]);
       this->generalised_impulse(next, right_.data());
       for (std::size_t i = 0; i < m; ++i)
         difference_[i] = (*this->free_velocity_)[i] - velocity_[i];
+      add_bodies(difference_.data(), right_.data());
       solution_.resize(m);
-      this->apply(Dynamics<dim>::Operator::mass, difference_.data(),
-                  solution_.data());
-      for (std::size_t i = 0; i < m; ++i)
-        right_[i] += solution_[i];
-      this->apply(Dynamics<dim>::Operator::stiffness, difference_.data(),
-                  solution_.data());
-      for (std::size_t i = 0; i < m; ++i)
-        right_[i] += share() * solution_[i];
-      solution_.assign(m, 0.);
-      this->counters_.inner_iterations +=
-        solver_->solve(right_.data(), solution_.data(), tolerance);
+      this->counters_.inner_iterations += solver_->solve_parts(
+        right_.data(), m, solution_.data(), difference_.data(), tolerance);
       ++this->counters_.global_solves;
-      this->relative_velocity(solution_.data(), work_.data());
-      for (std::size_t k = 0; k < n; ++k)
-        if (D_[k] >= 0.)
-          next[k] -= inverse_D_[k] * work_[k];
       for (std::size_t i = 0; i < m; ++i)
-        velocity_[i] += solution_[i];
+        velocity_[i] += solution_[i] + difference_[i];
+      this->relative_velocity(solution_.data(), work_.data());
+      add_jump(work_, next);
+      if (!direct_ && !all_without_jump_) {
+        this->relative_velocity(difference_.data(), work_.data());
+        for (std::size_t k = 0; k < n; ++k)
+          if (without_jump_[k / dim])
+            work_[k] = 0.;
+        add_jump(work_, next);
+      }
       return true;
     }
   } // namespace

@@ -247,7 +247,8 @@ namespace nsfd
 
   template <int dim>
   void SparseAssembly<dim>::assemble(const double s,
-                                     const std::vector<double> &k)
+                                     const std::vector<double> &k,
+                                     const std::vector<char> &left_out)
   {
     std::fill(matrix_.value.begin(), matrix_.value.end(), 0.);
     std::vector<double> row;
@@ -264,7 +265,17 @@ namespace nsfd
       }
     }
     for (std::size_t f = 0; f < points_.faces.size(); ++f)
-      add_springs(f, k);
+      if (left_out.empty() || !left_out[f])
+        add_springs(f, k);
+  }
+
+  template <int dim>
+  void SparseAssembly<dim>::add_springs(const std::vector<double> &k,
+                                        const std::vector<char> &faces)
+  {
+    for (std::size_t f = 0; f < points_.faces.size(); ++f)
+      if (faces[f])
+        add_springs(f, k);
   }
 
   template <int dim>
@@ -434,6 +445,7 @@ namespace nsfd
     NodePairs pairs;
     for (std::size_t f = 0; f < points_.faces.size(); ++f) {
       const unsigned int first = points_.faces[f].first;
+      std::size_t nodes = 0;
       if (!coordinates_.empty() && places_[0][first].exists() &&
           places_[1][first].exists()) {
         std::array<Side, 2> sides{side(f, 0), side(f, 1)};
@@ -448,6 +460,7 @@ namespace nsfd
           return sum;
         };
         if (!sides[s].rigid && !sides[1 - s].rigid) {
+          nodes = std::max(sides[0].support.size(), sides[1].support.size());
           double size = 0.;
           for (const unsigned short i : sides[s].support)
             if (i % dim == 0)
@@ -462,6 +475,8 @@ namespace nsfd
               }
         }
       }
+      pairs.complete.push_back(
+        nodes > 0 && (pairs.own.size() - pairs.start.back()) * dim == nodes);
       pairs.start.push_back(pairs.own.size());
     }
     return pairs;

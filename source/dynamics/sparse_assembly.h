@@ -25,8 +25,15 @@ namespace nsfd
                    const InterfacePoints<dim> &points,
                    const std::vector<double> &coordinates);
 
-    /** Values for K times @p s and springs @p k, one per local component. */
-    void assemble(double s, const std::vector<double> &k);
+    /**
+     * Values for K times @p s and springs @p k, one per local component,
+     * without those of faces that are marked in @p left_out.
+     */
+    void assemble(double s, const std::vector<double> &k,
+                  const std::vector<char> &left_out = {});
+    /** Add the springs of marked faces. */
+    void add_springs(const std::vector<double> &k,
+                     const std::vector<char> &faces);
     const SparseRows &matrix() const { return matrix_; }
 
     /**

@@ -1,5 +1,6 @@
 #include "nsfd/time/moreau_jean.h"
 
+#include "../nonsmooth/linear_spring.h"
 #include "activation.h"
 #include "bond_release.h"
 #include "crack_pressure.h"
@@ -17,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace nsfd
 {
@@ -235,6 +237,29 @@ namespace nsfd
     return report;
   }
 
+  namespace
+  {
+    /**
+     * U = U_free + W P is not known better than to the last bit of its largest
+     * part, R |P|. Where the spring of a point, D = -dU/dP, makes impulses of
+     * that which are larger than P, its own law tells U from P.
+     */
+    template <int dim>
+    void set_stiff_velocities(const OneStepProblem<dim> &problem,
+                              const LawEvaluation<dim> &evaluation, State &next)
+    {
+      constexpr double last_bit = std::numeric_limits<double>::epsilon();
+      for (std::size_t k = 0; k < problem.n_points * dim; ++k)
+        if (const auto *law = evaluation.linear(k / dim)) {
+          const LinearSpring spring(problem, *law, k);
+          if (spring.stiffness > 0. &&
+              spring.compliance() <
+                last_bit * evaluation.majorant(k / dim, k % dim))
+            next.relative_velocity[k] = spring.velocity(next.impulse[k]);
+        }
+    }
+  } // namespace
+
   /** v, q, U and u at the end of the step. */
   template <int dim>
   void MoreauJean<dim>::move(const State &old,
@@ -252,6 +277,7 @@ namespace nsfd
         old.displacement[i] +
         h * (theta * next.velocity[i] + (1. - theta) * old.velocity[i]);
     next.relative_velocity = evaluation.velocity;
+    set_stiff_velocities(problem_, evaluation, next);
     if (bonded_) { // W has no rows there
       std::vector<double> velocity(next.relative_velocity.size());
       dynamics_.relative_velocity(next.velocity.data(), velocity.data());

@@ -52,6 +52,28 @@ namespace end_to_end
         }
   }
 
+  // (C L/E) step^2 up to the inverse of machine precision. The ledger of these
+  // steps shows the round-off of the bodies, doc/stability.md: no good_run()
+  TEST(LongSteps, StiffCorner)
+  {
+    const std::vector<std::pair<std::string, std::string>> corner = {
+        {"1e6", "1e4"}, {"1e8", "1e3"}, {"1e7", "1e4"}, {"1e8", "1e4"}};
+    for (const auto &[ratio, step] : corner) {
+      SCOPED_TRACE("C L/E = " + ratio + ", step " + step);
+      const Workspace workspace;
+      const Result result =
+          run(workspace, "run", {pulse(), settings("cg", ratio, step, 5.)});
+      ASSERT_TRUE(result.completed()) << result.description();
+      EXPECT_EQ(result.counter("rejected_steps"), 0.);
+      expect_below("applications per step",
+                   result.counter("operator_applications") /
+                       result.number("steps"),
+                   150.);
+      expect_below("ledger", result.number("ledger_defect_max"), 1e-6,
+                   "4e-7 with theta = 1 at 1e4 crossings");
+    }
+  }
+
   // every face in contact or open, nothing rubs: no step is cut, and W is
   // applied less often than the bound of the solvers of A
   TEST(LongSteps, ContactOnEveryFace)

@@ -1,3 +1,4 @@
+#include "../../source/nonsmooth/linear_spring.h"
 #include "make_law.h"
 
 #include "nsfd/input/scene_input.h"
@@ -1287,6 +1288,39 @@ namespace
 
   TEST(FrozenLaw, VelocityInvertsTheSolve2D) { velocity_inverts<2>(); }
   TEST(FrozenLaw, VelocityInvertsTheSolve3D) { velocity_inverts<3>(); }
+
+  // The law of a two-sided spring without R: the same line as the local solve
+  // against R, and its velocity also where R P takes all digits of U.
+  TEST(PointLaw, LinearSpringIsTheLawWithoutTheMajorant)
+  {
+    for (const CohesionRule rule : rules) {
+      OnePoint<2> point(spring(3e7, 0.4), PointKind::elastic, rule, 0.7);
+      point.two_sided = true;
+      point.jump = {{2e-6, -5e-6}};
+      point.old_velocity = {{3e-4, 1e-3}};
+      point.prepare();
+      for (const double majorant : {0.01, 1., 1e18}) {
+        point.set_majorants(majorant, 2. * majorant);
+        const double R[2] = {point.majorant_normal, point.majorant_tangential};
+        const auto law = linear_point<2>(point.problem, 0, R[0], R[1]);
+        ASSERT_TRUE(law.exists());
+        const auto solution = point.solve({{-0.02, 0.05}});
+        const auto U =
+            frozen_velocity<2>(point.problem, 0, {law.secant}, solution.impulse);
+        for (unsigned int c = 0; c < 2; ++c) {
+          const LinearSpring line(point.problem, law, c);
+          const double P = solution.impulse[c];
+          EXPECT_NEAR(line.velocity(P), U[c], 1e-12 * std::abs(U[c]));
+          EXPECT_NEAR(line.velocity(P), line.free_velocity() -
+                                            line.compliance() * P,
+                      1e-14 * std::abs(U[c]));
+          if (majorant < 10.) { // beyond, U is the difference of U_loc and R P
+            EXPECT_NEAR(line.velocity(P), solution.velocity[c], 1e-12 * 0.05);
+          }
+        }
+      }
+    }
+  }
 
   TEST(FrozenLaw, Monotone)
   {

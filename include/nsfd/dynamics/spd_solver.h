@@ -2,6 +2,8 @@
 
 #include "nsfd/base/communicator.h"
 
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -60,6 +62,20 @@ namespace nsfd
                          const CoarseSpace &coarse,
                          bool new_pattern) = 0;
 
+    /** y += A x, for own values. */
+    using Product = std::function<void(const double *x, double *y)>;
+
+    /**
+     * To be called before prepare() by who knows A more precisely on the
+     * coarse space than its entries tell: @p matrix, read at once, and @p
+     * add_product agree with A there, but lack large entries of A that cancel
+     * each other on it. Without effect on factors.
+     */
+    virtual void prepare_coarse(const SparseRows & /*matrix*/,
+                                const CoarseSpace & /*coarse*/,
+                                const Product & /*add_product*/)
+    {}
+
     /**
      * x = A^{-1} b on the own rows; @p x is the start of an iteration.
      * Iterations end when the residual, in the norm of the preconditioner, is
@@ -67,6 +83,20 @@ namespace nsfd
      */
     virtual unsigned int
     solve(const double *b, double *x, double tolerance) = 0;
+
+    /**
+     * The same in two parts, x = rest + coarse, the second of them a function
+     * of the coarse space to the last bit where the solver knows one, else
+     * zero; both start from zero.
+     */
+    virtual unsigned int solve_parts(const double *b, std::size_t rows,
+                                     double *rest, double *coarse,
+                                     double tolerance)
+    {
+      std::fill_n(rest, rows, 0.);
+      std::fill_n(coarse, rows, 0.);
+      return solve(b, rest, tolerance);
+    }
 
     /**
      * The same for @p n right-hand sides of @p rows own values each, one after

@@ -1,7 +1,9 @@
+#include "../linear_spring.h"
 #include "dual_newton.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
@@ -58,6 +60,11 @@ namespace nsfd
         slopes_[k] > 0.
           ? std::max(0., 1. / slopes_[k] - majorant(work, k))
           : -1.;
+    // without the difference, of which stiff springs leave nothing
+    for (std::size_t k = 0; k < work.n; ++k)
+      if (const auto *law = work.evaluation.linear(k / dim))
+        if (const LinearSpring spring(problem, *law, k); spring.stiffness > 0.)
+          compliance_[k] = spring.compliance();
     const bool anywhere = work.dynamics.communicator().any(any);
     if (anywhere)
       jacobian_.resize(work.n * dim);
@@ -72,31 +79,43 @@ namespace nsfd
   bool DualNewton<dim>::spring_direction(const Work &work,
                                          double tolerance, Vector &dP)
   {
-    bool linear = true;
-    for (std::size_t i = 0; i < work.problem.n_owned && linear; ++i)
-      linear = work.evaluation.linear(i) != nullptr ||
-               work.problem.kind[i] == PointKind::prescribed;
+    const auto &problem = work.problem;
+    const auto &communicator = work.dynamics.communicator();
+    const Vector &P = *work.impulse, &U = work.evaluation.velocity;
     work.dynamics.prepare_preconditioner(compliance_);
-    if (!work.dynamics.communicator().any(!linear) &&
-        work.dynamics.inverts())
-      tolerance = std::min(tolerance, 0.1 * work.control.tolerance /
-                                        work.evaluation.error);
+    // r - U of the laws at hand; that of a linear one is known without the
+    // present P and U, whose round-off its stiffness would raise
     rhs_.assign(work.n, 0.);
+    bool linear = true;
+    double ratio = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < work.n; ++k) {
+      const std::size_t i = k / dim;
       const double defect = work.evaluation.defect[k];
-      if (compliance_[k] >= 0.)
-        rhs_[k] = (compliance_[k] + majorant(work, k)) * defect;
-      else
-        dP[k] = (*work.impulse)[k] - defect;
+      const auto *law = work.evaluation.linear(i);
+      linear = linear && (i >= problem.n_owned || law ||
+                          problem.kind[i] == PointKind::prescribed);
+      if (compliance_[k] < 0.)
+        dP[k] = P[k] - defect;
+      else if (law) {
+        rhs_[k] = compliance_[k] * P[k] -
+                  LinearSpring(problem, *law, k).free_velocity();
+        ratio = std::min(ratio, compliance_[k] / majorant(work, k));
+      } else
+        rhs_[k] = (compliance_[k] + majorant(work, k)) * defect - U[k];
     }
-    if (!work.dynamics.solve_springs(work.impulse->data(),
-                                     work.evaluation.velocity.data(),
-                                     rhs_.data(), tolerance, dP.data())) {
+    ratio = communicator.min(ratio);
+    // as far as an error of the velocities is, as jumps of the next step, not
+    // more than the impulses themselves
+    if (!communicator.any(!linear) && work.dynamics.inverts())
+      tolerance =
+        std::min(tolerance, 0.1 * std::min(work.control.tolerance, ratio) /
+                              work.evaluation.error);
+    if (!work.dynamics.solve_springs(P.data(), nullptr, rhs_.data(), tolerance,
+                                     dP.data())) {
       dP.assign(work.n, 0.);
       return false;
     }
     // rows without compliance are approached by proximal steps
-    const auto &communicator = work.dynamics.communicator();
     const auto size = [&](const Vector &r) {
       z_.assign(work.n_owned, 0.);
       for (std::size_t k = 0; k < work.n_owned; ++k)
@@ -105,6 +124,10 @@ namespace nsfd
       return std::sqrt(communicator.sum(z_.data(), work.n_owned));
     };
     if (!work.dynamics.inverts()) {
+      for (std::size_t k = 0; k < work.n; ++k)
+        if (compliance_[k] >= 0.)
+          rhs_[k] =
+            (compliance_[k] + majorant(work, k)) * work.evaluation.defect[k];
       const double goal = tolerance * size(rhs_);
       for (unsigned int round = 0; round < 5; ++round) {
         Ap_.resize(work.n);
