@@ -255,7 +255,6 @@ namespace nsfd
                                  const double tolerance, Vector &x, Vector &P)
   {
     const std::size_t n = first_dof_.back(), size = n + stiff_.size() * dim_;
-    const unsigned int limit = 200;
     U_.resize(d.size());
     impulse_.assign(d.size(), 0.);
     Vector held(d.size()); // G d
@@ -280,7 +279,7 @@ namespace nsfd
     if (start > 0.)
       for (double &value : basis[0])
         value /= start;
-    while (count < limit && least.residual() > tolerance * start) {
+    while (count < most_iterations && least.residual() > tolerance * start) {
       precondition(basis[count].data(), z.data());
       Vector next(size), column(count + 2, 0.);
       apply(z.data(), next.data());

@@ -48,9 +48,11 @@ namespace nsfd
      */
     bool prepare(const SparseRows &K, const Vector &bodies);
 
+    static constexpr unsigned int most_iterations = 200;
+
     /**
-     * Until the residual is @p tolerance of the right-hand side, or 200
-     * iterations; returns their number.
+     * Until the residual is @p tolerance of the right-hand side, or
+     * most_iterations; returns their number.
      */
     unsigned int solve(const Vector &b, const Vector &d, double tolerance,
                        Vector &x, Vector &P);

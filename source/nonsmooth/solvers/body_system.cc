@@ -246,19 +246,37 @@ namespace nsfd
     if (n <= 10 * largest_factor_ && are_symmetric<dim>(S) &&
         factorise_symmetric())
       return true;
-    if (n <= largest_factor_) {
-      means_ = Means::factor;
-      const bool is_new = !factor_;
-      if (is_new)
-        factor_ = std::make_unique<SparseLU>();
-      return factor_->factorise(matrix_, is_new);
-    }
+    if (n <= largest_factor_ || !may_iterate_)
+      return factorise_general();
     means_ = Means::iteration;
     if (!iteration_)
       iteration_ = std::make_unique<BodyKrylov>(
         dim, dynamics_.bodies().first_dof, faces_);
     assemble(iteration_->cap(S, impedance_));
     return iteration_->prepare(matrix_, bodies_);
+  }
+
+  template <int dim>
+  bool BodySystem<dim>::factorise_general()
+  {
+    means_ = Means::factor;
+    const bool is_new = !factor_;
+    if (is_new)
+      factor_ = std::make_unique<SparseLU>();
+    return factor_->factorise(matrix_, is_new);
+  }
+
+  /** True if there is a factor now, with which to begin again. */
+  template <int dim>
+  bool BodySystem<dim>::iterates_in_vain(const unsigned int iterations)
+  {
+    if (iterations < BodyKrylov::most_iterations ||
+        matrix_.n_rows() > 10 * largest_factor_)
+      return false;
+    may_iterate_ = false;
+    iteration_.reset();
+    assemble(stiffness_);
+    return factorise_general();
   }
 
   /** False if the matrix is not positive definite. */
@@ -289,7 +307,8 @@ namespace nsfd
     else {
       const Vector none(dynamics_.points().n_points * dim, 0.);
       Vector dP;
-      return iteration_->solve(b, none, tolerance, x, dP);
+      const auto count = iteration_->solve(b, none, tolerance, x, dP);
+      return iterates_in_vain(count) ? count + solve(b, x, tolerance) : count;
     }
     return 1;
   }
@@ -303,6 +322,8 @@ namespace nsfd
     if (means_ == Means::iteration) {
       const Charge charge(Cost::precondition);
       const auto count = iteration_->solve(b, change, tolerance, x, dP);
+      if (iterates_in_vain(count))
+        return count + respond(b, change, x, dU, dP, tolerance);
       dynamics_.relative_velocity(x.data(), dU.data());
       return count;
     }

@@ -21,7 +21,8 @@ namespace nsfd
    * as one sparse matrix. Where every S_i is symmetric and K is positive definite
    * it has Cholesky's factor. Else S need not be either: up to @p largest_factor
    * unknowns the factor of UMFPACK, beyond it BodyKrylov, which takes the place
-   * of Cholesky's too beyond 10 times as many. The pattern, found once, is tight:
+   * of Cholesky's too beyond 10 times as many. Where its iterations do not end,
+   * factors come back for good, up to that number. The pattern, found once, is tight:
    * a face couples only the unknowns that its points see, and points may change
    * S without a new analysis. On one rank.
    */
@@ -83,6 +84,8 @@ namespace nsfd
     }
     void assemble(const Vector &S);
     bool factorise_symmetric();
+    bool factorise_general();
+    bool iterates_in_vain(unsigned int iterations);
 
     const Dynamics<dim> &dynamics_;
     double time_step_, theta_, bulk_share_;
@@ -102,5 +105,6 @@ namespace nsfd
     std::unique_ptr<SpdSolver> cholesky_; // each when it is needed first
     std::unique_ptr<SparseLU> factor_;
     std::unique_ptr<BodyKrylov> iteration_;
+    bool may_iterate_ = true;
   };
 } // namespace nsfd
