@@ -96,7 +96,8 @@ namespace nsfd
      *
      * and the D of the preconditioner where D = 0, a proximal step; @p next
      * holds P* of the components that do not take part and all of them on
-     * return. The right-hand side is a momentum of the order of P*, whatever
+     * return. A null @p U is zero: laws that know r - U by themselves, not from
+     * the U at hand, put it into @p r. The right-hand side is a momentum of the order of P*, whatever
      * the step and the stiffness, while (W + D) dP = -r loses the digits of
      * W/D on its way through D^{-1} r. @p tolerance is that of an iterative
      * solve, relative to its start, the velocities of the last one. Returns

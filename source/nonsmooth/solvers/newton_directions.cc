@@ -84,7 +84,11 @@ namespace nsfd
     const Vector &P = *work.impulse, &U = work.evaluation.velocity;
     work.dynamics.prepare_preconditioner(compliance_);
     // r - U of the laws at hand; that of a linear one is known without the
-    // present P and U, whose round-off its stiffness would raise
+    // present P and U, whose round-off its stiffness would raise. One such step
+    // solves linear laws, a second one what its iterations have left; what is
+    // left then is that W and A are not the same to the last digit, and of that
+    // only U tells.
+    const bool by_law = work.report.newton <= 2;
     rhs_.assign(work.n, 0.);
     bool linear = true;
     double ratio = std::numeric_limits<double>::infinity();
@@ -96,7 +100,7 @@ namespace nsfd
                           problem.kind[i] == PointKind::prescribed);
       if (compliance_[k] < 0.)
         dP[k] = P[k] - defect;
-      else if (law) {
+      else if (law && by_law) {
         rhs_[k] = compliance_[k] * P[k] -
                   LinearSpring(problem, *law, k).free_velocity();
         ratio = std::min(ratio, compliance_[k] / majorant(work, k));
