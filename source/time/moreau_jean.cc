@@ -39,6 +39,7 @@ namespace nsfd
                                             *uniqueness_))
     , motion_(std::make_unique<DrivenMotion<dim>>(input, discretization))
     , crack_pressure_(CrackPressure<dim>::make(input, discretization))
+    , forces_(discretization.bodies().n_dofs(), 0.)
   {
     for (const auto &block : input.interfaces)
       has_extrinsic_ |= block.intact == IntactFaces::rigid && block.law;
@@ -168,7 +169,7 @@ namespace nsfd
     if (forces_known_ &&
         (!discretization_.loads_depend_on_time() || forces_time_ == time))
       return;
-    forces_.assign(discretization_.bodies().n_dofs(), 0.);
+    std::fill(forces_.begin(), forces_.end(), 0.);
     discretization_.add_loads(time, forces_);
     forces_known_ = true;
     forces_time_ = time;
@@ -192,7 +193,7 @@ namespace nsfd
     dynamics_.apply(Dynamics<dim>::Operator::stiffness, v_free_.data(),
                     work_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)
-      work_[i] = h * ((forces_.empty() ? 0. : forces_[i]) - work_[i]);
+      work_[i] = h * (forces_[i] - work_[i]);
     dynamics_.apply(Dynamics<dim>::Operator::inverse, work_.data(),
                     v_free_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)
