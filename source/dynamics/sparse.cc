@@ -339,6 +339,8 @@ namespace nsfd
       difference_.resize(m);
       velocity_.resize(m, 0.);
       jump_.resize(n, 0.);
+      if (direct_) // one part only: nothing adds up over the solves
+        this->relative_velocity(velocity_.data(), jump_.data());
       // A dv = M_hat (v_free - v) + H^T P, P = P^ - D^{-1} H v of the last v:
       // the residual without A, whose round-off grows with the stiffness
       for (std::size_t k = 0; k < n; ++k)
