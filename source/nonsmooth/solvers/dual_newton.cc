@@ -142,7 +142,10 @@ namespace nsfd
                     inner};
     Vector dP, best, trial;
     evaluation.update(impulse);
-    unsigned int stalled = 0, idle_rounds = 0;
+    // a solve that may not go on idly has a majorant that is not one of W
+    const bool may_sweep =
+      dynamics.bodies_are_apart() && control.idle_rounds > 1;
+    unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
     double best_error = std::numeric_limits<double>::infinity(),
            best_of_round = best_error, shift = 0.;
     const auto remember = [&] {
@@ -215,7 +218,28 @@ namespace nsfd
       best_of_round = best_error;
       const bool soft = dynamics.communicator().any(softens(evaluation));
       if (idle_rounds > control.idle_rounds / (soft ? 4 : 1) ||
-          stalled > 2 * control.idle_rounds)
+          report.sweeps >= 5 * control.maximum_iterations)
+        break;
+      // Without friction and damage it is round-off of long steps that stops
+      // Newton's method; sweeps, which use W alone, have less of it. Where laws
+      // are coupled they cost more than they bring.
+      if (coupled || !may_sweep) {
+        if (stalled > 4)
+          break;
+        continue;
+      }
+      if (colours_.empty())
+        colours_ = colour_faces(dynamics);
+      if (report.sweeps == 0)
+        report.switches.push_back("gauss seidel");
+      if (best_error < 0.5 * evaluation.error)
+        impulse = best;
+      gauss_seidel(problem, dynamics, colours_, sweeps, impulse);
+      report.sweeps += sweeps;
+      sweeps = std::min(80u, sweeps * 2);
+      evaluation.update(impulse);
+      remember();
+      if (!(evaluation.error < std::numeric_limits<double>::infinity()))
         break;
     }
     if (evaluation.error > best_error) {

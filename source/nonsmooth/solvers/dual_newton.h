@@ -20,7 +20,8 @@ namespace nsfd
    * the local solutions are differentiated as they are, and the unsymmetric
    * system (I - J (W - R)) dP = -Phi goes to GMRES. What that does not
    * reduce is tried in shares, then by the convex step with the thresholds
-   * frozen; all is judged by the natural map.
+   * frozen. Without them, sweeps of Gauss-Seidel take over what round-off
+   * stops; all is judged by the natural map.
    * Newton systems are solved in single precision where the dynamics can.
    */
   template <int dim>
@@ -70,5 +71,6 @@ namespace nsfd
     std::vector<LocalSolution<dim>> solutions_; // before the step, with
     Vector defect_, velocity_;                  // what follows from them
     Vector r_, z_, p_, Ap_, rhs_;
+    std::vector<std::vector<unsigned int>> colours_;
   };
 } // namespace nsfd
