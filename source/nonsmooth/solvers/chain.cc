@@ -55,9 +55,8 @@ namespace nsfd
         const bool brief =
           lasts && !rubs && static_cast<long long>(n) <= largest_factor<dim>;
         SolverControl part = control;
-        if (brief) {
+        if (brief)
           part.maximum_iterations = std::min(part.maximum_iterations, 10u);
-        }
         const std::vector<double> start(impulse);
         SolverReport report = first->solve(problem, dynamics, energy_scale,
                                            part, impulse, evaluation);

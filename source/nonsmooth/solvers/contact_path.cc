@@ -82,6 +82,16 @@ namespace nsfd
     evaluation_.update(impulse_);
   }
 
+  /** b = H^T P - M_hat y. */
+  template <int dim>
+  void ContactPath<dim>::set_imbalance(const Vector &P)
+  {
+    dynamics_.generalised_impulse(P.data(), b_.data());
+    system_.apply(y_, residual_);
+    for (std::size_t j = 0; j < b_.size(); ++j)
+      b_[j] -= residual_[j];
+  }
+
   /**
    * The velocities that answer to @p P: M_hat (y + dy) = H^T (P - S dU), with
    * y = 0 @p from_rest.
@@ -89,12 +99,10 @@ namespace nsfd
   template <int dim>
   void ContactPath<dim>::equilibrate(const Vector &P, const bool from_rest)
   {
-    dynamics_.generalised_impulse(P.data(), b_.data());
-    if (!from_rest) {
-      system_.apply(y_, residual_);
-      for (std::size_t j = 0; j < b_.size(); ++j)
-        b_[j] -= residual_[j];
-    }
+    if (from_rest)
+      dynamics_.generalised_impulse(P.data(), b_.data());
+    else
+      set_imbalance(P);
     report_.krylov += system_.solve(b_, dy_);
     dynamics_.relative_velocity(dy_.data(), dU_.data());
   }
@@ -382,10 +390,7 @@ namespace nsfd
     if (!system_.factorise(S_))
       return false;
     ++report_.newton;
-    dynamics_.generalised_impulse(P_.data(), b_.data());
-    system_.apply(y_, residual_);
-    for (std::size_t j = 0; j < b_.size(); ++j)
-      b_[j] -= residual_[j];
+    set_imbalance(P_);
     report_.krylov += system_.respond(b_, wanted, dy_, dU_, dP_);
 
     alpha = 1.;

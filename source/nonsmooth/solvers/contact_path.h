@@ -88,6 +88,7 @@ namespace nsfd
                         double balance) const;
     void begin();
     void look();
+    void set_imbalance(const Vector &P);
     void equilibrate(const Vector &P, bool from_rest);
     bool newton(unsigned int patience);
     std::vector<std::size_t> find_knot() const;
