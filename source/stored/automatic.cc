@@ -38,6 +38,14 @@ namespace nsfd::stored
           break;
       }
     }
+
+    /** Iterations of ADMM, each a solve and its share of a product with W, for
+     * the price of a factorisation. */
+    template <int d>
+    double iterations_per_factor(Session<d> &s)
+    {
+      return d * relative_work(s) / 1.3;
+    }
   } // namespace
 
   template <int d>
@@ -46,13 +54,18 @@ namespace nsfd::stored
     s.attempt("gauss seidel", [&] { hopeful_sweeps(s); });
     if (s.solved())
       return true;
-    if (relative_work(s) > 20.)
+    // ADMM takes 50 to 150 iterations or very many, Newton's method half a dozen
+    // factors or fails, interior points 15 to 35: measured
+    if (iterations_per_factor(s) > 50.)
       s.attempt("admm", [&] { admm(s, 150); });
     s.attempt("dual newton", [&] {
       NewtonSettings settings;
       settings.limit = 20;
+      settings.largest_growth = 1e4;
       newton(s, settings);
     });
+    if (iterations_per_factor(s) > 12.)
+      s.attempt("admm", [&] { admm(s, 100); });
     s.attempt("interior point", [&] { interior_point(s, 100); });
     s.attempt("proximal", [&] { proximal(s, 60); });
     s.attempt("admm", [&] { admm(s, 2000); });

@@ -98,11 +98,12 @@ namespace nsfd::stored
     Newton<d> method(s);
     Best<d> best(s);
     unsigned int idle = 0;
+    const double largest = settings.largest_growth * s.error;
     for (unsigned int k = 0; k < settings.limit && !s.solved(); ++k) {
       if (!method.advance(method.linearise(), settings.regularisation))
         break;
       idle = best.keep(0.9) ? 0 : idle + 1;
-      if (idle > settings.idle)
+      if (idle > settings.idle || s.error > largest)
         break;
     }
     best.restore();

@@ -5,6 +5,7 @@
 #include "one_contact.h"
 
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace nsfd::stored
@@ -131,6 +132,9 @@ namespace nsfd::stored
     unsigned int limit = 50;
     double regularisation = 1e-10; ///< times the mean diagonal entry of W
     unsigned int idle = 6; ///< steps without a smaller error before it gives up
+    /// of the error over the first one; beyond it the method has left the
+    /// neighbourhood of its start for good
+    double largest_growth = std::numeric_limits<double>::infinity();
   };
   template <int d>
   bool newton(Session<d> &session, const NewtonSettings &settings);
