@@ -102,6 +102,7 @@ int main(int argc, char **argv)
     options.force = command.force;
     options.quiet = command.quiet;
     options.check = command.check;
+    options.resume = command.resume;
     return run_scene(*input, options, MPI_COMM_WORLD);
   } catch (const std::exception &error) {
     std::cerr << "internal error: " << error.what()

@@ -1,9 +1,10 @@
 #include "run_costs.h"
 
-#include "nsfd/base/cost.h"
+#include "nsfd/base/archive.h"
 #include "nsfd/dynamics/delassus_cost.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace nsfd
 {
@@ -11,12 +12,67 @@ namespace nsfd
   void RunCosts<dim>::record(const SolverReport &report,
                              const unsigned long long applications)
   {
-    counts_[0].push_back(report.newton);
-    counts_[1].push_back(report.krylov);
-    counts_[2].push_back(report.sweeps);
+    ++counts_[0][report.newton];
+    ++counts_[1][report.krylov];
+    ++counts_[2][report.sweeps];
     // those of rejected attempts belong to the step that comes of them
-    counts_[3].push_back(unsigned(applications - applications_));
+    ++counts_[3][unsigned(applications - applications_)];
     applications_ = applications;
+  }
+
+  /** With those before the checkpoint; each line once. */
+  template <int dim>
+  std::vector<CostLine> RunCosts<dim>::lines() const
+  {
+    std::vector<CostLine> all = cost_lines();
+    for (const CostLine &earlier : before_) {
+      const auto same =
+          std::find_if(all.begin(), all.end(), [&](const CostLine &line) {
+            return line.name == earlier.name;
+          });
+      if (same == all.end())
+        all.push_back(earlier);
+      else {
+        same->seconds += earlier.seconds;
+        same->calls += earlier.calls;
+      }
+    }
+    return all;
+  }
+
+  template <int dim>
+  void RunCosts<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "costs");
+    for (std::size_t k = 0; k < counts_.size(); ++k) {
+      std::vector<double> pairs;
+      for (const auto &[count, steps] : counts_[k]) {
+        pairs.push_back(double(count));
+        pairs.push_back(double(steps));
+      }
+      archive.common("iterations_" + std::to_string(k), pairs);
+      counts_[k].clear();
+      for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
+        counts_[k][unsigned(pairs[i])] =
+            static_cast<unsigned long long>(pairs[i + 1]);
+    }
+    std::string names;
+    std::vector<double> values;
+    for (const CostLine &line : lines()) {
+      names += line.name + '\n';
+      values.push_back(line.seconds);
+      values.push_back(double(line.calls));
+    }
+    archive.on_root("lines", names);
+    archive.on_root("seconds_and_calls", values);
+    if (!archive.reads())
+      return;
+    before_.clear();
+    std::istringstream stream(names);
+    std::string name;
+    for (std::size_t i = 0; std::getline(stream, name); i += 2)
+      before_.push_back({name, values.at(i),
+                         static_cast<unsigned long long>(values.at(i + 1))});
   }
 
   template <int dim>
@@ -24,7 +80,7 @@ namespace nsfd
   {
     CostRecord cost;
     double total = 0.;
-    for (const auto &line : cost_lines()) {
+    for (const auto &line : lines()) {
       cost.parts.push_back({line.name, line.seconds, line.calls});
       total += line.seconds;
       if (line.name == cost_name(Cost::delassus)) {
@@ -35,12 +91,15 @@ namespace nsfd
     const std::array<const char *, 4> names = {
         {"Newton", "Krylov", "sweeps", "applications of W"}};
     for (std::size_t k = 0; k < names.size(); ++k) {
-      auto sorted = counts_[k];
-      std::sort(sorted.begin(), sorted.end());
       CostRecord::Spread spread{names[k], 0., 0.};
-      if (!sorted.empty()) {
-        spread.median = sorted[sorted.size() / 2];
-        spread.worst = sorted.back();
+      unsigned long long total_steps = 0, below = 0;
+      for (const auto &[count, steps] : counts_[k])
+        total_steps += steps;
+      for (const auto &[count, steps] : counts_[k]) {
+        if (below <= total_steps / 2)
+          spread.median = count;
+        spread.worst = count;
+        below += steps;
       }
       cost.per_step.push_back(spread);
     }

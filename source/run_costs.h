@@ -2,9 +2,11 @@
 
 #include "model.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/output/cost_record.h"
 
 #include <array>
+#include <map>
 
 namespace nsfd
 {
@@ -19,9 +21,14 @@ namespace nsfd
     /** Measures the machine if the run took more than a second. */
     CostRecord finish(const Dynamics<dim> &dynamics) const;
 
+    void remember(Archive &archive);
+
   private:
-    std::array<std::vector<unsigned int>, 4> counts_;
+    /// in how many steps a number of iterations was needed
+    std::array<std::map<unsigned int, unsigned long long>, 4> counts_;
     unsigned long long applications_ = 0;
+    std::vector<CostLine> before_; ///< of the run up to its checkpoint
+    std::vector<CostLine> lines() const;
   };
 
   /** Seconds of CPU by stage of the step, in the order to print. */

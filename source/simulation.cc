@@ -1,8 +1,10 @@
 #include "nsfd/simulation.h"
 
+#include "checkpoint/checkpoints.h"
 #include "model.h"
 #include "run_costs.h"
 #include "run_info.h"
+#include "run_totals.h"
 #include "static_run.h"
 
 #include "nsfd/base/cost.h"
@@ -12,6 +14,7 @@
 #include "nsfd/output/run_output.h"
 #include "nsfd/scene/case_observer.h"
 #include "nsfd/scene/check.h"
+#include "nsfd/time/remember_state.h"
 #include "nsfd/time/smooth_motion.h"
 
 #include <fmt/format.h>
@@ -40,6 +43,12 @@ namespace nsfd
       bool prepare();
       void open_output();
       int fail(const std::string &failure);
+      void build_smooth_motion();
+      bool resume(const FoundCheckpoint &found);
+      void renew_control();
+      void remember_state(Archive &archive);
+      void remember_parts(Archive &archive, bool with_solver);
+      void store();
       bool find_equilibrium(std::string &failure);
       void start();
       void start_dynamics();
@@ -53,6 +62,7 @@ namespace nsfd
       const std::vector<double> &reactions() const;
       void record(const StepReport &report, double time_step);
       void finish(const std::string &failure);
+      RunTotals totals() const;
       void fill_counters(std::map<std::string, double> &counters) const;
       void print_end() const;
 
@@ -66,6 +76,8 @@ namespace nsfd
       std::unique_ptr<StaticRun<dim>> static_run_; ///< or null
       bool is_static_ = false; ///< the steps are those of static_run_
       std::unique_ptr<SmoothMotion<dim>> smooth_; ///< or null
+      std::unique_ptr<Checkpoints<dim>> checkpoints_;
+      EarlierTotals earlier_; ///< before the checkpoint, if resumed
 
       State state_;
       Summary summary_;
@@ -75,6 +87,8 @@ namespace nsfd
       unsigned long long released_ = 0; ///< bonds, in accepted steps
       unsigned int attempts_ = 0; // at the present step, all rejected
       double redo_until_ = 0., redo_step_ = 0.;
+      unsigned int stored_at_ = 0; ///< step of the last checkpoint
+      bool resumed_ = false;
       std::map<std::string, unsigned int> switches_;
     };
 
@@ -93,6 +107,12 @@ namespace nsfd
       const double setup = cpu_seconds();
       begin_costs();
       auto charge = std::make_unique<Charge>(Cost::set_up);
+      std::optional<FoundCheckpoint> found;
+      if (options_.resume && !options_.check) {
+        found = find_checkpoint(input_, communicator_);
+        if (!found)
+          return exit_code::bad_input;
+      }
       if (!prepare())
         return exit_code::bad_input;
       if (options_.check)
@@ -102,7 +122,7 @@ namespace nsfd
             model_.dynamic_control(input_, 0.)->base_step(), communicator_);
       model_.forget_mesh();
       bool ours = true;
-      if (communicator_.is_root())
+      if (communicator_.is_root() && !found)
         ours = claim_directory(input_.output.directory, options_.force);
       if (communicator_.any(!ours))
         return exit_code::bad_input;
@@ -121,13 +141,121 @@ namespace nsfd
       std::signal(SIGINT, request_stop);
       std::signal(SIGTERM, request_stop);
       std::string failure;
+      if (found) {
+        const bool resumed = resume(*found);
+        found.reset(); // a copy of the whole state
+        return resumed ? step_to_the_end() : exit_code::bad_input;
+      }
       const bool in_equilibrium =
           !model_.quasi_static || find_equilibrium(failure);
+      build_smooth_motion();
+      start();
+      return in_equilibrium ? step_to_the_end() : fail(failure);
+    }
+
+    template <int dim>
+    void Simulation<dim>::build_smooth_motion()
+    {
       if (input_.time.scheme == Scheme::arkode)
         smooth_ = std::make_unique<SmoothMotion<dim>>(
             input_, *model_.discretization, *model_.dynamics, state_);
-      start();
-      return in_equilibrium ? step_to_the_end() : fail(failure);
+    }
+
+    /** From a checkpoint on; false with the reason on standard error. */
+    template <int dim>
+    bool Simulation<dim>::resume(const FoundCheckpoint &found)
+    {
+      if (model_.quasi_static)
+        static_run_ =
+            std::make_unique<StaticRun<dim>>(input_, model_, communicator_);
+      try {
+        checkpoints_->read(found, [&](Archive &archive) {
+          remember_state(archive);
+          build_smooth_motion();
+          remember_parts(archive, found.same_solver);
+          if (!found.same_steps)
+            renew_control();
+          output_->remember(archive); // the first to touch a file
+        });
+      } catch (const BadCheckpoint &error) {
+        if (communicator_.is_root())
+          std::cerr << input_.file << ": error: " << found.file.string() << ": "
+                    << error.what() << "\n";
+        return false;
+      }
+      resumed_ = true;
+      stored_at_ = state_.step;
+      fragments_->update(state_);
+      output_->message(fmt::format("goes on after step {}, t = {:.6g}",
+                                   state_.step, state_.time));
+      return true;
+    }
+
+    /** Another end or other steps, from the checkpoint on. */
+    template <int dim>
+    void Simulation<dim>::renew_control()
+    {
+      const double end = is_static_ ? input_.statics->until : input_.time.end;
+      if (!(end > state_.time * (1. + 1e-12)))
+        throw BadCheckpoint(
+            fmt::format("Time/end = {:.6g} s is not after t = {:.6g} s", end,
+                        state_.time));
+      model_.control =
+          is_static_ ? std::make_unique<StepControl>(
+                           end, input_.statics->step,
+                           input_.time.maximum_halvings, state_.time)
+                     : model_.dynamic_control(input_, state_.time);
+    }
+
+    template <int dim>
+    void Simulation<dim>::remember_state(Archive &archive)
+    {
+      remember(state_, archive);
+      archive.numbers("is_static", is_static_);
+    }
+
+    /** Everything else that later steps or the end of the run depend on. */
+    template <int dim>
+    void Simulation<dim>::remember_parts(Archive &archive,
+                                         const bool with_solver)
+    {
+      archive.numbers("steps", last_step_, attempts_, redo_until_, redo_step_);
+      model_.control->remember(archive);
+      if (smooth_)
+        smooth_->remember(archive);
+      if (with_solver) {
+        const Archive::Part part(archive, "solver");
+        model_.dynamics->remember(archive);
+        model_.solver->remember(archive);
+        if (model_.quasi_static)
+          model_.quasi_static->remember(archive);
+      }
+      if (static_run_)
+        static_run_->remember(archive);
+      if (observer_)
+        observer_->remember(archive);
+      archive.numbers("largest", summary_.ledger_defect_max,
+                      summary_.residual_max);
+      costs_.remember(archive);
+      earlier_.remember(archive, totals());
+    }
+
+    /** What goes wrong is a warning: the checkpoints before are still there. */
+    template <int dim>
+    void Simulation<dim>::store()
+    {
+      const Charge charge(Cost::output);
+      stored_at_ = state_.step;
+      const std::string failure = checkpoints_->write([&](Archive &archive) {
+        remember_state(archive);
+        remember_parts(archive, true);
+        output_->remember(archive);
+      });
+      if (!failure.empty())
+        print_problems(communicator_, input_, "warning",
+                       {fmt::format("no checkpoint after step {}: {}; the one "
+                                    "before is kept",
+                                    state_.step, failure)});
     }
 
     /** Instead of the given state at t = 0. */
@@ -213,7 +341,10 @@ namespace nsfd
       const RunInfo info =
           run_info(input_, options_, model_, unsigned(communicator_.size()));
       output_ = std::make_unique<RunOutput<dim>>(
-          input_, info, options_.quiet, *model_.discretization, communicator_);
+          input_, info, options_.quiet, *model_.discretization, communicator_,
+          options_.resume);
+      checkpoints_ = std::make_unique<Checkpoints<dim>>(
+          input_, options_, *model_.discretization, communicator_);
       if (communicator_.is_root() && !options_.quiet)
         print_opening(input_, info, summary_, model_.control->base_step(),
                       model_.discretization->crossing_time());
@@ -246,6 +377,7 @@ namespace nsfd
           start_dynamics();
         }
         if (communicator_.any(stop_requested != 0)) {
+          store();
           finish(fmt::format("stopped on request at t = {:.6g}", state_.time));
           return exit_code::stopped;
         }
@@ -253,9 +385,13 @@ namespace nsfd
           choose_step();
         std::string failure;
         if (!(is_static_ ? advance_load(next, failure)
-                         : advance(next, failure)))
+                         : advance(next, failure))) {
+          store();
           return fail(failure);
+        }
       }
+      if (checkpoints_->wanted() && stored_at_ != state_.step)
+        store();
       finish("");
       return exit_code::done;
     }
@@ -383,6 +519,8 @@ namespace nsfd
       fragments_->update(state_);
       record(report, h);
       output_->write_if_due(state_, h, *fragments_);
+      if (checkpoints_->is_due(state_.step))
+        store();
     }
 
     template <int dim>
@@ -438,23 +576,42 @@ namespace nsfd
       for (const double value : state_.penetration_bound)
         bound = std::max(bound, value);
       s.penetration_bound = communicator_.max(bound);
-      fill_counters(s.counters);
-      if (static_run_)
-        static_run_->fill_counters(s.counters);
       if (observer_)
         observer_->finish(state_, s.errors);
-      s.wall_seconds = wall_seconds() - start_wall_;
-      s.cpu_seconds = cpu_seconds();
+      RunTotals sums = totals();
+      earlier_.add_to(sums);
+      s.counters = sums.counters;
+      s.wall_seconds = sums.wall_seconds;
+      s.cpu_seconds = sums.cpu_seconds;
+      s.timings = sums.timings;
       s.peak_memory_mb = peak_memory_mb();
-      s.timings = stage_timings(model_, s.setup_seconds, output_->cpu());
-      if (smooth_)
-        s.timings.insert(s.timings.begin() + 1,
-                         {"integration", smooth_->counters().seconds});
       charge_memory("fields and curves");
       s.cost = costs_.finish(*model_.dynamics);
       output_->write_summary(s);
       if (communicator_.is_root() && !options_.quiet)
         print_end();
+    }
+
+    /** Of this process. */
+    template <int dim>
+    RunTotals Simulation<dim>::totals() const
+    {
+      RunTotals sums;
+      fill_counters(sums.counters);
+      if (static_run_)
+        static_run_->fill_counters(sums.counters);
+      if (resumed_)
+        sums.counters["resumed"] = 1.;
+      if (checkpoints_->n_failed() > 0)
+        sums.counters["failed_checkpoints"] = checkpoints_->n_failed();
+      sums.timings =
+          stage_timings(model_, summary_.setup_seconds, output_->cpu());
+      if (smooth_)
+        sums.timings.insert(sums.timings.begin() + 1,
+                            {"integration", smooth_->counters().seconds});
+      sums.wall_seconds = wall_seconds() - start_wall_;
+      sums.cpu_seconds = cpu_seconds();
+      return sums;
     }
 
     template <int dim>
@@ -502,8 +659,11 @@ namespace nsfd
     void Simulation<dim>::print_end() const
     {
       const auto &s = summary_;
-      const auto &stepper = model_.stepper->counters();
-      const auto &t = model_.stepper->timings();
+      auto c = s.counters;
+      double seconds = 0.;
+      for (const auto &[name, value] : s.timings)
+        if (name != "set-up" && name != "equilibria" && name != "output")
+          seconds += value;
       const double steps = std::max(1., double(s.steps));
       std::cout << fmt::format(
           "{} steps, {:.3g} s wall; residual {:.1e}, ledger defect {:.1e}, "
@@ -513,11 +673,9 @@ namespace nsfd
       std::cout << fmt::format(
           "  per step: {:.3g} ms, Newton {:.2f}, Krylov {:.1f}, sweeps {:.1f}; "
           "rejected {}, redone {}, beyond uniqueness {}\n",
-          1e3 * (t.assembly + t.solve + t.update + t.ledger +
-                 (smooth_ ? smooth_->counters().seconds : 0.)) /
-              steps,
-          double(stepper.newton) / steps, double(stepper.krylov) / steps,
-          double(stepper.sweeps) / steps, rejected_, redone_, beyond_unique_);
+          1e3 * seconds / steps, c["newton"] / steps, c["krylov"] / steps,
+          c["gauss_seidel_sweeps"] / steps, c["rejected_steps"],
+          c["redone_steps"], c["steps_beyond_uniqueness"]);
       std::cout << fmt::format(
           "  energy: kinetic {:.6g}, elastic {:.6g}, cohesive {:.6g}, damage "
           "{:.6g}, friction {:.6g}, impact {:.6g}, numerical {:.3g}, work "

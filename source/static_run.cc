@@ -1,5 +1,7 @@
 #include "static_run.h"
 
+#include "nsfd/base/archive.h"
+
 #include <fmt/format.h>
 
 #include <iostream>
@@ -90,6 +92,13 @@ namespace nsfd
       counters["solution_jump_energy"] = released_;
       counters["solution_jump_time"] = first_jump_;
     }
+  }
+
+  template <int dim>
+  void StaticRun<dim>::remember(Archive &archive)
+  {
+    archive.numbers("solution_jumps", shortened_, jumps_, released_,
+                    first_jump_);
   }
 
   template class StaticRun<2>;

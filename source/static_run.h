@@ -31,6 +31,8 @@ namespace nsfd
 
     void fill_counters(std::map<std::string, double> &counters) const;
 
+    void remember(Archive &archive);
+
   private:
     Outcome jump(const std::string &what, bool may_relax, std::string &text);
 

@@ -11,7 +11,7 @@ namespace nsfd
   struct RunOptions
   {
     std::string command_line;
-    bool force = false, quiet = false, check = false;
+    bool force = false, quiet = false, check = false, resume = false;
   };
 
   /**

@@ -5,6 +5,7 @@
 #include "factor_limits.h"
 #include "sparse_assembly.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/base/cost.h"
 
 #include <algorithm>
@@ -38,6 +39,7 @@ namespace nsfd
       void apply(Operator op, const double *x, double *y) const override;
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
+      void remember(Archive &archive) override;
 
     private:
       void bonds_changed() override
@@ -56,6 +58,8 @@ namespace nsfd
       }
       double least_compliance(std::size_t row, double W) const;
       bool condense() const;
+      void set_diagonal();
+      void prepare_joined();
 
       mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
       std::unique_ptr<GluedSpace> glued_; ///< null: factors need none
@@ -72,6 +76,8 @@ namespace nsfd
       mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
       std::vector<double> D_;         ///< of the system to precondition
       std::vector<double> inverse_D_; ///< of the one that was factored
+      std::vector<double> inverse_D_coarse_; ///< of the glued space (`cg`)
+      unsigned long long coarse_version_ = 0;
       std::vector<double> diagonal_;  ///< of W, from above
       /// applications after which a new factor is cheaper than going on
       static constexpr unsigned int patience = 12;
@@ -293,25 +299,81 @@ namespace nsfd
       const unsigned int applied = std::exchange(n_applied_, 0);
       if (joined_valid_ && applied <= patience)
         return;
+      set_diagonal();
       inverse_D_.assign(D.size(), 0.);
-      diagonal_.assign(D.size(), 0.);
+      for (std::size_t row = 0; row < D.size(); ++row)
+        if (D[row] >= 0. && is_row(row))
+          inverse_D_[row] =
+            1. / std::max(D[row], least_compliance(row, diagonal_[row]));
+      prepare_joined();
+    }
+
+    template <int dim>
+    void Bonded<dim>::set_diagonal()
+    {
+      diagonal_.assign(this->bonded_.size() * dim, 0.);
       for (std::size_t f = 0; f < this->points_.faces.size(); ++f) {
         const auto &face = this->points_.faces[f];
         const unsigned int n = face.count * dim;
         const double *W = this->face_block(f);
-        for (unsigned int k = 0; k < n; ++k) {
-          const std::size_t row = std::size_t(face.first) * dim + k;
-          diagonal_[row] = W[k * n + k];
-          if (D[row] >= 0. && is_row(row))
-            inverse_D_[row] =
-              1. / std::max(D[row], least_compliance(row, W[k * n + k]));
-        }
+        for (unsigned int k = 0; k < n; ++k)
+          diagonal_[std::size_t(face.first) * dim + k] = W[k * n + k];
       }
+    }
+
+    template <int dim>
+    void Bonded<dim>::prepare_joined()
+    {
       const double f =
         this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
       prepare(*joined_, matrix_->assemble(f, this->bonded_, inverse_D_.data()),
               joined_matrix_);
       joined_valid_ = true;
+      if (glued_ && coarse_version_ != glued_->space().version) {
+        coarse_version_ = glued_->space().version;
+        inverse_D_coarse_ = inverse_D_;
+      }
+    }
+
+    /**
+     * Factors are made again; whether W was condensed depends on how many
+     * systems had been solved, and how good an old factor is on its springs.
+     */
+    template <int dim>
+    void Bonded<dim>::remember(Archive &archive)
+    {
+      BondedDynamics<dim>::remember(archive);
+      bool factored = valid_, joined = joined_valid_,
+           condensed = !condensed_.empty();
+      std::size_t n_solves = n_solves_;
+      unsigned int n_applied = n_applied_;
+      archive.numbers("solver", factored, joined, condensed, n_solves,
+                      n_applied);
+      archive.points("D", D_);
+      archive.points("springs", inverse_D_);
+      archive.points("springs_of_glued_space", inverse_D_coarse_);
+      if (!archive.reads())
+        return;
+      bonds_changed();
+      condensed_.clear();
+      if (factored)
+        update();
+      if (condensed) {
+        n_solves_ = CondensedDelassus::largest; // enough for any
+        condense();
+      }
+      if (joined) {
+        const std::vector<double> springs(inverse_D_);
+        set_diagonal();
+        if (glued_) { // and with it inverse_D_coarse_
+          inverse_D_ = inverse_D_coarse_;
+          prepare_joined();
+          inverse_D_ = springs;
+        }
+        prepare_joined();
+      }
+      n_solves_ = n_solves;
+      n_applied_ = n_applied;
     }
 
     template <int dim>

@@ -2,6 +2,8 @@
 
 #include "body_loops.h"
 
+#include "nsfd/base/archive.h"
+
 #include <stdexcept>
 
 namespace nsfd
@@ -35,6 +37,16 @@ namespace nsfd
                                "them with the law `rigid`");
     bonded_ = bonded;
     bonds_changed();
+  }
+
+  template <int dim>
+  void BondedDynamics<dim>::remember(Archive &archive)
+  {
+    Dynamics<dim>::remember(archive);
+    std::vector<std::uint8_t> bonded(bonded_);
+    archive.points("bonded", bonded);
+    if (archive.reads())
+      set_bonds(bonded);
   }
 
   template <int dim>

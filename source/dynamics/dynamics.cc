@@ -3,6 +3,7 @@
 #include "block_inverse.h"
 #include "body_loops.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/base/cost.h"
 #include "nsfd/dynamics/point_places.h"
 
@@ -51,6 +52,15 @@ namespace nsfd
         product(blocks_[k].inverse, blocks_[k].trace_transposed);
     }
     build_face_blocks();
+  }
+
+  template <int dim>
+  void Dynamics<dim>::remember(Archive &archive)
+  {
+    double h = time_step_, theta = theta_;
+    archive.numbers("step", h, theta);
+    if (archive.reads())
+      reinit(h, theta);
   }
 
   template <int dim>

@@ -2,6 +2,7 @@
 #include "factor_limits.h"
 #include "sparse_assembly.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/base/cost.h"
 #include "nsfd/dynamics/dynamics.h"
 
@@ -45,6 +46,7 @@ namespace nsfd
       bool inverts() const override { return inverts_; }
       bool solve_springs(const double *P, const double *U, const double *r,
                          double tolerance, double *next) override;
+      void remember(Archive &archive) override;
 
     private:
       double share() const
@@ -58,6 +60,7 @@ namespace nsfd
       void glue(const std::vector<char> &faces);
       void use_cg();
       void prepare_cg();
+      void prepare_again();
       void add_bodies(const double *x, double *y) const;
       void add_smooth(const double *x, double *y) const;
       void add_jump(const std::vector<double> &change, double *next);
@@ -367,6 +370,47 @@ namespace nsfd
         add_jump(work_, next);
       }
       return true;
+    }
+    /**
+     * Where the next iterations start, which springs the glued space was built
+     * with, and whether factors have failed for good.
+     */
+    template <int dim>
+    void SparseDynamics<dim>::remember(Archive &archive)
+    {
+      Dynamics<dim>::remember(archive);
+      bool direct = direct_;
+      archive.numbers("solver", direct, valid_, inverts_);
+      archive.bodies("velocity", velocity_);
+      archive.points("jump", jump_);
+      archive.points("D", D_);
+      archive.points("springs", inverse_D_);
+      archive.points("springs_of_glued_space", inverse_D_coarse_);
+      if (!archive.reads())
+        return;
+      if (direct_ && !direct)
+        use_cg();
+      coarse_valid_ = false;
+      if (valid_)
+        prepare_again();
+    }
+
+    /** Factors and glued space as they were when D_ was prepared. */
+    template <int dim>
+    void SparseDynamics<dim>::prepare_again()
+    {
+      set_body_stiffness();
+      if (direct_) {
+        assembly_.assemble(share(), inverse_D_);
+        solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
+        coarse_valid_ = prepared_ = true;
+        return;
+      }
+      const std::vector<double> springs(inverse_D_);
+      inverse_D_ = inverse_D_coarse_;
+      prepare_cg();
+      inverse_D_ = springs;
+      prepare_cg();
     }
   } // namespace
 

@@ -37,22 +37,27 @@ namespace nsfd
       const char *text;
     };
 
-    /** What was named, but does not exist yet; empty if all does. */
-    std::string not_there_yet(const int argc, const char *const *argv)
-    {
-      for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (word.compare(0, 8, "--resume") == 0)
-          return "--resume is not there yet for scenes: there are no "
-                 "checkpoints; it resumes studies";
-      }
-      return "";
-    }
-
     int fail(std::ostream &err, const std::string &message,
              const std::string &advice)
     {
       return refuse(err, "nsfd", message, advice);
+    }
+
+    /** What follows --resume; false if --output says something else. */
+    bool take_folder(std::string &folder, CommandLine &command_line)
+    {
+      command_line.resume = true;
+      if (folder.size() > 4 && command_line.file.empty() &&
+          folder.compare(folder.size() - 4, 4, ".prm") == 0) {
+        std::swap(folder, command_line.file);
+        return true;
+      }
+      if (folder.empty())
+        return true;
+      if (!command_line.output.empty() && command_line.output != folder)
+        return false;
+      command_line.output = folder;
+      return true;
     }
 
     /** Arguments that no option has taken. */
@@ -97,10 +102,6 @@ namespace nsfd
       err << short_help;
       return exit_code::wrong_usage;
     }
-    const std::string missing = not_there_yet(argc, argv);
-    if (!missing.empty())
-      return fail(err, missing, "");
-
     if (argv[1] == std::string("law"))
       return parse_law_command_line(argc - 1, argv + 1, command_line, out, err);
 
@@ -130,6 +131,13 @@ namespace nsfd
     app.add_option("--output", command_line.output,
                    "folder for the results, default output/FILE")
         ->type_name("DIR");
+    std::string folder; // to resume in
+    auto *resume =
+        app.add_option("--resume", folder,
+                       "go on from the last checkpoint in DIR, default the "
+                       "folder of the results")
+            ->type_name("[DIR]")
+            ->expected(0, 1);
     const Flag flags[] = {
         {"--force", &command_line.force,
          "overwrite the results of an earlier run"},
@@ -149,6 +157,15 @@ namespace nsfd
     } catch (const CLI::ParseError &error) {
       return fail(err, error.what(), "`nsfd --help` prints all options");
     }
+    if (resume->count() > 0 &&
+        !take_folder(folder, command_line)) // the file is no folder
+      return fail(err,
+                  "--resume " + folder + " and --output " +
+                      command_line.output + " are two folders",
+                  "a run goes on in the folder of its checkpoint: name one");
+    if (command_line.resume && command_line.force)
+      return fail(err, "--force and --resume exclude each other",
+                  "--force begins again, --resume goes on");
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
       return fail_at(err, extras.front(), app);

@@ -105,12 +105,12 @@ namespace nsfd
     output.fields_every_steps =
         reader.integer("fields every steps", "0", 0, any_count, "0: not used");
     output.report = reader.boolean("report", true, "write report.html");
-    if (reader.integer("checkpoint every steps", "0", 0, any_count,
-                       "0: never") != 0)
-      reader.error("checkpoint every steps",
-                   "checkpoint every steps must be 0: checkpoints are not "
-                   "there yet",
-                   "write 0");
+    output.checkpoint_steps = reader.integer(
+        "checkpoint every steps", "0", 0, any_count,
+        "for --resume; 0: not by steps, only when the run is stopped");
+    output.checkpoint_seconds =
+        reader.number("checkpoint every", "0", units::time,
+                      Range::non_negative(), "s of wall time; 0: not used");
   }
 
   void read_verification(ParameterFile &file, InputErrors &errors,

@@ -84,6 +84,7 @@ namespace nsfd
       bodies.first_slot.push_back(bodies.first_slot.back() + body.n_slots);
       first_node.push_back(first_node.back() + shapes[k].n_nodes);
       global_cell.push_back(cell->global_active_cell_index());
+      cell_id.push_back(cell->id().template to_binary<dim>());
     }
   }
 

@@ -31,6 +31,7 @@ namespace nsfd
     std::vector<std::vector<dealii::Point<dim>>> corners;
     std::vector<std::size_t> first_node; ///< size n + 1
     std::vector<unsigned long long> global_cell;
+    std::vector<std::array<unsigned int, 4>> cell_id; ///< CellId::to_binary()
 
     const BodyShape<dim> &shape(const std::size_t body) const
     {

@@ -116,6 +116,13 @@ namespace nsfd
   }
 
   template <int dim>
+  const std::array<unsigned int, 4> &
+  Discretization<dim>::cell_id(const unsigned int body) const
+  {
+    return cells_->cell_id[body];
+  }
+
+  template <int dim>
   unsigned long long
   Discretization<dim>::global_cell(const unsigned int body) const
   {

@@ -3,6 +3,9 @@
 #include "field_grids.h"
 #include "snapshot.h"
 
+#include "nsfd/base/archive.h"
+
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 
@@ -31,6 +34,39 @@ namespace nsfd
         interfaces_, "interfaces",
         interface_grid(discretization_, face_numbers_, state, time_step));
     ++number_;
+  }
+
+  namespace
+  {
+    /** fields_00012.vtu and so on, from @p number on. */
+    void remove_from(const unsigned int number, const std::string &directory)
+    {
+      namespace fs = std::filesystem;
+      std::error_code error;
+      std::vector<fs::path> late;
+      for (const auto &entry : fs::directory_iterator(directory, error)) {
+        const std::string name = entry.path().filename().string();
+        for (const std::string base : {"fields_", "interfaces_"})
+          if (name.compare(0, base.size(), base) == 0 &&
+              std::strtoul(name.c_str() + base.size(), nullptr, 10) >= number)
+            late.push_back(entry.path());
+      }
+      for (const fs::path &file : late)
+        fs::remove(file, error);
+    }
+  } // namespace
+
+  template <int dim>
+  void FieldOutput<dim>::remember(Archive &archive)
+  {
+    archive.numbers("fields_written", number_);
+    if (archive.reads() && communicator_.is_root())
+      remove_from(number_, directory_);
+    for (auto *series : {&fields_, &interfaces_}) {
+      const Archive::Part part(archive,
+                               series == &fields_ ? "fields" : "interfaces");
+      series->remember(archive);
+    }
   }
 
   template <int dim>

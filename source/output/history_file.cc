@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
 #include <stdexcept>
 
 namespace nsfd
@@ -65,5 +71,89 @@ namespace nsfd
     file_ << line << '\n' << std::flush;
     if (!file_)
       throw std::runtime_error("Cannot write '" + path_ + "'.");
+  }
+
+  HistoryFile::HistoryFile(const std::string &path,
+                           const std::vector<std::string> &driven,
+                           const unsigned int dimension,
+                           const std::uintmax_t n_bytes)
+      : path_(path), n_reactions_(driven.size() * dimension)
+  {
+    std::filesystem::resize_file(path, n_bytes);
+    file_.open(path, std::ios::app);
+    if (!file_)
+      throw std::runtime_error("Cannot write '" + path_ + "'.");
+  }
+
+  std::uintmax_t HistoryFile::n_bytes()
+  {
+    file_.flush();
+    const int file = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file >= 0) {
+      fsync(file);
+      close(file);
+    }
+    std::error_code error; // a file that is gone has none
+    const std::uintmax_t size = std::filesystem::file_size(path_, error);
+    return error ? 0 : size;
+  }
+
+  namespace
+  {
+    /** A line of numbers. @throws std::runtime_error */
+    std::vector<double> numbers_of(const std::string &line, const std::size_t n)
+    {
+      std::vector<double> numbers;
+      const char *next = line.c_str();
+      while (numbers.size() < n) {
+        char *end = nullptr;
+        numbers.push_back(std::strtod(next, &end));
+        if (end == next || (*end != ',' && *end != '\0'))
+          break;
+        if (*end == '\0')
+          return numbers.size() == n ? numbers : std::vector<double>();
+        next = end + 1;
+      }
+      return {};
+    }
+  } // namespace
+
+  std::vector<HistoryRow> HistoryFile::read(const std::string &path,
+                                            const std::size_t n_reactions,
+                                            const std::uintmax_t n_bytes)
+  {
+    constexpr std::size_t n_fixed = 20;
+    std::ifstream file(path, std::ios::binary);
+    std::string text(n_bytes, '\0');
+    file.read(text.data(), std::streamsize(n_bytes));
+    if (!file)
+      throw std::runtime_error(
+          fmt::format("'{}' is shorter than it was at the checkpoint", path));
+    std::istringstream lines(text);
+    std::string line;
+    std::getline(lines, line); // the header
+    std::vector<HistoryRow> rows;
+    while (std::getline(lines, line)) {
+      const auto x = numbers_of(line, n_fixed + n_reactions);
+      if (x.empty() || text.back() != '\n')
+        throw std::runtime_error(fmt::format(
+            "'{}', line {}, is not what it was at the checkpoint", path,
+            rows.size() + 2));
+      HistoryRow &row = rows.emplace_back();
+      row.step = unsigned(x[0]);
+      row.time = x[1];
+      row.time_step = x[2];
+      row.energy = {x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10], x[11],
+                    x[12]};
+      row.ledger_defect = x[13];
+      row.broken_area = x[14];
+      row.fragments = unsigned(x[15]);
+      row.active = unsigned(x[16]);
+      row.newton = unsigned(x[17]);
+      row.krylov = unsigned(x[18]);
+      row.residual = x[19];
+      row.reactions.assign(x.begin() + n_fixed, x.end());
+    }
+    return rows;
   }
 } // namespace nsfd

@@ -1,5 +1,8 @@
 #include "nsfd/output/run_output.h"
 
+#include "remember_pictures.h"
+
+#include "nsfd/base/archive.h"
 #include "nsfd/base/cost.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/scene_input.h"
@@ -21,9 +24,13 @@ namespace nsfd
     std::error_code error;
     if (fs::exists(directory, error) && !fs::is_empty(directory, error)) {
       if (!force) {
+        const bool stored =
+            fs::exists(fs::path(directory) / "checkpoint.h5", error);
         std::cerr << "the output directory `" << directory
                   << "` exists already: nothing was run.\n"
-                  << "  write --force to replace it, or --output DIR\n";
+                  << "  write --force to replace it, "
+                  << (stored ? "--resume to go on, " : "")
+                  << "or --output DIR\n";
         return false;
       }
       // replace what a run has written, leave everything else
@@ -34,6 +41,9 @@ namespace nsfd
           if (extension == ours)
             fs::remove(entry.path(), error);
       }
+      for (const char *ours : {"checkpoint.h5", "checkpoint_previous.h5",
+                               "checkpoint.h5.part"})
+        fs::remove(fs::path(directory) / ours, error);
       for (const auto &entry :
            fs::directory_iterator(fs::path(directory) / "problems", error))
         if (entry.path().extension() == ".hdf5")
@@ -52,17 +62,19 @@ namespace nsfd
   RunOutput<dim>::RunOutput(const SceneInput &input, const RunInfo &info,
                             const bool quiet,
                             const Discretization<dim> &discretization,
-                            const Communicator &communicator)
+                            const Communicator &communicator,
+                            const bool resumes)
       : input_(input), info_(info), communicator_(communicator)
   {
     const std::string &directory = input.output.directory;
     for (const unsigned int b : discretization.driven_boundaries())
       driven_.push_back(input.boundaries[b].name);
     if (communicator.is_root()) {
-      write_file_atomically(directory + "/parameters.prm", input.echo);
-      write_run_info(directory + "/run.json", info);
-      history_file_ = std::make_unique<HistoryFile>(directory + "/history.csv",
-                                                    driven_, dim);
+      if (!resumes) {
+        write_descriptions();
+        history_file_ = std::make_unique<HistoryFile>(
+            directory + "/history.csv", driven_, dim);
+      }
       progress_ = std::make_unique<Progress>(std::cout, input.time.end,
                                              Progress::mode_for_stdout(quiet));
     }
@@ -73,6 +85,14 @@ namespace nsfd
 
   template <int dim>
   RunOutput<dim>::~RunOutput() = default;
+
+  template <int dim>
+  void RunOutput<dim>::write_descriptions() const
+  {
+    const std::string &directory = input_.output.directory;
+    write_file_atomically(directory + "/parameters.prm", input_.echo);
+    write_run_info(directory + "/run.json", info_);
+  }
 
   template <int dim>
   void RunOutput<dim>::start(const HistoryRow &row)
@@ -149,6 +169,55 @@ namespace nsfd
   {
     if (progress_)
       progress_->finish();
+  }
+
+  template <int dim>
+  void RunOutput<dim>::message(const std::string &text)
+  {
+    if (progress_)
+      progress_->message(text);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "output");
+    remember_history(archive);
+    archive.numbers("due", next_fields_, fields_current_);
+    if (fields_)
+      fields_->remember(archive);
+    nsfd::remember(snapshots_, archive);
+    if (archive.reads() && communicator_.is_root())
+      write_descriptions();
+  }
+
+  /** The row at t = 0 is in no file. */
+  template <int dim>
+  void RunOutput<dim>::remember_history(Archive &archive)
+  {
+    std::uintmax_t n_bytes = history_file_ ? history_file_->n_bytes() : 0;
+    archive.numbers("history_bytes", n_bytes);
+    HistoryRow first = history_.empty() ? HistoryRow() : history_.front();
+    EnergyLines &e = first.energy;
+    archive.numbers("start", e.kinetic, e.elastic, e.cohesive, first.fragments);
+    archive.common("start_reactions", first.reactions);
+    if (!archive.reads())
+      return;
+    std::string failure;
+    history_.assign(1, first);
+    if (communicator_.is_root())
+      try {
+        const std::string path = input_.output.directory + "/history.csv";
+        for (const HistoryRow &row :
+             HistoryFile::read(path, driven_.size() * dim, n_bytes))
+          keep(row);
+        history_file_ =
+            std::make_unique<HistoryFile>(path, driven_, dim, n_bytes);
+      } catch (const std::exception &error) {
+        failure = error.what();
+      }
+    if (communicator_.any(!failure.empty()))
+      throw BadCheckpoint(failure);
   }
 
   template <int dim>

@@ -1,10 +1,12 @@
 #include "nsfd/output/vtu.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/output/markup.h"
 #include "nsfd/output/summary_file.h"
 
 #include <fmt/format.h>
 
+#include <sstream>
 #include <stdexcept>
 
 namespace nsfd
@@ -180,7 +182,32 @@ namespace nsfd
   void PvdSeries::add(const double time, const std::string &file)
   {
     entries_.emplace_back(time, file);
+    write();
+  }
 
+  void PvdSeries::remember(Archive &archive)
+  {
+    std::vector<double> times;
+    std::string names;
+    for (const auto &[time, name] : entries_) {
+      times.push_back(time);
+      names += name + '\n';
+    }
+    archive.on_root("times", times);
+    archive.on_root("names", names);
+    if (!archive.reads())
+      return;
+    entries_.clear();
+    std::istringstream lines(names);
+    std::string name;
+    for (std::size_t k = 0; k < times.size() && std::getline(lines, name); ++k)
+      entries_.emplace_back(times[k], name);
+    if (!entries_.empty())
+      write();
+  }
+
+  void PvdSeries::write() const
+  {
     std::string xml = opening("Collection") + "<Collection>\n";
     for (const auto &[t, name] : entries_)
       xml += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n",

@@ -1,5 +1,7 @@
 #include "nsfd/scene/case_observer.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -106,6 +108,15 @@ namespace nsfd
     if (case_.wants_opening())
       set_opening(state, view);
     case_.observe(view);
+  }
+
+  template <int dim>
+  void CaseObserver<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "verification");
+    archive.numbers("time_step", time_step_);
+    archive.points("first_beta", first_beta_);
+    case_.remember(archive);
   }
 
   template <int dim>

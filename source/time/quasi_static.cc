@@ -5,6 +5,7 @@
 #include "static_ledger.h"
 
 #include "nsfd/base/accelerated_rounds.h"
+#include "nsfd/base/archive.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/mesh/node_coordinates.h"
 
@@ -77,6 +78,15 @@ namespace nsfd
   const std::vector<double> &QuasiStatic<dim>::reactions() const
   {
     return ledger_->reactions();
+  }
+
+  template <int dim>
+  void QuasiStatic<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "equilibria");
+    relaxation_->remember(archive);
+    dynamics_->remember(archive);
+    solver_->remember(archive);
   }
 
   template <int dim>

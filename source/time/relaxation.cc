@@ -6,6 +6,7 @@
 #include "step_data.h"
 #include "uniqueness.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/base/cost.h"
 #include "nsfd/base/stopwatch.h"
 
@@ -58,6 +59,12 @@ namespace nsfd
     this->set_loads(time);
     if (this->crack_pressure_)
       this->crack_pressure_->evaluate(old, time, pressure_);
+  }
+
+  template <int dim>
+  void Relaxation<dim>::remember(Archive &archive)
+  {
+    archive.numbers("largest_forces", point_scale_, present_);
   }
 
   /** Forces at the last equilibrium, and what the motion makes round-off of. */

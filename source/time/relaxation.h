@@ -77,6 +77,9 @@ namespace nsfd
     {
       return solutions_;
     }
+    /** The largest forces so far. */
+    void remember(Archive &archive);
+
     const std::vector<double> &forces() const { return this->forces_; }
     const std::vector<double> &pressure() const { return pressure_; }
     std::string worst_face() const { return this->describe(worst_point_); }

@@ -2,6 +2,7 @@
 
 #include "step_data.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/input/scene_input.h"
 
 #include <algorithm>
@@ -60,6 +61,14 @@ namespace nsfd
     }
     moves_ = communicator_.any(moves_);
     joined_.set(D_joined_);
+  }
+
+  template <int dim>
+  void SmoothEquations<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "smooth_motion");
+    archive.numbers("scales", velocity_scale_, displacement_scale_,
+                    energy_scale_, inner_step_);
   }
 
   template <int dim>

@@ -36,6 +36,9 @@ namespace nsfd
     /** x of (1 - gamma J) x = b. */
     void solve_shifted(double gamma, const Vector &b, Vector &x);
 
+    /** Scales of the start, and the step of the pairs. */
+    void remember(Archive &archive);
+
     typename SmoothMotion<dim>::Counters counters;
 
   protected:

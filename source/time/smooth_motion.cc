@@ -234,6 +234,12 @@ namespace nsfd
   }
 
   template <int dim>
+  void SmoothMotion<dim>::remember(Archive &archive)
+  {
+    equations_->remember(archive);
+  }
+
+  template <int dim>
   const std::vector<double> &SmoothMotion<dim>::reactions() const
   {
     return equations_->reactions;

@@ -1,5 +1,7 @@
 #include "nsfd/time/step_control.h"
 
+#include "nsfd/base/archive.h"
+
 #include <cmath>
 #include <limits>
 
@@ -51,6 +53,13 @@ namespace nsfd
     position_ *= 2;
     ++n_halvings_;
     return true;
+  }
+
+  void StepControl::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "step_control");
+    archive.numbers("ladder", start_, end_, base_, n_base_, base_count_,
+                    position_, level_, maximum_level_, n_halvings_, ceiling_);
   }
 
   void StepControl::limit(const double limit)

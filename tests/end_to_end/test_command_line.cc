@@ -71,8 +71,11 @@ namespace end_to_end
          {"law", "rcc", "--print-parameters"},
          0,
          "# Adhesion energy w = G"},
-        {"resume", {stop_scene, "--resume"}, 2, "not there yet"},
-        {"resume_directory", {"--resume=output/stop"}, 2, "not there yet"},
+        {"resume", {stop_scene, "--resume"}, 1, "no whole checkpoint"},
+        {"resume_directory",
+         {"--resume=output/stop"},
+         2,
+         "no parameter file is named"},
         {"two_files", {stop_scene, stop_scene}, 2, "one file too many"},
         {"set_without_value", {stop_scene, "--set"}, 2, "--set"},
         {"set_without_equals", {stop_scene, "--set", "Time/end"}, 2, "="},
@@ -172,10 +175,9 @@ end
   {
     const Workspace workspace;
     const std::string help = nsfd(workspace, {"--help"}).out;
-    EXPECT_EQ(help.find("--resume"), std::string::npos);
     for (const char *word :
          {"--set", "--output", "--force", "--check", "--print-parameters",
-          "--list", "--version", "--help", "--quiet", "nsfd law", "nsfd solve",
+          "--list", "--version", "--help", "--quiet", "--resume", "nsfd law", "nsfd solve",
           "nsfd study"})
       EXPECT_NE(help.find(word), std::string::npos) << word;
   }

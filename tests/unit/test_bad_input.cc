@@ -468,8 +468,8 @@ end
          "plane strain and plane stress are for dimension = 2",
          "set plane = strain"},
         {"checkpoint", "set fields every = 0.5 ns",
-         "set checkpoint every steps = 5", "checkpoint every steps must be 0",
-         "set checkpoint every steps = 5"},
+         "set checkpoint every = -5 min", "checkpoint every = -300 must be",
+         "set checkpoint every = -5 min"},
         {"quarter_points", "set mass = consistent",
          "set interface quadrature = quarter points\n"
          "  set interface points = 3",

@@ -780,6 +780,16 @@ end
     EXPECT_EQ(parse({"--set", "a=b", "a.prm"}).command_line.file, "a.prm");
     EXPECT_EQ(parse({"--set=Mesh/cells=[1,2]", "a.prm"}).command_line.set,
               (std::vector<std::string>{"Mesh/cells=[1,2]"}));
+    for (const std::vector<const char *> &arguments :
+         {std::vector<const char *>{"a.prm", "--resume", "--output", "b"},
+          {"a.prm", "--resume", "b"},
+          {"--resume=b", "a.prm"},
+          {"--resume", "a.prm", "--output", "b"}}) {
+      const CommandLine line = parse(arguments).command_line;
+      EXPECT_TRUE(line.resume);
+      EXPECT_EQ(line.file, "a.prm");
+      EXPECT_EQ(line.output, "b");
+    }
   }
 
   TEST(CommandLineTest, InformationEndsWithZero)
@@ -787,7 +797,7 @@ end
     const Parsed help = parse({"--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("--print-parameters"), std::string::npos);
-    EXPECT_EQ(help.out.find("--resume"), std::string::npos);
+    EXPECT_NE(help.out.find("--resume"), std::string::npos);
     EXPECT_EQ(parse({"--version"}).code, 0);
     EXPECT_NE(parse({"--version"}).out.find("nsfd "), std::string::npos);
     const Parsed list = parse({"--list"});
@@ -822,7 +832,9 @@ end
     fails({"a.prm", "--set", "theta"}, "there is no `=`");
     fails({"law"}, "no law is named");
     fails({"law", "rcc", "--stpes=3"}, "did you mean `--steps`?");
-    fails({"a.prm", "--resume"}, "--resume is not there yet");
+    fails({"a.prm", "--resume", "b", "--output", "c"}, "are two folders");
+    fails({"a.prm", "--resume", "--force"}, "exclude each other");
+    fails({"--resume"}, "no parameter file is named");
     fails({"a.prm", "--force=maybe"}, "--force");
   }
 } // namespace nsfd

@@ -38,6 +38,8 @@ namespace nsfd
 
     void apply(Operator op, const double *x, double *y) const override;
 
+    void remember(Archive &archive) override;
+
   protected:
     /** Other points are bonded now. */
     virtual void bonds_changed() {}

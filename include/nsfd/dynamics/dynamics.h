@@ -8,6 +8,8 @@
 
 namespace nsfd
 {
+  class Archive;
+
   /**
    * The bodies seen from the faces: H, M_hat^{-1} and W = H M_hat^{-1} H^T,
    * with M_hat = M + h^2 theta^2 K block diagonal by body. Vectors over points
@@ -155,6 +157,12 @@ namespace nsfd
       unsigned long long delassus = 0;
     };
     const Counters &counters() const { return counters_; }
+
+    /**
+     * What changes the bits of later steps: the step, and what is kept of
+     * earlier solves. Factors are made again from it.
+     */
+    virtual void remember(Archive &archive);
 
     /** Contribution of each body to W P, used by Gauss-Seidel. */
     struct ClassBlocks

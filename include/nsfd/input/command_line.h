@@ -24,6 +24,7 @@ namespace nsfd
     bool check = false;           ///< read and build, but do not run
     bool print_parameters = false;
     bool quiet = false;
+    bool resume = false;  ///< from the last checkpoint of the output directory
 
     /** What read_scene() takes: --set, and --output as one of them. */
     std::vector<std::string> overrides() const;

@@ -116,6 +116,8 @@ namespace nsfd
     double volume(unsigned int body) const;
     dealii::Point<dim> centre(unsigned int body) const;
     unsigned long long global_cell(unsigned int body) const;
+    /** CellId::to_binary(): the same on every number of ranks. */
+    const std::array<unsigned int, 4> &cell_id(unsigned int body) const;
     unsigned long long n_global_cells() const { return n_global_cells_; }
     bool simplices() const;
 

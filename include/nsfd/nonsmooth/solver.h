@@ -103,6 +103,9 @@ namespace nsfd
                                const SolverControl &control,
                                std::vector<double> &impulse,
                                LawEvaluation<dim> &evaluation) = 0;
+
+    /** What one solve leaves to the next, if anything. */
+    virtual void remember(Archive &) {}
   };
 
   template <int dim>

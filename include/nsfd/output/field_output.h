@@ -10,6 +10,8 @@
 
 namespace nsfd
 {
+  class Archive;
+
   /**
    * fields.pvd (volume: displacement, velocity, stress, fragment, material) and
    * interfaces.pvd (faces: beta, jump, traction, slip, contact status), one
@@ -26,6 +28,9 @@ namespace nsfd
     /** Write both series at the time of @p state. Collective. */
     void write(const State &state, double time_step,
                const Fragments<dim> &fragments);
+
+    /** The series so far. Later files of an earlier run are removed. */
+    void remember(Archive &archive);
 
     /** A picture's worth of data; empty except on rank 0. Collective. */
     Snapshot snapshot(const State &state,

@@ -2,6 +2,7 @@
 
 #include "nsfd/output/run_record.h"
 
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -20,7 +21,25 @@ namespace nsfd
     HistoryFile(const std::string &path, const std::vector<std::string> &driven,
                 unsigned int dimension);
 
+    /**
+     * Goes on with a file of which the first @p n_bytes are kept and what
+     * follows is cut off.
+     */
+    HistoryFile(const std::string &path, const std::vector<std::string> &driven,
+                unsigned int dimension, std::uintmax_t n_bytes);
+
     void write(const HistoryRow &row);
+
+    /** Of all rows so far, on the disk for good when this returns. */
+    std::uintmax_t n_bytes();
+
+    /**
+     * The rows in the first @p n_bytes of a file with so many reactions.
+     * @throws std::runtime_error if it is shorter, or these are no rows.
+     */
+    static std::vector<HistoryRow> read(const std::string &path,
+                                        std::size_t n_reactions,
+                                        std::uintmax_t n_bytes);
 
     static std::string header(const std::vector<std::string> &driven,
                               unsigned int dimension);

@@ -10,6 +10,7 @@
 
 namespace nsfd
 {
+  class Archive;
   template <int dim>
   class FieldOutput;
   template <int dim>
@@ -29,10 +30,13 @@ namespace nsfd
   class RunOutput
   {
   public:
-    /** Starts all files in the directory of the input. */
+    /**
+     * Starts all files in the directory of the input, or, if the run @p
+     * resumes, leaves them to remember().
+     */
     RunOutput(const SceneInput &input, const RunInfo &info, bool quiet,
               const Discretization<dim> &discretization,
-              const Communicator &communicator);
+              const Communicator &communicator, bool resumes = false);
     ~RunOutput();
 
     /** The initial state, for the report only. */
@@ -48,6 +52,16 @@ namespace nsfd
     /** The progress line ends here. */
     void end_progress();
 
+    /** A line of its own between those of the progress; on rank 0. */
+    void message(const std::string &text);
+
+    /**
+     * How far the files have come. After reading, history.csv ends with the
+     * row of the checkpoint, and the series of fields go on after its last.
+     * @throws std::runtime_error if history.csv does not reach it. Collective.
+     */
+    void remember(Archive &archive);
+
     /** summary.json and the report; nothing except on rank 0. */
     void write_summary(const Summary &summary) const;
 
@@ -57,6 +71,8 @@ namespace nsfd
   private:
     bool is_due(const State &state) const;
     void keep(const HistoryRow &row);
+    void write_descriptions() const;
+    void remember_history(Archive &archive);
 
     const SceneInput &input_;
     const RunInfo info_;

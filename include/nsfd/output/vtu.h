@@ -8,6 +8,8 @@
 
 namespace nsfd
 {
+  class Archive;
+
   /** Cell shapes by their number in the VTK format. */
   enum class VtuCell : std::uint8_t {
     vertex = 1,
@@ -65,7 +67,12 @@ namespace nsfd
     /** @p file is relative to the .pvd file. */
     void add(double time, const std::string &file);
 
+    /** Its entries; the file is written again when they have been read. */
+    void remember(Archive &archive);
+
   private:
+    void write() const;
+
     std::string path_;
     std::vector<std::pair<double, std::string>> entries_;
   };

@@ -28,6 +28,9 @@ namespace nsfd
     /** Collective. */
     void observe(const State &state, const HistoryRow &row);
 
+    /** What has been seen so far. Collective. */
+    void remember(Archive &archive);
+
     /** Relative errors at the time of @p state. Collective. */
     void finish(const State &state, std::map<std::string, double> &errors);
 

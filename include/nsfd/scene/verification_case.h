@@ -10,6 +10,7 @@
 
 namespace nsfd
 {
+  class Archive;
   struct BrokenPoint;
   struct SceneInput;
   class SectionReader;
@@ -94,6 +95,9 @@ namespace nsfd
      */
     virtual bool wants_broken_points() const { return false; }
     virtual void see_broken_points(const std::vector<BrokenPoint> &) {}
+
+    /** What observe() has collected so far; nothing if it has no memory. */
+    virtual void remember(Archive &) {}
 
     /** Relative errors and scene quantities, added to `errors`. */
     virtual void finish(std::map<std::string, double> &) const {}

@@ -58,6 +58,8 @@ namespace nsfd
     /** Of what a step moves; what is left over above it makes a jump. */
     static constexpr double jump_share = 0.01;
 
+    void remember(Archive &archive);
+
     struct Counters {
       unsigned long long equilibria = 0, rounds = 0, step_changes = 0;
     };

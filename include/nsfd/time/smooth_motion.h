@@ -44,6 +44,8 @@ namespace nsfd
     /** Force on each driven boundary at the end, dim per boundary. */
     const std::vector<double> &reactions() const;
 
+    void remember(Archive &archive);
+
     struct Counters {
       unsigned long long steps = 0, evaluations = 0, iterations = 0,
                          linear_solves = 0;

@@ -2,6 +2,8 @@
 
 namespace nsfd
 {
+  class Archive;
+
   /**
    * Steps on a ladder: the base step divides the time to the end evenly; level
    * l takes base / 2^l. A rejected step goes down one level at once; a success
@@ -33,6 +35,8 @@ namespace nsfd
     void set_ceiling(double limit) { ceiling_ = limit; }
 
     unsigned int halvings() const { return n_halvings_; }
+
+    void remember(Archive &archive);
 
   private:
     double end_, base_, ceiling_;

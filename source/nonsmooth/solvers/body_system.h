@@ -68,6 +68,10 @@ namespace nsfd
      */
     const std::vector<double> &impedance() const { return impedance_; }
 
+    /** False for good once iterations have not come to their end. */
+    bool may_iterate() const { return may_iterate_; }
+    void forbid_iterations() { may_iterate_ = false; }
+
     double time_step() const { return time_step_; }
     double theta() const { return theta_; }
 

@@ -90,6 +90,13 @@ namespace nsfd
         return report;
       }
 
+      void remember(Archive &archive) override
+      {
+        if (!path_)
+          path_ = SolverRegistry<dim>::instance().create("interior point");
+        path_->remember(archive);
+      }
+
     private:
       /** What @p next did goes into @p report. */
       static void add(const SolverReport &next, const char *name,

@@ -1,6 +1,8 @@
 #include "contact_path.h"
 #include "gathered.h"
 
+#include "nsfd/base/archive.h"
+
 namespace nsfd
 {
   namespace
@@ -36,6 +38,14 @@ namespace nsfd
         return report;
       }
 
+      /** Whether iterations have failed, so that factors came back. */
+      void remember(Archive &archive) override
+      {
+        if (system_)
+          iterates_ = system_->may_iterate();
+        archive.numbers("iterates", iterates_);
+      }
+
     private:
       using Stage = typename ContactPath<dim>::Stage;
 
@@ -44,10 +54,12 @@ namespace nsfd
                   std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
                   SolverReport &report)
       {
-        if (!system_)
+        if (!system_) {
           system_ = std::make_unique<BodySystem<dim>>(
             dynamics, problem.time_step, dynamics.bulk_theta());
-        else if (system_->time_step() != problem.time_step ||
+          if (!iterates_)
+            system_->forbid_iterations();
+        } else if (system_->time_step() != problem.time_step ||
                  system_->theta() != dynamics.bulk_theta())
           system_->reinit(problem.time_step, dynamics.bulk_theta());
         ContactPath<dim> path(problem, dynamics, *system_, control, impulse,
@@ -100,6 +112,7 @@ namespace nsfd
 
       std::unique_ptr<Gathered<dim>> gathered_; // before what refers to it
       std::unique_ptr<BodySystem<dim>> system_;
+      bool iterates_ = true; ///< what system_ is to begin with
     };
 
     using InteriorPoint2 = InteriorPoint<2>;

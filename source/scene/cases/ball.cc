@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -63,6 +65,12 @@ namespace nsfd
       const double bound = 0.5 * (2. - restitution_) * step_ *
                            (impact_speed_ + gravity_ * step_);
       errors["penetration"] = deepest_ / bound;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", difference_, reference_, velocity_, deepest_,
+                      step_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -93,6 +95,13 @@ namespace nsfd
             front_displacement_error_ / front_distance_;
         errors["front_velocity"] = front_velocity_error_ / front_speed_;
       }
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", time_, mean_velocity_, energy_, initial_energy_,
+                      initial_opening_, front_displacement_error_,
+                      front_distance_, front_velocity_error_, front_speed_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -75,6 +77,17 @@ namespace nsfd
       errors["ratio"] = relative_error(tension / compression, slowness_);
       errors["slowness"] = tension / compression;
       errors["damage"] = broken_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", broken_);
+      archive.common("times", times_);
+      for (unsigned int p = 0; p < probes_.size(); ++p) {
+        const Archive::Part part(archive, "probe_" + std::to_string(p));
+        archive.numbers("place", probes_[p].cell, probes_[p].distance);
+        archive.common("velocities", velocities_[p]);
+      }
     }
 
   private:

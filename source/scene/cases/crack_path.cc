@@ -1,5 +1,6 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/input/section_reader.h"
 #include "nsfd/scene/crack_shape.h"
 
@@ -82,6 +83,11 @@ namespace nsfd
       errors["crack_normal_x"] = sign * normal[0];
       errors["crack_normal_y"] = sign * normal[1];
       errors["crack_normal_z"] = sign * normal[2];
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", start_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -70,6 +72,11 @@ namespace nsfd
     {
       errors["momentum"] = momentum_;
       errors["work"] = relative_error(work_, exact_work_);
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", momentum_, work_, exact_work_);
     }
 
   private:

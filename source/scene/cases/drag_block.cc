@@ -1,5 +1,7 @@
 #include "spring_and_floor.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -62,6 +64,12 @@ namespace nsfd
       errors["displacement"] = relative_error(after_cycle_, speed_ * period());
       errors["exact_displacement"] = speed_ * period();
       errors["longest_stick_in_steps"] = longest_stick_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", measured_start_, velocity_, after_cycle_, old_,
+                      stick_, longest_stick_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "spring_and_floor.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -64,6 +66,12 @@ namespace nsfd
       errors["stop_time"] = relative_error(moving_until_, stop_time_);
       errors["friction_work"] = relative_error(friction_, work_);
       errors["velocity_after_stop"] = creep_ / fastest_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", position_, friction_, fastest_, direction_,
+                      turns_, moving_until_, creep_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -93,6 +95,11 @@ namespace nsfd
         errors["xi"] = density_;
         errors["bound_79"] = density_ / (1. + density_);
       }
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", measured_, kinetic_, stress_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -59,6 +61,12 @@ namespace nsfd
       if (square_ > 0.)
         errors["final_speed"] = relative_error(
             velocity_, std::copysign(std::sqrt(square_), start_));
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", block_, axis_, start_, square_, velocity_,
+                      broken_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -54,6 +56,11 @@ namespace nsfd
       errors["fracture_energy"] = (damage_ + friction_) / scale_;
       errors["external_work"] = work_ / scale_;
       errors["peak_stress"] = force_ / section_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", damage_, friction_, work_, force_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -70,6 +72,11 @@ namespace nsfd
       errors["velocity"] = velocity_;
       errors["position"] = position_;
       errors["normal_reaction"] = reaction_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", velocity_, position_, reaction_, old_normal_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <vector>
 
 namespace nsfd
@@ -136,6 +138,17 @@ namespace nsfd
       errors["phase_lag"] =
         relative_error(through.lag() - in.lag(), std::atan(ratio));
       errors["power"] = std::abs(t * t + r * r - 1.);
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", time_);
+      constexpr std::size_t n = sizeof(CellState) / sizeof(double);
+      std::vector<double> values(n * cells_.size());
+      std::memcpy(values.data(), cells_.data(), values.size() * sizeof(double));
+      archive.common("cells", values);
+      cells_.resize(values.size() / n);
+      std::memcpy(cells_.data(), values.data(), values.size() * sizeof(double));
     }
 
   private:

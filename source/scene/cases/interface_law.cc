@@ -1,5 +1,6 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/input/section_reader.h"
 
 #include <algorithm>
@@ -137,6 +138,12 @@ namespace nsfd
       errors["damage"] = relative_error(damage_, law_->toughness());
       errors["exact_peak_time"] = to_peak_.time / unit;
       errors["exact_break_time"] = to_end_.time / unit;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", old_, speed_, largest_, peak_time_, break_time_,
+                      damage_, impulse_);
     }
 
   private:

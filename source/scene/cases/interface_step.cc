@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 namespace nsfd
 {
   using namespace cases;
@@ -92,6 +94,12 @@ namespace nsfd
         return;
       errors["transmitted"] = std::sqrt(difference_ / reference_);
       errors["transmitted_end"] = last_difference_ / last_exact_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", difference_, reference_, last_difference_,
+                      last_exact_);
     }
 
   private:

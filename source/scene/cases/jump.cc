@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -78,6 +80,11 @@ namespace nsfd
         errors["force"] = force_;
       errors["exact_grip_over_R_k"] = grip_at_jump_ / scale_;
       errors["exact_excess_over_G"] = excess_ / toughness_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", grip_at_break_, left_over_, numerical_, force_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/base/archive.h"
+
 #include <optional>
 
 namespace nsfd::cases
@@ -24,6 +26,11 @@ namespace nsfd::cases
       if (!(variance > 0.))
         return {};
       return (n_ * ta_ - t_ * a_) / variance;
+    }
+
+    void remember(Archive &archive)
+    {
+      archive.numbers("line_fit", n_, t_, a_, tt_, ta_);
     }
 
   private:

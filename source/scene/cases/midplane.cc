@@ -1,5 +1,6 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/input/parameter_file.h"
 #include "nsfd/input/section_reader.h"
 
@@ -91,6 +92,13 @@ namespace nsfd
       for (std::size_t i = 0; i < times_.size(); ++i)
         if (times_[i] <= old_middle_)
           errors[fmt::format("force_{}", i + 1)] = forces_[i];
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", damage_, separation_time_, peak_force_,
+                      old_force_, old_middle_);
+      archive.common("forces", forces_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -93,6 +95,12 @@ namespace nsfd
       const double phase =
           turns + (exact < turns ? -angle : angle); // 2 omega t as measured
       errors["frequency"] = relative_error(phase, exact);
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", time_, energy_, initial_energy_, kinetic_,
+                      drift_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -60,6 +62,11 @@ namespace nsfd
       errors["peak"] = relative_error(pull_, law_->strength() + drag_);
       errors["exact_work_over_G"] = 1. + viscous / G;
       errors["exact_peak_over_R"] = 1. + drag_ / law_->strength();
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", step_, work_, damage_, viscous_, pull_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <complex>
 
 namespace nsfd
@@ -69,6 +71,16 @@ namespace nsfd
       // on the circle: a turn more or less is none
       errors["phase"] =
         std::abs(place_ / std::abs(place_) - std::polar(1., angle_)) / angle_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      double start[2] = {start_.real(), start_.imag()},
+             place[2] = {place_.real(), place_.imag()};
+      archive.numbers("found", time_, energy_, initial_energy_, scheme_, angle_,
+                      start[0], start[1], place[0], place[1]);
+      start_ = {start[0], start[1]};
+      place_ = {place[0], place[1]};
     }
 
   private:

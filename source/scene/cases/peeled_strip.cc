@@ -1,6 +1,7 @@
 #include "case_input.h"
 #include "line_fit.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/input/section_reader.h"
 
 #include <limits>
@@ -83,6 +84,13 @@ namespace nsfd
         errors["damage"] = relative_error(
             damage_, planes_ * toughness_ * (overload_ - 1.) * length_);
       }
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", growth_, damage_, kinetic_, initial_energy_,
+                      time_, path_error_, path_);
+      fit_.remember(archive);
     }
 
   private:

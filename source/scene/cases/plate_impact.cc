@@ -1,5 +1,7 @@
 #include "spalling_plane.h"
 
+#include "nsfd/base/archive.h"
+
 #include <optional>
 
 namespace nsfd
@@ -123,6 +125,13 @@ namespace nsfd
         errors["pullback"] =
             relative_error(lost_, 2. * plane_->impulse() / bar_.impedance());
       }
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", pulse_stress_, pulse_time_, tension_time_,
+                      tension_place_, difference_, reference_, flyer_velocity_,
+                      lost_, damage_);
     }
 
   private:

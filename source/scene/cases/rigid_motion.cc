@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -96,6 +98,13 @@ namespace nsfd
       if (stiffness_ > 0.)
         errors["jump"] =
             std::sqrt(2. * stored_ * size / (stiffness_ * volume_)) / largest_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", volume_, largest_, initial_kinetic_, kinetic_,
+                      momentum_, stress_, stored_, initial_momentum_[0],
+                      initial_momentum_[1], initial_momentum_[2]);
     }
 
   private:

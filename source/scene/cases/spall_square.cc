@@ -1,5 +1,7 @@
 #include "spalling_plane.h"
 
+#include "nsfd/base/archive.h"
+
 namespace nsfd
 {
   using namespace cases;
@@ -83,6 +85,12 @@ namespace nsfd
       errors["trapped"] = trapped_;
       errors["damage"] = relative_error(damage_, toughness_);
       errors["fragments"] = n_fragments_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", damage_, spall_time_, place_, piece_velocity_,
+                      trapped_, n_fragments_);
     }
 
   private:

@@ -1,5 +1,6 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/input/section_reader.h"
 
 #include <algorithm>
@@ -58,6 +59,11 @@ namespace nsfd
       errors["failed"] = failed == fails_ ? 0. : 1.;
       errors["opening_max"] = opening_ / opening_scale_;
       errors["load_over_threshold"] = threshold_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", broken_, opening_);
     }
 
   private:

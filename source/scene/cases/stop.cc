@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <algorithm>
 
 namespace nsfd
@@ -88,6 +90,12 @@ namespace nsfd
       if (lifts_)
         errors["lift"] = relative_error(lift_, climb_ * exact_distance_);
       errors["velocity_after_stop"] = creep_ / speed_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", lift_, distance_, work_, kinetic_,
+                      measured_stop_, creep_, old_);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "case_input.h"
 
+#include "nsfd/base/archive.h"
+
 #include <cmath>
 
 namespace nsfd
@@ -126,6 +128,12 @@ namespace nsfd
         errors["contact_time"] = relative_error(duration_, contacts * unit_);
       }
       errors["energy"] = std::abs(1. - energy_ / initial_energy_);
+    }
+
+    void remember(Archive &archive) override
+    {
+      archive.numbers("found", time_, momentum_, impulse_, duration_, energy_,
+                      initial_energy_);
     }
 
   private:

@@ -1,6 +1,7 @@
 #include "case_input.h"
 #include "line_fit.h"
 
+#include "nsfd/base/archive.h"
 #include "nsfd/input/section_reader.h"
 
 #include <algorithm>
@@ -46,6 +47,11 @@ namespace nsfd
     {
       if (const auto slope = fit_.slope())
         errors["speed_over_rayleigh"] = *slope / rayleigh_;
+    }
+
+    void remember(Archive &archive) override
+    {
+      fit_.remember(archive);
     }
 
   private:

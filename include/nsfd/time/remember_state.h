@@ -1,0 +1,10 @@
+#pragma once
+
+namespace nsfd
+{
+  class Archive;
+  struct State;
+
+  /** All of a state, to or from an archive. Collective. */
+  void remember(State &state, Archive &archive);
+} // namespace nsfd

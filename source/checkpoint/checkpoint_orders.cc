@@ -1,0 +1,109 @@
+#include "checkpoint_archive.h"
+
+#include "../mesh/mix_bits.h"
+#include "../output/gather.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  template <int dim>
+  CheckpointOrders<dim>::CheckpointOrders(
+      const Discretization<dim> &discretization,
+      const Communicator &communicator)
+      : discretization_(discretization), communicator_(communicator)
+  {
+    const auto &bodies = discretization.bodies();
+    const auto &points = discretization.points();
+    std::vector<RankOrder::Key> keys;
+    keys.reserve(bodies.n_dofs());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const auto &id = discretization.cell_id(unsigned(b));
+      const auto word = [&](const unsigned int k) {
+        return (std::uint64_t(id[k]) << 32) | id[k + 1];
+      };
+      for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
+           ++i)
+        keys.push_back({{word(0), word(2), i - bodies.first_dof[b]}});
+    }
+    unknowns_ = std::make_unique<RankOrder>(communicator, keys, keys.size());
+    keys.clear();
+    for (const auto &face : points.faces)
+      for (unsigned int k = 0; k < face.count; ++k)
+        keys.push_back({{face.key, k, 0}});
+    points_ = std::make_unique<RankOrder>(communicator, keys, points.n_owned);
+    set_fingerprint();
+  }
+
+  template <int dim>
+  std::vector<std::uint32_t> CheckpointOrders<dim>::cells() const
+  {
+    std::vector<std::array<unsigned int, 4>> own;
+    for (std::size_t b = 0; b < discretization_.bodies().size(); ++b)
+      own.push_back(discretization_.cell_id(unsigned(b)));
+    auto all = gather(communicator_, own);
+    std::sort(all.begin(), all.end());
+    std::vector<std::uint32_t> flat;
+    for (const auto &id : all)
+      flat.insert(flat.end(), id.begin(), id.end());
+    return flat;
+  }
+
+  template <int dim>
+  std::vector<std::uint64_t> CheckpointOrders<dim>::faces() const
+  {
+    const auto &points = discretization_.points();
+    std::vector<std::array<std::uint64_t, 2>> own;
+    for (const auto &face : points.faces)
+      if (face.first < points.n_owned)
+        own.push_back({{face.key, face.count}});
+    auto all = gather(communicator_, own);
+    std::sort(all.begin(), all.end());
+    std::vector<std::uint64_t> flat;
+    for (const auto &face : all)
+      flat.insert(flat.end(), face.begin(), face.end());
+    return flat;
+  }
+
+  template <int dim>
+  void CheckpointOrders<dim>::set_fingerprint()
+  {
+    const auto &points = discretization_.points();
+    const double unit = std::ldexp(discretization_.extent(), -26);
+    std::uint64_t hash = 0;
+    const auto add = [&](const std::uint64_t value) {
+      hash = mixed(hash ^ value);
+    };
+    const auto add_place = [&](const double x) {
+      add(std::uint64_t(std::llround(x / unit)));
+    };
+    std::uint64_t sums[2] = {0, 0};
+    for (std::size_t b = 0; b < discretization_.bodies().size(); ++b) {
+      hash = 0;
+      for (const unsigned int part : discretization_.cell_id(unsigned(b)))
+        add(part);
+      add(discretization_.material_of(unsigned(b)));
+      for (const auto &corner : discretization_.corners(unsigned(b)))
+        for (unsigned int c = 0; c < dim; ++c)
+          add_place(corner[c]);
+      sums[0] += hash;
+    }
+    for (std::size_t i = 0; i < points.n_owned; ++i) {
+      const auto &face = points.faces[points.face_of[i]];
+      const PointOrigin origin = discretization_.origins()[i];
+      hash = face.key;
+      add(i - face.first);
+      add(std::uint64_t(origin.kind));
+      add(origin.block);
+      for (unsigned int c = 0; c < dim; ++c)
+        add_place(points.position[i * dim + c]);
+      sums[1] += hash;
+    }
+    for (const std::uint64_t sum : sums)
+      fingerprint_.push_back(communicator_.sum_integer(sum));
+  }
+
+  template class CheckpointOrders<2>;
+  template class CheckpointOrders<3>;
+} // namespace nsfd

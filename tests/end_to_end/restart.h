@@ -1,0 +1,25 @@
+#pragma once
+
+#include "program.h"
+
+/** Runs that are stopped, killed and resumed. */
+namespace end_to_end
+{
+  /** `nsfd FILE --set ... --output DIRECTORY`, then @p more. */
+  std::vector<std::string> command_of(const Launch &what,
+                                      const std::filesystem::path &directory,
+                                      const std::vector<std::string> &more);
+
+  /** The same launch with --resume in the directory of @p name. */
+  Result resume(const Workspace &workspace, const std::string &name,
+                const Launch &what);
+
+  /** With a checkpoint every @p steps. */
+  Launch storing(Launch what, unsigned int steps);
+
+  std::filesystem::path newest(const std::filesystem::path &directory);
+  std::filesystem::path previous(const std::filesystem::path &directory);
+
+  /** Wait until history.csv has so many rows; false if it takes too long. */
+  bool wait_for_rows(const std::filesystem::path &directory, long n);
+} // namespace end_to_end

@@ -1,0 +1,296 @@
+#include "compare.h"
+#include "restart.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <ostream>
+#include <random>
+#include <thread>
+
+// Runs that end in the middle of things and go on: their histories are those
+// of runs that were never interrupted, to the last bit.
+
+namespace end_to_end
+{
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    struct RestartRow {
+      std::string name;
+      Launch launch;
+      double share = 0.5; ///< of the steps, at which the run is stored
+    };
+
+    void PrintTo(const RestartRow &row, std::ostream *stream)
+    {
+      *stream << row.name;
+    }
+
+    fs::path benchmark(const std::string &name)
+    {
+      return quickstart().parent_path() / "benchmarks" / (name + ".prm");
+    }
+
+    const Launch breaking = {quickstart(),
+                             {"Mesh/cells=12, 9", "Time/step=0.4 us",
+                              "Constants/turn=60 us", "Constants/pull=4 m/s",
+                              "Time/end=120 us"}};
+
+    Launch with(Launch launch, const std::vector<std::string> &more)
+    {
+      launch.set.insert(launch.set.end(), more.begin(), more.end());
+      return launch;
+    }
+
+    const Launch midplane = {scene("midplane"), {"Mesh/cells=10, 10"}};
+    const Launch bonded = with(midplane, {"Interface: elsewhere/law=bonded",
+                                          "Interface: midline/intact faces="
+                                          "bonded"});
+    const Launch rubbing = {benchmark("broken_faces"),
+                            {"Constants/n=6", "Mesh/cells=6, 6",
+                             "Constants/share=0.4", "Time/step=2 crossings",
+                             "Time/end=1.4"}};
+    const Launch torn = {benchmark("fracture_extrinsic"),
+                         {"Mesh/cells=8, 8", "Time/end=9 ns"}};
+    const Launch pulled = {scene("static_michel"),
+                           {"Mesh/cells=4, 2", "Interface: middle/where=abs(x - "
+                                               "L/2) < 1 um",
+                            "Interface: rest/law=rigid"}};
+    const std::string global = "Solver/path=global",
+                      cg = "Solver/linear solver=cg";
+
+    // whatever a step may leave to the next one
+    const std::vector<RestartRow> rows = {
+        {"breaking", breaking},
+        {"breaking_late", breaking, 0.8},
+        {"breaking_global", with(breaking, {global, "Time/end=42 us"})},
+        {"breaking_cg", with(breaking, {global, cg, "Time/end=42 us"})},
+        {"gauss_seidel",
+         with(midplane, {"Solver/method=gauss seidel",
+                         "Interface: elsewhere/law=elastic",
+                         "Interface: elsewhere/normal stiffness=1e17",
+                         "Time/end=1 ns", "Solver/tolerance=1e-4"})},
+        {"scattered",
+         with(midplane, {"Interface: midline/scatter=weibull",
+                         "Interface: midline/strength modulus=8",
+                         "Interface: midline/opening viscosity=5 MPa*s/m"})},
+        {"crack_pressure",
+         with(midplane,
+              {"Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"})},
+        {"extrinsic", midplane},
+        {"extrinsic_long_steps",
+         with(midplane, {global, cg, "Time/step=6 crossings"})},
+        {"bonded", bonded},
+        {"bonded_cg", with(bonded, {cg})},
+        {"bonded_everywhere", with(torn, {"Time/scheme=moreau-jean",
+                                          "Time/step=0.6 crossings"})},
+        {"symplectic", torn},
+        {"rubbing", rubbing},
+        {"rubbing_iterations",
+         with(rubbing, {"Constants/n=4", "Mesh/cells=4, 4", global, cg})},
+        {"interior_point", with(rubbing, {"Solver/method=interior point"})},
+        {"ball", {scene("ball"), {"Time/end=0.6 s"}}},
+        {"stop", {scene("stop"), {}}},
+        {"dilatancy", {scene("dilatancy"), {}}},
+        {"wear", {scene("wear"), {}}},
+        {"automatic_steps",
+         with(breaking, {"Time/step=auto", "Time/end=40 us"})},
+        {"quasi_static", {scene("static_michel"), {}}},
+        {"quasi_static_extrinsic", {scene("static_extrinsic"), {}}, 0.3},
+        {"jump_in_time",
+         {scene("static_michel"),
+          {"Time/at solution jump=dynamic", "Time/end=0.7 s",
+           "Time/dynamic step=1 crossings"}},
+         0.9},
+        {"equilibrium_first", {scene("static_start"), {}}},
+        {"arkode_explicit",
+         {scene("mode"),
+          {"Time/scheme=arkode", "Time/pairs=explicit", "Time/step=20 us"}}},
+        {"arkode_implicit",
+         {scene("mode"),
+          {"Time/scheme=arkode", "Time/pairs=implicit", "Time/step=20 us"}}},
+        {"arkode_driven",
+         {scene("interface_harmonic"),
+          {"Time/scheme=arkode", "Mesh/cells=40, 1", "Time/step=10 us"}}},
+        {"xu_needleman",
+         with(breaking, {"Interface: faces/law=xu-needleman",
+                         "Time/end=40 us"})},
+        {"in_space",
+         {scene("bar_wall"),
+          {"dimension=3", "Mesh/type=brick", "Mesh/cells=8, 2, 2",
+           "Mesh/lower corner=0, 0, 0", "Mesh/upper corner=10 m, 1 m, 1 m",
+           "Mesh/distortion=0.2", "Obstacle: wall/point=-5 m, 0, 0",
+           "Obstacle: wall/normal=1, 0, 0"}}},
+        {"broken_in_space",
+         {benchmark("broken_brick"), {}, 1, false, 300.},
+         0.5},
+        {"bimodular", {scene("bimodular"), {"Mesh/cells=30, 1"}}},
+        {"plate_impact", {scene("plate_impact"), {}}},
+        {"crack_path", {scene("crack_path"), {}}},
+    };
+
+    class RestartTest : public testing::TestWithParam<RestartRow>
+    {
+    };
+
+    /** Of the uninterrupted run @p a and the resumed one @p b. */
+    void expect_same(const Result &a, const Result &b)
+    {
+      EXPECT_TRUE(a.history_text == b.history_text)
+          << "histories differ by " << energy_difference(a.history, b.history);
+      EXPECT_EQ(a.summary["errors"], b.summary["errors"]);
+      for (const char *name :
+           {"energy", "dissipated", "steps", "final_time", "fragments",
+            "ledger_defect_max", "residual_max", "penetration_max",
+            "penetration_bound", "rigid_drift_max"})
+        EXPECT_EQ(a.summary[name], b.summary[name]) << name;
+      for (const char *name :
+           {"newton", "krylov", "gauss_seidel_sweeps", "rejected_steps",
+            "released_bonds", "redone_steps", "solver_calls"})
+        EXPECT_EQ(a.summary["counters"].value(name, 0.),
+                  b.summary["counters"].value(name, 0.))
+            << name;
+      EXPECT_EQ(read_text(a.directory / "fields.pvd"),
+                read_text(b.directory / "fields.pvd"));
+      EXPECT_TRUE(snapshots(a.directory, "fields") ==
+                  snapshots(b.directory, "fields"));
+      EXPECT_TRUE(snapshots(a.directory, "interfaces") ==
+                  snapshots(b.directory, "interfaces"));
+    }
+  } // namespace
+
+  TEST_P(RestartTest, IsTheSameToTheLastBit)
+  {
+    const RestartRow &row = GetParam();
+    const Workspace workspace;
+    const Result whole = run(workspace, "whole", row.launch);
+    ASSERT_TRUE(whole.completed()) << whole.description();
+    const auto steps = unsigned(row.share * whole.number("steps")) + 1;
+    ASSERT_LT(steps, whole.number("steps"));
+    // stored once on the way, and at the end
+    const Launch stored = storing(row.launch, steps);
+    const Result before = run(workspace, "resumed", stored);
+    ASSERT_TRUE(before.completed()) << before.description();
+    EXPECT_TRUE(whole.history_text == before.history_text)
+        << "to store a run changes nothing";
+    if (row.share < 0.5)
+      fs::rename(previous(before.directory), newest(before.directory));
+    else
+      fs::remove(newest(before.directory));
+    const Result after = resume(workspace, "resumed", stored);
+    ASSERT_TRUE(after.completed()) << after.description();
+    EXPECT_EQ(after.counter("resumed"), 1.);
+    expect_same(whole, after);
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Table, RestartTest, testing::ValuesIn(rows),
+                           [](const auto &info) { return info.param.name; });
+
+  // On two ranks bit for bit, and from one number of ranks to another.
+  TEST(Restart, OnSeveralRanks)
+  {
+    for (const Launch &launch : {breaking, bonded, rubbing, midplane}) {
+      SCOPED_TRACE(launch.file.string());
+      for (const auto [first, second] :
+           {std::pair{2u, 2u}, std::pair{1u, 2u}, std::pair{3u, 1u}}) {
+        SCOPED_TRACE(std::to_string(first) + " ranks, then " +
+                     std::to_string(second));
+        const Workspace workspace;
+        Launch before = with(launch, {"Solver/tolerance=1e-11"}),
+               after = before;
+        before.ranks = first;
+        after.ranks = second;
+        const Result whole = good_run(workspace, "whole", before);
+        const auto steps = unsigned(0.4 * whole.number("steps")) + 1;
+        const Result stored = run(workspace, "resumed", storing(before, steps));
+        ASSERT_TRUE(stored.completed()) << stored.description();
+        // at 0.4, 0.8 and the end
+        fs::rename(previous(stored.directory), newest(stored.directory));
+        const Result resumed =
+            resume(workspace, "resumed", storing(after, steps));
+        ASSERT_TRUE(resumed.completed()) << resumed.description();
+        if (first == second)
+          EXPECT_TRUE(whole.history_text == resumed.history_text);
+        expect_below("energies",
+                     energy_difference(whole.history, resumed.history), 1e-9);
+      }
+    }
+  }
+
+  // What the shell sees of Ctrl-C, and that nothing is lost by it.
+  TEST(Restart, AfterSignals)
+  {
+    const Workspace workspace;
+    const Launch launch = with(breaking, {"Time/step=0.1 us"});
+    const Result whole = good_run(workspace, "whole", launch);
+    const fs::path directory = workspace.path() / "stopped";
+    std::vector<std::string> more;
+    long rows = 0;
+    for (const int signal : {SIGINT, SIGTERM}) {
+      Process process(command_of(launch, directory, more), workspace.path());
+      ASSERT_TRUE(wait_for_rows(directory, rows + 50));
+      process.send(signal);
+      const Outcome outcome = process.wait(30.);
+      EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+      EXPECT_TRUE(fs::exists(newest(directory)));
+      rows = long(History(read_text(directory / "history.csv")).size());
+      more = {"--resume"};
+    }
+    const Result after = resume(workspace, "stopped", launch);
+    ASSERT_TRUE(after.completed()) << after.description();
+    EXPECT_EQ(after.counter("resumed"), 2.);
+    expect_same(whole, after);
+  }
+
+  // SIGKILL at random moments, as often as NSFD_KILLS says.
+  TEST(Restart, AfterKillsAtRandom)
+  {
+    const char *wanted = std::getenv("NSFD_KILLS");
+    const unsigned int kills = wanted ? unsigned(std::atoi(wanted)) : 4;
+    const Workspace workspace;
+    const Launch launch = storing(with(breaking, {"Time/step=0.1 us"}), 3);
+    const Result whole = good_run(workspace, "whole", launch);
+    const fs::path directory = workspace.path() / "killed";
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> share(0., 1.);
+    unsigned int done = 0, fresh = 0, finished = 0;
+    while (done < kills) {
+      const bool starts =
+          !fs::exists(newest(directory)) && !fs::exists(previous(directory));
+      fresh += starts;
+      Process process(command_of(launch, directory,
+                                 {starts ? "--force" : "--resume"}),
+                      workspace.path());
+      // from before the first step to well into them
+      std::this_thread::sleep_for(
+          std::chrono::milliseconds(int(350. + 700. * share(random))));
+      if (process.is_running()) {
+        process.send(SIGKILL);
+        EXPECT_EQ(process.wait(10.).exit_code, 128 + SIGKILL);
+        ++done;
+      } else {
+        const Outcome outcome = process.wait(1.);
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        Result result;
+        result.directory = directory;
+        EXPECT_EQ(read_text(directory / "history.csv"), whole.history_text);
+        fs::remove_all(directory);
+        ++finished;
+      }
+    }
+    const bool starts =
+        !fs::exists(newest(directory)) && !fs::exists(previous(directory));
+    const Outcome last =
+        Process(command_of(launch, directory, {starts ? "--force" : "--resume"}),
+                workspace.path())
+            .wait(60.);
+    EXPECT_EQ(last.exit_code, 0) << last.err;
+    EXPECT_EQ(read_text(directory / "history.csv"), whole.history_text);
+    std::cout << "  " << done << " kills, " << fresh << " runs from the start, "
+              << finished + 1 << " completed\n";
+  }
+} // namespace end_to_end
