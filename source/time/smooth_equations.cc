@@ -69,6 +69,7 @@ namespace nsfd
     const Archive::Part part(archive, "smooth_motion");
     archive.numbers("scales", velocity_scale_, displacement_scale_,
                     energy_scale_, inner_step_);
+    archive.points("row_forces", lambda_); // where their iterations start
   }
 
   template <int dim>

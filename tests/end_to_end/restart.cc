@@ -41,11 +41,25 @@ namespace end_to_end
     return result;
   }
 
+  Launch with(Launch launch, const std::vector<std::string> &settings)
+  {
+    for (const std::string &setting : settings) {
+      const std::string name = setting.substr(0, setting.find('=') + 1);
+      auto &set = launch.set;
+      set.erase(std::remove_if(set.begin(), set.end(),
+                               [&](const std::string &old) {
+                                 return old.compare(0, name.size(), name) == 0;
+                               }),
+                set.end());
+      set.push_back(setting);
+    }
+    return launch;
+  }
+
   Launch storing(Launch what, const unsigned int steps)
   {
-    what.set.push_back("Output/checkpoint every steps=" +
-                       std::to_string(steps));
-    return what;
+    return with(std::move(what),
+                {"Output/checkpoint every steps=" + std::to_string(steps)});
   }
 
   fs::path newest(const fs::path &directory)

@@ -14,6 +14,9 @@ namespace end_to_end
   Result resume(const Workspace &workspace, const std::string &name,
                 const Launch &what);
 
+  /** With other settings, in place of those of the same name. */
+  Launch with(Launch launch, const std::vector<std::string> &settings);
+
   /** With a checkpoint every @p steps. */
   Launch storing(Launch what, unsigned int steps);
 

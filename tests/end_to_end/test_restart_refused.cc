@@ -19,12 +19,6 @@ namespace end_to_end
                           {"Mesh/cells=6, 6", "Time/end=4 ns"}};
     constexpr unsigned int every = 8;
 
-    Launch with(Launch launch, const std::vector<std::string> &more)
-    {
-      launch.set.insert(launch.set.end(), more.begin(), more.end());
-      return launch;
-    }
-
     /** All files of a run by name. */
     std::map<std::string, std::string> contents(const fs::path &directory)
     {
