@@ -98,7 +98,9 @@ namespace nsfd
           "output/" + std::filesystem::path(scene.file).stem().string();
     output.fields =
         reader.boolean("fields", true, "write fields.pvd and interfaces.pvd");
-    reader.choice("format", "vtu", {"vtu"}, "of the fields: vtu");
+    output.hdf5 = reader.choice("format", "vtu", {"vtu", "hdf5"},
+                                "of the fields: vtu, or hdf5 (with XDMF, for "
+                                "ParaView and h5py)") == "hdf5";
     output.fields_every =
         reader.number("fields every", "0", units::time, Range::non_negative(),
                       "s; 0: at the start and the end");

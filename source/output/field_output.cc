@@ -2,6 +2,7 @@
 
 #include "field_grids.h"
 #include "snapshot.h"
+#include "xdmf_series.h"
 
 #include "nsfd/base/archive.h"
 
@@ -14,7 +15,8 @@ namespace nsfd
   template <int dim>
   FieldOutput<dim>::FieldOutput(const std::string &directory,
                                 const Discretization<dim> &discretization,
-                                const Communicator &communicator)
+                                const Communicator &communicator,
+                                const bool hdf5)
       : directory_(directory), discretization_(discretization),
         communicator_(communicator),
         fields_((std::filesystem::path(directory) / "fields.pvd").string()),
@@ -22,17 +24,31 @@ namespace nsfd
             (std::filesystem::path(directory) / "interfaces.pvd").string()),
         face_numbers_(face_numbers(discretization))
   {
+    if (!hdf5)
+      return;
+    const std::filesystem::path folder(directory);
+    xdmf_fields_ = std::make_unique<XdmfSeries>((folder / "fields").string());
+    xdmf_interfaces_ =
+        std::make_unique<XdmfSeries>((folder / "interfaces").string());
   }
+
+  template <int dim>
+  FieldOutput<dim>::~FieldOutput() = default;
 
   template <int dim>
   void FieldOutput<dim>::write(const State &state, const double time_step,
                                const Fragments<dim> &fragments)
   {
-    write_series(fields_, "fields",
-                 volume_grid(discretization_, state, fragments));
-    write_series(
-        interfaces_, "interfaces",
-        interface_grid(discretization_, face_numbers_, state, time_step));
+    const auto volume = volume_grid(discretization_, state, fragments);
+    const auto faces =
+        interface_grid(discretization_, face_numbers_, state, time_step);
+    if (xdmf_fields_) {
+      add_together(*xdmf_fields_, volume);
+      add_together(*xdmf_interfaces_, faces);
+    } else {
+      write_series(fields_, "fields", volume);
+      write_series(interfaces_, "interfaces", faces);
+    }
     ++number_;
   }
 
@@ -62,6 +78,14 @@ namespace nsfd
     archive.numbers("fields_written", number_);
     if (archive.reads() && communicator_.is_root())
       remove_from(number_, directory_);
+    for (auto *series : {&xdmf_fields_, &xdmf_interfaces_})
+      if (*series) {
+        const Archive::Part part(
+            archive, series == &xdmf_fields_ ? "fields" : "interfaces");
+        (*series)->remember(archive);
+      }
+    if (xdmf_fields_)
+      return;
     for (auto *series : {&fields_, &interfaces_}) {
       const Archive::Part part(archive,
                                series == &fields_ ? "fields" : "interfaces");
@@ -77,6 +101,32 @@ namespace nsfd
                          fragments);
   }
 
+  /** What fails on one rank fails on all of them. */
+  template <int dim>
+  void FieldOutput<dim>::together(const std::function<void()> &action) const
+  {
+    std::string error;
+    try {
+      action();
+    } catch (const std::exception &exception) {
+      error = exception.what();
+    }
+    if (communicator_.any(!error.empty()))
+      throw std::runtime_error(
+          error.empty() ? "Another rank could not write its fields." : error);
+  }
+
+  template <int dim>
+  void FieldOutput<dim>::add_together(XdmfSeries &series,
+                                      const VtuGrid &piece) const
+  {
+    const VtuGrid whole = gather_grid(communicator_, piece);
+    together([&]() {
+      if (communicator_.is_root())
+        series.add(whole);
+    });
+  }
+
   template <int dim>
   void FieldOutput<dim>::write_series(PvdSeries &series,
                                       const std::string &base,
@@ -86,18 +136,6 @@ namespace nsfd
     const auto name = [&](const int rank) {
       return vtu_name(base, number_, unsigned(rank),
                       unsigned(communicator_.size()));
-    };
-    // what fails on one rank fails on all of them
-    const auto together = [&](const auto &action) {
-      std::string error;
-      try {
-        action();
-      } catch (const std::exception &exception) {
-        error = exception.what();
-      }
-      if (communicator_.any(!error.empty()))
-        throw std::runtime_error(
-            error.empty() ? "Another rank could not write its fields." : error);
     };
     together([&]() {
       write_vtu((directory / name(communicator_.rank())).string(), grid);

@@ -37,12 +37,14 @@ namespace nsfd
       for (const auto &entry : fs::directory_iterator(directory)) {
         const std::string extension = entry.path().extension().string();
         for (const char *ours :
-             {".vtu", ".pvtu", ".pvd", ".csv", ".json", ".svg", ".html"})
+             {".vtu", ".pvtu", ".pvd", ".csv", ".json", ".svg", ".html",
+              ".xdmf"})
           if (extension == ours)
             fs::remove(entry.path(), error);
       }
-      for (const char *ours : {"checkpoint.h5", "checkpoint_previous.h5",
-                               "checkpoint.h5.part"})
+      for (const char *ours :
+           {"checkpoint.h5", "checkpoint_previous.h5", "checkpoint.h5.part",
+            "fields.h5", "interfaces.h5"})
         fs::remove(fs::path(directory) / ours, error);
       for (const auto &entry :
            fs::directory_iterator(fs::path(directory) / "problems", error))
@@ -79,8 +81,8 @@ namespace nsfd
                                              Progress::mode_for_stdout(quiet));
     }
     if (input.output.fields || input.output.report)
-      fields_ = std::make_unique<FieldOutput<dim>>(directory, discretization,
-                                                   communicator);
+      fields_ = std::make_unique<FieldOutput<dim>>(
+          directory, discretization, communicator, input.output.hdf5);
   }
 
   template <int dim>

@@ -5,6 +5,8 @@
 #include "nsfd/output/vtu.h"
 
 #include <array>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,10 +14,13 @@ namespace nsfd
 {
   class Archive;
 
+  class XdmfSeries;
+
   /**
    * fields.pvd (volume: displacement, velocity, stress, fragment, material) and
    * interfaces.pvd (faces: beta, jump, traction, slip, contact status), one
-   * pair of files per output time; pictures for the report on rank 0.
+   * pair of files per output time, or fields.xdmf and interfaces.xdmf with one
+   * HDF5 file each; pictures for the report on rank 0.
    */
   template <int dim>
   class FieldOutput
@@ -23,7 +28,8 @@ namespace nsfd
   public:
     FieldOutput(const std::string &directory,
                 const Discretization<dim> &discretization,
-                const Communicator &communicator);
+                const Communicator &communicator, bool hdf5 = false);
+    ~FieldOutput();
 
     /** Write both series at the time of @p state. Collective. */
     void write(const State &state, double time_step,
@@ -37,6 +43,8 @@ namespace nsfd
                       const Fragments<dim> &fragments) const;
 
   private:
+    void together(const std::function<void()> &action) const;
+    void add_together(XdmfSeries &series, const VtuGrid &piece) const;
     void write_series(PvdSeries &series, const std::string &base,
                       const VtuGrid &grid);
 
@@ -44,6 +52,8 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
     PvdSeries fields_, interfaces_;
+    /// instead of them, or null
+    std::unique_ptr<XdmfSeries> xdmf_fields_, xdmf_interfaces_;
     unsigned int number_ = 0;
     /// per face and side: number of the face on the local cell
     std::vector<std::array<unsigned int, 2>> face_numbers_;
