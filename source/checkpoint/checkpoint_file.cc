@@ -124,18 +124,20 @@ namespace nsfd::checkpoint_file
     if (head.compare(0, std::strlen(title), title) != 0)
       return bytes.empty() ? "it is empty" : "it is no checkpoint of nsfd";
     std::istringstream lines(head.substr(std::strlen(title)));
-    std::string word, program, sum;
+    std::string names[4], program, sum;
     unsigned int its_format = 0;
     std::size_t size = 0;
-    lines >> word >> its_format >> word >> program >> word >> size >> word >>
-        sum;
+    lines >> names[0] >> its_format >> names[1] >> program >> names[2] >>
+        size >> names[3] >> sum;
     if (its_format > format)
       return fmt::format("nsfd {} has written it, in format {}; this program "
                          "({}) knows formats up to {}",
                          program, its_format, version().number, format);
     if (!lines || bytes.size() < size)
       return fmt::format("it is cut short: {} bytes of {}", bytes.size(), size);
-    if (bytes.size() != size || fmt::format("{:016x}", checksum(bytes)) != sum)
+    if (names[0] != "format" || names[1] != "program" || names[2] != "bytes" ||
+        names[3] != "checksum" || bytes.size() != size ||
+        fmt::format("{:016x}", checksum(bytes)) != sum)
       return "its checksum is wrong: it is damaged";
     return "";
   }

@@ -72,6 +72,7 @@ namespace end_to_end
          with(midplane,
               {"Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"})},
         {"extrinsic", midplane},
+        {"fields_in_hdf5", with(midplane, {"Output/format=hdf5"})},
         {"extrinsic_long_steps",
          with(midplane, {global, cg, "Time/step=6 crossings"})},
         {"bonded", bonded},
@@ -148,8 +149,9 @@ namespace end_to_end
         EXPECT_EQ(a.summary["counters"].value(name, 0.),
                   b.summary["counters"].value(name, 0.))
             << name;
-      EXPECT_EQ(read_text(a.directory / "fields.pvd"),
-                read_text(b.directory / "fields.pvd"));
+      for (const char *name : {"fields.pvd", "interfaces.pvd", "fields.xdmf",
+                               "interfaces.xdmf"})
+        EXPECT_EQ(read_text(a.directory / name), read_text(b.directory / name));
       EXPECT_TRUE(snapshots(a.directory, "fields") ==
                   snapshots(b.directory, "fields"));
       EXPECT_TRUE(snapshots(a.directory, "interfaces") ==

@@ -468,7 +468,7 @@ end
          "plane strain and plane stress are for dimension = 2",
          "set plane = strain"},
         {"checkpoint", "set fields every = 0.5 ns",
-         "set checkpoint every = -5 min", "checkpoint every = -300 must be",
+         "set checkpoint every = -5 min", "must not be negative",
          "set checkpoint every = -5 min"},
         {"quarter_points", "set mass = consistent",
          "set interface quadrature = quarter points\n"
