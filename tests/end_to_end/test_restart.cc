@@ -239,13 +239,52 @@ namespace end_to_end
     expect_same(whole, after);
   }
 
+  // Every few steps, whenever that is.
+  TEST(Restart, ByWallTime)
+  {
+    const Workspace workspace;
+    const Result whole = good_run(workspace, "whole", midplane);
+    const Launch launch = with(midplane, {"Output/checkpoint every=20 ms"});
+    const Result stored = run(workspace, "resumed", launch);
+    ASSERT_TRUE(stored.completed()) << stored.description();
+    EXPECT_EQ(whole.history_text, stored.history_text);
+    fs::rename(previous(stored.directory), newest(stored.directory));
+    const Result after = resume(workspace, "resumed", launch);
+    ASSERT_TRUE(after.completed()) << after.description();
+    expect_same(whole, after);
+  }
+
+  // Exit code 3 stores the last good state: a solver that can goes on from it.
+  TEST(Restart, AfterAStepThatFailed)
+  {
+    const Workspace workspace;
+    const Launch good = {scene("ball"),
+                         {"Obstacle: floor/friction=0.5", "Time/end=1 s",
+                          "Material: ball/initial velocity x=2 m/s"}};
+    const Launch bad = with(good, {"Solver/method=dual newton",
+                                   "Solver/maximum iterations=1",
+                                   "Time/maximum halvings=0"});
+    const Result failed = run(workspace, "ball", bad);
+    EXPECT_EQ(failed.outcome.exit_code, 3) << failed.description();
+    const Result again = resume(workspace, "ball", bad);
+    EXPECT_EQ(again.outcome.exit_code, 3);
+    EXPECT_EQ(again.history_text, failed.history_text);
+    const Result result = resume(workspace, "ball", good);
+    ASSERT_TRUE(result.completed()) << result.description();
+    EXPECT_EQ(result.history_text.compare(0, failed.history_text.size(),
+                                          failed.history_text),
+              0);
+    EXPECT_LE(result.number("ledger_defect_max"), 1e-9);
+    EXPECT_GT(result.dissipated("impact"), 0.);
+  }
+
   // SIGKILL at random moments, as often as NSFD_KILLS says.
   TEST(Restart, AfterKillsAtRandom)
   {
     const char *wanted = std::getenv("NSFD_KILLS");
     const unsigned int kills = wanted ? unsigned(std::atoi(wanted)) : 4;
     const Workspace workspace;
-    const Launch launch = storing(with(breaking, {"Time/step=0.1 us"}), 3);
+    const Launch launch = storing(with(breaking, {"Time/step=0.05 us"}), 3);
     const Result whole = good_run(workspace, "whole", launch);
     const fs::path directory = workspace.path() / "killed";
     std::mt19937 random(7);
@@ -260,7 +299,7 @@ namespace end_to_end
                       workspace.path());
       // from before the first step to well into them
       std::this_thread::sleep_for(
-          std::chrono::milliseconds(int(350. + 700. * share(random))));
+          std::chrono::milliseconds(int(300. + 1500. * share(random))));
       if (process.is_running()) {
         process.send(SIGKILL);
         EXPECT_EQ(process.wait(10.).exit_code, 128 + SIGKILL);
