@@ -18,8 +18,8 @@ namespace nsfd
                                     const std::vector<T> &values)
   {
     const std::size_t n = order.n_items();
-    const unsigned int components = unsigned(orders_.communicator().max(
-        n > 0 ? double(values.size() / n) : 0.));
+    const unsigned int components = unsigned(
+        orders_.communicator().max(n > 0 ? double(values.size() / n) : 0.));
     if (orders_.communicator().any(values.size() != n * components))
       throw std::logic_error(path(name) + ": values are missing");
     std::vector<T> all;

@@ -43,8 +43,8 @@ namespace nsfd::checkpoint_file
     public:
       explicit NewFile(const fs::path &path) : path_(path)
       {
-        file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
-                     0666);
+        file_ =
+            open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
         demand(file_ >= 0);
       }
       ~NewFile()
@@ -79,8 +79,8 @@ namespace nsfd::checkpoint_file
       void demand(const bool good) const
       {
         if (!good)
-          throw std::runtime_error(fmt::format("{}: {}", path_.string(),
-                                               std::strerror(errno)));
+          throw std::runtime_error(
+              fmt::format("{}: {}", path_.string(), std::strerror(errno)));
       }
 
       const fs::path path_;
@@ -91,8 +91,8 @@ namespace nsfd::checkpoint_file
     void move(const fs::path &from, const fs::path &to)
     {
       if (std::rename(from.c_str(), to.c_str()) != 0)
-        throw std::runtime_error(fmt::format("{}: {}", to.string(),
-                                             std::strerror(errno)));
+        throw std::runtime_error(
+            fmt::format("{}: {}", to.string(), std::strerror(errno)));
     }
 
     /** Names, too, must reach the disk. */
@@ -106,12 +106,13 @@ namespace nsfd::checkpoint_file
     }
   } // namespace
 
+  std::string program() { return version().number + " " + version().git_hash; }
+
   void seal(std::vector<char> &bytes)
   {
-    const std::string head =
-        fmt::format("{}\nformat {}\nprogram {}\nbytes {}\nchecksum {:016x}\n",
-                    title, format, version().number, bytes.size(),
-                    checksum(bytes));
+    const std::string head = fmt::format(
+        "{}\nformat {}\nprogram {}\nbytes {}\nchecksum {:016x}\n", title,
+        format, version().number, bytes.size(), checksum(bytes));
     std::fill_n(bytes.begin(), head_size, '\0');
     std::copy_n(head.begin(), std::min(head.size(), head_size - 1),
                 bytes.begin());

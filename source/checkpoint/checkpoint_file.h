@@ -17,6 +17,9 @@ namespace nsfd
     constexpr unsigned int format = 1;
     constexpr std::size_t head_size = 512;
 
+    /** Number and commit of this program. */
+    std::string program();
+
     /** Fill in the head. @p bytes are those of the HDF5 file. */
     void seal(std::vector<char> &bytes);
 

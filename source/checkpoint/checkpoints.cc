@@ -3,7 +3,6 @@
 #include "checkpoint_file.h"
 
 #include "nsfd/base/stopwatch.h"
-#include "nsfd/base/version.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/simulation.h"
 
@@ -60,7 +59,7 @@ namespace nsfd
       return;
     std::ostringstream file;
     file << std::ifstream(input_.file, std::ios::binary).rdbuf();
-    image->write("program", version().number + " " + version().git_hash);
+    image->write("program", checkpoint_file::program());
     image->write("command_line", options_.command_line);
     image->write("parameters", input_.echo);
     image->write("parameter_file", file.str());

@@ -24,9 +24,9 @@ namespace nsfd
   struct FoundCheckpoint {
     std::filesystem::path file;
     std::unique_ptr<Hdf5Image> image; ///< on the first rank
-    bool same_solver = true; ///< what solvers have kept is of use
-    bool same_steps = true;  ///< the ladder of steps goes on
-    std::string notes;       ///< about older files, and changed parameters
+    bool same_solver = true;          ///< what solvers have kept is of use
+    bool same_steps = true;           ///< the ladder of steps goes on
+    std::string notes; ///< about older files, and changed parameters
   };
 
   /**
@@ -72,7 +72,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
     mutable std::unique_ptr<CheckpointOrders<dim>> orders_; ///< when needed
-    double last_ = 0.; ///< s of wall time
+    double last_ = 0.;                                      ///< s of wall time
     unsigned int n_failed_ = 0;
   };
 } // namespace nsfd

@@ -42,10 +42,17 @@ namespace nsfd
     {
       std::string then;
       if (!found.image->read("parameters", then)) {
-        found.notes += fmt::format("  {}: it has no parameters\n",
-                                   found.file.string());
+        found.notes +=
+            fmt::format("  {}: it has no parameters\n", found.file.string());
         return false;
       }
+      std::string program;
+      if (found.image->read("program", program) &&
+          program != checkpoint_file::program())
+        found.notes +=
+            fmt::format("nsfd {} has written the checkpoint, this is "
+                        "{}: the last bits may differ\n",
+                        program, checkpoint_file::program());
       std::string refused, accepted;
       for (const auto &change : parameter_changes(then, input.echo)) {
         if (change.name == "Output/directory")

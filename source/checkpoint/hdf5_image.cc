@@ -44,8 +44,8 @@ namespace nsfd
     {
       const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
       H5Pset_userblock(creation, user_block);
-      return Handle(H5Fcreate("checkpoint that is written", H5F_ACC_TRUNC, creation,
-                              in_memory(nullptr)),
+      return Handle(H5Fcreate("checkpoint that is written", H5F_ACC_TRUNC,
+                              creation, in_memory(nullptr)),
                     H5Fclose);
     }
   } // namespace
@@ -66,10 +66,9 @@ namespace nsfd
   void Hdf5Image::write(const std::string &path, const hid_t type,
                         const std::vector<hsize_t> &shape, const void *values)
   {
-    const Handle space(shape.empty()
-                           ? H5Screate(H5S_SCALAR)
-                           : H5Screate_simple(int(shape.size()), shape.data(),
-                                              nullptr),
+    const Handle space(shape.empty() ? H5Screate(H5S_SCALAR)
+                                     : H5Screate_simple(int(shape.size()),
+                                                        shape.data(), nullptr),
                        H5Sclose);
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links, 1);

@@ -7,7 +7,7 @@ namespace nsfd
 {
   /** An entry of a parameter file that is not what it was. */
   struct ParameterChange {
-    std::string name; ///< Section/entry
+    std::string name;      ///< Section/entry
     std::string then, now; ///< empty: it was or is not there
 
     /** `Time/end: 10 ns, now 20 ns` */

@@ -28,8 +28,8 @@ namespace nsfd
          {std::pair{&piece.point_data, &all.point_data},
           std::pair{&piece.cell_data, &all.cell_data}})
       for (const VtuGrid::Array &array : *own)
-        data->push_back({array.name, array.components,
-                         gather(communicator, array.values)});
+        data->push_back(
+            {array.name, array.components, gather(communicator, array.values)});
     return all;
   }
 } // namespace nsfd

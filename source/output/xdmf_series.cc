@@ -109,8 +109,8 @@ namespace nsfd
         const Handle set(H5Dcreate2(file_, path.c_str(), type, space,
                                     H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          H5Dclose);
-        demand(set && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                               values) >= 0);
+        demand(set &&
+               H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
       }
 
       void link(const std::string &from, const std::string &to)
@@ -166,8 +166,7 @@ namespace nsfd
                       file_name = fs::path(path_).filename().string() + ".h5";
     const std::size_t n = grid.points.size();
     const auto topology = mixed_topology(grid);
-    const bool same_mesh = !mesh_.empty() &&
-                           grid.points == last_mesh_.points &&
+    const bool same_mesh = !mesh_.empty() && grid.points == last_mesh_.points &&
                            grid.cells == last_mesh_.cells &&
                            grid.connectivity == last_mesh_.connectivity &&
                            grid.offsets == last_mesh_.offsets;

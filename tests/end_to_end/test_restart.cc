@@ -60,10 +60,10 @@ namespace end_to_end
         {"breaking_global", with(breaking, {global, "Time/end=42 us"})},
         {"breaking_cg", with(breaking, {global, cg, "Time/end=42 us"})},
         {"gauss_seidel",
-         with(midplane, {"Solver/method=gauss seidel",
-                         "Interface: elsewhere/law=elastic",
-                         "Interface: elsewhere/normal stiffness=1e17",
-                         "Time/end=1 ns", "Solver/tolerance=1e-4"})},
+         with(midplane,
+              {"Solver/method=gauss seidel", "Interface: elsewhere/law=elastic",
+               "Interface: elsewhere/normal stiffness=1e17", "Time/end=1 ns",
+               "Solver/tolerance=1e-4"})},
         {"scattered",
          with(midplane, {"Interface: midline/scatter=weibull",
                          "Interface: midline/strength modulus=8",
@@ -77,8 +77,8 @@ namespace end_to_end
          with(midplane, {global, cg, "Time/step=6 crossings"})},
         {"bonded", bonded},
         {"bonded_cg", with(bonded, {cg})},
-        {"bonded_everywhere", with(torn, {"Time/scheme=moreau-jean",
-                                          "Time/step=0.6 crossings"})},
+        {"bonded_everywhere",
+         with(torn, {"Time/scheme=moreau-jean", "Time/step=0.6 crossings"})},
         {"symplectic", torn},
         {"rubbing", rubbing},
         {"rubbing_iterations",
@@ -94,8 +94,7 @@ namespace end_to_end
         {"quasi_static_extrinsic", {scene("static_extrinsic"), {}}, 0.3},
         {"jump_in_time",
          {scene("static_michel"),
-          {"Time/at solution jump=dynamic",
-           "Time/dynamic step=10 crossings"}}},
+          {"Time/at solution jump=dynamic", "Time/dynamic step=10 crossings"}}},
         {"jump_in_time_before",
          {scene("static_michel"),
           {"Time/at solution jump=dynamic", "Time/dynamic step=10 crossings"}},
@@ -149,8 +148,8 @@ namespace end_to_end
         EXPECT_EQ(a.summary["counters"].value(name, 0.),
                   b.summary["counters"].value(name, 0.))
             << name;
-      for (const char *name : {"fields.pvd", "interfaces.pvd", "fields.xdmf",
-                               "interfaces.xdmf"})
+      for (const char *name :
+           {"fields.pvd", "interfaces.pvd", "fields.xdmf", "interfaces.xdmf"})
         EXPECT_EQ(read_text(a.directory / name), read_text(b.directory / name));
       EXPECT_TRUE(snapshots(a.directory, "fields") ==
                   snapshots(b.directory, "fields"));
@@ -218,7 +217,7 @@ namespace end_to_end
   TEST(Restart, AfterSignals)
   {
     const Workspace workspace;
-    const Launch launch = with(breaking, {"Time/step=0.1 us"});
+    const Launch launch = with(breaking, {"Time/step=0.05 us"});
     const Result whole = good_run(workspace, "whole", launch);
     const fs::path directory = workspace.path() / "stopped";
     std::vector<std::string> more;
@@ -261,9 +260,9 @@ namespace end_to_end
     const Launch good = {scene("ball"),
                          {"Obstacle: floor/friction=0.5", "Time/end=1 s",
                           "Material: ball/initial velocity x=2 m/s"}};
-    const Launch bad = with(good, {"Solver/method=dual newton",
-                                   "Solver/maximum iterations=1",
-                                   "Time/maximum halvings=0"});
+    const Launch bad =
+        with(good, {"Solver/method=dual newton", "Solver/maximum iterations=1",
+                    "Time/maximum halvings=0"});
     const Result failed = run(workspace, "ball", bad);
     EXPECT_EQ(failed.outcome.exit_code, 3) << failed.description();
     const Result again = resume(workspace, "ball", bad);
@@ -294,9 +293,9 @@ namespace end_to_end
       const bool starts =
           !fs::exists(newest(directory)) && !fs::exists(previous(directory));
       fresh += starts;
-      Process process(command_of(launch, directory,
-                                 {starts ? "--force" : "--resume"}),
-                      workspace.path());
+      Process process(
+          command_of(launch, directory, {starts ? "--force" : "--resume"}),
+          workspace.path());
       // from before the first step to well into them
       std::this_thread::sleep_for(
           std::chrono::milliseconds(int(300. + 1500. * share(random))));
@@ -316,10 +315,10 @@ namespace end_to_end
     }
     const bool starts =
         !fs::exists(newest(directory)) && !fs::exists(previous(directory));
-    const Outcome last =
-        Process(command_of(launch, directory, {starts ? "--force" : "--resume"}),
-                workspace.path())
-            .wait(60.);
+    const Outcome last = Process(command_of(launch, directory,
+                                            {starts ? "--force" : "--resume"}),
+                                 workspace.path())
+                             .wait(60.);
     EXPECT_EQ(last.exit_code, 0) << last.err;
     EXPECT_EQ(read_text(directory / "history.csv"), whole.history_text);
     std::cout << "  " << done << " kills, " << fresh << " runs from the start, "

@@ -19,6 +19,36 @@ namespace end_to_end
                           {"Mesh/cells=6, 6", "Time/end=4 ns"}};
     constexpr unsigned int every = 8;
 
+    /** A small file system in memory, gone with the object. */
+    class Disk
+    {
+    public:
+      Disk(const fs::path &place, const std::string &size) : place_(place)
+      {
+        fs::create_directories(place);
+        mounted_ = mount("nsfd", place.c_str(), "tmpfs", 0,
+                         ("size=" + size).c_str()) == 0;
+      }
+      ~Disk()
+      {
+        if (mounted_)
+          umount2(place_.c_str(), MNT_DETACH);
+      }
+      Disk(const Disk &) = delete;
+      Disk &operator=(const Disk &) = delete;
+
+      bool mounted() const { return mounted_; }
+      bool make_read_only() const
+      {
+        return mount("nsfd", place_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY,
+                     nullptr) == 0;
+      }
+
+    private:
+      const fs::path place_;
+      bool mounted_ = false;
+    };
+
     /** All files of a run by name. */
     std::map<std::string, std::string> contents(const fs::path &directory)
     {
@@ -45,8 +75,8 @@ namespace end_to_end
                           const std::vector<std::string> &set = {})
       {
         const auto before = contents(stored_.directory);
-        const Result result = resume(workspace_, "run",
-                                     with(storing(small, every), set));
+        const Result result =
+            resume(workspace_, "run", with(storing(small, every), set));
         EXPECT_EQ(result.outcome.exit_code, 1);
         EXPECT_NE(result.outcome.err.find(text), std::string::npos)
             << result.outcome.err;
@@ -162,12 +192,12 @@ namespace end_to_end
   {
     const Workspace workspace;
     const fs::path disk = workspace.path() / "disk";
-    fs::create_directories(disk);
-    if (mount("nsfd", disk.c_str(), "tmpfs", 0, "size=600k") != 0)
+    const Disk small_disk(disk, "600k");
+    if (!small_disk.mounted())
       GTEST_SKIP() << "no right to mount a small disk";
     const fs::path directory = disk / "run";
-    const Launch launch = with(
-        storing(small, every), {"Mesh/cells=10, 10", "Output/fields=false"});
+    const Launch launch = with(storing(small, every),
+                               {"Mesh/cells=10, 10", "Output/fields=false"});
     const Launch first = with(launch, {"Time/end=1 ns"});
     const Outcome begun =
         Process(command_of(first, directory, {}), workspace.path()).wait(60.);
@@ -196,7 +226,6 @@ namespace end_to_end
             .wait(60.);
     EXPECT_EQ(again.exit_code, 0) << again.err;
     EXPECT_EQ(history, read_text(directory / "history.csv"));
-    umount2(disk.c_str(), MNT_DETACH);
   }
 
   // A folder that becomes read-only under a run.
@@ -204,26 +233,22 @@ namespace end_to_end
   {
     const Workspace workspace;
     const fs::path disk = workspace.path() / "disk";
-    fs::create_directories(disk);
-    if (mount("nsfd", disk.c_str(), "tmpfs", 0, "size=10m") != 0)
+    const Disk other_disk(disk, "10m");
+    if (!other_disk.mounted())
       GTEST_SKIP() << "no right to mount a disk";
     const fs::path directory = disk / "run";
     const Launch launch = with(storing(small, every), {"Output/fields=false"});
     Process process(command_of(launch, directory, {}), workspace.path());
     EXPECT_EQ(process.wait(60.).exit_code, 0);
     const auto before = contents(directory);
-    EXPECT_EQ(mount("nsfd", disk.c_str(), nullptr, MS_REMOUNT | MS_RDONLY,
-                    nullptr),
-              0);
-    const Outcome outcome =
-        Process(command_of(with(launch, {"Time/end=6 ns"}), directory,
-                           {"--resume"}),
-                workspace.path())
-            .wait(60.);
+    ASSERT_TRUE(other_disk.make_read_only());
+    const Outcome outcome = Process(command_of(with(launch, {"Time/end=6 ns"}),
+                                               directory, {"--resume"}),
+                                    workspace.path())
+                                .wait(60.);
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_NE(outcome.err.find("Read-only file system"), std::string::npos)
         << outcome.err;
     EXPECT_TRUE(before == contents(directory));
-    umount2(disk.c_str(), MNT_DETACH);
   }
 } // namespace end_to_end

@@ -62,8 +62,8 @@ namespace
   protected:
     void SetUp() override
     {
-      folder_ = fs::temp_directory_path() /
-                ("nsfd_xdmf_" + std::to_string(getpid()));
+      folder_ =
+          fs::temp_directory_path() / ("nsfd_xdmf_" + std::to_string(getpid()));
       fs::remove_all(folder_);
       fs::create_directories(folder_);
     }
@@ -73,8 +73,7 @@ namespace
                                std::vector<hsize_t> &shape) const
     {
       const stored::Handle file(
-          H5Fopen((folder_ / "series.h5").c_str(), H5F_ACC_RDONLY,
-                  H5P_DEFAULT),
+          H5Fopen((folder_ / "series.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
           H5Fclose);
       const stored::Handle set(H5Dopen2(file, path.c_str(), H5P_DEFAULT),
                                H5Dclose);
