@@ -332,6 +332,14 @@ END
   sections prm/verification/midplane.prm 'Verification'
   cat <<'END'
 
+## Meshes that change: `prm/benchmarks/branching.prm`
+
+[adaptivity.md](adaptivity.md) says what the entries of an indicator mean.
+
+END
+  sections prm/benchmarks/branching.prm 'Adaptivity|Indicator: front'
+  cat <<'END'
+
 ## All names: `./nsfd --list`
 
 ```

@@ -10,7 +10,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <limits>
 
 namespace nsfd
 {
@@ -40,6 +43,7 @@ namespace nsfd
       return false;
     }
     charge_memory("bodies and points");
+    choose_path(input);
     build_dynamics(input, communicator);
     if (input.time.scheme == Scheme::symplectic)
       check_stability(input, communicator, problems);
@@ -52,14 +56,48 @@ namespace nsfd
         input.time.scheme == Scheme::arkode ? "arkode"
         : input.solver.method == "auto"     ? "chain"
                                             : input.solver.method;
-    solver = SolverRegistry<dim>::instance().create(
-        input.solver.method == "auto" ? "chain" : input.solver.method);
-    stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
-                                                *dynamics, *solver, bonded);
+    build_stepper(input);
     if (input.statics)
       quasi_static = std::make_unique<QuasiStatic<dim>>(input, communicator,
                                                         *discretization);
     return true;
+  }
+
+  template <int dim>
+  void Model<dim>::build_stepper(const SceneInput &input)
+  {
+    solver = SolverRegistry<dim>::instance().create(
+        input.solver.method == "auto" ? "chain" : input.solver.method);
+    stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
+                                                *dynamics, *solver, bonded);
+  }
+
+  template <int dim>
+  void Model<dim>::rebuild(const SceneInput &input,
+                           const Communicator &communicator)
+  {
+    const auto stepper_counters = stepper->counters();
+    const auto timings = stepper->timings();
+    const auto dynamics_counters = dynamics->counters();
+    stepper.reset();
+    solver.reset();
+    dynamics.reset();
+    std::vector<std::string> problems, warnings;
+    const auto materials = material_indices<dim>(input, *groups, *triangulation,
+                                                 problems, warnings);
+    *discretization = Discretization<dim>(communicator, *triangulation, *groups,
+                                          materials, input);
+    build_dynamics(input, communicator);
+    dynamics->continue_counters(dynamics_counters);
+    if (input.time.scheme == Scheme::symplectic) {
+      const double limit = stable_limit(input, communicator,
+                                        step_of_smallest_cells(communicator));
+      control->limit(limit);
+      control->set_ceiling(limit);
+    }
+    dynamics->reinit(control->step(), input.time.bulk_theta());
+    build_stepper(input);
+    stepper->continue_counters(timings, stepper_counters);
   }
 
   template <int dim>
@@ -140,17 +178,36 @@ namespace nsfd
 
   /** Bodies, and bonds between them, are explicit in the symplectic scheme. */
   template <int dim>
+  double Model<dim>::stable_limit(const SceneInput &input,
+                                  const Communicator &communicator,
+                                  const double enough)
+  {
+    if (!bonded)
+      return communicator.min(stable_step(discretization->bodies()));
+    join_all(input);
+    dynamics->reinit(control->step(), 0.);
+    return stable_step(*dynamics, enough);
+  }
+
+  /** The base step, halved as often as the smallest cells. */
+  template <int dim>
+  double
+  Model<dim>::step_of_smallest_cells(const Communicator &communicator) const
+  {
+    int level = 0;
+    for (const auto &cell : triangulation->active_cell_iterators())
+      if (cell->is_locally_owned())
+        level = std::max(level, cell->level());
+    return std::ldexp(control->base_step(), -int(communicator.max(level)));
+  }
+
+  template <int dim>
   void Model<dim>::check_stability(const SceneInput &input,
                                    const Communicator &communicator,
                                    std::vector<std::string> &problems)
   {
-    double limit = 0.;
-    if (bonded) {
-      join_all(input);
-      dynamics->reinit(dynamic_step(input), 0.);
-      limit = stable_step(*dynamics);
-    } else
-      limit = communicator.min(stable_step(discretization->bodies()));
+    const double limit = stable_limit(
+        input, communicator, std::numeric_limits<double>::infinity());
     if (dynamic_step(input) > limit)
       problems.push_back(fmt::format(
           "Time/step is {:.4g} s, and the symplectic scheme is stable up to "
@@ -177,14 +234,26 @@ namespace nsfd
 
   /** Short steps: face blocks; long ones: a global matrix. */
   template <int dim>
+  void Model<dim>::choose_path(const SceneInput &input)
+  {
+    const double crossing = discretization->crossing_time();
+    if (input.has_bonded_faces())
+      path = input.time.scheme == Scheme::symplectic ? "element-wise" : "global";
+    else if (input.solver.path != "auto")
+      path = input.solver.path;
+    else
+      path = crossing > 0. && dynamic_step(input) > 5. * crossing
+                 ? "global"
+                 : "element-wise";
+  }
+
+  template <int dim>
   void Model<dim>::build_dynamics(const SceneInput &input,
                                   const Communicator &communicator)
   {
     const auto &bodies = discretization->bodies();
     const auto &points = discretization->points();
-    const double crossing = discretization->crossing_time();
     if (input.has_bonded_faces() && input.time.scheme == Scheme::symplectic) {
-      path = "element-wise";
       auto joined =
           make_explicit_bonded_dynamics<dim>(communicator, bodies, points);
       bonded = joined.get();
@@ -192,7 +261,6 @@ namespace nsfd
       return;
     }
     if (input.has_bonded_faces()) {
-      path = "global";
       auto joined = make_bonded_dynamics<dim>(
           communicator, bodies, points, input.solver.linear_solver,
           node_coordinates(*discretization));
@@ -200,11 +268,6 @@ namespace nsfd
       dynamics = std::move(joined);
       return;
     }
-    path = input.solver.path;
-    if (path == "auto")
-      path = crossing > 0. && dynamic_step(input) > 5. * crossing
-                 ? "global"
-                 : "element-wise";
     if (path == "global")
       dynamics = make_sparse_dynamics<dim>(
           communicator, bodies, points, input.solver.linear_solver,

@@ -43,6 +43,12 @@ namespace nsfd
      */
     bool build(const SceneInput &input, const Communicator &communicator);
 
+    /**
+     * After cells have changed: all parts again, and steps that the symplectic
+     * scheme can take on them. Collective.
+     */
+    void rebuild(const SceneInput &input, const Communicator &communicator);
+
     /** Bodies and points are all that a run needs of it. */
     void forget_mesh()
     {
@@ -56,13 +62,18 @@ namespace nsfd
                           std::vector<std::string> &problems);
     void build_control(const SceneInput &input,
                        std::vector<std::string> &problems);
+    double stable_limit(const SceneInput &input,
+                        const Communicator &communicator, double enough);
+    double step_of_smallest_cells(const Communicator &communicator) const;
     void check_stability(const SceneInput &input,
                          const Communicator &communicator,
                          std::vector<std::string> &problems);
     void join_all(const SceneInput &input);
     double dynamic_step(const SceneInput &input) const;
+    void choose_path(const SceneInput &input);
     void build_dynamics(const SceneInput &input,
                         const Communicator &communicator);
+    void build_stepper(const SceneInput &input);
     void find_unused_blocks(const SceneInput &input,
                             const Communicator &communicator,
                             std::vector<std::string> &problems) const;

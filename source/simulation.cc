@@ -1,5 +1,6 @@
 #include "nsfd/simulation.h"
 
+#include "adapt/adaptive_mesh.h"
 #include "checkpoint/checkpoints.h"
 #include "model.h"
 #include "run_costs.h"
@@ -41,6 +42,8 @@ namespace nsfd
 
     private:
       bool prepare();
+      void describe_mesh();
+      bool change_mesh(State &next);
       void open_output();
       int fail(const std::string &failure);
       void build_smooth_motion();
@@ -76,6 +79,7 @@ namespace nsfd
       std::unique_ptr<StaticRun<dim>> static_run_; ///< or null
       bool is_static_ = false; ///< the steps are those of static_run_
       std::unique_ptr<SmoothMotion<dim>> smooth_; ///< or null
+      std::unique_ptr<AdaptiveMesh<dim>> adaptive_; ///< or null
       std::unique_ptr<Checkpoints<dim>> checkpoints_;
       EarlierTotals earlier_; ///< before the checkpoint, if resumed
 
@@ -120,7 +124,8 @@ namespace nsfd
             input_, *model_.triangulation, *model_.discretization,
             *model_.stepper, *model_.dynamics,
             model_.dynamic_control(input_, 0.)->base_step(), communicator_);
-      model_.forget_mesh();
+      if (!input_.adaptivity)
+        model_.forget_mesh();
       bool ours = true;
       if (communicator_.is_root() && !found)
         ours = claim_directory(input_.output.directory, options_.force);
@@ -129,7 +134,14 @@ namespace nsfd
 
       model_.dynamics->reinit(model_.control->step(), input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
-      state_ = model_.stepper->initial_state();
+      if (input_.adaptivity) {
+        adaptive_ = std::make_unique<AdaptiveMesh<dim>>(input_, communicator_,
+                                                        model_);
+        state_ = found ? adaptive_->restore(stored_cells(*found, communicator_))
+                       : adaptive_->start();
+        describe_mesh();
+      } else
+        state_ = model_.stepper->initial_state();
       fragments_ = std::make_unique<Fragments<dim>>(*model_.discretization,
                                                     communicator_);
       fragments_->update(state_);
@@ -234,6 +246,8 @@ namespace nsfd
         static_run_->remember(archive);
       if (observer_)
         observer_->remember(archive);
+      if (adaptive_)
+        adaptive_->remember(archive);
       archive.numbers("largest", summary_.ledger_defect_max,
                       summary_.residual_max);
       costs_.remember(archive);
@@ -315,12 +329,7 @@ namespace nsfd
     {
       if (!model_.build(input_, communicator_))
         return false;
-      summary_.dimension = dim;
-      summary_.cells = model_.discretization->n_global_cells();
-      summary_.dofs =
-          communicator_.sum_integer(model_.discretization->bodies().n_dofs());
-      summary_.interface_points =
-          communicator_.sum_integer(model_.discretization->points().n_owned);
+      describe_mesh();
       if (!input_.verification)
         return true;
       try {
@@ -332,6 +341,43 @@ namespace nsfd
       observer_ = std::make_unique<CaseObserver<dim>>(
           *input_.verification, input_.time, *model_.discretization,
           communicator_);
+      return true;
+    }
+
+    template <int dim>
+    void Simulation<dim>::describe_mesh()
+    {
+      const auto &mesh = *model_.discretization;
+      summary_.dimension = dim;
+      summary_.cells = mesh.n_global_cells();
+      summary_.dofs = communicator_.sum_integer(mesh.bodies().n_dofs());
+      summary_.interface_points =
+          communicator_.sum_integer(mesh.points().n_owned);
+    }
+
+    /**
+     * Where the step has arrived, the mesh may be too coarse. True if it has
+     * changed, and the step is to be taken again.
+     */
+    template <int dim>
+    bool Simulation<dim>::change_mesh(State &next)
+    {
+      if (!adaptive_)
+        return false;
+      const Charge charge(Cost::set_up);
+      if (!adaptive_->follow(state_, next)) {
+        adaptive_->accept();
+        return false;
+      }
+      next = state_;
+      describe_mesh();
+      fragments_ = std::make_unique<Fragments<dim>>(*model_.discretization,
+                                                    communicator_);
+      fragments_->update(state_);
+      output_->mesh_changed();
+      checkpoints_->mesh_changed();
+      if (observer_)
+        observer_->mesh_changed(model_.stepper->initial_state());
       return true;
     }
 
@@ -479,7 +525,7 @@ namespace nsfd
                               input_.time.maximum_halvings);
         return false;
       }
-      if (must_redo(report, next) || overshoots(report))
+      if (must_redo(report, next) || overshoots(report) || change_mesh(next))
         return true;
       attempts_ = 0;
       accept(next, report, h);
@@ -581,6 +627,8 @@ namespace nsfd
       RunTotals sums = totals();
       earlier_.add_to(sums);
       s.counters = sums.counters;
+      if (adaptive_)
+        adaptive_->fill_counters(s.counters);
       s.wall_seconds = sums.wall_seconds;
       s.cpu_seconds = sums.cpu_seconds;
       s.timings = sums.timings;

@@ -11,6 +11,20 @@
 
 namespace nsfd
 {
+  std::vector<std::uint32_t> stored_cells(const FoundCheckpoint &found,
+                                          const Communicator &communicator)
+  {
+    std::vector<std::uint32_t> cells;
+    unsigned int components = 4;
+    if (found.image)
+      found.image->read("mesh/cells", cells, components);
+    unsigned long long n = cells.size();
+    MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, communicator.mpi());
+    cells.resize(n);
+    MPI_Bcast(cells.data(), int(n), MPI_UINT32_T, 0, communicator.mpi());
+    return cells;
+  }
+
   template <int dim>
   Checkpoints<dim>::Checkpoints(const SceneInput &input,
                                 const RunOptions &options,

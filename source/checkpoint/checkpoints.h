@@ -5,6 +5,7 @@
 
 #include "nsfd/base/communicator.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -37,6 +38,10 @@ namespace nsfd
   std::optional<FoundCheckpoint>
   find_checkpoint(const SceneInput &input, const Communicator &communicator);
 
+  /** Ids of all cells, four numbers each, sorted. Collective. */
+  std::vector<std::uint32_t> stored_cells(const FoundCheckpoint &found,
+                                          const Communicator &communicator);
+
   /** When a run is stored, and what of it. */
   template <int dim>
   class Checkpoints
@@ -60,6 +65,9 @@ namespace nsfd
 
     /** @throws BadCheckpoint if it belongs to another mesh. Collective. */
     void read(const FoundCheckpoint &found, const RememberAll &remember) const;
+
+    /** Bodies and points are others now. */
+    void mesh_changed() { orders_.reset(); }
 
     unsigned int n_failed() const { return n_failed_; }
 

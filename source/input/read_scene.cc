@@ -1,5 +1,6 @@
 #include "nsfd/input/read_scene.h"
 
+#include "nsfd/adapt/indicator.h"
 #include "nsfd/interface/cohesive_law.h"
 #include "nsfd/mesh/mesh_types.h"
 #include "nsfd/scene/verification_case.h"
@@ -15,13 +16,12 @@ namespace nsfd
   namespace
   {
     const std::vector<std::string> plain_sections = {
-        "Mesh",   "Discretization", "Loads",        "Time",
-        "Solver", "Output",         "Verification", "Constants"};
+        "Mesh",   "Discretization", "Loads",        "Time",      "Solver",
+        "Output", "Verification",   "Adaptivity",   "Constants"};
     const std::vector<std::string> block_kinds = {
-        "Body", "Material", "Interface", "Boundary", "Obstacle"};
+        "Body", "Material", "Interface", "Boundary", "Obstacle", "Indicator"};
     /// of a study, which reads them itself, see study/study_input.h
     const std::vector<std::string> study_kinds = {"Study", "Vary"};
-    const std::vector<std::string> missing_sections = {"Adaptivity"};
 
     std::vector<std::string> all_kinds()
     {
@@ -60,10 +60,6 @@ namespace nsfd
         errors.error(section.location(),
                      "section `Path` is for one point, not for a scene",
                      "run it with: nsfd law FILE.prm");
-      else if (contains(missing_sections, kind))
-        errors.error(section.location(),
-                     fmt::format("section `{}` is not there yet", kind),
-                     "remove this section");
       else {
         const std::string nearest = nearest_name(kind, all_kinds());
         errors.error(
@@ -71,9 +67,9 @@ namespace nsfd
             fmt::format("`{}` is not the name of a section", name),
             nearest.empty()
                 ? "known are Mesh, Discretization, Time, Loads, Solver, "
-                  "Output, Verification, Constants, and Body: ..., "
-                  "Material: ..., Interface: ..., Boundary: ..., "
-                  "Obstacle: ..."
+                  "Output, Verification, Adaptivity, Constants, and "
+                  "Body: ..., Material: ..., Interface: ..., "
+                  "Boundary: ..., Obstacle: ..., Indicator: ..."
                 : fmt::format("did you mean `{}{}`?", nearest,
                               contains(block_kinds, nearest)
                                   ? ": " + (section.block_name().empty()
@@ -137,6 +133,7 @@ namespace nsfd
       read_solver(file, errors, *scene);
       read_output(file, errors, *scene);
       read_verification(file, errors, *scene);
+      read_adaptivity(file, errors, *scene);
       file.report_stray(errors);
       if (errors.has_errors())
         return nullptr;
@@ -182,6 +179,7 @@ namespace nsfd
     };
     append_registered("cohesive law", CohesiveLawRegistry::instance());
     append_registered("verification case", VerificationRegistry::instance());
+    append_registered("indicator", IndicatorRegistry::instance());
     append("mesh", mesh_types());
     append("solver", known_solvers());
     append_registered("solver of stored problems",

@@ -56,6 +56,10 @@ namespace nsfd
   void read_verification(ParameterFile &file, InputErrors &errors,
                          SceneInput &scene);
 
+  /** Adaptivity and its Indicator blocks. */
+  void read_adaptivity(ParameterFile &file, InputErrors &errors,
+                       SceneInput &scene);
+
   /** What a `where` picks. */
   enum class WhereUse { cells, interior_faces, boundary_faces };
 

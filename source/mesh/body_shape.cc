@@ -104,9 +104,11 @@ namespace nsfd
   void ClassBuilder<dim>::build(const ReferenceCell &reference,
                                 const std::vector<Point<dim>> &corners,
                                 const double size, const unsigned int material,
+                                const unsigned int divided,
                                 BodyShape<dim> &shape, BodyClass &body) const
   {
     shape.reference = reference;
+    shape.divided = divided;
     shape.corners = corners;
     set_tables(shape);
     body.material = material;
@@ -220,14 +222,22 @@ namespace nsfd
       const FaceGeometry<dim> face(shape.reference, shape.corners, f);
       const auto quadrature =
           interface_quadrature<dim>(input_.discretization, face.is_triangle());
-      for (unsigned int q = 0; q < quadrature.size(); ++q) {
-        const auto &xi = quadrature.point(q);
-        shape.slot_positions.push_back(face.position(xi));
-        shape.slot_normals.push_back(face.normal(xi) * quadrature.weight(q));
-        shape.slot_places.push_back(face.in_reference_cell(xi));
-        for (unsigned int i = 0; i < n; ++i)
-          values.push_back(element_.shape_value(i, shape.slot_places.back()));
-      }
+      const bool halves = (shape.divided >> f & 1u) != 0;
+      const unsigned int n_parts = halves ? 1u << (dim - 1) : 1;
+      for (unsigned int part = 0; part < n_parts; ++part)
+        for (unsigned int q = 0; q < quadrature.size(); ++q) {
+          Point<dim - 1> xi = quadrature.point(q);
+          if (halves)
+            for (unsigned int d = 0; d < dim - 1; ++d)
+              xi[d] = (xi[d] + double(part >> d & 1u)) / 2.;
+          shape.slot_positions.push_back(face.position(xi));
+          shape.slot_normals.push_back(face.normal(xi) * quadrature.weight(q) /
+                                       double(n_parts));
+          shape.slot_places.push_back(face.in_reference_cell(xi));
+          shape.slot_faces.push_back(f);
+          for (unsigned int i = 0; i < n; ++i)
+            values.push_back(element_.shape_value(i, shape.slot_places.back()));
+        }
     }
     const unsigned int n_slots = unsigned(shape.slot_positions.size());
     Block trace(n_slots * dim, n * dim);

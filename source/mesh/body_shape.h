@@ -26,6 +26,7 @@ namespace nsfd
   struct BodyShape {
     dealii::ReferenceCell reference;
     std::vector<dealii::Point<dim>> corners;
+    unsigned int divided = 0; ///< bit f: there are smaller cells behind face f
     unsigned int n_nodes = 0;
     std::vector<dealii::Point<dim>> nodes;
     // cell quadrature: positions, JxW, values and gradients (point x node)
@@ -36,6 +37,7 @@ namespace nsfd
     std::vector<dealii::Point<dim>> slot_positions;
     std::vector<dealii::Tensor<1, dim>> slot_normals; ///< outward, times w
     std::vector<dealii::Point<dim>> slot_places; ///< in the reference cell
+    std::vector<unsigned int> slot_faces;
     std::vector<double> corner_values; ///< corner x node
     double volume = 0.;
     dealii::Point<dim> centre;
@@ -46,8 +48,9 @@ namespace nsfd
 
   /**
    * Shape and blocks of a class from its corners: mass, stiffness, traces at
-   * the interface points of every face, face by face. @p size scales the
-   * rotations of a rigid body.
+   * the interface points of every face, face by face; of a divided face
+   * (hypercubes only) those of its halves or quarters, one after the other.
+   * @p size scales the rotations of a rigid body.
    */
   template <int dim>
   class ClassBuilder
@@ -61,8 +64,8 @@ namespace nsfd
 
     void build(const dealii::ReferenceCell &reference,
                const std::vector<dealii::Point<dim>> &corners, double size,
-               unsigned int material, BodyShape<dim> &shape,
-               BodyClass &body) const;
+               unsigned int material, unsigned int divided,
+               BodyShape<dim> &shape, BodyClass &body) const;
 
   private:
     void set_tables(BodyShape<dim> &shape) const;

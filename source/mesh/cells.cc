@@ -1,5 +1,7 @@
 #include "cells.h"
 
+#include "owned_cells.h"
+
 #include "nsfd/input/scene_input.h"
 
 #include <deal.II/fe/fe_dgq.h>
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace nsfd
 {
@@ -42,6 +45,17 @@ namespace nsfd
       std::vector<long long> key; ///< equal for congruent cells
       std::vector<Point<dim>> relative;
     };
+
+    /** Bit f: the cells behind face f are smaller. */
+    template <typename Cell>
+    unsigned int divided_faces(const Cell &cell)
+    {
+      unsigned int bits = 0;
+      for (const unsigned int f : cell->face_indices())
+        if (!cell->face(f)->at_boundary() && cell->face(f)->has_children())
+          bits |= 1u << f;
+      return bits;
+    }
   } // namespace
 
   template <int dim>
@@ -56,25 +70,25 @@ namespace nsfd
       element = std::make_unique<FE_SimplexDGP<dim>>(degree);
     const ClassBuilder<dim> builder(*element, input);
 
-    using Key = std::pair<unsigned int, std::vector<long long>>;
+    using Key =
+        std::tuple<unsigned int, unsigned int, std::vector<long long>>;
     std::map<Key, unsigned int> class_by_key;
     first_node.push_back(0);
     bodies.first_dof.push_back(0);
     bodies.first_slot.push_back(0);
-    for (const auto &cell : triangulation.active_cell_iterators()) {
-      if (!cell->is_locally_owned())
-        continue;
+    for (const auto &cell : owned_cells(triangulation)) {
       const unsigned int material = materials[cell->active_cell_index()];
       auto &own_corners = corners.emplace_back();
       for (const unsigned int v : cell->vertex_indices())
         own_corners.push_back(cell->vertex(v));
       const RoundedCorners<dim> rounded(own_corners);
+      const unsigned int divided = divided_faces(cell);
       const auto [entry, is_new] = class_by_key.emplace(
-          Key(material, rounded.key), unsigned(shapes.size()));
+          Key(material, divided, rounded.key), unsigned(shapes.size()));
       const unsigned int k = entry->second;
       if (is_new)
         builder.build(cell->reference_cell(), rounded.relative, rounded.size,
-                      material, shapes.emplace_back(),
+                      material, divided, shapes.emplace_back(),
                       bodies.classes.emplace_back());
 
       BodyClass &body = bodies.classes[k];

@@ -44,11 +44,18 @@ namespace nsfd
   Discretization<dim>::~Discretization() = default;
 
   template <int dim>
+  Discretization<dim>::Discretization(Discretization &&) noexcept = default;
+
+  template <int dim>
+  Discretization<dim> &
+  Discretization<dim>::operator=(Discretization &&) noexcept = default;
+
+  template <int dim>
   Discretization<dim>::Discretization(
       const Communicator &communicator, const Triangulation<dim> &triangulation,
       const MeshGroups<dim> &groups, const std::vector<unsigned int> &materials,
       const SceneInput &input)
-      : input_(input),
+      : input_(&input),
         loads_(std::make_unique<Loads<dim>>(triangulation, groups, input)),
         extent_((groups.upper() - groups.lower()).norm())
   {
@@ -104,6 +111,14 @@ namespace nsfd
   }
 
   template <int dim>
+  unsigned int
+  Discretization<dim>::face_of_slot(const unsigned int body,
+                                    const unsigned int slot) const
+  {
+    return cells_->shape(body).slot_faces[slot];
+  }
+
+  template <int dim>
   std::size_t Discretization<dim>::n_nodal() const
   {
     return cells_->n_nodal();
@@ -152,8 +167,8 @@ namespace nsfd
   double
   Discretization<dim>::pressure_wave_speed(const unsigned int material) const
   {
-    return LinearElasticity<dim>(input_.materials[material],
-                                 input_.plane_stress)
+    return LinearElasticity<dim>(input_->materials[material],
+                                 input_->plane_stress)
         .pressure_wave_speed();
   }
 
@@ -161,8 +176,8 @@ namespace nsfd
   double
   Discretization<dim>::shear_wave_speed(const unsigned int material) const
   {
-    return LinearElasticity<dim>(input_.materials[material],
-                                 input_.plane_stress)
+    return LinearElasticity<dim>(input_->materials[material],
+                                 input_->plane_stress)
         .shear_wave_speed();
   }
 
@@ -171,10 +186,10 @@ namespace nsfd
   Discretization<dim>::stress(const unsigned int body,
                               const double *gradient) const
   {
-    const auto &material = input_.materials[material_of(body)];
+    const auto &material = input_->materials[material_of(body)];
     if (material.rigid)
       return {};
-    return LinearElasticity<dim>(material, input_.plane_stress)
+    return LinearElasticity<dim>(material, input_->plane_stress)
         .stress(gradient);
   }
 

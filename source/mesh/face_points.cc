@@ -1,6 +1,7 @@
 #include "face_points.h"
 
 #include "interface_quadrature.h"
+#include "owned_cells.h"
 
 #include "nsfd/base/communicator.h"
 #include "nsfd/input/scene_input.h"
@@ -74,6 +75,8 @@ namespace nsfd
                              PointOrigin origin) const;
       void add_boundary(const Cell &cell, unsigned int face_no);
       void add_interior(const Cell &cell, unsigned int face_no);
+      void add_between(const Cell &cell_1, unsigned int face_no_1,
+                       const Cell &cell_2);
       unsigned int block_of(const Cell &first, const Cell &second,
                             const Point<dim> &centre,
                             types::manifold_id face_id);
@@ -92,13 +95,10 @@ namespace nsfd
         : groups_(groups), materials_(materials), driven_(driven),
           input_(input), body_of_(triangulation.n_active_cells(), -1)
     {
-      int n_bodies = 0;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned())
-          body_of_[cell->active_cell_index()] = n_bodies++;
-      for (const auto &cell : triangulation.active_cell_iterators()) {
-        if (!cell->is_locally_owned())
-          continue;
+      const auto cells = owned_cells(triangulation);
+      for (std::size_t b = 0; b < cells.size(); ++b)
+        body_of_[cells[b]->active_cell_index()] = int(b);
+      for (const auto &cell : cells) {
         for (const unsigned int f : cell->face_indices()) {
           if (cell->face(f)->at_boundary())
             add_boundary(cell, f);
@@ -175,32 +175,76 @@ namespace nsfd
       }
     }
 
+    /**
+     * Body 1 is the cell with the smaller id; of two sizes the smaller cell,
+     * whose face it is. A face is made once on a rank: from its body 1 if that
+     * is ours.
+     */
     template <int dim>
     void FaceCollector<dim>::add_interior(const Cell &cell,
                                           const unsigned int f)
     {
+      if (cell->face(f)->has_children()) {
+        const unsigned int face_no = cell->neighbor_of_neighbor(f);
+        for (unsigned int c = 0; c < cell->face(f)->n_children(); ++c) {
+          const Cell small(cell->neighbor_child_on_subface(f, c));
+          if (!small->is_locally_owned())
+            add_between(small, face_no, cell);
+        }
+        return;
+      }
       const Cell neighbor(cell->neighbor(f));
-      const bool first = cell->id() < neighbor->id();
-      const bool local = neighbor->is_locally_owned();
-      if (!first && local)
-        return; // made from the other side
-      const Cell &cell_1 = first ? cell : neighbor,
-                 &cell_2 = first ? neighbor : cell;
+      if (cell->neighbor_is_coarser(f) || cell->id() < neighbor->id())
+        add_between(cell, f, neighbor);
+      else if (!neighbor->is_locally_owned())
+        add_between(neighbor, cell->neighbor_face_no(f), cell);
+    }
+
+    /**
+     * The face of the first mesh that a face of an adaptive one is a part of: a
+     * block that holds for it holds for all its parts.
+     */
+    template <int dim>
+    typename Triangulation<dim>::face_iterator
+    first_face(typename Triangulation<dim>::cell_iterator cell,
+               const unsigned int face_no)
+    {
+      while (cell->level() > 0) {
+        const auto parent = cell->parent();
+        bool is_part = false;
+        for (unsigned int c = 0; c < parent->face(face_no)->n_children(); ++c)
+          is_part = is_part ||
+                    parent->face(face_no)->child(c) == cell->face(face_no);
+        if (!is_part)
+          break;
+        cell = parent;
+      }
+      return cell->face(face_no);
+    }
+
+    /** One of the cells is ours. */
+    template <int dim>
+    void FaceCollector<dim>::add_between(const Cell &cell_1,
+                                         const unsigned int face_no_1,
+                                         const Cell &cell_2)
+    {
+      const auto at = input_.adaptivity ? first_face<dim>(cell_1, face_no_1)
+                                        : cell_1->face(face_no_1);
       Point<dim> centre;
-      for (const unsigned int v : cell->face(f)->vertex_indices())
-        centre +=
-            cell->face(f)->vertex(v) / double(cell->face(f)->n_vertices());
+      for (const unsigned int v : at->vertex_indices())
+        centre += at->vertex(v) / double(at->n_vertices());
       auto face = make_face(
-          cell_1, first ? f : cell->neighbor_face_no(f),
+          cell_1, face_no_1,
           {PointOrigin::Kind::interface,
-           block_of(cell_1, cell_2, centre, cell->face(f)->manifold_id())});
+           block_of(cell_1, cell_2, centre, at->manifold_id())});
       face.face.bodies = {{body_of_[cell_1->active_cell_index()],
                            body_of_[cell_2->active_cell_index()]}};
       face.face.cells = {{cell_1->global_active_cell_index(),
                           cell_2->global_active_cell_index()}};
-      face.owned = first;
-      if (!local)
-        face.face.neighbor_rank = int(neighbor->subdomain_id());
+      face.owned = cell_1->is_locally_owned();
+      for (const Cell *one : {&cell_1, &cell_2})
+        if (!(*one)->is_locally_owned())
+          face.face.neighbor_rank = int((*one)->subdomain_id());
       faces.push_back(std::move(face));
     }
 

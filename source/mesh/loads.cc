@@ -1,5 +1,7 @@
 #include "loads.h"
 
+#include "owned_cells.h"
+
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/cell_geometry.h"
 #include "nsfd/mesh/mesh_builder.h"
@@ -31,9 +33,7 @@ namespace nsfd
     }
 
     unsigned int body = 0;
-    for (const auto &cell : triangulation.active_cell_iterators()) {
-      if (!cell->is_locally_owned())
-        continue;
+    for (const auto &cell : owned_cells(triangulation)) {
       for (const unsigned int f : cell->face_indices())
         for (unsigned int b = 0; b < input.boundaries.size(); ++b) {
           const auto &boundary = input.boundaries[b];

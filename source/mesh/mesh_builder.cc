@@ -344,9 +344,10 @@ namespace nsfd
              std::vector<std::string> &problems)
   {
     const MeshInput &mesh_input = input.mesh;
+    // the cells of a mesh that will change are those of level 0
     const bool by_p4est =
         (mesh_input.type == "rectangle" || mesh_input.type == "brick") &&
-        mesh_input.distortion == 0.;
+        mesh_input.distortion == 0. && !input.adaptivity;
     std::vector<std::string> found;
     CoarseMesh<dim> mesh =
         mesh_input.type == "bodies"

@@ -278,9 +278,13 @@ namespace nsfd
     for (const auto &cell : triangulation.active_cell_iterators()) {
       if (cell->is_artificial())
         continue;
+      // mass stays where it is when the cells of an adaptive mesh change
+      typename Triangulation<dim>::cell_iterator owner = cell;
+      while (input.adaptivity && owner->level() > 0)
+        owner = owner->parent();
       const auto first =
           std::find_if(materials.begin(), materials.end(), [&](const auto &m) {
-            return groups.holds_cell(m.where, cell);
+            return groups.holds_cell(m.where, owner);
           });
       const std::size_t index = first - materials.begin();
       if (first != materials.end())

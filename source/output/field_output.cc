@@ -36,6 +36,12 @@ namespace nsfd
   FieldOutput<dim>::~FieldOutput() = default;
 
   template <int dim>
+  void FieldOutput<dim>::mesh_changed()
+  {
+    face_numbers_ = face_numbers(discretization_);
+  }
+
+  template <int dim>
   void FieldOutput<dim>::write(const State &state, const double time_step,
                                const Fragments<dim> &fragments)
   {

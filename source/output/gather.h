@@ -41,4 +41,21 @@ namespace nsfd
     std::vector<int> n_per_rank;
     return gather(communicator, own, n_per_rank);
   }
+
+  /** The same on all ranks. */
+  inline std::vector<double> gather_all(const Communicator &communicator,
+                                        const std::vector<double> &own)
+  {
+    std::vector<int> n_per_rank(communicator.size());
+    const int n = int(own.size());
+    MPI_Allgather(&n, 1, MPI_INT, n_per_rank.data(), 1, MPI_INT,
+                  communicator.mpi());
+    std::vector<int> first(n_per_rank.size(), 0);
+    std::partial_sum(n_per_rank.begin(), n_per_rank.end() - 1,
+                     first.begin() + 1);
+    std::vector<double> all(first.back() + n_per_rank.back());
+    MPI_Allgatherv(own.data(), n, MPI_DOUBLE, all.data(), n_per_rank.data(),
+                   first.data(), MPI_DOUBLE, communicator.mpi());
+    return all;
+  }
 } // namespace nsfd

@@ -167,6 +167,13 @@ namespace nsfd
   }
 
   template <int dim>
+  void RunOutput<dim>::mesh_changed()
+  {
+    if (fields_)
+      fields_->mesh_changed();
+  }
+
+  template <int dim>
   void RunOutput<dim>::end_progress()
   {
     if (progress_)

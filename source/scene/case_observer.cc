@@ -1,5 +1,7 @@
 #include "nsfd/scene/case_observer.h"
 
+#include "../output/gather.h"
+
 #include "nsfd/base/archive.h"
 
 #include <algorithm>
@@ -12,23 +14,6 @@ namespace nsfd
 {
   namespace
   {
-    /** What all ranks have, on all ranks. */
-    std::vector<double> gather_all(const Communicator &communicator,
-                                   const std::vector<double> &mine)
-    {
-      std::vector<int> counts(communicator.size()),
-          offsets(communicator.size(), 0);
-      const int count = int(mine.size());
-      MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT,
-                    communicator.mpi());
-      for (std::size_t r = 1; r < counts.size(); ++r)
-        offsets[r] = offsets[r - 1] + counts[r - 1];
-      std::vector<double> all(offsets.back() + counts.back());
-      MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(),
-                     offsets.data(), MPI_DOUBLE, communicator.mpi());
-      return all;
-    }
-
     double relative(const double error, const double reference)
     {
       return reference > 0. ? error / reference : error;
@@ -88,6 +73,13 @@ namespace nsfd
       : case_(verification), time_(time), discretization_(discretization),
         communicator_(communicator)
   {
+  }
+
+  template <int dim>
+  void CaseObserver<dim>::mesh_changed(const State &start)
+  {
+    if (case_.wants_broken_points())
+      first_beta_ = start.beta;
   }
 
   template <int dim>

@@ -30,18 +30,6 @@ namespace nsfd
       });
     }
 
-    /** Distance of a boundary point from the half space it may touch. */
-    template <int dim>
-    double initial_gap(const InterfacePoints<dim> &points,
-                       const ObstacleInput &obstacle, const std::size_t i)
-    {
-      double gap = 0.;
-      for (unsigned int c = 0; c < dim; ++c)
-        gap += points.frame[i * dim * dim + c] *
-               (points.position[i * dim + c] - obstacle.point[c]);
-      return gap;
-    }
-
     template <int dim>
     void set_interface_point(const InterfaceInput &block,
                              const dealii::Point<dim> &x,
@@ -109,13 +97,42 @@ namespace nsfd
   } // namespace
 
   template <int dim>
+  double initial_gap(const SceneInput &input,
+                     const Discretization<dim> &discretization,
+                     const std::size_t i)
+  {
+    const PointOrigin origin = discretization.origins()[i];
+    if (origin.kind != PointOrigin::Kind::obstacle)
+      return 0.;
+    const auto &points = discretization.points();
+    double gap = 0.;
+    for (unsigned int c = 0; c < dim; ++c)
+      gap += points.frame[i * dim * dim + c] *
+             (points.position[i * dim + c] -
+              input.obstacles[origin.block].point[c]);
+    return gap;
+  }
+
+  template <int dim>
+  void set_energies(const Dynamics<dim> &dynamics,
+                    const OneStepProblem<dim> &problem, State &state)
+  {
+    using Operator = typename Dynamics<dim>::Operator;
+    auto &energy = state.energy;
+    energy.kinetic = half_product(dynamics, Operator::mass, state.velocity);
+    energy.elastic =
+        half_product(dynamics, Operator::stiffness, state.displacement);
+    energy.cohesive =
+        dynamics.communicator().sum(stored_energy(problem, state));
+  }
+
+  template <int dim>
   State initial_state(const SceneInput &input,
                       const Discretization<dim> &discretization,
                       const Dynamics<dim> &dynamics,
                       const OneStepProblem<dim> &problem,
                       BondedDynamics<dim> *bonded)
   {
-    using Operator = typename Dynamics<dim>::Operator;
     const auto &points = discretization.points();
     State state;
     state.displacement = initial_field(input, discretization,
@@ -152,8 +169,7 @@ namespace nsfd
                             discretization.position(i), problem, i, state);
         break;
       case PointOrigin::Kind::obstacle:
-        state.jump[i * dim] +=
-            initial_gap(points, input.obstacles[origin.block], i);
+        state.jump[i * dim] += initial_gap(input, discretization, i);
         state.kind[i] = PointKind::free;
         state.beta[i] = 0.;
         break;
@@ -164,17 +180,21 @@ namespace nsfd
 
     if (bonded)
       bonded->set_bonds(bonded_points(state));
+    set_energies(dynamics, problem, state);
     auto &energy = state.energy;
-    energy.kinetic = half_product(dynamics, Operator::mass, state.velocity);
-    energy.elastic =
-        half_product(dynamics, Operator::stiffness, state.displacement);
-    energy.cohesive =
-        dynamics.communicator().sum(stored_energy(problem, state));
     state.initial_energy = energy.kinetic + energy.elastic + energy.cohesive;
     state.largest_energy = state.initial_energy;
     return state;
   }
 
+  template double initial_gap(const SceneInput &, const Discretization<2> &,
+                              std::size_t);
+  template double initial_gap(const SceneInput &, const Discretization<3> &,
+                              std::size_t);
+  template void set_energies(const Dynamics<2> &, const OneStepProblem<2> &,
+                             State &);
+  template void set_energies(const Dynamics<3> &, const OneStepProblem<3> &,
+                             State &);
   template State initial_state(const SceneInput &, const Discretization<2> &,
                                const Dynamics<2> &, const OneStepProblem<2> &,
                                BondedDynamics<2> *);

@@ -20,4 +20,20 @@ namespace nsfd
                       const Dynamics<dim> &dynamics,
                       const OneStepProblem<dim> &problem,
                       BondedDynamics<dim> *bonded);
+
+  /**
+   * Distance of a boundary point from the half space it may touch, m; 0 for
+   * points that face no obstacle.
+   */
+  template <int dim>
+  double initial_gap(const SceneInput &input,
+                     const Discretization<dim> &discretization, std::size_t i);
+
+  /**
+   * Kinetic, elastic and cohesive energy of a state whose bonds are those of
+   * @p dynamics. Collective.
+   */
+  template <int dim>
+  void set_energies(const Dynamics<dim> &dynamics,
+                    const OneStepProblem<dim> &problem, State &state);
 } // namespace nsfd

@@ -61,6 +61,16 @@ namespace nsfd
   }
 
   template <int dim>
+  void MoreauJean<dim>::complete(State &state) const
+  {
+    if (bonded_)
+      bonded_->set_bonds(bonded_points(state));
+    set_energies(dynamics_, problem_, state);
+    if (bulk_)
+      set_bond_tractions(*bulk_, state);
+  }
+
+  template <int dim>
   double MoreauJean<dim>::unique_step(const State &state) const
   {
     return uniqueness_->largest_step(problem_, state);

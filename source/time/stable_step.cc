@@ -62,7 +62,7 @@ namespace nsfd
 
   /** Orthonormal with respect to M. */
   template <int dim>
-  double stable_step(const Dynamics<dim> &dynamics)
+  double stable_step(const Dynamics<dim> &dynamics, const double enough)
   {
     using Operator = typename Dynamics<dim>::Operator;
     const auto &communicator = dynamics.communicator();
@@ -99,12 +99,12 @@ namespace nsfd
       }
       const auto [value, component] = largest_eigenpair(T);
       bound = value + length * std::abs(component);
-      if (bound < 1.001 * value)
+      if (bound < 1.001 * value || step_of(bound) >= enough)
         break;
     }
     return step_of(bound);
   }
 
-  template double stable_step(const Dynamics<2> &);
-  template double stable_step(const Dynamics<3> &);
+  template double stable_step(const Dynamics<2> &, double);
+  template double stable_step(const Dynamics<3> &, double);
 } // namespace nsfd

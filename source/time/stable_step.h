@@ -2,6 +2,8 @@
 
 #include "nsfd/dynamics/dynamics.h"
 
+#include <limits>
+
 namespace nsfd
 {
   /**
@@ -14,8 +16,11 @@ namespace nsfd
   /**
    * The same of bodies that are joined by explicit bonds: the largest frequency
    * of M^{-1} K from above, by Lanczos' method to a thousandth. @p dynamics is
-   * prepared for explicit bodies and has its bonds. Collective.
+   * prepared for explicit bodies and has its bonds. As soon as steps of
+   * @p enough are known to be stable the search ends with what is known.
+   * Collective.
    */
   template <int dim>
-  double stable_step(const Dynamics<dim> &dynamics);
+  double stable_step(const Dynamics<dim> &dynamics, double enough =
+                     std::numeric_limits<double>::infinity());
 } // namespace nsfd

@@ -125,6 +125,10 @@ namespace end_to_end
         {"bimodular", {scene("bimodular"), {"Mesh/cells=30, 1"}}},
         {"plate_impact", {scene("plate_impact"), {}}},
         {"crack_path", {scene("crack_path"), {}}},
+        {"adaptive",
+         {benchmark("dcb"),
+          {"Mesh/cells=20, 4", "Discretization/degree=1", "Time/end=500 us",
+           "Time/step=5 us"}}},
     };
 
     class RestartTest : public testing::TestWithParam<RestartRow>

@@ -157,6 +157,8 @@ namespace nsfd
       unsigned long long delassus = 0;
     };
     const Counters &counters() const { return counters_; }
+    /** Counts go on where those of another mesh have ended. */
+    void continue_counters(const Counters &counters) { counters_ = counters; }
 
     /**
      * What changes the bits of later steps: the step, and what is kept of

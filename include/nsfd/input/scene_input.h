@@ -22,6 +22,7 @@ namespace nsfd
   struct SceneInput;
   struct NamedMesh; // see mesh/named_mesh.h
   class VerificationCase;
+  class Indicator; // see adapt/indicator.h
 
   /** `where`: all | boundary or material words | a group | a condition. */
   struct Where
@@ -259,6 +260,14 @@ namespace nsfd
     std::string save_problems = "none";
   };
 
+  /** Section `Adaptivity` with the blocks `Indicator: name`. */
+  struct AdaptivityInput
+  {
+    unsigned int levels = 2; ///< the smallest cell: that of the mesh / 2^levels
+    unsigned int coarsen_every = 10; ///< steps; 0: cells stay small
+    std::vector<std::shared_ptr<const Indicator>> indicators;
+  };
+
   struct OutputInput
   {
     std::string directory;
@@ -293,6 +302,8 @@ namespace nsfd
     std::string echo;
     /// only if the scene asks for equilibria
     std::optional<StaticInput> statics;
+    /// only if the mesh follows the motion
+    std::optional<AdaptivityInput> adaptivity;
     bool has_bonded_faces() const
     {
       for (const auto &block : interfaces)

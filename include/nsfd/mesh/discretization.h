@@ -56,6 +56,9 @@ namespace nsfd
                    const std::vector<unsigned int> &materials,
                    const SceneInput &input);
     ~Discretization();
+    Discretization(Discretization &&) noexcept;
+    /** For a mesh that has changed; what refers to bodies() is void then. */
+    Discretization &operator=(Discretization &&) noexcept;
 
     const Bodies &bodies() const;
     const InterfacePoints<dim> &points() const { return points_; }
@@ -71,6 +74,9 @@ namespace nsfd
     const dealii::FiniteElement<dim, dim> &element() const;
 
     unsigned int material_of(unsigned int body) const;
+
+    /** Which face of its cell a slot of a body is on. */
+    unsigned int face_of_slot(unsigned int body, unsigned int slot) const;
 
     /** Nodal vectors: node-major, dim components, all cells of this rank. */
     std::size_t n_nodal() const;
@@ -136,7 +142,7 @@ namespace nsfd
     }
 
   private:
-    const SceneInput &input_;
+    const SceneInput *input_;
     std::unique_ptr<const Cells<dim>> cells_;
     InterfacePoints<dim> points_;
     std::vector<PointOrigin> origins_;

@@ -42,7 +42,7 @@ namespace nsfd
   class MeshGroups
   {
   public:
-    using Cell = typename dealii::Triangulation<dim>::active_cell_iterator;
+    using Cell = typename dealii::Triangulation<dim>::cell_iterator;
 
     /** Collective. */
     MeshGroups(const SceneInput &input,

@@ -35,6 +35,9 @@ namespace nsfd
     void write(const State &state, double time_step,
                const Fragments<dim> &fragments);
 
+    /** Bodies and points are others now. */
+    void mesh_changed();
+
     /** The series so far. Later files of an earlier run are removed. */
     void remember(Archive &archive);
 

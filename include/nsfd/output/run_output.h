@@ -49,6 +49,9 @@ namespace nsfd
     void write_if_due(const State &state, double time_step,
                       const Fragments<dim> &fragments, bool last = false);
 
+    /** Bodies and points are others now. */
+    void mesh_changed();
+
     /** The progress line ends here. */
     void end_progress();
 

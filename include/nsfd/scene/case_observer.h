@@ -28,6 +28,9 @@ namespace nsfd
     /** Collective. */
     void observe(const State &state, const HistoryRow &row);
 
+    /** Bodies and points are others now; @p start is their state at t = 0. */
+    void mesh_changed(const State &start);
+
     /** What has been seen so far. Collective. */
     void remember(Archive &archive);
 

@@ -63,6 +63,12 @@ namespace nsfd
     State initial_state() const;
 
     /**
+     * The motion and the points of @p state are known: its stored energies,
+     * bonds and their tractions.
+     */
+    void complete(State &state) const;
+
+    /**
      * From @p old to @p next = t + h. @throws StepRejected if the nonsmooth
      * problem was not solved to the tolerance. @p idle_rounds as in
      * SolverControl: how soon the solver may give up.
@@ -100,6 +106,12 @@ namespace nsfd
                          activation_rounds = 0;
     };
     const Counters &counters() const { return counters_; }
+    /** Counts go on where those of another mesh have ended. */
+    void continue_counters(const Timings &timings, const Counters &counters)
+    {
+      timings_ = timings;
+      counters_ = counters;
+    }
 
   protected:
     void set_loads(double time);

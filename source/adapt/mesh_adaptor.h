@@ -1,0 +1,35 @@
+#pragma once
+
+#include "mesh_view.h"
+
+#include <deal.II/distributed/tria.h>
+
+namespace nsfd
+{
+  /**
+   * Decides which cells change: smaller where an indicator asks for it, larger
+   * where no one minds and no point of their faces remembers anything, so that
+   * nothing heals.
+   */
+  template <int dim>
+  class MeshAdaptor
+  {
+  public:
+    /** @p triangulation as it is now is the mesh with level 0. */
+    MeshAdaptor(const SceneInput &input,
+                dealii::parallel::distributed::Triangulation<dim> &triangulation);
+
+    /**
+     * Flags the cells by the state at the end of a step; the bodies of @p mesh
+     * are those of the triangulation. True on all ranks if one will change.
+     * Collective.
+     */
+    bool mark(const MeshState<dim> &mesh, bool may_coarsen);
+
+  private:
+    bool will_change(const Communicator &communicator);
+
+    const SceneInput &input_;
+    dealii::parallel::distributed::Triangulation<dim> &triangulation_;
+  };
+} // namespace nsfd

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "nsfd/mesh/discretization.h"
+#include "nsfd/time/state.h"
+
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * What a point remembers, as one row of numbers: where it was, what it
+   * belongs to, and its history. Rows of one state have the same length.
+   */
+  template <int dim>
+  class PointMemory
+  {
+  public:
+    explicit PointMemory(const State &state);
+
+    static constexpr unsigned int face = 0, child = 1, origin_kind = 2,
+                                  origin_block = 3, position = 4,
+                                  offset = 4 + dim,
+                                  impulse = 4 + 2 * dim, ///< over the weight
+        history = 4 + 3 * dim;
+    static constexpr unsigned int beta = history; ///< the first of them
+
+    unsigned int size() const { return size_; }
+
+    /** Everything but `face` and `child`; @p jump_offset has dim entries. */
+    void store(const Discretization<dim> &discretization, const State &state,
+               std::size_t point, const double *jump_offset, double *row) const;
+
+    /** History and impulse of a point whose vectors have their size. */
+    void restore(const double *row, double weight, std::size_t point,
+                 State &state) const;
+
+    /** The vectors of history that the old state had. */
+    void resize(std::size_t n_points, State &state) const;
+
+  private:
+    /** @p visit (vector) for those that hold numbers and are in use. */
+    template <typename StateOrConst, typename Visit>
+    void for_numbers(StateOrConst &state, Visit &&visit) const;
+
+    bool slip_max_, lift_, pressure_;
+    unsigned int size_;
+  };
+} // namespace nsfd

@@ -1,0 +1,389 @@
+#include "state_transfer.h"
+
+#include "../mesh/owned_cells.h"
+#include "../time/initial_state.h"
+
+#include "nsfd/dynamics/point_places.h"
+
+#include <deal.II/fe/fe.h>
+#include <deal.II/lac/full_matrix.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A child of a cube lies on face f of its parent with its own face f. */
+    bool lies_on_face(const unsigned int child, const unsigned int face_no)
+    {
+      return (child >> (face_no / 2) & 1u) == (face_no & 1u);
+    }
+
+    /** The body of every active cell of this rank, -1 for others. */
+    template <int dim>
+    std::vector<int> bodies_of_cells(const Triangulation<dim> &triangulation)
+    {
+      std::vector<int> result(triangulation.n_active_cells(), -1);
+      const auto cells = owned_cells(triangulation);
+      for (std::size_t b = 0; b < cells.size(); ++b)
+        result[cells[b]->active_cell_index()] = int(b);
+      return result;
+    }
+
+    /** State without its vectors: sums, times, extremes. */
+    State without_vectors(const State &state)
+    {
+      State result;
+      result.step = state.step;
+      result.time = state.time;
+      result.viscous_traction = state.viscous_traction;
+      result.energy = state.energy;
+      result.initial_energy = state.initial_energy;
+      result.largest_energy = state.largest_energy;
+      result.penetration = state.penetration;
+      result.penetration_excess = state.penetration_excess;
+      result.rigid_drift = state.rigid_drift;
+      result.positive_friction_work = state.positive_friction_work;
+      result.broken_area = state.broken_area;
+      result.pressure_work = state.pressure_work;
+      return result;
+    }
+
+    /** jump - H q - gap at the start: what laws have put there. */
+    template <int dim>
+    std::vector<double> beyond_motion(const SceneInput &input,
+                                      const MeshState<dim> &mesh)
+    {
+      std::vector<double> result(mesh.state.jump.size());
+      mesh.dynamics.relative_velocity(mesh.state.displacement.data(),
+                                      result.data());
+      for (std::size_t k = 0; k < result.size(); ++k)
+        result[k] = mesh.state.jump[k] - result[k];
+      for (std::size_t i = 0; i < result.size() / dim; ++i)
+        result[i * dim] -= initial_gap(input, mesh.discretization, i);
+      return result;
+    }
+
+    Block inverse_of(const Block &mass)
+    {
+      Block identity(mass.rows, mass.rows);
+      for (unsigned int i = 0; i < mass.rows; ++i)
+        identity(i, i) = 1.;
+      return gram(forward_solve(cholesky(mass), identity));
+    }
+  } // namespace
+
+  template <int dim>
+  StateTransfer<dim>::StateTransfer(const SceneInput &input,
+                                    Mesh &triangulation,
+                                    const MeshState<dim> &mesh)
+      : input_(input), triangulation_(triangulation), memory_(mesh.state),
+        old_(mesh), body_of_(bodies_of_cells(triangulation)),
+        offset_(beyond_motion(input, mesh)),
+        points_of_(mesh.discretization.bodies().size()),
+        state_(without_vectors(mesh.state))
+  {
+    for_all_places(mesh.discretization.bodies(),
+                   mesh.discretization.points().n_points,
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t point, unsigned int) {
+                     points_of_[body].emplace_back(slot, unsigned(point));
+                   });
+    handle_ = triangulation.register_data_attach(
+        [this](const Cell &cell, const Status status) {
+          return pack(cell, status);
+        },
+        true);
+  }
+
+  template <int dim>
+  std::vector<char> StateTransfer<dim>::pack(const Cell &cell,
+                                             const Status status) const
+  {
+    const Parcel parcel =
+        status == Mesh::CELL_COARSEN
+            ? pack_children(cell)
+            : pack_one(unsigned(body_of_[cell->active_cell_index()]));
+    std::vector<char> bytes(parcel.size() * sizeof(double));
+    std::memcpy(bytes.data(), parcel.data(), bytes.size());
+    return bytes;
+  }
+
+  /** The points on the faces of a body, or on those of its parent only. */
+  template <int dim>
+  void StateTransfer<dim>::add_memories(const unsigned int body,
+                                        const unsigned int child,
+                                        Parcel &parcel,
+                                        const bool all_faces) const
+  {
+    for (const auto &[slot, point] : points_of_[body]) {
+      const unsigned int face_no =
+          old_.discretization.face_of_slot(body, slot);
+      if (!all_faces && !lies_on_face(child, face_no))
+        continue;
+      const std::size_t first = parcel.size();
+      parcel.resize(first + memory_.size());
+      memory_.store(old_.discretization, old_.state, point,
+                    &offset_[point * dim], &parcel[first]);
+      parcel[first + PointMemory<dim>::face] = face_no;
+      parcel[first + PointMemory<dim>::child] = child;
+    }
+  }
+
+  template <int dim>
+  typename StateTransfer<dim>::Parcel
+  StateTransfer<dim>::pack_one(const unsigned int body) const
+  {
+    const auto &bodies = old_.discretization.bodies();
+    const std::size_t first = bodies.first_dof[body],
+                      end = bodies.first_dof[body + 1];
+    Parcel parcel = {double(end - first)};
+    for (const auto *vector : {&old_.state.displacement, &old_.state.velocity})
+      parcel.insert(parcel.end(), vector->begin() + std::ptrdiff_t(first),
+                    vector->begin() + std::ptrdiff_t(end));
+    add_memories(body, 0, parcel, true);
+    return parcel;
+  }
+
+  /** Displacement of the parent, and sum over children of P^T M v. */
+  template <int dim>
+  typename StateTransfer<dim>::Parcel
+  StateTransfer<dim>::pack_children(const Cell &parent) const
+  {
+    const auto &bodies = old_.discretization.bodies();
+    const auto &element = old_.discretization.element();
+    const unsigned int n_nodes = element.n_dofs_per_cell(),
+                       n = n_nodes * dim;
+    Parcel parcel(1 + 2 * n, 0.);
+    parcel[0] = n;
+    double *displacement = &parcel[1], *momentum = &parcel[1 + n];
+    std::vector<unsigned int> children_at(n_nodes, 0);
+    const auto &nodes = element.get_unit_support_points();
+    for (unsigned int c = 0; c < parent->n_children(); ++c) {
+      const int body = body_of_[parent->child(c)->active_cell_index()];
+      const auto &block = bodies.classes[bodies.class_of[body]];
+      const double *q =
+          old_.state.displacement.data() + bodies.first_dof[body];
+      const double *v = old_.state.velocity.data() + bodies.first_dof[body];
+      const FullMatrix<double> &P = element.get_prolongation_matrix(c);
+      for (unsigned int j = 0; j < n; ++j) {
+        double Mv = 0.;
+        for (unsigned int k = 0; k < n; ++k)
+          Mv += block.mass(j, k) * v[k];
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          momentum[i * dim + j % dim] += P(j / dim, i) * Mv;
+      }
+      for (unsigned int i = 0; i < n_nodes; ++i) {
+        Point<dim> xi;
+        bool inside = true;
+        for (unsigned int d = 0; d < dim; ++d) {
+          xi[d] = 2. * nodes[i][d] - double(c >> d & 1u);
+          inside = inside && xi[d] > -1e-12 && xi[d] < 1. + 1e-12;
+        }
+        if (!inside)
+          continue;
+        ++children_at[i];
+        for (unsigned int j = 0; j < n_nodes; ++j) {
+          const double N = element.shape_value(j, xi);
+          for (unsigned int d = 0; d < dim; ++d)
+            displacement[i * dim + d] += N * q[j * dim + d];
+        }
+      }
+    }
+    for (unsigned int i = 0; i < n; ++i)
+      displacement[i] /= children_at[i / dim];
+    for (unsigned int c = 0; c < parent->n_children(); ++c)
+      add_memories(unsigned(body_of_[parent->child(c)->active_cell_index()]),
+                   c, parcel, false);
+    return parcel;
+  }
+
+  template <int dim>
+  void StateTransfer<dim>::receive()
+  {
+    const std::vector<int> body_of = bodies_of_cells(triangulation_);
+    received_.resize(triangulation_.n_locally_owned_active_cells());
+    triangulation_.notify_ready_to_unpack(
+        handle_, [&](const Cell &cell, const Status status,
+                     const boost::iterator_range<
+                         std::vector<char>::const_iterator> &bytes) {
+          auto parcel =
+              std::make_shared<Parcel>(bytes.size() / sizeof(double));
+          if (!bytes.empty())
+            std::memcpy(parcel->data(), &*bytes.begin(), bytes.size());
+          if (status != Mesh::CELL_REFINE) {
+            received_[body_of[cell->active_cell_index()]] = {parcel, status, 0};
+            return;
+          }
+          for (unsigned int c = 0; c < cell->n_children(); ++c)
+            received_[body_of[cell->child(c)->active_cell_index()]] = {
+                parcel, status, c};
+        });
+  }
+
+  /** q and v of the bodies. */
+  template <int dim>
+  void StateTransfer<dim>::set_motion(const MeshState<dim> &fresh,
+                                      State &state) const
+  {
+    const auto &bodies = fresh.discretization.bodies();
+    const auto &element = fresh.discretization.element();
+    state.displacement.resize(bodies.n_dofs());
+    state.velocity.resize(bodies.n_dofs());
+    std::vector<Block> inverse(bodies.classes.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Received &received = received_[b];
+      const Parcel &parcel = *received.parcel;
+      const auto n = unsigned(parcel[0]);
+      const std::array<const double *, 2> from = {
+          {&parcel[1], &parcel[1 + n]}};
+      const std::array<double *, 2> to = {
+          {state.displacement.data() + bodies.first_dof[b],
+           state.velocity.data() + bodies.first_dof[b]}};
+      if (received.status == Mesh::CELL_REFINE) {
+        const auto &P = element.get_prolongation_matrix(received.child);
+        for (unsigned int k = 0; k < 2; ++k)
+          for (unsigned int i = 0; i < n; ++i) {
+            to[k][i] = 0.;
+            for (unsigned int j = i % dim; j < n; j += dim)
+              to[k][i] += P(i / dim, j / dim) * from[k][j];
+          }
+        continue;
+      }
+      for (unsigned int k = 0; k < 2; ++k)
+        std::copy_n(from[k], n, to[k]);
+      if (received.status == Mesh::CELL_COARSEN) {
+        Block &M_inverse = inverse[bodies.class_of[b]];
+        if (M_inverse.rows == 0)
+          M_inverse = inverse_of(bodies.classes[bodies.class_of[b]].mass);
+        for (unsigned int i = 0; i < n; ++i) {
+          to[1][i] = 0.;
+          for (unsigned int j = 0; j < n; ++j)
+            to[1][i] += M_inverse(i, j) * from[1][j];
+        }
+      }
+    }
+  }
+
+  /**
+   * The nearest memory on the same face of the cell; of equally near ones the
+   * most damaged. Null where there is none; @p inside: the face is new, inside
+   * an old cell.
+   */
+  template <int dim>
+  const double *StateTransfer<dim>::memory_of(const Received &received,
+                                              const unsigned int face_no,
+                                              const std::size_t i,
+                                              const MeshState<dim> &fresh,
+                                              bool &inside) const
+  {
+    using Memory = PointMemory<dim>;
+    inside = received.status == Mesh::CELL_REFINE &&
+             !lies_on_face(received.child, face_no);
+    if (inside)
+      return nullptr;
+    const Parcel &parcel = *received.parcel;
+    const PointOrigin origin = fresh.discretization.origins()[i];
+    const double *x = &fresh.discretization.points().position[i * dim];
+    const double *best = nullptr;
+    double nearest = std::numeric_limits<double>::max();
+    for (std::size_t at = 1 + 2 * std::size_t(parcel[0]); at < parcel.size();
+         at += memory_.size()) {
+      const double *row = &parcel[at];
+      if (unsigned(row[Memory::face]) != face_no ||
+          int(row[Memory::origin_kind]) != int(origin.kind) ||
+          unsigned(row[Memory::origin_block]) != origin.block)
+        continue;
+      double distance = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        distance += std::pow(row[Memory::position + c] - x[c], 2);
+      const bool near = distance < nearest * (1. - 1e-6);
+      const bool as_near = distance < nearest * (1. + 1e-6);
+      if (best == nullptr || near ||
+          (as_near && row[Memory::beta] < best[Memory::beta])) {
+        best = row;
+        nearest = distance;
+      }
+    }
+    return best;
+  }
+
+  template <int dim>
+  State StateTransfer<dim>::finish(const MeshState<dim> &fresh) const
+  {
+    using Memory = PointMemory<dim>;
+    const auto &points = fresh.discretization.points();
+    const std::size_t n = points.n_points;
+    State state = fresh.state;
+    set_motion(fresh, state);
+    fresh.dynamics.relative_velocity(state.displacement.data(),
+                                     state.jump.data());
+    fresh.dynamics.relative_velocity(state.velocity.data(),
+                                     state.relative_velocity.data());
+    memory_.resize(n, state);
+
+    // rows of both sides of every point; the first entry says what it is
+    enum Kind { none, remembered, inside_a_cell };
+    const unsigned int size = memory_.size();
+    std::array<std::vector<double>, 2> rows;
+    rows.fill(std::vector<double>(n * size, double(none)));
+    for_all_places(
+        fresh.discretization.bodies(), n,
+        [&](const std::size_t body, const unsigned int slot,
+            const std::size_t point, const unsigned int side) {
+          bool inside = false;
+          double *row = &rows[side][point * size];
+          const double *memory = memory_of(
+              received_[body],
+              fresh.discretization.face_of_slot(unsigned(body), slot), point,
+              fresh, inside);
+          if (memory)
+            std::copy_n(memory, size, row);
+          row[Memory::face] = memory ? remembered : inside ? inside_a_cell : none;
+        });
+    fresh.dynamics.exchange({{rows[0].data(), rows[1].data()}}, size);
+
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool boundary = points.faces[points.face_of[i]].boundary;
+      const double *row = &rows[boundary ? 1 : 0][i * size];
+      switch (Kind(int(row[Memory::face]))) {
+      case remembered:
+        memory_.restore(row, points.weight[i], i, state);
+        for (unsigned int c = 0; c < dim; ++c)
+          state.jump[i * dim + c] += row[Memory::offset + c];
+        break;
+      case inside_a_cell:
+        // intact, even where the block says `broken` or `contact`
+        if (state.kind[i] == PointKind::free) {
+          state.kind[i] = PointKind::prescribed;
+          state.beta[i] = 1.;
+        }
+        break;
+      case none:
+        break;
+      }
+      state.jump[i * dim] += initial_gap(input_, fresh.discretization, i);
+    }
+    State sums = state_;
+    for (auto member :
+         {&State::displacement, &State::velocity, &State::jump,
+          &State::relative_velocity, &State::impulse, &State::opening_max,
+          &State::slip_max, &State::beta, &State::slip, &State::dilated,
+          &State::worn, &State::dilation_speed, &State::wear_speed,
+          &State::penetration_bound, &State::bond_traction, &State::pressure})
+      (sums.*member).swap(state.*member);
+    sums.kind.swap(state.kind);
+    sums.two_sided.swap(state.two_sided);
+    sums.contact.swap(state.contact);
+    return sums;
+  }
+
+  template class StateTransfer<2>;
+  template class StateTransfer<3>;
+} // namespace nsfd

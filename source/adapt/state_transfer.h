@@ -1,0 +1,77 @@
+#pragma once
+
+#include "mesh_view.h"
+#include "point_memory.h"
+
+#include <deal.II/distributed/tria.h>
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Carries a state over one change of the mesh, with the cells, to the ranks
+   * that own them afterwards. Smaller cells take the polynomials of the larger
+   * one: nothing changes. A larger one interpolates the displacement of its
+   * children (mean where they meet) and takes the velocity nearest to theirs
+   * in the norm of mass, which keeps both momenta. Points inherit from the
+   * nearest one of the same face; new faces inside a cell are born intact.
+   */
+  template <int dim>
+  class StateTransfer
+  {
+  public:
+    using Mesh = dealii::parallel::distributed::Triangulation<dim>;
+
+    /** Attach the state to the cells of @p mesh, whose flags are set. */
+    StateTransfer(const SceneInput &input, Mesh &triangulation,
+                  const MeshState<dim> &mesh);
+
+    /** What came with the cells; once, right after the mesh has changed. */
+    void receive();
+
+    /**
+     * The state on the new bodies, without energies and tractions of bonds.
+     * @p fresh is the state at t = 0 there, with what points are born as.
+     * Collective.
+     */
+    State finish(const MeshState<dim> &fresh) const;
+
+  private:
+    using Cell = typename dealii::Triangulation<dim>::cell_iterator;
+    using Status = typename dealii::Triangulation<dim>::CellStatus;
+    /// of a cell: n, q (n), v or a momentum (n), then memories of its points
+    using Parcel = std::vector<double>;
+
+    struct Received {
+      std::shared_ptr<const Parcel> parcel;
+      Status status = Mesh::CELL_PERSIST;
+      unsigned int child = 0;
+    };
+
+    std::vector<char> pack(const Cell &cell, Status status) const;
+    Parcel pack_one(unsigned int body) const;
+    Parcel pack_children(const Cell &parent) const;
+    void add_memories(unsigned int body, unsigned int child, Parcel &parcel,
+                      bool all_faces) const;
+    void set_motion(const MeshState<dim> &fresh, State &state) const;
+    const double *memory_of(const Received &received, unsigned int face_no,
+                            std::size_t point, const MeshState<dim> &fresh,
+                            bool &inside) const;
+
+    const SceneInput &input_;
+    Mesh &triangulation_;
+    unsigned int handle_ = 0;
+    const PointMemory<dim> memory_;
+    // of the old mesh, while it lives
+    const MeshState<dim> old_;
+    std::vector<int> body_of_;      ///< by active cell index, -1: not ours
+    std::vector<double> offset_;    ///< jump - H q - gap at t = 0, by point
+    std::vector<std::vector<std::pair<unsigned int, unsigned int>>>
+        points_of_; ///< per body: slot, point
+    // what must outlive it
+    const State state_; ///< without vectors
+    std::vector<Received> received_; ///< per new body
+  };
+} // namespace nsfd

@@ -1,0 +1,94 @@
+#include "nsfd/adapt/indicator.h"
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Parts that do not know a mesh that changes. */
+    void check_scene(SectionReader &reader, const SceneInput &scene)
+    {
+      const auto refuse = [&](const bool bad, const std::string &what,
+                              const std::string &advice) {
+        if (bad)
+          reader.error("levels", what, advice);
+      };
+      refuse(has_simplices(scene),
+             "only meshes of quads and hexes can change: triangles and "
+             "tetrahedra have no hanging faces",
+             "take such a mesh, or `split simplices = true`");
+      refuse(std::any_of(scene.materials.begin(), scene.materials.end(),
+                         [](const auto &material) { return material.rigid; }),
+             "cells of rigid bodies cannot be refined",
+             "make all materials elastic, or remove the section Adaptivity");
+      refuse(scene.statics.has_value(),
+             "the mesh of equilibria does not change yet",
+             "remove the section Adaptivity, or start from rest");
+      refuse(scene.time.scheme == Scheme::arkode,
+             "the mesh does not change with scheme = arkode",
+             "write scheme = moreau-jean or symplectic");
+      // one per level, and two for the penalty of bonds at hanging faces
+      refuse(scene.time.scheme == Scheme::symplectic &&
+                 scene.adaptivity->levels + 2 > scene.time.maximum_halvings,
+             fmt::format("the stable step of the symplectic scheme halves with "
+                         "every level, and {} halvings are allowed",
+                         scene.time.maximum_halvings),
+             fmt::format("write in section Time: set maximum halvings = {}",
+                         scene.adaptivity->levels + 2));
+    }
+
+    std::shared_ptr<const Indicator>
+    read_indicator(ParameterSection &section, InputErrors &errors)
+    {
+      SectionReader reader(section, errors);
+      const auto &registry = IndicatorRegistry::instance();
+      const std::string type = reader.choice(
+          "type", "process zone", registry.names(),
+          fmt::format("{}", fmt::join(registry.names(), ", ")));
+      if (!registry.knows(type)) {
+        reader.accept_everything();
+        return nullptr;
+      }
+      return registry.create(type, reader);
+    }
+  } // namespace
+
+  void read_adaptivity(ParameterFile &file, InputErrors &errors,
+                       SceneInput &scene)
+  {
+    const auto blocks = file.open_blocks("Indicator");
+    if (!file.has_section("Adaptivity")) {
+      for (ParameterSection *block : blocks)
+        errors.error(block->location(),
+                     "an indicator changes no mesh by itself",
+                     "add a section: subsection Adaptivity / set levels = 2 / "
+                     "end");
+      for (ParameterSection *block : blocks)
+        read_indicator(*block, errors);
+      return;
+    }
+    SectionReader reader(file.open("Adaptivity"), errors);
+    auto &adaptivity = scene.adaptivity.emplace();
+    adaptivity.levels =
+        reader.integer("levels", "2", 0, 12,
+                       "the smallest cell is 2^levels times smaller than that "
+                       "of the mesh; 0: the mesh stays as it is");
+    adaptivity.coarsen_every =
+        reader.integer("coarsen every steps", "10", 0, 1000000,
+                       "cells without history may grow; 0: never");
+    check_scene(reader, scene);
+    for (ParameterSection *block : blocks)
+      if (auto indicator = read_indicator(*block, errors))
+        adaptivity.indicators.push_back(std::move(indicator));
+    if (blocks.empty())
+      reader.error("levels", "no indicator says where cells are to be small",
+                   "add for example: subsection Indicator: front / set type = "
+                   "process zone / end");
+    if (adaptivity.levels == 0)
+      scene.adaptivity.reset();
+  }
+} // namespace nsfd

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <deal.II/grid/cell_id.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The cells of this rank in the order of their bodies. Where cells have been
+   * refined it is that of their ids: the order in which a mesh was made does
+   * not show.
+   */
+  template <int dim>
+  std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
+  owned_cells(const dealii::Triangulation<dim> &triangulation)
+  {
+    std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
+        cells;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        cells.push_back(cell);
+    if (triangulation.n_global_levels() > 1)
+      std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) {
+        return a->id() < b->id();
+      });
+    return cells;
+  }
+} // namespace nsfd

@@ -1,0 +1,350 @@
+#include "../../source/adapt/adaptive_mesh.h"
+#include "make_scene.h"
+
+#include "nsfd/adapt/indicator.h"
+#include "nsfd/input/section_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+// Meshes that change by chance: what a change keeps, and what it may not do.
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Wants small cells here and there, elsewhere in every round. */
+    class Chance final : public Indicator
+    {
+    public:
+      explicit Chance(SectionReader &) {}
+
+      void limit(const MeshView &view, std::vector<double> &size) const override
+      {
+        ++round;
+        const auto &bodies = view.bodies();
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+          const auto &x = bodies[b].centre;
+          // siblings want the same
+          const double place = std::floor(x[0]) + 7. * std::floor(x[1]) +
+                               31. * std::floor(x[2]);
+          const double wave = std::sin(12.9898 * place + 78.233 * round);
+          size[b] = std::ldexp(bodies[b].largest,
+                               -int(2.999 * std::abs(wave)));
+        }
+      }
+
+      static inline unsigned int round = 0;
+    };
+    NSFD_REGISTER(IndicatorRegistry, Chance, "chance", "For tests");
+
+    struct Case {
+      unsigned int dim, degree;
+      bool bonded, distorted;
+    };
+
+    std::string text(const Case &c)
+    {
+      const bool space = c.dim == 3;
+      return "set dimension = " + std::to_string(c.dim) +
+             "\nsubsection Mesh\n  set type = " +
+             (space ? "brick" : "rectangle") +
+             "\n  set upper corner = " + (space ? "3, 2, 1" : "4, 3") +
+             "\n  set cells = " + (space ? "3, 2, 1" : "4, 3") +
+             (c.distorted ? "\n  set distortion = 0.15" : "") +
+             "\nend\nsubsection Discretization\n  set degree = " +
+             std::to_string(c.degree) + R"(
+end
+subsection Material: block
+  set Young modulus = 10
+  set Poisson ratio = 0.3
+  set density       = 2
+end
+subsection Interface: all
+)" + (c.bonded ? "  set law = camacho-ortiz\n  set toughness = 1\n"
+               : "  set law = michel-suquet\n  set stiffness = 100\n") +
+             R"(  set strength = 1
+end
+subsection Obstacle: floor
+  set where  = bottom
+  set point  = )" + (space ? "0, -0.1, 0" : "0, -0.1") + R"(
+  set normal = )" + (space ? "0, 1, 0" : "0, 1") + R"(
+end
+subsection Boundary: roof
+  set where      = top
+  set traction y = 3 * x
+end
+subsection Time
+  set end  = 1
+  set step = 0.5 crossings
+end
+subsection Adaptivity
+  set levels              = 2
+  set coarsen every steps = 1
+end
+subsection Indicator: any
+  set type = chance
+end
+)";
+    }
+
+    double wave(const double phase) { return std::sin(78.233 * phase + 0.4); }
+
+    /** A model whose mesh changes, with a state that knows no symmetry. */
+    template <int dim>
+    class Changing
+    {
+    public:
+      explicit Changing(const Case &c)
+          : input(test::make_input(text(c))), communicator(MPI_COMM_WORLD)
+      {
+        if (!model.build(*input, communicator))
+          throw std::invalid_argument("no model");
+        model.dynamics->reinit(model.control->step(), input->time.bulk_theta());
+        adaptive = std::make_unique<AdaptiveMesh<dim>>(*input, communicator,
+                                                       model);
+        state = model.stepper->initial_state();
+        const auto gap = state.jump;
+        for (std::size_t i = 0; i < state.displacement.size(); ++i) {
+          state.displacement[i] = 0.01 * wave(double(i));
+          state.velocity[i] = wave(1000. + double(i));
+        }
+        set_jumps(gap);
+        state.largest_energy = 1.;
+      }
+
+      void set_jumps(const std::vector<double> &gap)
+      {
+        model.dynamics->relative_velocity(state.displacement.data(),
+                                          state.jump.data());
+        model.dynamics->relative_velocity(state.velocity.data(),
+                                          state.relative_velocity.data());
+        for (std::size_t k = 0; k < gap.size(); ++k)
+          state.jump[k] += gap[k];
+        model.stepper->complete(state);
+      }
+
+      /** Some points soften, some are broken. */
+      void damage()
+      {
+        const auto &problem = model.stepper->problem();
+        for (std::size_t i = 0; i < state.beta.size(); ++i) {
+          const auto &law = problem.interactions[problem.interaction[i]].law;
+          const double chance = wave(3000. + 1.7 * double(i));
+          if (!law || chance < 0.6)
+            continue;
+          const bool breaks = chance > 0.9;
+          state.opening_max[i] =
+              breaks ? law->final_opening()
+                     : law->elastic_limit() +
+                           0.5 * chance *
+                               (std::min(law->final_opening(), 10.) -
+                                law->elastic_limit());
+          state.beta[i] = breaks ? 0. : law->beta(state.opening_max[i]);
+          state.kind[i] = breaks ? PointKind::free : PointKind::cohesive;
+          state.two_sided[i] = 0;
+        }
+        model.stepper->complete(state);
+      }
+
+      /** Linear, then angular momentum, and a scale for them. */
+      std::vector<double> momenta()
+      {
+        std::vector<double> Mv(state.velocity.size()), result;
+        model.dynamics->apply(Dynamics<dim>::Operator::mass,
+                              state.velocity.data(), Mv.data());
+        const unsigned int n = dim == 2 ? 3 : 6;
+        for (unsigned int k = 0; k < n; ++k) {
+          const auto motion = model.discretization->interpolate(
+              [&](const dealii::Point<dim> &x, unsigned int, double *v) {
+                for (unsigned int c = 0; c < dim; ++c)
+                  v[c] = k == c ? 1. : 0.;
+                if (k >= dim) {
+                  const unsigned int a = (k - dim + 1) % dim,
+                                     b = dim == 2 ? 0 : (k - dim + 2) % dim;
+                  v[a] = -x[b];
+                  v[b] = x[a];
+                }
+              });
+          result.push_back(
+              communicator.dot(motion.data(), Mv.data(), Mv.size()));
+        }
+        double scale = 0.;
+        for (const double value : Mv)
+          scale += std::abs(value);
+        result.push_back(scale);
+        return result;
+      }
+
+      /** Of the loads: sum of the forces along y, and of their moments. */
+      std::array<double, 2> load() const
+      {
+        std::vector<double> forces(state.velocity.size(), 0.);
+        model.discretization->add_loads(0., forces);
+        std::array<double, 2> result{};
+        for (unsigned int k = 0; k < 2; ++k) {
+          const auto motion = model.discretization->interpolate(
+              [&](const dealii::Point<dim> &x, unsigned int, double *v) {
+                std::fill(v, v + dim, 0.);
+                v[1] = k == 0 ? 1. : x[0];
+              });
+          result[k] =
+              communicator.dot(motion.data(), forces.data(), forces.size());
+        }
+        return result;
+      }
+
+      double damaged_area() const
+      {
+        double sum = 0.;
+        for (std::size_t i = 0; i < state.beta.size(); ++i)
+          sum += model.discretization->points().weight[i] *
+                 (model.discretization->origins()[i].kind ==
+                          PointOrigin::Kind::interface
+                      ? 1. - state.beta[i]
+                      : 0.);
+        return sum;
+      }
+
+      std::set<double> betas() const
+      {
+        std::set<double> values;
+        for (std::size_t i = 0; i < state.beta.size(); ++i)
+          if (model.discretization->origins()[i].kind ==
+              PointOrigin::Kind::interface)
+            values.insert(state.beta[i]);
+        values.insert(1.);
+        return values;
+      }
+
+      double jump_of_motion() const
+      {
+        std::vector<double> Hq(state.jump.size());
+        model.dynamics->relative_velocity(state.displacement.data(),
+                                          Hq.data());
+        double largest = 0.;
+        for (std::size_t i = 0; i < state.beta.size(); ++i)
+          if (model.discretization->origins()[i].kind ==
+              PointOrigin::Kind::interface)
+            for (unsigned int c = 0; c < dim; ++c)
+              largest = std::max(largest, std::abs(Hq[i * dim + c] -
+                                                   state.jump[i * dim + c]));
+        return largest;
+      }
+
+      bool change()
+      {
+        State next = state;
+        ++next.step;
+        const bool changed = adaptive->follow(state, next);
+        adaptive->accept();
+        return changed;
+      }
+
+      std::unique_ptr<SceneInput> input;
+      Communicator communicator;
+      Model<dim> model;
+      std::unique_ptr<AdaptiveMesh<dim>> adaptive;
+      State state;
+    };
+
+    double closed(const EnergyLines &e)
+    {
+      return e.kinetic + e.elastic + e.cohesive + e.damage + e.numerical;
+    }
+
+    template <int dim>
+    void keeps_what_it_must(const Case &c, const unsigned int rounds)
+    {
+      Chance::round = 0;
+      Changing<dim> mesh(c);
+      mesh.damage();
+      const auto momenta = mesh.momenta();
+      const auto betas = mesh.betas();
+      const double area = mesh.damaged_area();
+      unsigned int changes = 0;
+      std::set<std::size_t> sizes;
+      for (unsigned int k = 0; k < rounds; ++k) {
+        const EnergyLines before = mesh.state.energy;
+        if (!mesh.change())
+          continue;
+        ++changes;
+        sizes.insert(mesh.model.discretization->bodies().size());
+        const auto now = mesh.momenta();
+        for (unsigned int d = 0; d + 1 < now.size(); ++d)
+          ASSERT_NEAR(now[d], momenta[d], 1e-12 * momenta.back()) << d;
+        ASSERT_LE(mesh.state.energy.kinetic,
+                  before.kinetic * (1. + 1e-12));
+        // the books stay closed
+        ASSERT_NEAR(closed(mesh.state.energy), closed(before),
+                    1e-12 * before.kinetic);
+        // 3 x over an edge of 4 (an area of 3 x 1)
+        const auto load = mesh.load();
+        ASSERT_NEAR(load[0], dim == 2 ? 24. : 13.5, 1e-11);
+        ASSERT_NEAR(load[1], dim == 2 ? 64. : 27., 1e-11);
+        ASSERT_EQ(mesh.betas(), betas);
+        ASSERT_LT(mesh.jump_of_motion(), 1e-13);
+        if (!c.distorted && c.degree == 1) {
+          ASSERT_NEAR(mesh.damaged_area(), area, 1e-12 * area);
+          ASSERT_NEAR(mesh.state.energy.damage, 0., 1e-12);
+        }
+      }
+      EXPECT_GT(changes, rounds / 2);
+      EXPECT_GT(sizes.size(), rounds > 5 ? 3u : 1u);
+    }
+  } // namespace
+
+  TEST(Adaptivity, ManyChangesOfAPlaneMeshKeepMomentumAndDamage)
+  {
+    keeps_what_it_must<2>({2, 1, false, false}, 1000);
+  }
+
+  TEST(Adaptivity, ChangesOfDistortedQuadraticCells)
+  {
+    keeps_what_it_must<2>({2, 2, false, true}, 50);
+  }
+
+  TEST(Adaptivity, ChangesOfBondedMeshes)
+  {
+    keeps_what_it_must<2>({2, 1, true, false}, 20);
+    keeps_what_it_must<2>({2, 2, true, true}, 10);
+  }
+
+  TEST(Adaptivity, ChangesOfBricks)
+  {
+    keeps_what_it_must<3>({3, 1, false, false}, 10);
+    keeps_what_it_must<3>({3, 1, true, true}, 4);
+  }
+
+  // A state of smaller cells that came from larger ones is the same function;
+  // made larger again, it is the old one. Before anything is damaged.
+  TEST(Adaptivity, ThereAndBackAgain)
+  {
+    Chance::round = 0;
+    Changing<2> mesh({2, 2, false, true});
+    // continuous, or the larger cells could not have it
+    mesh.state.displacement = mesh.model.discretization->interpolate(
+        [](const dealii::Point<2> &x, unsigned int, double *u) {
+          u[0] = 0.01 * x[0] + 0.003 * x[1];
+          u[1] = -0.02 * x[0] + 0.005 * x[1];
+        });
+    mesh.state.velocity = mesh.state.displacement;
+    std::vector<double> gap = mesh.model.stepper->initial_state().jump;
+    mesh.set_jumps(gap);
+    const EnergyLines start = mesh.state.energy;
+    ASSERT_GT(start.elastic, 0.);
+    for (unsigned int k = 0; k < 30; ++k) {
+      mesh.change();
+      const EnergyLines &now = mesh.state.energy;
+      ASSERT_NEAR(now.kinetic, start.kinetic, 1e-12 * start.kinetic);
+      ASSERT_NEAR(now.elastic, start.elastic, 1e-12 * start.elastic);
+      ASSERT_NEAR(now.cohesive, start.cohesive, 1e-12 * start.elastic);
+      for (std::size_t i = 0; i < mesh.state.displacement.size(); ++i)
+        // round-off of thirty projections times the condition of M, 1e2
+        ASSERT_NEAR(mesh.state.velocity[i], mesh.state.displacement[i], 1e-12);
+    }
+  }
+} // namespace nsfd
