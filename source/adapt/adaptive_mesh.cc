@@ -142,24 +142,39 @@ namespace nsfd
     const Archive::Part part(archive, "adaptive_mesh");
     archive.numbers("sums", changes_, largest_cells_, cells_sum_, steps_,
                     energy_, worst_);
+    archive.numbers("looked", looked_, coarsened_);
   }
 
   template <int dim>
   bool AdaptiveMesh<dim>::follow(State &state, const State &next)
   {
+    if (rounds_ == 0) {
+      ++steps_;
+      cells_sum_ += double(model_.discretization->n_global_cells());
+    }
+    if (!is_due(next))
+      return false;
     const unsigned int every = input_.adaptivity->coarsen_every;
     const bool may_coarsen =
-        rounds_ == 0 && every > 0 && next.step % every == 0;
-    steps_ += rounds_ == 0;
-    cells_sum_ +=
-        rounds_ == 0 ? double(model_.discretization->n_global_cells()) : 0.;
-    // a level per round, and one for what the finer mesh sees first
-    if (rounds_ > input_.adaptivity->levels ||
-        !adaptor_->mark(mesh_state(model_, next), may_coarsen))
+        rounds_ == 0 && every > 0 && next.step >= coarsened_ + every;
+    if (may_coarsen)
+      coarsened_ = next.step;
+    looked_ = next.time;
+    if (!adaptor_->mark(mesh_state(model_, next), may_coarsen))
       return false;
     ++rounds_;
     change(state);
     return true;
+  }
+
+  template <int dim>
+  bool AdaptiveMesh<dim>::is_due(const State &next) const
+  {
+    if (rounds_ > 0) // a level per round, and one for what the finer mesh sees
+      return rounds_ <= input_.adaptivity->levels;
+    return looked_ < 0. ||
+           next.time - looked_ >=
+               0.25 * model_.discretization->crossing_time();
   }
 
   template <int dim>

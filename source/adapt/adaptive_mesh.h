@@ -40,8 +40,9 @@ namespace nsfd
     void remember(Archive &archive);
 
     /**
-     * Whether the mesh is good enough for a step from @p state to @p next; if
-     * it is not, it changes, with @p state on it, and the step is to be taken
+     * Whether the mesh is good enough for a step from @p state to @p next, as
+     * far as it is looked at: no wave gets further than a quarter of the
+     * smallest cell in between. If it is not, it changes, with @p state on it, and the step is to be taken
      * again. Collective.
      */
     bool follow(State &state, const State &next);
@@ -63,7 +64,12 @@ namespace nsfd
     Model<dim> &model_;
     std::unique_ptr<MeshAdaptor<dim>> adaptor_;
     std::vector<unsigned int> weights_; ///< by active cell index
-    unsigned int rounds_ = 0, changes_ = 0;
+    bool is_due(const State &next) const;
+
+    unsigned int rounds_ = 0; ///< changes in the present step
+    double looked_ = -1.;     ///< s, when the indicators were asked last
+    unsigned int coarsened_ = 0; ///< step in which cells might grow last
+    unsigned int changes_ = 0;
     unsigned long long largest_cells_ = 0;
     double cells_sum_ = 0., steps_ = 0.;
     double energy_ = 0.; ///< stored energy lost in changes, J

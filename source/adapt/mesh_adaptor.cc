@@ -1,6 +1,7 @@
 #include "mesh_adaptor.h"
 
 #include "../mesh/owned_cells.h"
+#include "family.h"
 
 #include "nsfd/dynamics/point_places.h"
 #include "nsfd/input/scene_input.h"
@@ -56,6 +57,7 @@ namespace nsfd
   bool MeshAdaptor<dim>::mark(const MeshState<dim> &mesh,
                               const bool may_coarsen)
   {
+    const auto &communicator = mesh.dynamics.communicator();
     const auto cells = owned_cells(triangulation_);
     std::vector<unsigned int> levels;
     for (const auto &cell : cells)
@@ -80,12 +82,54 @@ namespace nsfd
                  2. * body.size <= size[b] * margin)
         cell->set_coarsen_flag();
     }
+    if (may_coarsen)
+      keep_rough_families(mesh);
     triangulation_.prepare_coarsening_and_refinement();
-    if (will_change(mesh.dynamics.communicator()))
+    if (will_change(communicator))
       return true;
     for (const auto &cell : triangulation_.active_cell_iterators())
       cell->clear_coarsen_flag();
     return false;
+  }
+
+  /** Takes flags away. The energies of the rest change by 2e-4 at most. */
+  template <int dim>
+  void MeshAdaptor<dim>::keep_rough_families(const MeshState<dim> &mesh)
+  {
+    constexpr double share = 1e-4;
+    const auto &bodies = mesh.discretization.bodies();
+    const auto &energy = mesh.state.energy;
+    const double mean = (energy.kinetic + energy.elastic) /
+                        double(mesh.discretization.n_global_cells());
+    const auto cells = owned_cells(triangulation_);
+    std::vector<int> body_of(triangulation_.n_active_cells(), -1);
+    for (std::size_t b = 0; b < cells.size(); ++b)
+      body_of[cells[b]->active_cell_index()] = int(b);
+    for (const auto &cell : cells) {
+      if (cell->level() == 0 || cell != cell->parent()->child(0))
+        continue;
+      Family family;
+      for (unsigned int c = 0; c < cell->parent()->n_children(); ++c) {
+        const auto child = cell->parent()->child(c);
+        if (!child->is_active() || !child->is_locally_owned() ||
+            !child->coarsen_flag_set())
+          break;
+        const int body = body_of[child->active_cell_index()];
+        family.classes.push_back(&bodies.classes[bodies.class_of[body]]);
+        family.displacement.push_back(mesh.state.displacement.data() +
+                                      bodies.first_dof[body]);
+        family.velocity.push_back(mesh.state.velocity.data() +
+                                  bodies.first_dof[body]);
+      }
+      if (family.classes.size() < cell->parent()->n_children())
+        continue;
+      const FamilyEnergy of_family =
+          energy_of_family<dim>(mesh.discretization.element(), family);
+      if (of_family.change >
+          share * std::max(of_family.now, double(family.classes.size()) * mean))
+        for (unsigned int c = 0; c < cell->parent()->n_children(); ++c)
+          cell->parent()->child(c)->clear_coarsen_flag();
+    }
   }
 
   /** Cells are only made larger together with all their siblings. */

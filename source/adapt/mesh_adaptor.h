@@ -8,8 +8,10 @@ namespace nsfd
 {
   /**
    * Decides which cells change: smaller where an indicator asks for it, larger
-   * where no one minds and no point of their faces remembers anything, so that
-   * nothing heals.
+   * where no one minds, where no point of their faces remembers anything, so
+   * that nothing heals, and where the larger cell has the motion of the smaller
+   * ones: their energies may change by 1e-4, of that of the family or of as many
+   * mean cells.
    */
   template <int dim>
   class MeshAdaptor
@@ -27,6 +29,7 @@ namespace nsfd
     bool mark(const MeshState<dim> &mesh, bool may_coarsen);
 
   private:
+    void keep_rough_families(const MeshState<dim> &mesh);
     bool will_change(const Communicator &communicator);
 
     const SceneInput &input_;

@@ -1,5 +1,7 @@
 #include "state_transfer.h"
 
+#include "family.h"
+
 #include "../mesh/owned_cells.h"
 #include "../time/initial_state.h"
 
@@ -157,47 +159,21 @@ namespace nsfd
   StateTransfer<dim>::pack_children(const Cell &parent) const
   {
     const auto &bodies = old_.discretization.bodies();
-    const auto &element = old_.discretization.element();
-    const unsigned int n_nodes = element.n_dofs_per_cell(),
-                       n = n_nodes * dim;
-    Parcel parcel(1 + 2 * n, 0.);
-    parcel[0] = n;
-    double *displacement = &parcel[1], *momentum = &parcel[1 + n];
-    std::vector<unsigned int> children_at(n_nodes, 0);
-    const auto &nodes = element.get_unit_support_points();
+    Family family;
     for (unsigned int c = 0; c < parent->n_children(); ++c) {
       const int body = body_of_[parent->child(c)->active_cell_index()];
-      const auto &block = bodies.classes[bodies.class_of[body]];
-      const double *q =
-          old_.state.displacement.data() + bodies.first_dof[body];
-      const double *v = old_.state.velocity.data() + bodies.first_dof[body];
-      const FullMatrix<double> &P = element.get_prolongation_matrix(c);
-      for (unsigned int j = 0; j < n; ++j) {
-        double Mv = 0.;
-        for (unsigned int k = 0; k < n; ++k)
-          Mv += block.mass(j, k) * v[k];
-        for (unsigned int i = 0; i < n_nodes; ++i)
-          momentum[i * dim + j % dim] += P(j / dim, i) * Mv;
-      }
-      for (unsigned int i = 0; i < n_nodes; ++i) {
-        Point<dim> xi;
-        bool inside = true;
-        for (unsigned int d = 0; d < dim; ++d) {
-          xi[d] = 2. * nodes[i][d] - double(c >> d & 1u);
-          inside = inside && xi[d] > -1e-12 && xi[d] < 1. + 1e-12;
-        }
-        if (!inside)
-          continue;
-        ++children_at[i];
-        for (unsigned int j = 0; j < n_nodes; ++j) {
-          const double N = element.shape_value(j, xi);
-          for (unsigned int d = 0; d < dim; ++d)
-            displacement[i * dim + d] += N * q[j * dim + d];
-        }
-      }
+      family.classes.push_back(&bodies.classes[bodies.class_of[body]]);
+      family.displacement.push_back(old_.state.displacement.data() +
+                                    bodies.first_dof[body]);
+      family.velocity.push_back(old_.state.velocity.data() +
+                                bodies.first_dof[body]);
     }
-    for (unsigned int i = 0; i < n; ++i)
-      displacement[i] /= children_at[i / dim];
+    const ParentMotion motion =
+        motion_of_parent<dim>(old_.discretization.element(), family);
+    Parcel parcel = {double(motion.momentum.size())};
+    parcel.insert(parcel.end(), motion.displacement.begin(),
+                  motion.displacement.end());
+    parcel.insert(parcel.end(), motion.momentum.begin(), motion.momentum.end());
     for (unsigned int c = 0; c < parent->n_children(); ++c)
       add_memories(unsigned(body_of_[parent->child(c)->active_cell_index()]),
                    c, parcel, false);

@@ -69,17 +69,22 @@ namespace nsfd
         const std::vector<double> fronts = view.gather(here);
 
         const auto &bodies = view.bodies();
-        for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+          const auto &centre = bodies[b].centre;
           for (std::size_t k = 0; k < fronts.size(); k += 4) {
-            double distance = 0.;
-            for (unsigned int c = 0; c < 3; ++c)
-              distance += std::pow(bodies[b].centre[c] - fronts[k + c], 2);
             const double zone = fronts[k + 3];
             // the cell itself may be much larger than the zone
-            if (std::sqrt(distance) <
-                (reach_ + 0.25) * zone + 0.75 * bodies[b].size)
+            const double near =
+                (reach_ + 0.25) * zone + 0.75 * bodies[b].size;
+            double square = 0.;
+            for (unsigned int c = 0; c < 3; ++c) {
+              const double d = centre[c] - fronts[k + c];
+              square += d * d;
+            }
+            if (square < near * near)
               visit(b, zone);
           }
+        }
       }
 
       double cells_, traction_, reach_;

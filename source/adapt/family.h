@@ -1,0 +1,40 @@
+#pragma once
+
+#include "nsfd/dynamics/bodies.h"
+
+#include <vector>
+
+namespace dealii
+{
+  template <int dim, int spacedim>
+  class FiniteElement;
+} // namespace dealii
+
+namespace nsfd
+{
+  /** The children of a cell, in their order, with their motion. */
+  struct Family {
+    std::vector<const BodyClass *> classes;
+    std::vector<const double *> displacement, velocity;
+  };
+
+  /** What their parent takes over from them, per unknown of a cell. */
+  struct ParentMotion {
+    std::vector<double> displacement; ///< interpolated, mean where they meet
+    std::vector<double> momentum;     ///< sum over children of P^T M v
+  };
+
+  template <int dim>
+  ParentMotion motion_of_parent(const dealii::FiniteElement<dim, dim> &element,
+                                const Family &family);
+
+  /** Kinetic and elastic energy of a family, J (J/m in two dimensions). */
+  struct FamilyEnergy {
+    double now = 0.;
+    double change = 0.; ///< in becoming their parent, sizes of both kinds
+  };
+
+  template <int dim>
+  FamilyEnergy energy_of_family(const dealii::FiniteElement<dim, dim> &element,
+                                const Family &family);
+} // namespace nsfd
