@@ -34,6 +34,15 @@ namespace nsfd
     }
   } // namespace
 
+  void Family::add(const Bodies &bodies, const State &state,
+                   const unsigned int body)
+  {
+    const std::size_t first = bodies.first_dof[body];
+    classes.push_back(&bodies.classes[bodies.class_of[body]]);
+    displacement.push_back(state.displacement.data() + first);
+    velocity.push_back(state.velocity.data() + first);
+  }
+
   template <int dim>
   ParentMotion motion_of_parent(const FiniteElement<dim, dim> &element,
                                 const Family &family)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/dynamics/bodies.h"
+#include "nsfd/time/state.h"
 
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace nsfd
   struct Family {
     std::vector<const BodyClass *> classes;
     std::vector<const double *> displacement, velocity;
+
+    void add(const Bodies &bodies, const State &state, unsigned int body);
   };
 
   /** What their parent takes over from them, per unknown of a cell. */

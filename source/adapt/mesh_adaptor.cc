@@ -97,15 +97,11 @@ namespace nsfd
   void MeshAdaptor<dim>::keep_rough_families(const MeshState<dim> &mesh)
   {
     constexpr double share = 1e-4;
-    const auto &bodies = mesh.discretization.bodies();
     const auto &energy = mesh.state.energy;
     const double mean = (energy.kinetic + energy.elastic) /
                         double(mesh.discretization.n_global_cells());
-    const auto cells = owned_cells(triangulation_);
-    std::vector<int> body_of(triangulation_.n_active_cells(), -1);
-    for (std::size_t b = 0; b < cells.size(); ++b)
-      body_of[cells[b]->active_cell_index()] = int(b);
-    for (const auto &cell : cells) {
+    const auto body_of = bodies_of_cells(triangulation_);
+    for (const auto &cell : owned_cells(triangulation_)) {
       if (cell->level() == 0 || cell != cell->parent()->child(0))
         continue;
       Family family;
@@ -114,12 +110,8 @@ namespace nsfd
         if (!child->is_active() || !child->is_locally_owned() ||
             !child->coarsen_flag_set())
           break;
-        const int body = body_of[child->active_cell_index()];
-        family.classes.push_back(&bodies.classes[bodies.class_of[body]]);
-        family.displacement.push_back(mesh.state.displacement.data() +
-                                      bodies.first_dof[body]);
-        family.velocity.push_back(mesh.state.velocity.data() +
-                                  bodies.first_dof[body]);
+        family.add(mesh.discretization.bodies(), mesh.state,
+                   unsigned(body_of[child->active_cell_index()]));
       }
       if (family.classes.size() < cell->parent()->n_children())
         continue;

@@ -27,17 +27,6 @@ namespace nsfd
       return (child >> (face_no / 2) & 1u) == (face_no & 1u);
     }
 
-    /** The body of every active cell of this rank, -1 for others. */
-    template <int dim>
-    std::vector<int> bodies_of_cells(const Triangulation<dim> &triangulation)
-    {
-      std::vector<int> result(triangulation.n_active_cells(), -1);
-      const auto cells = owned_cells(triangulation);
-      for (std::size_t b = 0; b < cells.size(); ++b)
-        result[cells[b]->active_cell_index()] = int(b);
-      return result;
-    }
-
     /** State without its vectors: sums, times, extremes. */
     State without_vectors(const State &state)
     {
@@ -158,16 +147,10 @@ namespace nsfd
   typename StateTransfer<dim>::Parcel
   StateTransfer<dim>::pack_children(const Cell &parent) const
   {
-    const auto &bodies = old_.discretization.bodies();
     Family family;
-    for (unsigned int c = 0; c < parent->n_children(); ++c) {
-      const int body = body_of_[parent->child(c)->active_cell_index()];
-      family.classes.push_back(&bodies.classes[bodies.class_of[body]]);
-      family.displacement.push_back(old_.state.displacement.data() +
-                                    bodies.first_dof[body]);
-      family.velocity.push_back(old_.state.velocity.data() +
-                                bodies.first_dof[body]);
-    }
+    for (unsigned int c = 0; c < parent->n_children(); ++c)
+      family.add(old_.discretization.bodies(), old_.state,
+                 unsigned(body_of_[parent->child(c)->active_cell_index()]));
     const ParentMotion motion =
         motion_of_parent<dim>(old_.discretization.element(), family);
     Parcel parcel = {double(motion.momentum.size())};

@@ -93,12 +93,9 @@ namespace nsfd
         const std::vector<unsigned int> &materials,
         const std::vector<unsigned int> &driven, const SceneInput &input)
         : groups_(groups), materials_(materials), driven_(driven),
-          input_(input), body_of_(triangulation.n_active_cells(), -1)
+          input_(input), body_of_(bodies_of_cells(triangulation))
     {
-      const auto cells = owned_cells(triangulation);
-      for (std::size_t b = 0; b < cells.size(); ++b)
-        body_of_[cells[b]->active_cell_index()] = int(b);
-      for (const auto &cell : cells) {
+      for (const auto &cell : owned_cells(triangulation)) {
         for (const unsigned int f : cell->face_indices()) {
           if (cell->face(f)->at_boundary())
             add_boundary(cell, f);

@@ -28,4 +28,16 @@ namespace nsfd
       });
     return cells;
   }
+
+  /** The body of every active cell, by its index; -1: not of this rank. */
+  template <int dim>
+  std::vector<int>
+  bodies_of_cells(const dealii::Triangulation<dim> &triangulation)
+  {
+    std::vector<int> result(triangulation.n_active_cells(), -1);
+    const auto cells = owned_cells(triangulation);
+    for (std::size_t b = 0; b < cells.size(); ++b)
+      result[cells[b]->active_cell_index()] = int(b);
+    return result;
+  }
 } // namespace nsfd
