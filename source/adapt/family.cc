@@ -9,30 +9,27 @@ namespace nsfd
 {
   using namespace dealii;
 
-  namespace
+  double half_product(const Block &A, const double *x)
   {
-    double half_product(const Block &A, const double *x)
-    {
-      double sum = 0.;
-      for (unsigned int j = 0; j < A.cols; ++j)
-        for (unsigned int i = 0; i < A.rows; ++i)
-          sum += x[i] * A(i, j) * x[j];
-      return sum / 2.;
-    }
+    double sum = 0.;
+    for (unsigned int j = 0; j < A.cols; ++j)
+      for (unsigned int i = 0; i < A.rows; ++i)
+        sum += x[i] * A(i, j) * x[j];
+    return sum / 2.;
+  }
 
-    /** P x: the polynomials of the parent in a child. */
-    template <int dim>
-    std::vector<double> in_child(const FullMatrix<double> &P,
-                                 const std::vector<double> &x)
-    {
-      std::vector<double> result(x.size(), 0.);
-      for (std::size_t i = 0; i < x.size(); ++i)
-        for (std::size_t j = i % dim; j < x.size(); j += dim)
-          result[i] +=
-              P(unsigned(i / dim), unsigned(j / dim)) * x[j];
-      return result;
-    }
-  } // namespace
+  template <int dim>
+  std::vector<double> in_child(const FiniteElement<dim, dim> &element,
+                               const unsigned int child, const double *x,
+                               const std::size_t n)
+  {
+    const FullMatrix<double> &P = element.get_prolongation_matrix(child);
+    std::vector<double> result(n, 0.);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i % dim; j < n; j += dim)
+        result[i] += P(unsigned(i / dim), unsigned(j / dim)) * x[j];
+    return result;
+  }
 
   void Family::add(const Bodies &bodies, const State &state,
                    const unsigned int body)
@@ -98,12 +95,13 @@ namespace nsfd
       const BodyClass &child = *family.classes[c];
       elastic += half_product(child.stiffness, family.displacement[c]);
       elastic_after += half_product(
-          child.stiffness, in_child<dim>(P, parent.displacement).data());
+          child.stiffness,
+          in_child<dim>(element, c, parent.displacement.data(), n).data());
       kinetic += half_product(child.mass, family.velocity[c]);
       for (unsigned int k = 0; k < n; ++k) {
         std::vector<double> column(n, 0.);
         column[k] = 1.;
-        column = in_child<dim>(P, column);
+        column = in_child<dim>(element, c, column.data(), n);
         for (unsigned int i = 0; i < n; ++i) {
           double Mx = 0.;
           for (unsigned int j = k % dim; j < n; j += dim)
@@ -125,6 +123,9 @@ namespace nsfd
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
+  template std::vector<double> in_child(const FiniteElement<dim, dim> &,       \
+                                        unsigned int, const double *,          \
+                                        std::size_t);                          \
   template ParentMotion motion_of_parent(const FiniteElement<dim, dim> &,      \
                                          const Family &);                      \
   template FamilyEnergy energy_of_family(const FiniteElement<dim, dim> &,      \

@@ -27,6 +27,15 @@ namespace nsfd
     std::vector<double> momentum;     ///< sum over children of P^T M v
   };
 
+  /** x.A x / 2. */
+  double half_product(const Block &A, const double *x);
+
+  /** The polynomials @p x of a parent in its child @p child; n unknowns. */
+  template <int dim>
+  std::vector<double>
+  in_child(const dealii::FiniteElement<dim, dim> &element, unsigned int child,
+           const double *x, std::size_t n);
+
   template <int dim>
   ParentMotion motion_of_parent(const dealii::FiniteElement<dim, dim> &element,
                                 const Family &family);

@@ -1,5 +1,7 @@
 #include "mesh_view.h"
 
+#include "family.h"
+
 #include "../output/gather.h"
 
 #include "nsfd/dynamics/point_places.h"
@@ -79,11 +81,8 @@ namespace nsfd
       const BodyClass &body = bodies.classes[bodies.class_of[b]];
       const double *q = state.displacement.data() + bodies.first_dof[b];
       const double *v = state.velocity.data() + bodies.first_dof[b];
-      for (unsigned int j = 0; j < body.n_dofs; ++j)
-        for (unsigned int i = 0; i < body.n_dofs; ++i)
-          (*energy_)[b] += (v[i] * body.mass(i, j) * v[j] +
-                            q[i] * body.stiffness(i, j) * q[j]) /
-                           2.;
+      (*energy_)[b] =
+          half_product(body.mass, v) + half_product(body.stiffness, q);
     }
     return *energy_;
   }

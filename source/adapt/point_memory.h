@@ -17,16 +17,15 @@ namespace nsfd
   public:
     explicit PointMemory(const State &state);
 
-    static constexpr unsigned int face = 0, child = 1, origin_kind = 2,
-                                  origin_block = 3, position = 4,
-                                  offset = 4 + dim,
-                                  impulse = 4 + 2 * dim, ///< over the weight
-        history = 4 + 3 * dim;
+    static constexpr unsigned int face = 0, origin_kind = 1, origin_block = 2,
+                                  position = 3, offset = 3 + dim,
+                                  impulse = 3 + 2 * dim, ///< over the weight
+        history = 3 + 3 * dim;
     static constexpr unsigned int beta = history; ///< the first of them
 
     unsigned int size() const { return size_; }
 
-    /** Everything but `face` and `child`; @p jump_offset has dim entries. */
+    /** Everything but `face`; @p jump_offset has dim entries. */
     void store(const Discretization<dim> &discretization, const State &state,
                std::size_t point, const double *jump_offset, double *row) const;
 

@@ -8,7 +8,6 @@
 #include "nsfd/dynamics/point_places.h"
 
 #include <deal.II/fe/fe.h>
-#include <deal.II/lac/full_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,23 +26,21 @@ namespace nsfd
       return (child >> (face_no / 2) & 1u) == (face_no & 1u);
     }
 
-    /** State without its vectors: sums, times, extremes. */
-    State without_vectors(const State &state)
+    /** What belongs to no body and no point: sums, times, extremes. */
+    void take_sums(const State &from, State &to)
     {
-      State result;
-      result.step = state.step;
-      result.time = state.time;
-      result.viscous_traction = state.viscous_traction;
-      result.energy = state.energy;
-      result.initial_energy = state.initial_energy;
-      result.largest_energy = state.largest_energy;
-      result.penetration = state.penetration;
-      result.penetration_excess = state.penetration_excess;
-      result.rigid_drift = state.rigid_drift;
-      result.positive_friction_work = state.positive_friction_work;
-      result.broken_area = state.broken_area;
-      result.pressure_work = state.pressure_work;
-      return result;
+      to.step = from.step;
+      to.time = from.time;
+      to.viscous_traction = from.viscous_traction;
+      to.energy = from.energy;
+      to.initial_energy = from.initial_energy;
+      to.largest_energy = from.largest_energy;
+      to.penetration = from.penetration;
+      to.penetration_excess = from.penetration_excess;
+      to.rigid_drift = from.rigid_drift;
+      to.positive_friction_work = from.positive_friction_work;
+      to.broken_area = from.broken_area;
+      to.pressure_work = from.pressure_work;
     }
 
     /** jump - H q - gap at the start: what laws have put there. */
@@ -77,8 +74,7 @@ namespace nsfd
       : input_(input), triangulation_(triangulation), memory_(mesh.state),
         old_(mesh), body_of_(bodies_of_cells(triangulation)),
         offset_(beyond_motion(input, mesh)),
-        points_of_(mesh.discretization.bodies().size()),
-        state_(without_vectors(mesh.state))
+        points_of_(mesh.discretization.bodies().size())
   {
     for_all_places(mesh.discretization.bodies(),
                    mesh.discretization.points().n_points,
@@ -123,7 +119,6 @@ namespace nsfd
       memory_.store(old_.discretization, old_.state, point,
                     &offset_[point * dim], &parcel[first]);
       parcel[first + PointMemory<dim>::face] = face_no;
-      parcel[first + PointMemory<dim>::child] = child;
     }
   }
 
@@ -206,13 +201,11 @@ namespace nsfd
           {state.displacement.data() + bodies.first_dof[b],
            state.velocity.data() + bodies.first_dof[b]}};
       if (received.status == Mesh::CELL_REFINE) {
-        const auto &P = element.get_prolongation_matrix(received.child);
-        for (unsigned int k = 0; k < 2; ++k)
-          for (unsigned int i = 0; i < n; ++i) {
-            to[k][i] = 0.;
-            for (unsigned int j = i % dim; j < n; j += dim)
-              to[k][i] += P(i / dim, j / dim) * from[k][j];
-          }
+        for (unsigned int k = 0; k < 2; ++k) {
+          const auto values =
+              in_child<dim>(element, received.child, from[k], n);
+          std::copy(values.begin(), values.end(), to[k]);
+        }
         continue;
       }
       for (unsigned int k = 0; k < 2; ++k)
@@ -329,18 +322,8 @@ namespace nsfd
       }
       state.jump[i * dim] += initial_gap(input_, fresh.discretization, i);
     }
-    State sums = state_;
-    for (auto member :
-         {&State::displacement, &State::velocity, &State::jump,
-          &State::relative_velocity, &State::impulse, &State::opening_max,
-          &State::slip_max, &State::beta, &State::slip, &State::dilated,
-          &State::worn, &State::dilation_speed, &State::wear_speed,
-          &State::penetration_bound, &State::bond_traction, &State::pressure})
-      (sums.*member).swap(state.*member);
-    sums.kind.swap(state.kind);
-    sums.two_sided.swap(state.two_sided);
-    sums.contact.swap(state.contact);
-    return sums;
+    take_sums(old_.state, state);
+    return state;
   }
 
   template class StateTransfer<2>;

@@ -24,7 +24,10 @@ namespace nsfd
   public:
     using Mesh = dealii::parallel::distributed::Triangulation<dim>;
 
-    /** Attach the state to the cells of @p mesh, whose flags are set. */
+    /**
+     * Attach the state to the cells of @p mesh, whose flags are set; it is to
+     * live until finish().
+     */
     StateTransfer(const SceneInput &input, Mesh &triangulation,
                   const MeshState<dim> &mesh);
 
@@ -64,14 +67,12 @@ namespace nsfd
     Mesh &triangulation_;
     unsigned int handle_ = 0;
     const PointMemory<dim> memory_;
-    // of the old mesh, while it lives
+    // of the old mesh, while it lives; its state lives until the end
     const MeshState<dim> old_;
     std::vector<int> body_of_;      ///< by active cell index, -1: not ours
     std::vector<double> offset_;    ///< jump - H q - gap at t = 0, by point
     std::vector<std::vector<std::pair<unsigned int, unsigned int>>>
         points_of_; ///< per body: slot, point
-    // what must outlive it
-    const State state_; ///< without vectors
     std::vector<Received> received_; ///< per new body
   };
 } // namespace nsfd
