@@ -41,6 +41,17 @@ namespace nsfd
   }
 
   template <int dim>
+  MessageCounts RunCosts<dim>::sent() const
+  {
+    MessageCounts sum = message_counts();
+    sum.messages += sent_before_.messages;
+    sum.message_bytes += sent_before_.message_bytes;
+    sum.collectives += sent_before_.collectives;
+    sum.collective_bytes += sent_before_.collective_bytes;
+    return sum;
+  }
+
+  template <int dim>
   void RunCosts<dim>::remember(Archive &archive)
   {
     const Archive::Part part(archive, "costs");
@@ -65,8 +76,15 @@ namespace nsfd
     }
     archive.on_root("lines", names);
     archive.on_root("seconds_and_calls", values);
+    const MessageCounts so_far = sent();
+    std::vector<double> counts = {so_far.messages, so_far.message_bytes,
+                                  so_far.collectives,
+                                  so_far.collective_bytes};
+    archive.on_root("sent", counts);
     if (!archive.reads())
       return;
+    if (counts.size() == 4)
+      sent_before_ = {counts[0], counts[1], counts[2], counts[3]};
     before_.clear();
     std::istringstream stream(names);
     std::string name;
@@ -75,14 +93,50 @@ namespace nsfd
                          static_cast<unsigned long long>(values.at(i + 1))});
   }
 
+  /** What one application of W takes, and what the machine allows for. */
+  template <int dim>
+  void RunCosts<dim>::measure(const Dynamics<dim> &dynamics,
+                              CostRecord &cost) const
+  {
+    const Communicator &communicator = dynamics.communicator();
+    const DelassusCost one = count_delassus(dynamics);
+    cost.flops = one.flops;
+    cost.bytes = one.bytes;
+    double total = 0.;
+    for (const auto &part : cost.parts)
+      total += part.seconds;
+    if (!communicator.any(total > 1.))
+      return;
+    MachineLimits alone;
+    if (communicator.is_root())
+      alone = measure_machine(one);
+    if (communicator.size() > 1)
+      MPI_Barrier(communicator.mpi());
+    const MachineLimits limits =
+      communicator.size() > 1 ? measure_machine(one) : alone;
+    cost.copy_bytes_per_second = limits.copy_bytes_per_second;
+    cost.product_flops_per_second = limits.product_flops_per_second;
+    if (communicator.size() > 1) {
+      cost.copy_gain = communicator.sum({limits.copy_bytes_per_second}) /
+                       communicator.max(alone.copy_bytes_per_second);
+      cost.product_gain = communicator.sum({limits.product_flops_per_second}) /
+                          communicator.max(alone.product_flops_per_second);
+    }
+  }
+
   template <int dim>
   CostRecord RunCosts<dim>::finish(const Dynamics<dim> &dynamics) const
   {
     CostRecord cost;
-    double total = 0.;
+    const Communicator &communicator = dynamics.communicator();
+    const MessageCounts mine = sent();
+    cost.ranks = unsigned(communicator.size());
+    cost.sent = {communicator.max(mine.messages),
+                 communicator.max(mine.message_bytes),
+                 communicator.max(mine.collectives),
+                 communicator.max(mine.collective_bytes)};
     for (const auto &line : lines()) {
       cost.parts.push_back({line.name, line.seconds, line.calls});
-      total += line.seconds;
       if (line.name == cost_name(Cost::delassus)) {
         cost.applications = double(line.calls);
         cost.seconds = line.seconds / std::max(1., cost.applications);
@@ -102,18 +156,12 @@ namespace nsfd
         below += steps;
       }
       cost.per_step.push_back(spread);
+      if (k == 0)
+        cost.steps = double(total_steps);
     }
     cost.memory = memory_lines();
-    if (cost.applications > 0.) {
-      const DelassusCost one = count_delassus(dynamics);
-      cost.flops = one.flops;
-      cost.bytes = one.bytes;
-      if (total > 1.) {
-        const MachineLimits limits = measure_machine(one);
-        cost.copy_bytes_per_second = limits.copy_bytes_per_second;
-        cost.product_flops_per_second = limits.product_flops_per_second;
-      }
-    }
+    if (communicator.any(cost.applications > 0.))
+      measure(dynamics, cost);
     return cost;
   }
 

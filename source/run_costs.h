@@ -3,6 +3,7 @@
 #include "model.h"
 
 #include "nsfd/base/cost.h"
+#include "nsfd/base/message_counts.h"
 #include "nsfd/output/cost_record.h"
 
 #include <array>
@@ -18,7 +19,7 @@ namespace nsfd
     /** @p applications of W since the run began. */
     void record(const SolverReport &report, unsigned long long applications);
 
-    /** Measures the machine if the run took more than a second. */
+    /** Measures the machine if the run took more than a second. Collective. */
     CostRecord finish(const Dynamics<dim> &dynamics) const;
 
     void remember(Archive &archive);
@@ -29,6 +30,9 @@ namespace nsfd
     unsigned long long applications_ = 0;
     std::vector<CostLine> before_; ///< of the run up to its checkpoint
     std::vector<CostLine> lines() const;
+    MessageCounts sent_before_; ///< on the first rank
+    MessageCounts sent() const;
+    void measure(const Dynamics<dim> &dynamics, CostRecord &cost) const;
   };
 
   /** Seconds of CPU by stage of the step, in the order to print. */

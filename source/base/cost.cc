@@ -1,5 +1,6 @@
 #include "nsfd/base/cost.h"
 
+#include "nsfd/base/message_counts.h"
 #include "nsfd/base/stopwatch.h"
 
 #include <malloc.h>
@@ -65,7 +66,8 @@ namespace nsfd
          "vectors of the solver", "laws of the points", "applications of W",
          "preconditioner, set-up", "preconditioner, applied",
          "sums over points", "Gauss-Seidel sweeps", "update of bodies",
-         "energy ledger", "output", "W, single precision"}};
+         "energy ledger", "output", "W, single precision",
+         "waiting for other ranks"}};
     return names[std::size_t(line)];
   }
 
@@ -84,6 +86,7 @@ namespace nsfd
     meter().cpu_at_begin = cpu_seconds();
     heap() = Heap();
     heap().last = heap_bytes();
+    begin_message_counts();
   }
 
   std::vector<CostLine> cost_lines()

@@ -1,5 +1,6 @@
 #include "nsfd/dynamics/bodies.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -77,4 +78,51 @@ namespace nsfd
       }
     return G;
   }
+
+  template <int dim>
+  std::vector<char> shared_bodies(const Bodies &bodies,
+                                  const InterfacePoints<dim> &points)
+  {
+    std::vector<char> waited_for(points.n_points + 1, 0);
+    for (const auto &neighbor : points.neighbors)
+      for (const unsigned int p : neighbor.points)
+        waited_for[p] = 1;
+    std::vector<char> result(bodies.size(), 0);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
+           ++s)
+        if (waited_for[bodies.slot_point[s]])
+          result[b] = 1;
+    for (const auto &[slot, point] : bodies.extra_points)
+      if (waited_for[point])
+        result[std::upper_bound(bodies.first_slot.begin(),
+                                bodies.first_slot.end(), slot) -
+               bodies.first_slot.begin() - 1] = 1;
+    return result;
+  }
+
+  template <int dim>
+  BodyOrder shared_first(const Bodies &bodies,
+                         const InterfacePoints<dim> &points)
+  {
+    const std::vector<char> shared = shared_bodies(bodies, points);
+    BodyOrder order;
+    for (const BodyClass &body : bodies.classes) {
+      auto &members = order.classes.emplace_back();
+      members.bodies = body.bodies;
+      members.n_shared = std::size_t(
+        std::stable_partition(
+          members.bodies.begin(), members.bodies.end(),
+          [&](const unsigned int b) { return shared[b] != 0; }) -
+        members.bodies.begin());
+    }
+    return order;
+  }
+
+  template std::vector<char> shared_bodies(const Bodies &,
+                                           const InterfacePoints<2> &);
+  template std::vector<char> shared_bodies(const Bodies &,
+                                           const InterfacePoints<3> &);
+  template BodyOrder shared_first(const Bodies &, const InterfacePoints<2> &);
+  template BodyOrder shared_first(const Bodies &, const InterfacePoints<3> &);
 } // namespace nsfd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/dynamics/bodies.h"
+#include "nsfd/dynamics/dynamics.h"
 
 #include <algorithm>
 #include <vector>
@@ -9,43 +9,50 @@
 namespace nsfd
 {
   /**
-   * Apply one block of every class to all of its bodies, `lanes` at a time.
-   * @p gather fills the inputs of a body, @p scatter takes its outputs; both
-   * get (body, pointer, stride).
+   * Apply a block to the bodies of @p members from @p begin to @p end, `lanes`
+   * at a time. @p gather fills the inputs of a body, @p scatter takes its
+   * outputs; both get (body, pointer, stride).
    */
+  template <typename Gather, typename Scatter>
+  void for_bodies(const Block &block, const unsigned int *members,
+                  std::size_t begin, const std::size_t end,
+                  const Gather &gather, const Scatter &scatter)
+  {
+    if (block.cols == 0)
+      return;
+    thread_local std::vector<double> x, y;
+    x.resize(std::size_t(block.cols) * lanes);
+    y.resize(std::size_t(padded(block.rows)) * lanes);
+    for (; begin + 1 < end; begin += lanes) {
+      const std::size_t count = std::min<std::size_t>(lanes, end - begin);
+      if (count < lanes)
+        std::fill(x.begin(), x.end(), 0.);
+      for (std::size_t l = 0; l < count; ++l)
+        gather(members[begin + l], x.data() + l, lanes);
+      multiply_lanes(block.values.data(), block.rows, block.cols, x.data(),
+                     y.data());
+      for (std::size_t l = 0; l < count; ++l)
+        scatter(members[begin + l], y.data() + l, lanes);
+    }
+    if (begin < end) {
+      gather(members[begin], x.data(), 1u);
+      multiply_one(block.values.data(), block.rows, block.cols, x.data(),
+                   y.data());
+      scatter(members[begin], y.data(), 1u);
+    }
+  }
+
+  /** The block that @p select has for a class to all of its bodies. */
   template <typename Select, typename Gather, typename Scatter>
   void for_all_bodies(const Bodies &bodies,
                       const Select &select,
                       const Gather &gather,
                       const Scatter &scatter)
   {
-    thread_local std::vector<double> x, y;
     for (std::size_t k = 0; k < bodies.classes.size(); ++k) {
-      const Block &block = select(k);
-      if (block.cols == 0)
-        continue;
       const auto &members = bodies.classes[k].bodies;
-      x.resize(std::size_t(block.cols) * lanes);
-      y.resize(std::size_t(padded(block.rows)) * lanes);
-      std::size_t begin = 0;
-      for (; begin + 1 < members.size(); begin += lanes) {
-        const std::size_t count =
-          std::min<std::size_t>(lanes, members.size() - begin);
-        if (count < lanes)
-          std::fill(x.begin(), x.end(), 0.);
-        for (std::size_t l = 0; l < count; ++l)
-          gather(members[begin + l], x.data() + l, lanes);
-        multiply_lanes(block.values.data(), block.rows, block.cols, x.data(),
-                       y.data());
-        for (std::size_t l = 0; l < count; ++l)
-          scatter(members[begin + l], y.data() + l, lanes);
-      }
-      if (begin < members.size()) {
-        gather(members[begin], x.data(), 1u);
-        multiply_one(block.values.data(), block.rows, block.cols, x.data(),
-                     y.data());
-        scatter(members[begin], y.data(), 1u);
-      }
+      for_bodies(select(k), members.data(), 0, members.size(), gather,
+                 scatter);
     }
   }
 
@@ -125,5 +132,28 @@ namespace nsfd
             side_2[std::size_t(e->second) * dim + c] =
               y[((e->first - first) * dim + c) * stride];
     };
+  }
+
+  /**
+   * Values at the points of all bodies, complete at those that are shared with
+   * other ranks; bodies that share none work while the others' are on their
+   * way.
+   */
+  template <int dim, typename Select, typename Gather>
+  void values_of_both_sides(const Dynamics<dim> &dynamics,
+                            const Select &select, const Gather &gather,
+                            std::vector<double> &side_1,
+                            std::vector<double> &side_2)
+  {
+    const auto &classes = dynamics.order().classes;
+    const auto scatter = slot_scatter<dim>(dynamics.bodies(), side_1, side_2);
+    for (std::size_t k = 0; k < classes.size(); ++k)
+      for_bodies(select(k), classes[k].bodies.data(), 0, classes[k].n_shared,
+                 gather, scatter);
+    dynamics.start_exchange({{side_1.data(), side_2.data()}}, dim);
+    for (std::size_t k = 0; k < classes.size(); ++k)
+      for_bodies(select(k), classes[k].bodies.data(), classes[k].n_shared,
+                 classes[k].bodies.size(), gather, scatter);
+    dynamics.finish_exchange({{side_1.data(), side_2.data()}}, dim);
   }
 } // namespace nsfd

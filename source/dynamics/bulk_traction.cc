@@ -47,13 +47,11 @@ namespace nsfd
     const auto &bodies = dynamics_.bodies();
     std::fill(side_1_.begin(), side_1_.end(), 0.);
     std::fill(side_2_.begin(), side_2_.end(), 0.);
-    for_all_bodies(
-      bodies, [&bodies](const std::size_t k) -> const Block & {
+    values_of_both_sides(
+      dynamics_, [&bodies](const std::size_t k) -> const Block & {
         return bodies.classes[k].traction;
       },
-      dof_gather(bodies, displacement),
-      slot_scatter<dim>(bodies, side_1_, side_2_));
-    dynamics_.exchange({{side_1_.data(), side_2_.data()}}, dim);
+      dof_gather(bodies, displacement), side_1_, side_2_);
     for (std::size_t i = 0; i < points.n_points; ++i) {
       const double *Q = points.frame.data() + i * dim * dim;
       double t[dim];

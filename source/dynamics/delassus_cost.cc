@@ -40,11 +40,13 @@ namespace nsfd
   MachineLimits measure_machine(const DelassusCost &cost)
   {
     // the least of several short measurements: whatever else runs on the
-    // machine only makes them longer
+    // machine only makes them longer; long enough for other ranks to join in
     const auto fastest = [](const auto &work) {
       unsigned int repeats = 1;
       double best = 0.;
-      for (unsigned int round = 0; round < 8; ++round) {
+      const double begin = wall_seconds();
+      for (unsigned int round = 0; round < 8 || wall_seconds() - begin < 0.02;
+           ++round) {
         double seconds = 0.;
         for (;;) {
           const double start = wall_seconds();

@@ -18,6 +18,7 @@ namespace nsfd
     : communicator_(communicator)
     , bodies_(bodies)
     , points_(points)
+    , order_(shared_first(bodies, points))
     , cartesian_((points.n_points + 1) * dim, 0.)
     , side_1_((points.n_points + 1) * dim, 0.)
     , side_2_((points.n_points + 1) * dim, 0.)
@@ -80,7 +81,6 @@ namespace nsfd
   template <int dim>
   void Dynamics<dim>::add_sides(double *local) const
   {
-    exchange({{side_1_.data(), side_2_.data()}}, dim);
     for (std::size_t i = 0; i < points_.n_points; ++i) {
       const double *Q = points_.frame.data() + i * dim * dim;
       double jump[dim];
@@ -102,12 +102,11 @@ namespace nsfd
     const Charge charge(Cost::delassus);
     ++counters_.delassus;
     to_cartesian(impulse);
-    for_all_bodies(
-      bodies_, [this](const std::size_t k) -> const Block & {
+    values_of_both_sides(
+      *this, [this](const std::size_t k) -> const Block & {
         return blocks_[k].delassus;
       },
-      slot_gather<dim>(bodies_, cartesian_),
-      slot_scatter<dim>(bodies_, side_1_, side_2_));
+      slot_gather<dim>(bodies_, cartesian_), side_1_, side_2_);
     add_sides(velocity);
   }
 
@@ -124,12 +123,11 @@ namespace nsfd
   void Dynamics<dim>::relative_velocity(const double *velocity,
                                         double *result) const
   {
-    for_all_bodies(
-      bodies_, [this](const std::size_t k) -> const Block & {
+    values_of_both_sides(
+      *this, [this](const std::size_t k) -> const Block & {
         return bodies_.classes[k].trace;
       },
-      dof_gather(bodies_, velocity),
-      slot_scatter<dim>(bodies_, side_1_, side_2_));
+      dof_gather(bodies_, velocity), side_1_, side_2_);
     add_sides(result);
   }
 
@@ -176,36 +174,33 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::exchange(const std::array<double *, 2> side,
-                               const unsigned int stride) const
+  void Dynamics<dim>::start_exchange(const std::array<double *, 2> side,
+                                     const unsigned int stride) const
   {
-    const std::size_t n = points_.neighbors.size();
-    if (n == 0)
-      return;
-    std::vector<std::vector<double>> out(n), in(n);
-    std::vector<MPI_Request> requests(2 * n);
-    for (std::size_t k = 0; k < n; ++k) {
+    auto &messages = messages_.messages;
+    messages.resize(points_.neighbors.size());
+    for (std::size_t k = 0; k < messages.size(); ++k) {
       const auto &neighbor = points_.neighbors[k];
-      in[k].resize(neighbor.points.size() * stride);
-      MPI_Irecv(in[k].data(), int(in[k].size()), MPI_DOUBLE, neighbor.rank, 7,
-                communicator_.mpi(), &requests[k]);
+      messages[k].rank = neighbor.rank;
+      messages[k].in.resize(neighbor.points.size() * stride);
+      messages[k].out.resize(neighbor.points.size() * stride);
+      for (std::size_t j = 0; j < neighbor.points.size(); ++j)
+        std::copy_n(side[neighbor.side[j]] +
+                      std::size_t(neighbor.points[j]) * stride,
+                    stride, messages[k].out.data() + j * stride);
     }
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto &neighbor = points_.neighbors[k];
-      out[k].reserve(neighbor.points.size() * stride);
-      for (std::size_t j = 0; j < neighbor.points.size(); ++j) {
-        const double *from = side[neighbor.side[j]] +
-                             std::size_t(neighbor.points[j]) * stride;
-        out[k].insert(out[k].end(), from, from + stride);
-      }
-      MPI_Isend(out[k].data(), int(out[k].size()), MPI_DOUBLE, neighbor.rank,
-                7, communicator_.mpi(), &requests[n + k]);
-    }
-    MPI_Waitall(int(2 * n), requests.data(), MPI_STATUSES_IGNORE);
-    for (std::size_t k = 0; k < n; ++k) {
+    messages_.start(communicator_.mpi(), 7);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::finish_exchange(const std::array<double *, 2> side,
+                                      const unsigned int stride) const
+  {
+    messages_.finish();
+    for (std::size_t k = 0; k < points_.neighbors.size(); ++k) {
       const auto &neighbor = points_.neighbors[k];
       for (std::size_t j = 0; j < neighbor.points.size(); ++j)
-        std::copy_n(in[k].data() + j * stride, stride,
+        std::copy_n(messages_.messages[k].in.data() + j * stride, stride,
                     side[1 - neighbor.side[j]] +
                       std::size_t(neighbor.points[j]) * stride);
     }

@@ -37,39 +37,49 @@ namespace nsfd
       neighbor.count = asked[r];
       for (int k = to[r]; k < to[r + 1]; ++k)
         neighbor.wanted.push_back(int(numbers[k] - first));
+      messages_.messages.emplace_back().rank = r;
       neighbors_.push_back(std::move(neighbor));
-      buffers_.emplace_back(wanted[r]);
     }
-    requests_.resize(2 * neighbors_.size());
   }
 
-  void GhostValues::fetch(const double *own, double *ghosts) const
+  void GhostValues::start_fetch(const double *own) const
   {
-    const std::size_t n = neighbors_.size();
-    for (std::size_t k = 0; k < n; ++k)
-      MPI_Irecv(ghosts + neighbors_[k].first, int(neighbors_[k].count),
-                MPI_DOUBLE, neighbors_[k].rank, 21, mpi_, &requests_[k]);
-    for (std::size_t k = 0; k < n; ++k) {
-      for (std::size_t j = 0; j < neighbors_[k].wanted.size(); ++j)
-        buffers_[k][j] = own[neighbors_[k].wanted[j]];
-      MPI_Isend(buffers_[k].data(), int(buffers_[k].size()), MPI_DOUBLE,
-                neighbors_[k].rank, 21, mpi_, &requests_[n + k]);
+    for (std::size_t k = 0; k < neighbors_.size(); ++k) {
+      const Neighbor &neighbor = neighbors_[k];
+      auto &message = messages_.messages[k];
+      message.in.resize(neighbor.count);
+      message.out.resize(neighbor.wanted.size());
+      for (std::size_t j = 0; j < neighbor.wanted.size(); ++j)
+        message.out[j] = own[neighbor.wanted[j]];
     }
-    MPI_Waitall(int(2 * n), requests_.data(), MPI_STATUSES_IGNORE);
+    messages_.start(mpi_, 21);
   }
 
-  void GhostValues::add_back(const double *ghosts, double *own) const
+  void GhostValues::finish_fetch(double *ghosts) const
   {
-    const std::size_t n = neighbors_.size();
-    for (std::size_t k = 0; k < n; ++k) {
-      MPI_Irecv(buffers_[k].data(), int(buffers_[k].size()), MPI_DOUBLE,
-                neighbors_[k].rank, 22, mpi_, &requests_[k]);
-      MPI_Isend(ghosts + neighbors_[k].first, int(neighbors_[k].count),
-                MPI_DOUBLE, neighbors_[k].rank, 22, mpi_, &requests_[n + k]);
+    messages_.finish();
+    for (std::size_t k = 0; k < neighbors_.size(); ++k)
+      std::copy(messages_.messages[k].in.begin(),
+                messages_.messages[k].in.end(), ghosts + neighbors_[k].first);
+  }
+
+  void GhostValues::start_add_back(const double *ghosts) const
+  {
+    for (std::size_t k = 0; k < neighbors_.size(); ++k) {
+      const Neighbor &neighbor = neighbors_[k];
+      auto &message = messages_.messages[k];
+      message.in.resize(neighbor.wanted.size());
+      message.out.assign(ghosts + neighbor.first,
+                         ghosts + neighbor.first + neighbor.count);
     }
-    MPI_Waitall(int(2 * n), requests_.data(), MPI_STATUSES_IGNORE);
-    for (std::size_t k = 0; k < n; ++k)
+    messages_.start(mpi_, 22);
+  }
+
+  void GhostValues::finish_add_back(double *own) const
+  {
+    messages_.finish();
+    for (std::size_t k = 0; k < neighbors_.size(); ++k)
       for (std::size_t j = 0; j < neighbors_[k].wanted.size(); ++j)
-        own[neighbors_[k].wanted[j]] += buffers_[k][j];
+        own[neighbors_[k].wanted[j]] += messages_.messages[k].in[j];
   }
 } // namespace nsfd

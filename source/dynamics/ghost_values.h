@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/base/communicator.h"
+#include "nsfd/base/neighbor_messages.h"
 
 #include <vector>
 
@@ -8,7 +9,8 @@ namespace nsfd
 {
   /**
    * Values at unknowns that other ranks own. Ranks own consecutive numbers;
-   * `ghosts` are global numbers, ascending.
+   * `ghosts` are global numbers, ascending. Both exchanges come in two parts
+   * with room for work in between; one at a time.
    */
   class GhostValues
   {
@@ -20,22 +22,27 @@ namespace nsfd
                 const std::vector<long long> &ghosts);
 
     /** Values of the owners. */
-    void fetch(const double *own, double *ghosts) const;
-    /** Add what is at the ghosts to the values of their owners. */
-    void add_back(const double *ghosts, double *own) const;
+    void fetch(const double *own, double *ghosts) const
+    {
+      start_fetch(own);
+      finish_fetch(ghosts);
+    }
+    void start_fetch(const double *own) const;
+    void finish_fetch(double *ghosts) const;
 
+    /** Add what is at the ghosts to the values of their owners. */
+    void start_add_back(const double *ghosts) const;
+    void finish_add_back(double *own) const;
+
+  private:
     struct Neighbor
     {
       int rank = 0;
       std::size_t first = 0, count = 0; ///< range of ghosts it owns
       std::vector<int> wanted;          ///< own unknowns it has as ghosts
     };
-    const std::vector<Neighbor> &neighbors() const { return neighbors_; }
-
-  private:
     MPI_Comm mpi_ = MPI_COMM_SELF;
     std::vector<Neighbor> neighbors_;
-    mutable std::vector<std::vector<double>> buffers_;
-    mutable std::vector<MPI_Request> requests_;
+    mutable NeighborMessages<double> messages_; ///< one per neighbour
   };
 } // namespace nsfd

@@ -138,11 +138,12 @@ namespace nsfd
     /** The part of the bodies into @p z, the other one into coarse_z_. */
     void GluedCg::precondition(const double *r, double *z)
     {
-      bodies_.apply(r, z);
       std::fill(coarse_r_.begin(), coarse_r_.end(), 0.);
       for (std::size_t i = 0; i < place_.size(); ++i)
         coarse_r_[place_[i]] += r[i];
-      coarse_exchange_.add_back(coarse_r_.data() + n_coarse_, coarse_r_.data());
+      coarse_exchange_.start_add_back(coarse_r_.data() + n_coarse_);
+      bodies_.apply(r, z);
+      coarse_exchange_.finish_add_back(coarse_r_.data());
       if (factor_)
         factor_->solve(coarse_r_.data(), coarse_z_.data());
       else
@@ -185,7 +186,8 @@ namespace nsfd
       std::fill(coarse_q_.begin(), coarse_q_.end(), 0.);
       for (std::size_t i = 0; i < n; ++i)
         coarse_q_[place_[i]] += q_[i];
-      coarse_exchange_.add_back(coarse_q_.data() + n_coarse_, coarse_q_.data());
+      coarse_exchange_.start_add_back(coarse_q_.data() + n_coarse_);
+      coarse_exchange_.finish_add_back(coarse_q_.data());
     }
 
     /**

@@ -128,7 +128,9 @@ namespace nsfd::lane
 
     /** Per row and per column of H as many entries as given, or any (0). */
     template <bool shared, unsigned int in_row, unsigned int in_column>
-    NSFD_INLINE void multiply_group(const BodyGroup &g, const float *X,
+    NSFD_INLINE void multiply_group(const BodyGroup &g,
+                                    const std::size_t begin,
+                                    const std::size_t end, const float *X,
                                     float *Y)
     {
       static thread_local std::vector<float> scratch;
@@ -137,7 +139,7 @@ namespace nsfd::lane
                    *const s = t + std::size_t(g.dofs) * width;
       const std::size_t size = std::size_t(g.rows) * width;
       const unsigned int order = g.dense ? g.rows : g.dofs;
-      for (std::size_t b = 0; b < g.n_batches; ++b) {
+      for (std::size_t b = begin; b < end; ++b) {
         const float *x = X + g.first + b * size;
         float *y = Y + g.first + b * size;
         const std::size_t own = shared ? 0 : b;
@@ -170,15 +172,17 @@ namespace nsfd::lane
     }
 
     template <bool shared>
-    NSFD_INLINE void multiply_any(const BodyGroup &g, const float *X, float *Y)
+    NSFD_INLINE void multiply_any(const BodyGroup &g, const std::size_t begin,
+                                  const std::size_t end, const float *X,
+                                  float *Y)
     {
       // linear elements with as many points as nodes on a face
       if (is_regular(g.row_first, 2) && is_regular(g.column_first, 4))
-        multiply_group<shared, 2, 4>(g, X, Y);
+        multiply_group<shared, 2, 4>(g, begin, end, X, Y);
       else if (is_regular(g.row_first, 4) && is_regular(g.column_first, 12))
-        multiply_group<shared, 4, 12>(g, X, Y);
+        multiply_group<shared, 4, 12>(g, begin, end, X, Y);
       else
-        multiply_group<shared, 0, 0>(g, X, Y);
+        multiply_group<shared, 0, 0>(g, begin, end, X, Y);
     }
 
     template <unsigned int dim>
@@ -334,12 +338,13 @@ namespace nsfd::lane
   {}
 
   NSFD_CLONES
-  void multiply_bodies(const BodyGroup &group, const float *X, float *Y)
+  void multiply_bodies(const BodyGroup &group, const std::size_t begin,
+                       const std::size_t end, const float *X, float *Y)
   {
     if (group.shared)
-      multiply_any<true>(group, X, Y);
+      multiply_any<true>(group, begin, end, X, Y);
     else
-      multiply_any<false>(group, X, Y);
+      multiply_any<false>(group, begin, end, X, Y);
   }
 
   // two Gauss points in two dimensions are by far the most frequent

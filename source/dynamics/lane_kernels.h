@@ -24,6 +24,7 @@ namespace nsfd::lane
     bool dense = false, shared = false;
     std::size_t first = 0; ///< of its vectors: rows x width per batch
     std::size_t n_batches = 0;
+    std::size_t n_shared = 0; ///< batches with bodies at points of other ranks
     /// entries of H by column and by row
     std::vector<unsigned int> column_first, column_row, row_first, row_column;
     std::vector<float> by_column, by_row, matrix;
@@ -67,8 +68,9 @@ namespace nsfd::lane
     double value = 0.;
   };
 
-  /** Y = W X over the bodies of a group. */
-  void multiply_bodies(const BodyGroup &group, const float *X, float *Y);
+  /** Y = W X over the batches from @p begin to @p end of a group. */
+  void multiply_bodies(const BodyGroup &group, std::size_t begin,
+                       std::size_t end, const float *X, float *Y);
 
   /** The signed impulses of the points p to the slots of their bodies. */
   void scatter(const FaceGroup &group, const float *p, float *X);

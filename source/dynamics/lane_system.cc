@@ -91,8 +91,15 @@ namespace nsfd
                   body_groups_.emplace_back());
       members_.push_back(members);
     }
+    const std::vector<char> shared = shared_bodies(bodies_, points_);
     for (std::size_t g = 0; g < body_groups_.size(); ++g) {
       auto &group = body_groups_[g];
+      // first what other ranks wait for
+      const auto others = std::stable_partition(
+        members_[g].begin(), members_[g].end(),
+        [&](const unsigned int b) { return shared[b] != 0; });
+      group.n_shared =
+        (std::size_t(others - members_[g].begin()) + width - 1) / width;
       group.n_batches = (members_[g].size() + width - 1) / width;
       group.first = n_slots_;
       n_slots_ += group.n_batches * group.rows * width;
@@ -330,43 +337,49 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         X_[extra.slot + c * width] += X_[extra.place + c * width];
     for (const auto &group : body_groups_)
-      lane::multiply_bodies(group, X_.data(), Y_.data());
-    for (const auto &extra : extras_)
-      for (unsigned int c = 0; c < dim; ++c)
-        Y_[extra.place + c * width] = Y_[extra.slot + c * width];
-    exchange();
+      lane::multiply_bodies(group, 0, group.n_shared, X_.data(), Y_.data());
+    const auto copy_extras = [this]() {
+      for (const auto &extra : extras_)
+        for (unsigned int c = 0; c < dim; ++c)
+          Y_[extra.place + c * width] = Y_[extra.slot + c * width];
+    };
+    copy_extras();
+    start_exchange();
+    for (const auto &group : body_groups_)
+      lane::multiply_bodies(group, group.n_shared, group.n_batches, X_.data(),
+                            Y_.data());
+    copy_extras();
+    finish_exchange();
   }
 
   template <int dim>
-  void LaneSystem<dim>::exchange()
+  void LaneSystem<dim>::start_exchange()
   {
-    const std::size_t n = points_.neighbors.size();
-    if (n == 0)
-      return;
-    std::vector<Floats> out(n), in(n);
-    std::vector<MPI_Request> requests(2 * n);
-    for (std::size_t k = 0; k < n; ++k) {
+    auto &messages = messages_.messages;
+    messages.resize(points_.neighbors.size());
+    for (std::size_t k = 0; k < messages.size(); ++k) {
       const auto &neighbor = points_.neighbors[k];
-      in[k].resize(neighbor.points.size() * dim);
-      MPI_Irecv(in[k].data(), int(in[k].size()), MPI_FLOAT, neighbor.rank, 8,
-                communicator_.mpi(), &requests[k]);
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto &neighbor = points_.neighbors[k];
+      messages[k].rank = neighbor.rank;
+      messages[k].in.resize(neighbor.points.size() * dim);
+      messages[k].out.clear();
       for (std::size_t j = 0; j < neighbor.points.size(); ++j)
         for (unsigned int c = 0; c < dim; ++c)
-          out[k].push_back(
+          messages[k].out.push_back(
             Y_[place_[neighbor.side[j]][neighbor.points[j]] + c * width]);
-      MPI_Isend(out[k].data(), int(out[k].size()), MPI_FLOAT, neighbor.rank, 8,
-                communicator_.mpi(), &requests[n + k]);
     }
-    MPI_Waitall(int(2 * n), requests.data(), MPI_STATUSES_IGNORE);
-    for (std::size_t k = 0; k < n; ++k) {
+    messages_.start(communicator_.mpi(), 8);
+  }
+
+  template <int dim>
+  void LaneSystem<dim>::finish_exchange()
+  {
+    messages_.finish();
+    for (std::size_t k = 0; k < points_.neighbors.size(); ++k) {
       const auto &neighbor = points_.neighbors[k];
       for (std::size_t j = 0; j < neighbor.points.size(); ++j)
         for (unsigned int c = 0; c < dim; ++c)
           Y_[place_[1 - neighbor.side[j]][neighbor.points[j]] + c * width] =
-            in[k][j * dim + c];
+            messages_.messages[k].in[j * dim + c];
     }
   }
 

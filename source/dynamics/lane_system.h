@@ -2,6 +2,7 @@
 
 #include "lane_kernels.h"
 
+#include "nsfd/base/neighbor_messages.h"
 #include "nsfd/dynamics/dynamics.h"
 #include "nsfd/dynamics/inner_solver.h"
 
@@ -54,7 +55,8 @@ namespace nsfd
     void prepare_coupled(const InnerSystem &system);
     /** To the slots, through the bodies, and from other ranks. */
     void apply(const Floats &p);
-    void exchange();
+    void start_exchange();
+    void finish_exchange();
     void set_zero(Floats &v) const { std::fill(v.begin(), v.end(), 0.f); }
     double product(const Floats &a, const Floats &b);
     double orthogonalise(unsigned int k, double &scale, double *h);
@@ -84,6 +86,7 @@ namespace nsfd
     Floats x_, r_, z_, p_, w_;
     std::vector<Floats> basis_;
     std::vector<double> terms_, part_, diagonal_, work_;
+    NeighborMessages<float> messages_;
     unsigned long long applications_ = 0;
   };
 } // namespace nsfd

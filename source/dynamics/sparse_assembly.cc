@@ -47,19 +47,16 @@ namespace nsfd
       largest = std::max(largest, double(body.n_dofs));
     const std::size_t width = std::size_t(communicator_.max(largest)),
                       stride = 3 + (dim + 1) * width;
-    const std::size_t n = points_.neighbors.size();
-    std::vector<std::vector<double>> out(n), in(n);
-    std::vector<MPI_Request> requests(2 * n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto &neighbor = points_.neighbors[k];
-      in[k].resize(neighbor.points.size() * stride);
-      out[k].assign(in[k].size(), 0.);
-      MPI_Irecv(in[k].data(), int(in[k].size()), MPI_DOUBLE, neighbor.rank, 23,
-                communicator_.mpi(), &requests[k]);
+    NeighborMessages<double> exchange;
+    for (const auto &neighbor : points_.neighbors) {
+      auto &message = exchange.messages.emplace_back();
+      message.rank = neighbor.rank;
+      message.in.resize(neighbor.points.size() * stride);
+      message.out.assign(message.in.size(), 0.);
       for (std::size_t j = 0; j < neighbor.points.size(); ++j) {
         const Place &place = places_[neighbor.side[j]][neighbor.points[j]];
         const BodyClass &body = bodies_.classes[bodies_.class_of[place.body]];
-        double *to = out[k].data() + j * stride;
+        double *to = message.out.data() + j * stride;
         to[0] =
           double(matrix_.first_row) + double(bodies_.first_dof[place.body]);
         to[1] = body.n_dofs;
@@ -70,14 +67,13 @@ namespace nsfd
           to[3 + dim * width + i] = coordinate(place, i);
         }
       }
-      MPI_Isend(out[k].data(), int(out[k].size()), MPI_DOUBLE, neighbor.rank,
-                23, communicator_.mpi(), &requests[n + k]);
     }
-    MPI_Waitall(int(2 * n), requests.data(), MPI_STATUSES_IGNORE);
-    for (std::size_t k = 0; k < n; ++k) {
+    exchange.start(communicator_.mpi(), 23);
+    exchange.finish();
+    for (std::size_t k = 0; k < points_.neighbors.size(); ++k) {
       const auto &neighbor = points_.neighbors[k];
       for (std::size_t j = 0; j < neighbor.points.size(); ++j) {
-        const double *from = in[k].data() + j * stride;
+        const double *from = exchange.messages[k].in.data() + j * stride;
         Remote remote;
         remote.first = static_cast<long long>(from[0]);
         remote.rigid = from[2] != 0.;
@@ -385,24 +381,22 @@ namespace nsfd
     if (communicator_.size() == 1)
       return result;
     // either rank may have the softer body
-    const std::size_t n = points_.neighbors.size();
-    std::vector<std::vector<char>> out(n), in(n);
-    std::vector<MPI_Request> requests(2 * n);
-    for (std::size_t j = 0; j < n; ++j) {
-      const auto &neighbor = points_.neighbors[j];
-      in[j].resize(neighbor.points.size());
+    NeighborMessages<char> exchange;
+    for (const auto &neighbor : points_.neighbors) {
+      auto &message = exchange.messages.emplace_back();
+      message.rank = neighbor.rank;
+      message.in.resize(neighbor.points.size());
       for (const unsigned int p : neighbor.points)
-        out[j].push_back(result[points_.face_of[p]]);
-      MPI_Irecv(in[j].data(), int(in[j].size()), MPI_CHAR, neighbor.rank, 24,
-                communicator_.mpi(), &requests[j]);
-      MPI_Isend(out[j].data(), int(out[j].size()), MPI_CHAR, neighbor.rank, 24,
-                communicator_.mpi(), &requests[n + j]);
+        message.out.push_back(result[points_.face_of[p]]);
     }
-    MPI_Waitall(int(2 * n), requests.data(), MPI_STATUSES_IGNORE);
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < in[j].size(); ++i)
-        if (in[j][i])
+    exchange.start(communicator_.mpi(), 24);
+    exchange.finish();
+    for (std::size_t j = 0; j < points_.neighbors.size(); ++j) {
+      const auto &in = exchange.messages[j].in;
+      for (std::size_t i = 0; i < in.size(); ++i)
+        if (in[i])
           result[points_.face_of[points_.neighbors[j].points[i]]] = 1;
+    }
     return result;
   }
 

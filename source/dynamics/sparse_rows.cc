@@ -8,15 +8,27 @@ namespace nsfd
                 double *y)
   {
     const int n = A.n_rows();
-    exchange.fetch(x, x + n);
     const int *column = A.column.data();
     const double *value = A.value.data();
-    for (int i = 0; i < n; ++i) {
+    const auto row = [&](const int i) {
       double sum = 0.;
       for (int k = A.start[i]; k < A.start[i + 1]; ++k)
         sum += value[k] * x[column[k]];
       y[i] = sum;
-    }
+    };
+    exchange.start_fetch(x);
+    // columns ascend: a row with ghosts ends with one
+    const auto needs_ghosts = [&](const int i) {
+      return A.start[i + 1] > A.start[i] && column[A.start[i + 1] - 1] >= n;
+    };
+    for (int i = 0; i < n; ++i)
+      if (!needs_ghosts(i))
+        row(i);
+    exchange.finish_fetch(x + n);
+    if (!A.ghosts.empty())
+      for (int i = 0; i < n; ++i)
+        if (needs_ghosts(i))
+          row(i);
   }
 
   namespace

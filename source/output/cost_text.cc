@@ -18,6 +18,23 @@ namespace nsfd
            seconds;
   }
 
+  std::string messages_text(const CostRecord &cost)
+  {
+    const double steps = std::max(1., cost.steps);
+    std::string text = fmt::format(
+        "{} ranks, each per step at most: {:.4g} messages of {:.3g} kB, {:.4g} "
+        "reductions and the like of {:.3g} B",
+        cost.ranks, cost.sent.messages / steps,
+        1e-3 * cost.sent.message_bytes / std::max(1., cost.sent.messages),
+        cost.sent.collectives / steps,
+        cost.sent.collective_bytes / std::max(1., cost.sent.collectives));
+    if (cost.copy_gain > 0.)
+      text += fmt::format("; all of them copy {:.2f} times and multiply {:.2f} "
+                          "times as much as one alone",
+                          cost.copy_gain, cost.product_gain);
+    return text;
+  }
+
   std::string cost_text(const CostRecord &cost, const double peak_memory_mb)
   {
     double total = 0.;
@@ -34,6 +51,8 @@ namespace nsfd
       text += fmt::format("{} {} {:.4g} ({:.4g})",
                           &spread == &cost.per_step.front() ? "" : ",",
                           spread.name, spread.median, spread.worst);
+    if (cost.ranks > 1)
+      text += "\n  " + messages_text(cost);
     text += "\n  memory:";
     for (const auto &[owner, bytes] : cost.memory)
       text += fmt::format(" {} {:.3g} MB,", owner, bytes / 1e6);

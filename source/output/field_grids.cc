@@ -280,6 +280,7 @@ namespace nsfd
     const auto append = [](VtuGrid::Array &array, const auto &values) {
       array.values.insert(array.values.end(), values.begin(), values.end());
     };
+    const std::vector<unsigned int> fragment = fragments.number_bodies();
     for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
       const auto corners = discretization.corners(b);
       const std::size_t node = discretization.first_node(b) * dim;
@@ -301,7 +302,7 @@ namespace nsfd
         for (auto &corner : cell)
           corner += first;
         grid.add_cell(lattice.shape, cell);
-        grid.cell_data[0].values.push_back(fragments.of_body()[b]);
+        grid.cell_data[0].values.push_back(fragment[b]);
         grid.cell_data[1].values.push_back(discretization.material_of(b));
       }
     }

@@ -3,6 +3,8 @@
 #include "cell_sampler.h"
 #include "gather.h"
 
+#include "nsfd/base/neighbor_messages.h"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -33,53 +35,69 @@ namespace nsfd
     return false;
   }
 
+  namespace
+  {
+    using Number = unsigned long long;
+
+    /** Of entries of any kind, found by halving the paths to their roots. */
+    class Union
+    {
+    public:
+      explicit Union(const std::size_t n) : parent_(n)
+      {
+        std::iota(parent_.begin(), parent_.end(), 0u);
+      }
+      unsigned int root(unsigned int i)
+      {
+        while (parent_[i] != i)
+          i = parent_[i] = parent_[parent_[i]];
+        return i;
+      }
+      void join(const unsigned int i, const unsigned int j)
+      {
+        const unsigned int a = root(i), b = root(j);
+        parent_[std::max(a, b)] = std::min(a, b);
+      }
+
+    private:
+      std::vector<unsigned int> parent_;
+    };
+
+    /** Entries for each rank, together on the first one, to their ranks. */
+    template <typename T>
+    std::vector<T> scatter(const Communicator &communicator,
+                           const std::vector<T> &all,
+                           const std::vector<int> &n_per_rank)
+    {
+      int n = 0;
+      MPI_Scatter(n_per_rank.data(), 1, MPI_INT, &n, 1, MPI_INT, 0,
+                  communicator.mpi());
+      std::vector<int> bytes, first{0};
+      for (const int count : n_per_rank) {
+        bytes.push_back(count * int(sizeof(T)));
+        first.push_back(first.back() + bytes.back());
+      }
+      std::vector<T> own(n);
+      MPI_Scatterv(all.data(), bytes.data(), first.data(), MPI_BYTE, own.data(),
+                   n * int(sizeof(T)), MPI_BYTE, 0, communicator.mpi());
+      return own;
+    }
+  } // namespace
+
   template <int dim>
   Fragments<dim>::Fragments(const Discretization<dim> &discretization,
                             const Communicator &communicator)
       : discretization_(discretization), communicator_(communicator)
   {
-    struct Cell {
-      unsigned long long number;
-      std::array<double, 3> centre;
-    };
-    const std::size_t n_bodies = discretization.bodies().size();
-    std::vector<Cell> own_cells;
-    for (unsigned int b = 0; b < n_bodies; ++b)
-      own_cells.push_back({discretization.global_cell(b),
-                           in_space<dim>(discretization.centre(b))});
     const auto &points = discretization.points();
-    std::vector<std::array<unsigned long long, 2>> own_pairs;
-    for (unsigned int f = 0; f < points.faces.size(); ++f)
-      if (!points.faces[f].boundary && points.faces[f].first < points.n_owned) {
-        faces_.push_back(f);
-        own_pairs.push_back(points.faces[f].cells);
-      }
-    const auto cells = gather(communicator, own_cells, n_cells_);
-    const auto pairs = gather(communicator, own_pairs);
-    of_body_.assign(n_bodies, 0);
-
-    // only rank 0 has anything from here on
-    order_.resize(cells.size());
-    std::iota(order_.begin(), order_.end(), 0);
-    auto by_number = order_;
-    std::sort(order_.begin(), order_.end(), [&](const auto a, const auto b) {
-      return std::tie(cells[a].centre, cells[a].number) <
-             std::tie(cells[b].centre, cells[b].number);
-    });
-    std::sort(by_number.begin(), by_number.end(),
-              [&](const auto a, const auto b) {
-                return cells[a].number < cells[b].number;
-              });
-    const auto index = [&](const unsigned long long number) {
-      const auto found = std::lower_bound(
-          by_number.begin(), by_number.end(), number,
-          [&](const auto a, const auto n) { return cells[a].number < n; });
-      AssertThrow(found != by_number.end() && cells[*found].number == number,
-                  ExcMessage("a face of a cell that no rank has"));
-      return *found;
-    };
-    for (const auto &pair : pairs)
-      pairs_.push_back({{index(pair[0]), index(pair[1])}});
+    for (unsigned int f = 0; f < points.faces.size(); ++f) {
+      const auto &face = points.faces[f];
+      if (face.boundary || face.first >= points.n_owned)
+        continue;
+      const int a = face.bodies[0], b = face.bodies[1];
+      links_.push_back(a >= 0 ? Link{f, unsigned(a), b}
+                              : Link{f, unsigned(b), -1});
+    }
   }
 
   template <int dim>
@@ -88,42 +106,147 @@ namespace nsfd
     if (state.broken_area == broken_area_)
       return;
     broken_area_ = state.broken_area;
+    find_pieces(state);
+    join_pieces(state);
+  }
 
+  /** Connected components of the bodies of this rank. */
+  template <int dim>
+  void Fragments<dim>::find_pieces(const State &state)
+  {
+    const std::size_t n = discretization_.bodies().size();
     const auto &faces = discretization_.points().faces;
-    std::vector<unsigned char> own;
-    for (const unsigned int f : faces_)
-      own.push_back(carries<dim>(state, faces[f]));
-    const auto carrying = gather(communicator_, own);
+    Union bodies(n);
+    for (const Link &link : links_)
+      if (link.other >= 0 && carries<dim>(state, faces[link.face]))
+        bodies.join(link.body, unsigned(link.other));
+    piece_.resize(n);
+    n_pieces_ = 0;
+    for (unsigned int b = 0; b < n; ++b)
+      piece_[b] = bodies.root(b) == b ? n_pieces_++ : piece_[bodies.root(b)];
+    const Number mine = n_pieces_;
+    Number end = 0;
+    MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM,
+             communicator_.mpi());
+    first_piece_ = end - mine;
+    stands_for_.resize(n_pieces_);
+    std::iota(stands_for_.begin(), stands_for_.end(), first_piece_);
+  }
 
-    // union-find on rank 0
-    std::vector<unsigned int> parent(order_.size()), fragment(order_.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto find = [&](unsigned int cell) {
-      while (parent[cell] != cell)
-        cell = parent[cell] = parent[parent[cell]];
-      return cell;
-    };
-    for (std::size_t f = 0; f < carrying.size(); ++f)
-      if (carrying[f]) {
-        const unsigned int a = find(pairs_[f][0]), b = find(pairs_[f][1]);
-        parent[std::max(a, b)] = std::min(a, b);
+  /** Over the faces between ranks. */
+  template <int dim>
+  void Fragments<dim>::join_pieces(const State &state)
+  {
+    Number count = communicator_.sum_integer(n_pieces_);
+    if (communicator_.size() > 1) {
+      const auto &points = discretization_.points();
+      NeighborMessages<Number> exchange;
+      for (const auto &neighbor : points.neighbors) {
+        auto &message = exchange.messages.emplace_back();
+        message.rank = neighbor.rank;
+        message.in.resize(neighbor.points.size());
+        for (std::size_t j = 0; j < neighbor.points.size(); ++j)
+          message.out.push_back(
+              first_piece_ +
+              piece_[points.faces[points.face_of[neighbor.points[j]]]
+                         .bodies[neighbor.side[j]]]);
       }
-    constexpr unsigned int none = std::numeric_limits<unsigned int>::max();
-    std::vector<unsigned int> number(order_.size(), none);
-    count_ = 0;
-    for (const unsigned int cell : order_) {
-      unsigned int &n = number[find(cell)];
-      if (n == none)
-        n = count_++;
-      fragment[cell] = n;
-    }
+      exchange.start(communicator_.mpi(), 31);
+      exchange.finish();
+      std::vector<Number> beyond(points.faces.size());
+      for (std::size_t k = 0; k < points.neighbors.size(); ++k)
+        for (std::size_t j = 0; j < points.neighbors[k].points.size(); ++j)
+          beyond[points.face_of[points.neighbors[k].points[j]]] =
+              exchange.messages[k].in[j];
 
-    std::vector<int> first(n_cells_.size(), 0);
-    std::partial_sum(n_cells_.begin(), n_cells_.end() - 1, first.begin() + 1);
-    MPI_Scatterv(fragment.data(), n_cells_.data(), first.data(), MPI_UNSIGNED,
-                 of_body_.data(), int(of_body_.size()), MPI_UNSIGNED, 0,
-                 communicator_.mpi());
-    MPI_Bcast(&count_, 1, MPI_UNSIGNED, 0, communicator_.mpi());
+      using Pair = std::array<Number, 2>;
+      std::vector<Pair> pairs;
+      for (const Link &link : links_)
+        if (link.other < 0 && carries<dim>(state, points.faces[link.face]))
+          pairs.push_back(
+              {{first_piece_ + piece_[link.body], beyond[link.face]}});
+      std::sort(pairs.begin(), pairs.end());
+      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+      const auto all = gather(communicator_, pairs);
+      const auto first_pieces =
+          gather(communicator_, std::vector<Number>{first_piece_});
+
+      // only rank 0 has anything in here; pieces in the order of their ranks
+      std::vector<Number> met;
+      for (const Pair &pair : all)
+        met.insert(met.end(), pair.begin(), pair.end());
+      std::sort(met.begin(), met.end());
+      met.erase(std::unique(met.begin(), met.end()), met.end());
+      Union pieces(met.size());
+      const auto place = [&met](const Number piece) {
+        return unsigned(std::lower_bound(met.begin(), met.end(), piece) -
+                        met.begin());
+      };
+      for (const Pair &pair : all)
+        pieces.join(place(pair[0]), place(pair[1]));
+      std::vector<Pair> answers;
+      std::vector<int> n_answers(first_pieces.size(), 0);
+      Number joined = 0;
+      for (unsigned int k = 0; k < met.size(); ++k) {
+        answers.push_back({{met[k], met[pieces.root(k)]}});
+        joined += pieces.root(k) != k;
+        // ranks without a piece begin where the next one does
+        ++n_answers[std::upper_bound(first_pieces.begin(), first_pieces.end(),
+                                     met[k]) -
+                    first_pieces.begin() - 1];
+      }
+      for (const Pair &answer : scatter(communicator_, answers, n_answers))
+        stands_for_[answer[0] - first_piece_] = answer[1];
+      MPI_Bcast(&joined, 1, MPI_UNSIGNED_LONG_LONG, 0, communicator_.mpi());
+      count -= joined;
+    }
+    count_ = unsigned(count);
+  }
+
+  template <int dim>
+  std::vector<unsigned int> Fragments<dim>::number_bodies() const
+  {
+    struct Piece {
+      Number stands_for, cell;
+      std::array<double, 3> centre;
+      auto key() const { return std::tie(centre, cell); }
+    };
+    constexpr Number none = std::numeric_limits<Number>::max();
+    std::vector<Piece> own(n_pieces_);
+    for (unsigned int k = 0; k < n_pieces_; ++k)
+      own[k] = {stands_for_[k], none, {}};
+    for (unsigned int b = 0; b < piece_.size(); ++b) {
+      const Piece body = {stands_for_[piece_[b]],
+                          discretization_.global_cell(b),
+                          in_space<dim>(discretization_.centre(b))};
+      Piece &piece = own[piece_[b]];
+      if (piece.cell == none || body.key() < piece.key())
+        piece = body;
+    }
+    std::vector<int> n_per_rank;
+    const auto all = gather(communicator_, own, n_per_rank);
+    std::vector<unsigned int> order(all.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](const unsigned int a, const unsigned int b) {
+                return all[a].key() < all[b].key();
+              });
+    // the first cell of a fragment comes first: pieces are numbered from 0 on,
+    // rank by rank, as they stand in `all`
+    std::vector<unsigned int> number_of(all.size(), unsigned(-1)),
+        numbers(all.size());
+    unsigned int next = 0;
+    for (const unsigned int k : order) {
+      unsigned int &number = number_of[all[k].stands_for];
+      if (number == unsigned(-1))
+        number = next++;
+      numbers[k] = number;
+    }
+    const auto mine = scatter(communicator_, numbers, n_per_rank);
+    std::vector<unsigned int> result(piece_.size());
+    for (std::size_t b = 0; b < piece_.size(); ++b)
+      result[b] = mine[piece_[b]];
+    return result;
   }
 
   template bool carries<2>(const State &,

@@ -54,6 +54,28 @@ namespace nsfd
       return table.card("Per step, median");
     }
 
+    std::string messages(const CostRecord &cost)
+    {
+      Table table;
+      if (cost.ranks > 1) {
+        const double steps = std::max(1., cost.steps);
+        table.add("messages", engineering(cost.sent.messages / steps, ""));
+        table.add("sent in them",
+                  engineering(cost.sent.message_bytes / steps, "B"));
+        table.add("reductions and the like",
+                  engineering(cost.sent.collectives / steps, ""));
+        table.add("put into them",
+                  engineering(cost.sent.collective_bytes / steps, "B"));
+        if (cost.copy_gain > 0.) {
+          table.add("all ranks over one alone, a copy",
+                    fmt::format("{:.2f}", cost.copy_gain));
+          table.add("a small dense product",
+                    fmt::format("{:.2f}", cost.product_gain));
+        }
+      }
+      return table.card("Per rank and step, at most");
+    }
+
     std::string hot_loop(const CostRecord &cost)
     {
       Table table;
@@ -88,7 +110,8 @@ namespace nsfd
                    s.steps > 0 && value >= s.steps
                        ? engineering(value / s.steps, "") + " per step"
                        : "");
-    const std::string cards = times(s) + iterations(s) + hot_loop(s.cost) +
+    const std::string cards = times(s) + iterations(s) + messages(s.cost) +
+                              hot_loop(s.cost) +
                               memory(s) + counters.card("Counters");
     return cards.empty() ? "" : section("Cost", row_of(cards));
   }

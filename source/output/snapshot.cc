@@ -46,7 +46,7 @@ namespace nsfd
                 const std::vector<unsigned int> &vertices) const;
 
       const Discretization<dim> &discretization_;
-      const Fragments<dim> &fragments_;
+      const std::vector<unsigned int> fragment_;
       const ReferenceCell cell_;
       const std::size_t n_bodies_;
       const std::vector<double> displacement_, velocity_; ///< nodal
@@ -67,7 +67,7 @@ namespace nsfd
     PartMaker<dim>::PartMaker(const Discretization<dim> &discretization,
                               const State &state,
                               const Fragments<dim> &fragments)
-        : discretization_(discretization), fragments_(fragments),
+        : discretization_(discretization), fragment_(fragments.number_bodies()),
           cell_(discretization.element().reference_cell()),
           n_bodies_(discretization.bodies().size()),
           displacement_(discretization.to_nodal(state.displacement)),
@@ -100,7 +100,7 @@ namespace nsfd
       part.cell = discretization_.global_cell(b);
       part.face = face;
       part.n_corners = unsigned(vertices.size());
-      part.fragment = fragments_.of_body()[b];
+      part.fragment = fragment_[b];
       part.material = discretization_.material_of(b);
       part.value = stress_[b];
       part.speed = middle_.value(0, v).norm();

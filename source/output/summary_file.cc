@@ -53,6 +53,18 @@ namespace nsfd
         loop["limit"] = cost.limited_by_copy() ? "copy" : "product";
       }
       json["application_of_W"] = loop;
+      if (cost.ranks > 1) {
+        json["messages"] = {
+            {"ranks", cost.ranks},
+            {"messages", number(cost.sent.messages)},
+            {"message_bytes", number(cost.sent.message_bytes)},
+            {"collectives", number(cost.sent.collectives)},
+            {"collective_bytes", number(cost.sent.collective_bytes)}};
+        if (cost.copy_gain > 0.) {
+          json["messages"]["copy_gain"] = number(cost.copy_gain);
+          json["messages"]["product_gain"] = number(cost.product_gain);
+        }
+      }
       return json;
     }
 

@@ -54,6 +54,24 @@ namespace nsfd
       result.wall.push_back(number(summary, "wall_seconds"));
     }
 
+    void add_messages(const Json &cost, const double steps, CaseResult &result)
+    {
+      const Json sent = cost.value("messages", Json::object());
+      result.messages = number(sent, "messages") / steps;
+      result.message_bytes = number(sent, "message_bytes") / steps;
+      result.collectives = number(sent, "collectives") / steps;
+      result.copy_gain = number(sent, "copy_gain");
+      result.product_gain = number(sent, "product_gain");
+      double all = 0., waiting = 0.;
+      const Json parts = cost.value("parts", Json::object());
+      for (const auto &[name, part] : parts.items()) {
+        all += number(part, "seconds");
+        if (name == "waiting for other ranks")
+          waiting = number(part, "seconds");
+      }
+      result.waiting = all > 0. ? waiting / all : 0.;
+    }
+
     void fill(const Json &summary, CaseResult &result)
     {
       const double steps = std::max(1., number(summary, "steps"));
@@ -73,6 +91,7 @@ namespace nsfd
           sum(summary.value("energy", Json::object())) + sum(dissipated);
       const double numerical = number(dissipated, "numerical");
       result.numerical_dissipation = energy > 0. ? numerical / energy : 0.;
+      add_messages(summary.value("cost", Json::object()), steps, result);
       result.errors.clear();
       const Json errors = summary.value("errors", Json::object());
       for (const auto &[name, value] : errors.items())

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <tuple>
@@ -74,7 +75,8 @@ namespace nsfd
         if (is_for_scenes(path_of(assignment)))
           all.push_back(assignment);
       for (const auto &[path, value] : combination.parameters)
-        all.push_back(path + "=" + value);
+        if (is_for_scenes(path))
+          all.push_back(path + "=" + value);
       const auto find = [&all](const std::string &path) {
         return std::find_if(all.begin(), all.end(),
                             [&path](const std::string &assignment) {
@@ -93,6 +95,23 @@ namespace nsfd
             all.push_back(std::string(output) + "=false");
       all.push_back("Output/directory=" + study.directory + "/" + name);
       return all;
+    }
+
+    unsigned int ranks_of(const StudyInput &study,
+                          const Combination &combination, InputErrors &errors)
+    {
+      for (const auto &[path, value] : combination.parameters)
+        if (path == "Study/ranks") {
+          const auto number = number_of_value(value);
+          if (number && *number >= 1. && *number <= 1e6 &&
+              *number == std::floor(*number))
+            return unsigned(*number);
+          errors.error({study.file, 0, 0, 0, value},
+                       fmt::format("Study/ranks: `{}` is no number of ranks",
+                                   value),
+                       "write for example: set Study/ranks = 1, 2, 4");
+        }
+      return study.ranks;
     }
 
     void fill_numbers(const SceneInput &scene, const Combination &combination,
@@ -120,6 +139,7 @@ namespace nsfd
       StudyCase one;
       one.combination = combination;
       one.combination.name = name;
+      one.ranks = ranks_of(study, combination, errors);
       const auto scene = read_scene(
           study.file, assignments(study, combination, name, set, more), errors);
       if (!scene)

@@ -66,7 +66,8 @@ namespace nsfd
         errors.error(location, fmt::format("`{}` varies twice", *twice),
                      "name every parameter once");
       for (const std::string &path : paths)
-        if (path == "Output/directory" || starts_with(path, "Study/"))
+        if (path == "Output/directory" ||
+            (starts_with(path, "Study/") && path != "Study/ranks"))
           errors.error(location, fmt::format("`{}` cannot vary", path),
                        "each case has a folder of its own");
       if (n > 10000.)
@@ -201,7 +202,8 @@ namespace nsfd
       study.repeats =
           reader.integer("repeats", "5", 1, any_count,
                          "of each case; short ones are repeated more often");
-      study.ranks = reader.integer("ranks", "1", 1, any_count, "of each case");
+      study.ranks = reader.integer("ranks", "1", 1, any_count,
+                                   "of each case; may vary as Study/ranks");
       study.jobs = reader.integer(
           "jobs", "1", 1, 256, "cases at a time; times are honest with 1 only");
       study.outputs =

@@ -181,9 +181,11 @@ namespace nsfd
   bool stop_was_requested() { return stop_requested != 0; }
 
   CaseResult run_case(const StudyInput &study, const StudyCase &one,
-                      const CaseStamp &stamp, const unsigned int repeats,
+                      const CaseStamp &program, const unsigned int repeats,
                       const bool resume)
   {
+    CaseStamp stamp = program;
+    stamp.ranks = one.ranks;
     const std::string folder = study.directory + "/" + one.combination.name;
     const std::string scene = folder + "/scene.prm", log = folder + "/log.txt";
     const std::string record = folder + "/case.json", again = folder + "/again";
@@ -199,8 +201,8 @@ namespace nsfd
     do {
       const bool first = result.solve.empty();
       const std::string output = first ? folder : again;
-      result.exit_code = run_process(command(scene, output, study.ranks),
-                                     study.ranks > 1, log);
+      result.exit_code = run_process(command(scene, output, one.ranks),
+                                     one.ranks > 1, log);
       result.status = status_of(result.exit_code);
       const bool found = add_summary(output + "/summary.json", result);
       if (result.done() && !found) {

@@ -37,7 +37,7 @@ namespace nsfd
       Runner(const StudyResults &study, const StudyCommand &command,
              std::ostream &out)
           : study_(study), command_(command),
-            out_(out), stamp_{study.version, study.git_hash, study.input.ranks}
+            out_(out), stamp_{study.version, study.git_hash, 1}
       {
       }
 

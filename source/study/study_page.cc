@@ -1,4 +1,5 @@
 #include "cost_comparison.h"
+#include "rank_scaling.h"
 #include "study_means.h"
 
 #include "../output/report_html.h"
@@ -14,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace nsfd
 {
@@ -307,6 +309,33 @@ namespace nsfd
                                                  "</pre>\n");
     }
 
+    std::string ranks_html(const StudyResults &study)
+    {
+      std::vector<std::vector<std::string>> rows;
+      for (const RankRow &row : rank_rows(study))
+        rows.push_back(rank_cells(row));
+      return rows.empty()
+                 ? ""
+                 : section("Ranks",
+                           "<p class=\"muted\">Time of the first rank; messages, "
+                           "kB and reductions per rank and step, at most; what "
+                           "a copy and a small dense product gain on the same "
+                           "ranks is measured at the end of each run.</p>\n" +
+                               table(rank_head(), rows));
+    }
+
+    /** "1, 2, 4 ranks" */
+    std::string ranks_text(const StudyResults &study)
+    {
+      std::set<unsigned int> ranks;
+      for (const StudyCase &one : study.cases)
+        ranks.insert(one.ranks);
+      std::string text;
+      for (const unsigned int n : ranks)
+        text += fmt::format("{}{}", text.empty() ? "" : ", ", n);
+      return text;
+    }
+
     std::string provenance(const StudyResults &study)
     {
       Table table;
@@ -320,7 +349,7 @@ namespace nsfd
           "processes",
           fmt::format("{} rank(s) of one thread per case, {} case(s) "
                       "at a time",
-                      study.input.ranks, study.input.jobs));
+                      ranks_text(study), study.input.jobs));
       table.add_text("seeds", "in scene.prm of each case, if it has any");
       table.add_text("date", study.date);
       for (const std::string &warning : study.warnings)
@@ -359,7 +388,7 @@ namespace nsfd
       diagrams.add("diagram_" + diagram.abscissa, quantity_chart(study, diagram));
     const std::string content =
         headline(study) + section("Diagrams", diagrams.html()) +
-        order_rows(study) + means_html(study) + cost_rows_html(study) + case_rows(study) +
+        order_rows(study) + ranks_html(study) + means_html(study) + cost_rows_html(study) + case_rows(study) +
         provenance(study) + "<details><summary>Section Study</summary><pre>" +
         escape_markup(study.input.echo) + "</pre></details>\n";
     write_file_atomically(directory + "/study.html",

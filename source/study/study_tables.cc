@@ -1,4 +1,5 @@
 #include "cost_comparison.h"
+#include "rank_scaling.h"
 #include "study_means.h"
 
 #include "nsfd/study/study_results.h"
@@ -57,6 +58,14 @@ namespace nsfd
           {"wall", [](const CaseResult &r) { return median(r.wall); }},
           {"peak_memory_mb",
            [](const CaseResult &r) { return r.peak_memory_mb; }},
+          {"messages_per_step", [](const CaseResult &r) { return r.messages; }},
+          {"message_bytes_per_step",
+           [](const CaseResult &r) { return r.message_bytes; }},
+          {"collectives_per_step",
+           [](const CaseResult &r) { return r.collectives; }},
+          {"waiting", [](const CaseResult &r) { return r.waiting; }},
+          {"copy_gain", [](const CaseResult &r) { return r.copy_gain; }},
+          {"product_gain", [](const CaseResult &r) { return r.product_gain; }},
           {"residual_max", [](const CaseResult &r) { return r.residual; }},
           {"ledger_defect_max",
            [](const CaseResult &r) { return r.ledger_defect; }},
@@ -280,6 +289,7 @@ namespace nsfd
           order.error == errors[0])
         text += order_table(study, order);
     text += means_text(study);
+    text += rank_text(study);
     const std::string costs = cost_table(study);
     if (!costs.empty())
       text += "\nCPU time (s) of an error, from the lower envelopes\n" + costs;

@@ -55,6 +55,7 @@ namespace nsfd
   {
     Fragments<dim> fragments(discretization, communicator);
     fragments.update(state);
+    const std::vector<unsigned int> fragment_of = fragments.number_bodies();
     const auto &bodies = discretization.bodies();
     const unsigned int n_bodies = unsigned(bodies.size());
     std::string name;
@@ -65,7 +66,7 @@ namespace nsfd
     const double all = communicator.sum(size);
     for (unsigned int f = 0; f < fragments.count() && all > 0.; ++f) {
       const auto ours = [&](const unsigned int b) {
-        return fragments.of_body()[b] == f;
+        return fragment_of[b] == f;
       };
       std::vector<double> moments((dim + 1) * n_bodies, 0.);
       for (unsigned int b = 0; b < n_bodies; ++b)

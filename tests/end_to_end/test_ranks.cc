@@ -110,6 +110,16 @@ namespace end_to_end
                                     values.begin() + i * width,
                                     values.begin() + (i + 1) * width);
           }
+        // fragments have the same numbers everywhere: linear cells
+        if (snapshot.count("fragment") != 0 &&
+            n_points % snapshot.at("fragment").size() == 0) {
+          const auto &fragment = snapshot.at("fragment"),
+                     &x = snapshot.at("Points");
+          const std::size_t width = x.size() / fragment.size();
+          for (std::size_t c = 0; c < fragment.size(); ++c)
+            all.push_back({number, x[c * width], x[c * width + 1],
+                           x[c * width + 2], fragment[c]});
+        }
         ++number;
       }
       std::sort(all.begin(), all.end());

@@ -219,6 +219,40 @@ namespace end_to_end
     EXPECT_EQ(files_below(workspace.path()), Words());
   }
 
+  // The same case on one rank and on two: same errors, and two of them talk.
+  TEST(Study, RanksVary)
+  {
+    const Workspace workspace;
+    const Outcome outcome = study(workspace, {"Study/ranks=1, 2"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("share of the lesser"), std::string::npos)
+        << outcome.out;
+    const auto json = json_of(workspace);
+    ASSERT_EQ(json["done"], 2);
+    const auto &one = json["runs"][0], &two = json["runs"][1];
+    EXPECT_EQ(one["parameters"]["Study/ranks"], "1");
+    EXPECT_EQ(one["messages_per_step"], 0.);
+    EXPECT_EQ(one["collectives_per_step"], 0.);
+    EXPECT_GE(two["messages_per_step"].get<double>(),
+              two["operator_applications_per_step"].get<double>());
+    EXPECT_GT(two["collectives_per_step"].get<double>(), 0.);
+    EXPECT_EQ(one["errors"], two["errors"]);
+    EXPECT_NE(read_text(workspace.path() / "s" / "study.html").find("<h2>Ranks"),
+              std::string::npos);
+  }
+
+  TEST(Study, NumbersOfRanksAreChecked)
+  {
+    const Workspace workspace;
+    const Outcome outcome = study(workspace, {"Study/ranks=0, 1.5"});
+    EXPECT_EQ(outcome.exit_code, 1);
+    for (const char *message : {"`0` is no number of ranks",
+                                "`1.5` is no number of ranks", "1, 2, 4"})
+      EXPECT_NE(outcome.err.find(message), std::string::npos) << message << "\n"
+                                                              << outcome.err;
+    EXPECT_EQ(files_below(workspace.path()), Words());
+  }
+
   TEST(Study, StopsOnASignalAndGoesOn)
   {
     const Workspace workspace;

@@ -24,6 +24,7 @@ namespace nsfd
     ledger,          ///< energies and history
     output,          ///< files, pictures, comparison with exact values
     delassus_single, ///< applications of W in single precision
+    messages,        ///< waiting for other ranks
     count
   };
 

@@ -112,4 +112,24 @@ namespace nsfd
     };
     std::vector<Neighbor> neighbors;
   };
+
+  /** The bodies of this rank, class by class, in the order of their work. */
+  struct BodyOrder
+  {
+    struct Members
+    {
+      std::vector<unsigned int> bodies;
+      std::size_t n_shared = 0; ///< the first ones: at points of other ranks
+    };
+    std::vector<Members> classes;
+  };
+
+  /** Per body: 1 where it has a point that is shared with another rank. */
+  template <int dim>
+  std::vector<char> shared_bodies(const Bodies &bodies,
+                                  const InterfacePoints<dim> &points);
+
+  template <int dim>
+  BodyOrder shared_first(const Bodies &bodies,
+                         const InterfacePoints<dim> &points);
 } // namespace nsfd

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/base/communicator.h"
+#include "nsfd/base/neighbor_messages.h"
 #include "nsfd/dynamics/bodies.h"
 
 #include <memory>
@@ -32,7 +33,10 @@ namespace nsfd
     /** Build what depends on the step; nothing if it has not changed. */
     virtual void reinit(double time_step, double theta);
 
-    /** U = W P over all points. One exchange with the neighbouring ranks. */
+    /**
+     * U = W P over all points. One exchange with the neighbouring ranks, behind
+     * the work for bodies that share no point with them.
+     */
     virtual void apply_delassus(const double *impulse, double *velocity) const;
 
     /**
@@ -178,7 +182,20 @@ namespace nsfd
      * Complete contributions of both sides at shared points: @p side holds
      * `stride` values per point for body 1 and body 2.
      */
-    void exchange(std::array<double *, 2> side, unsigned int stride) const;
+    void exchange(std::array<double *, 2> side, unsigned int stride) const
+    {
+      start_exchange(side, stride);
+      finish_exchange(side, stride);
+    }
+
+    /** In two parts: what this rank computes is read by the first one only. */
+    void start_exchange(std::array<double *, 2> side,
+                        unsigned int stride) const;
+    void finish_exchange(std::array<double *, 2> side,
+                         unsigned int stride) const;
+
+    /** Per class, those whose points other ranks wait for first. */
+    const BodyOrder &order() const { return order_; }
 
   protected:
     void build_face_blocks();
@@ -186,6 +203,7 @@ namespace nsfd
     const Communicator &communicator_;
     const Bodies &bodies_;
     const InterfacePoints<dim> &points_;
+    BodyOrder order_;
     double time_step_ = 0., theta_ = 0.;
     /// of the stiffness of the bodies that the blocks below are built with
     double stiffness_share_ = 1.;
@@ -196,12 +214,15 @@ namespace nsfd
 
     /** Into cartesian_. */
     void to_cartesian(const double *local) const;
-    /** The sum of both sides, once complete, in the local frames. */
+    /** The sum of both sides, complete, in the local frames. */
     void add_sides(double *local) const;
     mutable std::vector<double> cartesian_, side_1_, side_2_;
     std::vector<double> least_compliance_;
     double inner_tolerance_ = 1e-11;
     const std::vector<double> *free_velocity_ = nullptr;
+
+  private:
+    mutable NeighborMessages<double> messages_;
   };
 
   /** Preconditioned by the face blocks of W: for steps up to some crossings. */

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/base/message_counts.h"
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +37,14 @@ namespace nsfd
     double flops = 0., bytes = 0.;
     double copy_bytes_per_second = 0., product_flops_per_second = 0.;
 
+    /// what ranks have sent, the largest numbers of all of them; nothing on one
+    unsigned int ranks = 1;
+    MessageCounts sent;
+    double steps = 0.; ///< in which they have sent it
+    /// of all ranks at a time over that of one of them, alone: what the machine
+    /// gives to any program at best; 0 where the run was too short
+    double copy_gain = 0., product_gain = 0.;
+
     bool has_limits() const
     {
       return applications > 0. && seconds > 0. && copy_bytes_per_second > 0.;
@@ -43,6 +53,9 @@ namespace nsfd
     double share_of_limit() const;
     bool limited_by_copy() const;
   };
+
+  /** "2 ranks, each per step at most: 160 messages of 1.3 kB, ..." */
+  std::string messages_text(const CostRecord &cost);
 
   /** The last lines of a run. */
   std::string cost_text(const CostRecord &cost, double peak_memory_mb);

@@ -15,9 +15,9 @@ namespace nsfd
 
   /**
    * Fragments: connected components of bodies over faces that still carry
-   * (some point with beta >= 1e-3, or a rigid or elastic joint). Numbered from
-   * 0 by their first cell in the order of the cell centres (x, y, z), the same
-   * on any number of ranks.
+   * (some point with beta >= 1e-3, or a rigid or elastic joint). Ranks find the
+   * pieces of their own bodies; the first one joins those that meet at faces
+   * between ranks, and sees no others.
    */
   template <int dim>
   class Fragments
@@ -30,20 +30,33 @@ namespace nsfd
     void update(const State &state);
 
     unsigned int count() const { return count_; }
-    /** Fragment of each body of this rank. */
-    const std::vector<unsigned int> &of_body() const { return of_body_; }
+
+    /**
+     * Fragment of each body of this rank, numbered from 0 by their first cell
+     * in the order of the cell centres (x, y, z), the same on any number of
+     * ranks. Collective; the first rank sorts what there is of pieces.
+     */
+    std::vector<unsigned int> number_bodies() const;
 
   private:
+    void find_pieces(const State &state);
+    void join_pieces(const State &state);
+
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
     double broken_area_ = -1.;
     unsigned int count_ = 0;
-    std::vector<unsigned int> of_body_;
 
-    std::vector<unsigned int> faces_; ///< counted here, between two cells
-    /// on rank 0, over the cells and faces of all ranks, rank by rank
-    std::vector<int> n_cells_;                       ///< per rank
-    std::vector<unsigned int> order_;                ///< cells by their centres
-    std::vector<std::array<unsigned int, 2>> pairs_; ///< cells of each face
+    struct Link
+    {
+      unsigned int face, body; ///< of this rank
+      int other;               ///< body of this rank, or -1
+    };
+    std::vector<Link> links_; ///< faces between two cells, counted here
+    std::vector<unsigned int> piece_; ///< per body, from 0 on each rank
+    unsigned int n_pieces_ = 0;
+    unsigned long long first_piece_ = 0; ///< number among those of all ranks
+    /// per piece of this rank: the one that stands for its fragment, of any
+    std::vector<unsigned long long> stands_for_;
   };
 } // namespace nsfd

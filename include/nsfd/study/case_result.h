@@ -28,6 +28,10 @@ namespace nsfd
     /// lost by the time discretization, over all energy there was at the end
     double numerical_dissipation = 0.;
     double peak_memory_mb = 0.; ///< mean of the repeats
+    /// of several ranks, per rank and step, at most
+    double messages = 0., message_bytes = 0., collectives = 0.;
+    double waiting = 0.; ///< share of the time of the first rank
+    double copy_gain = 0., product_gain = 0.; ///< of the machine; 0: not known
     std::map<std::string, double> errors;
 
     /// CPU seconds of each repeat

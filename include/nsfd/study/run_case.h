@@ -18,6 +18,6 @@ namespace nsfd
    * std::runtime_error if the folder cannot be written.
    */
   CaseResult run_case(const StudyInput &study, const StudyCase &one,
-                      const CaseStamp &stamp, unsigned int repeats,
+                      const CaseStamp &program, unsigned int repeats,
                       bool resume);
 } // namespace nsfd

@@ -26,7 +26,7 @@ namespace nsfd
     std::string directory; ///< of all its results
 
     unsigned int repeats = 5; ///< of each case, at least
-    unsigned int ranks = 1;   ///< of each case
+    unsigned int ranks = 1;   ///< of each case, where they do not vary
     unsigned int jobs = 1;    ///< cases at a time
     bool outputs = false;     ///< fields and reports of the cases as well
     bool limit_checks = true; ///< best cases again, tighter and with half steps
@@ -50,6 +50,7 @@ namespace nsfd
     std::string scene; ///< complete parameter file, ready to run
     /// what formulas may name: degree, cells, ..., and what varies
     std::map<std::string, double> numbers;
+    unsigned int ranks = 1;
     double tolerance = 0.; ///< of the solver
     std::string half_step; ///< value of Time/step; empty if it has no half
   };
