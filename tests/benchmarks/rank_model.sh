@@ -7,9 +7,9 @@ set -eu
 what=${1:-strong}
 # seconds of work per point and step, exchanges and reductions per step, bytes per
 # shared point and exchange
-WORK=${WORK:-1.1e-6} EXCHANGES=${EXCHANGES:-60} REDUCTIONS=${REDUCTIONS:-150}
-BYTES=${BYTES:-10}
-LATENCY=${LATENCY:-1.5e-6} BANDWIDTH=${BANDWIDTH:-1e9} TREE=${TREE:-2e-6}
+WORK=${WORK:-2.4e-6} EXCHANGES=${EXCHANGES:-68} REDUCTIONS=${REDUCTIONS:-189}
+BYTES=${BYTES:-16}
+LATENCY=${LATENCY:-1.5e-6} BANDWIDTH=${BANDWIDTH:-5e8} TREE=${TREE:-2e-6}
 awk -v what="$what" -v work="$WORK" -v exchanges="$EXCHANGES" \
   -v reductions="$REDUCTIONS" -v bytes="$BYTES" -v latency="$LATENCY" \
   -v bandwidth="$BANDWIDTH" -v tree="$TREE" '
@@ -19,7 +19,7 @@ awk -v what="$what" -v work="$WORK" -v exchanges="$EXCHANGES" \
     own = points / ranks
     rim = ranks > 1 ? 4 * sqrt(own) : 0
     each = ranks > 1 ? 4 * latency + rim * bytes / bandwidth : 0
-    hidden = work * own / exchanges * 0.4 # of an exchange: the share of the bodies
+    hidden = work * own / exchanges * 0.25 # what bodies take behind it
     sent = exchanges * (each > hidden ? each - hidden : 0)
     wait = reductions * tree * log2(ranks)
     return work * own + sent + wait
