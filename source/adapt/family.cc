@@ -32,11 +32,16 @@ namespace nsfd
   }
 
   void Family::add(const Bodies &bodies, const State &state,
-                   const unsigned int body)
+                   const unsigned int body, const double *translation,
+                   const unsigned int dim)
   {
     const std::size_t first = bodies.first_dof[body];
     classes.push_back(&bodies.classes[bodies.class_of[body]]);
-    displacement.push_back(state.displacement.data() + first);
+    displacement.emplace_back(
+        state.displacement.begin() + std::ptrdiff_t(first),
+        state.displacement.begin() + std::ptrdiff_t(bodies.first_dof[body + 1]));
+    for (std::size_t i = 0; i < displacement.back().size(); ++i)
+      displacement.back()[i] -= translation[i % dim];
     velocity.push_back(state.velocity.data() + first);
   }
 
@@ -93,7 +98,7 @@ namespace nsfd
     for (unsigned int c = 0; c < family.classes.size(); ++c) {
       const FullMatrix<double> &P = element.get_prolongation_matrix(c);
       const BodyClass &child = *family.classes[c];
-      elastic += half_product(child.stiffness, family.displacement[c]);
+      elastic += half_product(child.stiffness, family.displacement[c].data());
       elastic_after += half_product(
           child.stiffness,
           in_child<dim>(element, c, parent.displacement.data(), n).data());

@@ -16,9 +16,12 @@ namespace nsfd
   /** The children of a cell, in their order, with their motion. */
   struct Family {
     std::vector<const BodyClass *> classes;
-    std::vector<const double *> displacement, velocity;
+    std::vector<std::vector<double>> displacement;
+    std::vector<const double *> velocity;
 
-    void add(const Bodies &bodies, const State &state, unsigned int body);
+    /** A child without the @p translation (per component) that it has. */
+    void add(const Bodies &bodies, const State &state, unsigned int body,
+             const double *translation, unsigned int dim);
   };
 
   /** What their parent takes over from them, per unknown of a cell. */

@@ -2,6 +2,7 @@
 
 #include "../mesh/owned_cells.h"
 #include "family.h"
+#include "spring_shift.h"
 
 #include "nsfd/dynamics/point_places.h"
 #include "nsfd/input/scene_input.h"
@@ -101,20 +102,25 @@ namespace nsfd
     const double mean = (energy.kinetic + energy.elastic) /
                         double(mesh.discretization.n_global_cells());
     const auto body_of = bodies_of_cells(triangulation_);
+    const SpringShift<dim> shift(input_, mesh);
     for (const auto &cell : owned_cells(triangulation_)) {
       if (cell->level() == 0 || cell != cell->parent()->child(0))
         continue;
-      Family family;
+      std::vector<unsigned int> bodies;
       for (unsigned int c = 0; c < cell->parent()->n_children(); ++c) {
         const auto child = cell->parent()->child(c);
         if (!child->is_active() || !child->is_locally_owned() ||
             !child->coarsen_flag_set())
           break;
-        family.add(mesh.discretization.bodies(), mesh.state,
-                   unsigned(body_of[child->active_cell_index()]));
+        bodies.push_back(unsigned(body_of[child->active_cell_index()]));
       }
-      if (family.classes.size() < cell->parent()->n_children())
+      if (bodies.size() < cell->parent()->n_children())
         continue;
+      const auto translations = shift.of_family(bodies, cell->level());
+      Family family;
+      for (unsigned int c = 0; c < bodies.size(); ++c)
+        family.add(mesh.discretization.bodies(), mesh.state, bodies[c],
+                   &translations[c * dim], dim);
       const FamilyEnergy of_family =
           energy_of_family<dim>(mesh.discretization.element(), family);
       if (of_family.change >

@@ -88,12 +88,13 @@ namespace nsfd
   }
 
   template <int dim>
-  std::vector<std::array<double, 6>> StateView<dim>::mean_stress() const
+  std::vector<std::array<double, 6>>
+  mean_stresses(const Discretization<dim> &discretization,
+                const std::vector<double> &displacement)
   {
-    const auto &discretization = mesh_.discretization;
-    std::vector<std::array<double, 6>> mean(bodies_.size());
+    std::vector<std::array<double, 6>> mean(discretization.bodies().size());
     discretization.visit_quadrature(
-        discretization.to_nodal(mesh_.state.displacement),
+        discretization.to_nodal(displacement),
         [&](const unsigned int body, const dealii::Point<dim> &,
             const double JxW, const double *, const double *gradient) {
           const auto stress = discretization.stress(body, gradient);
@@ -110,7 +111,8 @@ namespace nsfd
       return *stress_jump_;
     stress_jump_.emplace(bodies_.size(), 0.);
     const auto &points = mesh_.discretization.points();
-    const auto stress = mean_stress();
+    const auto stress =
+        mean_stresses(mesh_.discretization, mesh_.state.displacement);
     // xx, yy, zz, xy, xz, yz
     constexpr unsigned int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
     std::array<std::vector<double>, 2> traction;
@@ -214,6 +216,10 @@ namespace nsfd
     return gather_all(mesh_.dynamics.communicator(), values);
   }
 
+  template std::vector<std::array<double, 6>>
+  mean_stresses(const Discretization<2> &, const std::vector<double> &);
+  template std::vector<std::array<double, 6>>
+  mean_stresses(const Discretization<3> &, const std::vector<double> &);
   template class StateView<2>;
   template class StateView<3>;
 } // namespace nsfd

@@ -22,6 +22,12 @@ namespace nsfd
     const State &state;
   };
 
+  /** Per body: xx, yy, zz, xy, xz, yz, Pa. */
+  template <int dim>
+  std::vector<std::array<double, 6>>
+  mean_stresses(const Discretization<dim> &discretization,
+                const std::vector<double> &displacement);
+
   /** What indicators see; nothing is computed before it is asked for. */
   template <int dim>
   class StateView final : public MeshView
@@ -42,7 +48,6 @@ namespace nsfd
 
   private:
     double utilisation(std::size_t point) const;
-    std::vector<std::array<double, 6>> mean_stress() const;
 
     const SceneInput &input_;
     const MeshState<dim> mesh_;

@@ -43,7 +43,9 @@ namespace nsfd
       row[position + c] = points.position[i * dim + c];
       row[offset + c] = jump_offset[c];
       row[impulse + c] = state.impulse[i * dim + c] / points.weight[i];
+      row[jump + c] = state.jump[i * dim + c];
     }
+    row[compliance] = origin.compliance;
     double *next = row + history;
     for_numbers(state, [&](const std::vector<double> &values) {
       *next++ = values[i];

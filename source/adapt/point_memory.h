@@ -20,7 +20,9 @@ namespace nsfd
     static constexpr unsigned int face = 0, origin_kind = 1, origin_block = 2,
                                   position = 3, offset = 3 + dim,
                                   impulse = 3 + 2 * dim, ///< over the weight
-        history = 3 + 3 * dim;
+        jump = 3 + 3 * dim,
+                                  compliance = 3 + 4 * dim, ///< of its springs
+        history = 4 + 4 * dim;
     static constexpr unsigned int beta = history; ///< the first of them
 
     unsigned int size() const { return size_; }

@@ -2,10 +2,13 @@
 
 #include "family.h"
 
+#include "../interface/stiffened_law.h"
 #include "../mesh/owned_cells.h"
 #include "../time/initial_state.h"
 
 #include "nsfd/dynamics/point_places.h"
+#include "nsfd/input/scene_input.h"
+#include "nsfd/nonsmooth/point_law.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -20,12 +23,6 @@ namespace nsfd
 
   namespace
   {
-    /** A child of a cube lies on face f of its parent with its own face f. */
-    bool lies_on_face(const unsigned int child, const unsigned int face_no)
-    {
-      return (child >> (face_no / 2) & 1u) == (face_no & 1u);
-    }
-
     /** What belongs to no body and no point: sums, times, extremes. */
     void take_sums(const State &from, State &to)
     {
@@ -72,7 +69,7 @@ namespace nsfd
                                     Mesh &triangulation,
                                     const MeshState<dim> &mesh)
       : input_(input), triangulation_(triangulation), memory_(mesh.state),
-        old_(mesh), body_of_(bodies_of_cells(triangulation)),
+        shift_(input, mesh), old_(mesh), body_of_(bodies_of_cells(triangulation)),
         offset_(beyond_motion(input, mesh)),
         points_of_(mesh.discretization.bodies().size())
   {
@@ -96,7 +93,8 @@ namespace nsfd
     const Parcel parcel =
         status == Mesh::CELL_COARSEN
             ? pack_children(cell)
-            : pack_one(unsigned(body_of_[cell->active_cell_index()]));
+            : pack_one(unsigned(body_of_[cell->active_cell_index()]),
+                       status == Mesh::CELL_REFINE ? cell->level() + 1 : 0);
     std::vector<char> bytes(parcel.size() * sizeof(double));
     std::memcpy(bytes.data(), parcel.data(), bytes.size());
     return bytes;
@@ -124,7 +122,8 @@ namespace nsfd
 
   template <int dim>
   typename StateTransfer<dim>::Parcel
-  StateTransfer<dim>::pack_one(const unsigned int body) const
+  StateTransfer<dim>::pack_one(const unsigned int body,
+                               const int level_of_children) const
   {
     const auto &bodies = old_.discretization.bodies();
     const std::size_t first = bodies.first_dof[body],
@@ -133,6 +132,10 @@ namespace nsfd
     for (const auto *vector : {&old_.state.displacement, &old_.state.velocity})
       parcel.insert(parcel.end(), vector->begin() + std::ptrdiff_t(first),
                     vector->begin() + std::ptrdiff_t(end));
+    const auto translations =
+        level_of_children > 0 ? shift_.of_children(body, level_of_children)
+                              : std::vector<double>(n_translations, 0.);
+    parcel.insert(parcel.end(), translations.begin(), translations.end());
     add_memories(body, 0, parcel, true);
     return parcel;
   }
@@ -142,19 +145,24 @@ namespace nsfd
   typename StateTransfer<dim>::Parcel
   StateTransfer<dim>::pack_children(const Cell &parent) const
   {
-    Family family;
+    std::vector<unsigned int> bodies;
     for (unsigned int c = 0; c < parent->n_children(); ++c)
-      family.add(old_.discretization.bodies(), old_.state,
-                 unsigned(body_of_[parent->child(c)->active_cell_index()]));
+      bodies.push_back(
+          unsigned(body_of_[parent->child(c)->active_cell_index()]));
+    const auto translations = shift_.of_family(bodies, parent->level() + 1);
+    Family family;
+    for (unsigned int c = 0; c < bodies.size(); ++c)
+      family.add(old_.discretization.bodies(), old_.state, bodies[c],
+                 &translations[c * dim], dim);
     const ParentMotion motion =
         motion_of_parent<dim>(old_.discretization.element(), family);
     Parcel parcel = {double(motion.momentum.size())};
     parcel.insert(parcel.end(), motion.displacement.begin(),
                   motion.displacement.end());
     parcel.insert(parcel.end(), motion.momentum.begin(), motion.momentum.end());
-    for (unsigned int c = 0; c < parent->n_children(); ++c)
-      add_memories(unsigned(body_of_[parent->child(c)->active_cell_index()]),
-                   c, parcel, false);
+    parcel.insert(parcel.end(), n_translations, 0.);
+    for (unsigned int c = 0; c < bodies.size(); ++c)
+      add_memories(bodies[c], c, parcel, false);
     return parcel;
   }
 
@@ -206,6 +214,10 @@ namespace nsfd
               in_child<dim>(element, received.child, from[k], n);
           std::copy(values.begin(), values.end(), to[k]);
         }
+        const double *translation =
+            &parcel[1 + 2 * std::size_t(n) + received.child * dim];
+        for (unsigned int i = 0; i < n; ++i)
+          to[0][i] += translation[i % dim];
         continue;
       }
       for (unsigned int k = 0; k < 2; ++k)
@@ -245,7 +257,7 @@ namespace nsfd
     const double *x = &fresh.discretization.points().position[i * dim];
     const double *best = nullptr;
     double nearest = std::numeric_limits<double>::max();
-    for (std::size_t at = 1 + 2 * std::size_t(parcel[0]); at < parcel.size();
+    for (std::size_t at = first_memory(parcel); at < parcel.size();
          at += memory_.size()) {
       const double *row = &parcel[at];
       if (unsigned(row[Memory::face]) != face_no ||
@@ -264,6 +276,63 @@ namespace nsfd
       }
     }
     return best;
+  }
+
+  /**
+   * The history of a point whose springs have another compliance now; a damaged
+   * one keeps its traction as well.
+   */
+  template <int dim>
+  void StateTransfer<dim>::set_springs(const MeshState<dim> &fresh,
+                                       const double *row, const std::size_t i,
+                                       State &state) const
+  {
+    using Memory = PointMemory<dim>;
+    const PointOrigin origin = fresh.discretization.origins()[i];
+    const double before = row[Memory::compliance], now = origin.compliance;
+    if (before == now || state.kind[i] != PointKind::cohesive)
+      return;
+    const auto &law = input_.interfaces[origin.block].law;
+    const auto &interaction =
+        fresh.problem.interactions[fresh.problem.interaction[i]];
+    const double factor = fresh.problem.opening_factor[i];
+    if (state.beta[i] >= 1.)
+      state.opening_max[i] = fresh.state.opening_max[i];
+    else if (state.beta[i] > 0.) {
+      const double beta = state.beta[i];
+      state.opening_max[i] = opening_at_compliance(law,
+                                                   factor * state.opening_max[i],
+                                                   before, now) /
+                             factor;
+      state.beta[i] = interaction.law->beta(factor * state.opening_max[i]);
+      if (now < before)
+        state.beta[i] = std::min(state.beta[i], beta);
+      const double share = (beta / before) / (state.beta[i] / now);
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double jump = row[Memory::jump + c];
+        state.jump[i * dim + c] =
+            c == 0 && jump < 0. && !state.two_sided[i] ? jump : share * jump;
+      }
+    }
+  }
+
+  /** An intrinsic point that is open farther than it ever was is damaged. */
+  template <int dim>
+  void remember_opening(const OneStepProblem<dim> &problem, const std::size_t i,
+                        State &state)
+  {
+    const auto &interaction = problem.interactions[problem.interaction[i]];
+    const Reach reach = reach_of<dim>(interaction, &state.jump[i * dim]);
+    if (state.kind[i] != PointKind::cohesive || !interaction.law ||
+        interaction.law->extrinsic() || interaction.law->mixed() ||
+        reach.opening <= state.opening_max[i])
+      return;
+    state.opening_max[i] = reach.opening;
+    state.beta[i] = std::min(
+        state.beta[i],
+        interaction.law->beta(problem.opening_factor[i] * reach.opening));
+    if (state.beta[i] < 1.)
+      state.two_sided[i] = 0;
   }
 
   template <int dim>
@@ -309,6 +378,10 @@ namespace nsfd
         memory_.restore(row, points.weight[i], i, state);
         for (unsigned int c = 0; c < dim; ++c)
           state.jump[i * dim + c] += row[Memory::offset + c];
+        set_springs(fresh, row, i, state);
+        if (row[Memory::compliance] !=
+            fresh.discretization.origins()[i].compliance)
+          remember_opening(fresh.problem, i, state);
         break;
       case inside_a_cell:
         // intact, even where the block says `broken` or `contact`
@@ -316,6 +389,7 @@ namespace nsfd
           state.kind[i] = PointKind::prescribed;
           state.beta[i] = 1.;
         }
+        remember_opening(fresh.problem, i, state);
         break;
       case none:
         break;

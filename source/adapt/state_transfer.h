@@ -2,6 +2,7 @@
 
 #include "mesh_view.h"
 #include "point_memory.h"
+#include "spring_shift.h"
 
 #include <deal.II/distributed/tria.h>
 
@@ -16,7 +17,9 @@ namespace nsfd
    * one: nothing changes. A larger one interpolates the displacement of its
    * children (mean where they meet) and takes the velocity nearest to theirs
    * in the norm of mass, which keeps both momenta. Points inherit from the
-   * nearest one of the same face; new faces inside a cell are born intact.
+   * nearest one of the same face; new faces inside a cell are born intact. Where
+   * springs keep the modulus of the body, smaller cells are translated to where
+   * their springs carry what the bulk does, see SpringShift.
    */
   template <int dim>
   class StateTransfer
@@ -44,8 +47,10 @@ namespace nsfd
   private:
     using Cell = typename dealii::Triangulation<dim>::cell_iterator;
     using Status = typename dealii::Triangulation<dim>::CellStatus;
-    /// of a cell: n, q (n), v or a momentum (n), then memories of its points
+    /// of a cell: n, q (n), v or a momentum (n), translations of children that
+    /// it will have (n_translations), then memories of its points
     using Parcel = std::vector<double>;
+    static constexpr unsigned int n_translations = dim << dim;
 
     struct Received {
       std::shared_ptr<const Parcel> parcel;
@@ -54,11 +59,17 @@ namespace nsfd
     };
 
     std::vector<char> pack(const Cell &cell, Status status) const;
-    Parcel pack_one(unsigned int body) const;
+    Parcel pack_one(unsigned int body, int level_of_children) const;
     Parcel pack_children(const Cell &parent) const;
     void add_memories(unsigned int body, unsigned int child, Parcel &parcel,
                       bool all_faces) const;
     void set_motion(const MeshState<dim> &fresh, State &state) const;
+    void set_springs(const MeshState<dim> &fresh, const double *row,
+                     std::size_t point, State &state) const;
+    static std::size_t first_memory(const Parcel &parcel)
+    {
+      return 1 + 2 * std::size_t(parcel[0]) + n_translations;
+    }
     const double *memory_of(const Received &received, unsigned int face_no,
                             std::size_t point, const MeshState<dim> &fresh,
                             bool &inside) const;
@@ -67,6 +78,7 @@ namespace nsfd
     Mesh &triangulation_;
     unsigned int handle_ = 0;
     const PointMemory<dim> memory_;
+    const SpringShift<dim> shift_;
     // of the old mesh, while it lives; its state lives until the end
     const MeshState<dim> old_;
     std::vector<int> body_of_;      ///< by active cell index, -1: not ours

@@ -1,3 +1,4 @@
+#include "../interface/stiffened_law.h"
 #include "nsfd/adapt/indicator.h"
 #include "read_sections.h"
 
@@ -41,6 +42,24 @@ namespace nsfd
                          scene.adaptivity->levels + 2));
     }
 
+    /** Laws whose springs cannot become stiffer. */
+    void check_springs(SectionReader &reader, const SceneInput &scene)
+    {
+      for (const auto &block : scene.interfaces) {
+        if (!block.law || block.law->extrinsic())
+          continue;
+        const std::string why = not_stiffened(*block.law);
+        if (!why.empty())
+          reader.error("springs",
+                       fmt::format("the law {} of Interface: {} {}: its springs "
+                                   "cannot become stiffer on smaller cells",
+                                   block.law_name, block.name, why),
+                       "write springs = constant stiffness, which lowers the "
+                       "modulus of the body where cells are small, or take a "
+                       "law with one damage scalar and no viscosity of damage");
+      }
+    }
+
     std::shared_ptr<const Indicator>
     read_indicator(ParameterSection &section, InputErrors &errors)
     {
@@ -80,7 +99,15 @@ namespace nsfd
     adaptivity.coarsen_every =
         reader.integer("coarsen every steps", "10", 0, 1000000,
                        "cells without history may grow; 0: never");
+    adaptivity.constant_modulus =
+        reader.choice("springs", "constant modulus",
+                      {"constant modulus", "constant stiffness"},
+                      "of intrinsic laws on smaller cells: as stiff as keeps "
+                      "the modulus of the body, or as stiff as the law says") ==
+        "constant modulus";
     check_scene(reader, scene);
+    if (adaptivity.constant_modulus)
+      check_springs(reader, scene);
     for (ParameterSection *block : blocks)
       if (auto indicator = read_indicator(*block, errors))
         adaptivity.indicators.push_back(std::move(indicator));

@@ -3,7 +3,6 @@
 #include "gauss.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace nsfd
@@ -26,6 +25,11 @@ namespace nsfd
     return mixed() == nullptr &&
            std::abs(stiffness_ratio() - shear_weight()) <=
                1e-12 * shear_weight();
+  }
+
+  std::vector<double> CohesiveLaw::kinks() const
+  {
+    return {elastic_limit(), peak_opening(), final_opening()};
   }
 
   double CohesiveLaw::secant(const double d) const
@@ -52,14 +56,13 @@ namespace nsfd
       return energy(d1) - energy(d0);
 
     // T is smooth between its kinks only
-    std::array<double, 5> ends{
-        {lower, std::clamp(elastic_limit(), lower, upper),
-         std::clamp(peak_opening(), lower, upper),
-         std::clamp(final_opening(), lower, upper), upper}};
+    std::vector<double> ends = {lower, upper};
+    for (const double kink : kinks())
+      ends.push_back(std::clamp(kink, lower, upper));
     std::sort(ends.begin(), ends.end());
 
     double sum = 0.;
-    for (unsigned int i = 0; i + 1 < ends.size(); ++i)
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
       if (ends[i] < ends[i + 1])
         sum += integrate([this](const double d) { return traction(d); },
                          ends[i], ends[i + 1]);

@@ -67,6 +67,7 @@ namespace nsfd
                                   materials, driven_, input);
     points_ = std::move(faces.points);
     origins_ = std::move(faces.origins);
+    springs_inside_ = std::move(faces.springs_inside);
     fill_slots(points_, *cells);
     cells_ = std::move(cells);
 

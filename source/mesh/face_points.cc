@@ -2,6 +2,7 @@
 
 #include "interface_quadrature.h"
 #include "owned_cells.h"
+#include "spring_shares.h"
 
 #include "nsfd/base/communicator.h"
 #include "nsfd/input/scene_input.h"
@@ -67,6 +68,7 @@ namespace nsfd
                     const SceneInput &input);
 
       std::vector<NewFace<dim>> faces; ///< those of this rank first
+      std::vector<int> springs_inside; ///< per body, or empty: none
       /// centre of the first face, by its coordinates, that no block holds for
       std::optional<Point<dim>> without_block;
 
@@ -84,6 +86,7 @@ namespace nsfd
       const MeshGroups<dim> &groups_;
       const std::vector<unsigned int> &materials_, &driven_;
       const SceneInput &input_;
+      const SpringShares<dim> shares_;
       std::vector<int> body_of_; ///< by active cell index, -1 if not ours
     };
 
@@ -93,9 +96,12 @@ namespace nsfd
         const std::vector<unsigned int> &materials,
         const std::vector<unsigned int> &driven, const SceneInput &input)
         : groups_(groups), materials_(materials), driven_(driven),
-          input_(input), body_of_(bodies_of_cells(triangulation))
+          input_(input), shares_(input, groups, materials),
+          body_of_(bodies_of_cells(triangulation))
     {
       for (const auto &cell : owned_cells(triangulation)) {
+        if (shares_.any())
+          springs_inside.push_back(shares_.inside(cell));
         for (const unsigned int f : cell->face_indices()) {
           if (cell->face(f)->at_boundary())
             add_boundary(cell, f);
@@ -230,10 +236,11 @@ namespace nsfd
       Point<dim> centre;
       for (const unsigned int v : at->vertex_indices())
         centre += at->vertex(v) / double(at->n_vertices());
-      auto face = make_face(
-          cell_1, face_no_1,
-          {PointOrigin::Kind::interface,
-           block_of(cell_1, cell_2, centre, at->manifold_id())});
+      const unsigned int block =
+          block_of(cell_1, cell_2, centre, at->manifold_id());
+      auto face = make_face(cell_1, face_no_1,
+                            {PointOrigin::Kind::interface, block,
+                             shares_.of_face(cell_1, cell_2, block)});
       face.face.bodies = {{body_of_[cell_1->active_cell_index()],
                            body_of_[cell_2->active_cell_index()]}};
       face.face.cells = {{cell_1->global_active_cell_index(),
@@ -333,6 +340,7 @@ namespace nsfd
                                  input);
     demand_blocks(communicator, collector.without_block);
     FacePoints<dim> result;
+    result.springs_inside = std::move(collector.springs_inside);
     auto &points = result.points;
     std::size_t n = 0;
     for (const auto &face : collector.faces)

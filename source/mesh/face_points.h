@@ -13,6 +13,7 @@ namespace nsfd
   struct FacePoints {
     InterfacePoints<dim> points;
     std::vector<PointOrigin> origins; ///< per point
+    std::vector<int> springs_inside;  ///< per body, or empty: none
   };
 
   /**

@@ -56,7 +56,8 @@ namespace nsfd
         // (just below, so that round-off does not damage it)
         Reach history = reach_of<dim>(interaction, &state.jump[i * dim]);
         history.opening = std::max(
-            (1. - 1e-14) * block.law->elastic_limit() / factor, history.opening);
+            (1. - 1e-14) * interaction.law->elastic_limit() / factor,
+            history.opening);
         state.opening_max[i] = history.opening;
         if (!state.slip_max.empty())
           state.slip_max[i] = history.slip;

@@ -1,5 +1,6 @@
 #include "step_data.h"
 
+#include "../interface/stiffened_law.h"
 #include "driven_motion.h"
 
 #include "nsfd/input/scene_input.h"
@@ -9,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace nsfd
 {
@@ -42,6 +45,16 @@ namespace nsfd
       interaction.friction = obstacle.friction;
       interaction.restitution = obstacle.restitution;
       interaction.wear = obstacle.sliding.wear;
+      return interaction;
+    }
+
+    /** Of faces whose springs have a share of the compliance of the block. */
+    Interaction stiffer(Interaction interaction, const double compliance)
+    {
+      if (interaction.law)
+        interaction.law = with_compliance(interaction.law, compliance);
+      else
+        interaction.normal_stiffness /= compliance;
       return interaction;
     }
 
@@ -269,12 +282,15 @@ namespace nsfd
     problem.theta = input.time.theta;
     problem.rule = input.time.cohesion_rule;
 
-    // one interaction per interface block, then per obstacle, then a support
+    // one interaction per interface block, then per obstacle, then a support,
+    // then those of blocks with stiffer springs
     for (const auto &block : input.interfaces)
       problem.interactions.push_back(interaction_of(block));
     for (const auto &obstacle : input.obstacles)
       problem.interactions.push_back(interaction_of(obstacle));
+    const auto support = unsigned(problem.interactions.size());
     problem.interactions.emplace_back();
+    std::map<std::pair<unsigned int, double>, unsigned int> stiffer_ones;
 
     if (has_opening_viscosity(input))
       problem.viscosity.assign(points.n_points, 0.);
@@ -287,6 +303,15 @@ namespace nsfd
       switch (origin.kind) {
       case PointOrigin::Kind::interface: {
         problem.interaction[i] = origin.block;
+        if (origin.compliance != 1.) {
+          const auto [place, is_new] = stiffer_ones.emplace(
+              std::pair(origin.block, origin.compliance),
+              unsigned(problem.interactions.size()));
+          if (is_new)
+            problem.interactions.push_back(stiffer(
+                problem.interactions[origin.block], origin.compliance));
+          problem.interaction[i] = place->second;
+        }
         const PointFactors factors = point_factors<dim>(
             input.interfaces[origin.block], &points.position[i * dim],
             discretization.extent());
@@ -299,7 +324,7 @@ namespace nsfd
             unsigned(input.interfaces.size()) + origin.block;
         break;
       case PointOrigin::Kind::motion:
-        problem.interaction[i] = unsigned(problem.interactions.size()) - 1;
+        problem.interaction[i] = support;
         break;
       }
     }

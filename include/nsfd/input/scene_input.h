@@ -265,6 +265,9 @@ namespace nsfd
   {
     unsigned int levels = 2; ///< the smallest cell: that of the mesh / 2^levels
     unsigned int coarsen_every = 10; ///< steps; 0: cells stay small
+    /// springs of intrinsic laws on smaller cells: the modulus of the body or
+    /// the stiffness of every face stays
+    bool constant_modulus = true;
     std::vector<std::shared_ptr<const Indicator>> indicators;
   };
 

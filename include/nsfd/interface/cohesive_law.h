@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <memory>
+#include <vector>
 
 namespace nsfd
 {
@@ -102,6 +103,9 @@ namespace nsfd
      * openings and takes the difference of energy() otherwise.
      */
     virtual double energy_increment(double d0, double d1) const;
+
+    /** Openings between which T is smooth, in any order. */
+    virtual std::vector<double> kinks() const;
 
     /** Secant stiffness T(d)/d, with its limit C_N at d = 0 if intrinsic. */
     double secant(double d) const;

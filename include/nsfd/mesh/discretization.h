@@ -37,6 +37,9 @@ namespace nsfd
     };
     Kind kind = Kind::interface;
     unsigned int block = 0;
+    /// of the springs of an interface over that of its law, in (0, 1]: less on
+    /// faces of refined cells where springs keep the modulus of the body
+    double compliance = 1.;
   };
 
   /**
@@ -74,6 +77,15 @@ namespace nsfd
     const dealii::FiniteElement<dim, dim> &element() const;
 
     unsigned int material_of(unsigned int body) const;
+
+    /**
+     * The interface block with springs that new faces inside a cell would have
+     * and that are to keep the modulus of the body; -1: none.
+     */
+    int springs_inside(unsigned int body) const
+    {
+      return springs_inside_.empty() ? -1 : springs_inside_[body];
+    }
 
     /** Which face of its cell a slot of a body is on. */
     unsigned int face_of_slot(unsigned int body, unsigned int slot) const;
@@ -146,6 +158,7 @@ namespace nsfd
     std::unique_ptr<const Cells<dim>> cells_;
     InterfacePoints<dim> points_;
     std::vector<PointOrigin> origins_;
+    std::vector<int> springs_inside_; ///< by body; empty: none anywhere
     std::unique_ptr<const Loads<dim>> loads_;
     unsigned long long n_global_cells_ = 0;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;

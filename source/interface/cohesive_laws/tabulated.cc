@@ -302,6 +302,7 @@ namespace nsfd
              trapezoid(opening_[j], upper);
     }
 
+    std::vector<double> kinks() const override { return opening_; }
     double elastic_limit() const override { return elastic_limit_; }
     double peak_opening() const override { return peak_opening_; }
     double final_opening() const override { return opening_.back(); }

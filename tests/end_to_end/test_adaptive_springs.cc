@@ -1,0 +1,111 @@
+#include "compare.h"
+#include "restart.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+// The modulus of a bar whose faces are springs, on meshes that are refined.
+
+namespace end_to_end
+{
+  namespace
+  {
+    // E = 1, unit cross section, 8 cells, pulled by 0.01
+    const std::string bar =
+        R"(# bar.prm - a bar of springs and cells in equilibrium: long damped steps.
+set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 8, 1
+  set cells        = 8, 1
+end
+subsection Material: bar
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+end
+subsection Interface: all
+  set law       = michel-suquet
+  set stiffness = 10
+  set strength  = 1
+end
+subsection Boundary: left
+  set velocity x = 0
+  set velocity y = 0
+end
+subsection Boundary: right
+  set traction x = 0.01
+end
+subsection Time
+  set end           = 1e6
+  set step          = 1e5
+  set theta         = 1
+  set cohesion rule = end point
+end
+subsection Adaptivity
+  set levels  = 2
+  set springs = SPRINGS
+end
+subsection Indicator: part
+  set type      = region
+  set region    = x < END
+  set cell size = SIZE
+end
+subsection Output
+  set fields = false
+end
+)";
+
+    std::string replaced(std::string text, const std::string &from,
+                         const std::string &to)
+    {
+      return text.replace(text.find(from), from.size(), to);
+    }
+
+    struct Bar {
+      std::string end, size;
+      std::vector<double> sizes; ///< of the cells along the bar
+    };
+  } // namespace
+
+  // elongation = work / force = F (8 / E + sum over faces of c / C), c the
+  // share of a face: the mean size of its cells, or 1
+  TEST(Adaptivity, ModulusOfARefinedBarOfSprings)
+  {
+    const std::vector<Bar> bars = {
+        {"-1", "0.5", std::vector<double>(8, 1.)},
+        {"9", "0.5", std::vector<double>(16, 0.5)},
+        {"9", "0.25", std::vector<double>(32, 0.25)},
+        // next to cells of a quarter there are halves, then whole ones
+        {"4", "0.25", {0.25, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25,
+                       0.25, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25,
+                       0.25, 0.25, 0.5,  0.5,  1.,   1.,   1.}}};
+    const Workspace workspace;
+    for (const std::string springs : {"constant modulus", "constant stiffness"})
+      for (const Bar &one : bars) {
+        const std::string name = springs.substr(9) + "_" + one.end + one.size;
+        const auto file = workspace.path() / (name + ".prm");
+        write_text(file, replaced(replaced(replaced(bar, "SPRINGS", springs),
+                                           "END", one.end),
+                                  "SIZE", one.size));
+        const Result result = good_run(workspace, name, {file, {}});
+        double compliance = 0.;
+        for (std::size_t i = 0; i + 1 < one.sizes.size(); ++i)
+          compliance += springs == "constant modulus"
+                            ? 0.5 * (one.sizes[i] + one.sizes[i + 1])
+                            : 1.;
+        const double elongation = result.summary["work"].get<double>() / 0.01;
+        // three parts in 1e7 by the solver's tolerance of 1e-8 on impulses
+        expect_below(
+            name + ": elongation",
+            std::abs(elongation / (0.01 * (8. + compliance / 10.)) - 1.), 1e-6);
+        // the modulus is that of the first mesh, but for half a spring at the
+        // ends of the bar
+        if (springs == "constant modulus")
+          expect_below(name + ": modulus against the first mesh",
+                       std::abs(elongation / 0.087 - 1.), 0.5 * 2. / 10. / 8.7);
+      }
+  }
+} // namespace end_to_end
