@@ -91,6 +91,12 @@ namespace nsfd
           case PointKind::elastic:
           case PointKind::cohesive:
             held_[body] |= same ? 0u : face;
+            // damaged and closed: contact, which a spring does not follow
+            broken_[body] |= mesh.state.beta[i] < 1. &&
+                                     !mesh.state.two_sided[i] &&
+                                     mesh.state.jump[i * dim] < 0.
+                                 ? face
+                                 : 0u;
             break;
           default:
             held_[body] |= face;

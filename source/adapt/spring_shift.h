@@ -19,7 +19,7 @@ namespace nsfd
    * the children move apart by u_d / 2 along either side, and all tractions
    * stay. With springs that keep the modulus of the body only. A child with a
    * face that is held or joined otherwise stays, none moves against a broken
-   * face. In compression unilateral springs stay closed.
+   * or closed one. In compression unilateral springs stay closed.
    */
   template <int dim>
   class SpringShift

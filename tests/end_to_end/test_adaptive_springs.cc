@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 // The modulus of a bar whose faces are springs, on meshes that are refined.
@@ -107,5 +109,35 @@ end
           expect_below(name + ": modulus against the first mesh",
                        std::abs(elongation / 0.087 - 1.), 0.5 * 2. / 10. / 8.7);
       }
+  }
+
+  // A ramp of 8 s reaches half of its force on the wall, 2 Z v, after 4 s and
+  // the way at c / sqrt(1 + E / (C L)), L the size of the cells for springs
+  // that stay as they are; 0.5 % for the dispersion of the cells and the ends
+  // of the bar.
+  TEST(Adaptivity, WaveThroughARefinedBarOfSprings)
+  {
+    const auto file =
+        quickstart().parent_path() / "benchmarks" / "spring_bar.prm";
+    const double speed = 1. / std::sqrt(1.1);
+    const Workspace workspace;
+    for (const auto &[springs, seconds] :
+         {std::pair<std::string, double>{"constant modulus", 100. / speed},
+          {"constant stiffness", 50. / speed + 50. * std::sqrt(1.4)}}) {
+      const Result result = good_run(
+          workspace, springs.substr(9),
+          {file, {"Adaptivity/springs=" + springs, "Output/fields=false"}});
+      const auto &time = result.history["time"],
+                 &force = result.history["reaction_right_x"];
+      double arrival = 0.;
+      for (std::size_t k = 1; k < time.size() && arrival == 0.; ++k) {
+        const double a = std::abs(force[k - 1]) - 0.01 * speed,
+                     b = std::abs(force[k]) - 0.01 * speed;
+        if (b > 0.)
+          arrival = time[k - 1] + (time[k] - time[k - 1]) * a / (a - b);
+      }
+      expect_below(springs + ": arrival",
+                   std::abs((arrival - 4.) / seconds - 1.), 5e-3);
+    }
   }
 } // namespace end_to_end

@@ -129,6 +129,11 @@ namespace end_to_end
          {benchmark("dcb"),
           {"Mesh/cells=20, 4", "Discretization/degree=1", "Time/end=500 us",
            "Time/step=5 us"}}},
+        {"adaptive_springs",
+         with(breaking,
+              {"Time/end=60 us", "Adaptivity/levels=1",
+               "Adaptivity/coarsen every steps=5",
+               "Indicator: front/type=process zone"})},
     };
 
     class RestartTest : public testing::TestWithParam<RestartRow>
