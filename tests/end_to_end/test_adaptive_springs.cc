@@ -141,4 +141,30 @@ end
                    std::abs((arrival - 4.) / seconds - 1.), 5e-3);
     }
   }
+
+  // damage, contact and friction while springs come, go and change
+  TEST(Adaptivity, RanksAgreeOnSprings)
+  {
+    const std::vector<std::string> set = {"Mesh/cells=12, 9",
+                                          "Time/step=0.4 us",
+                                          "Constants/pull=4 m/s",
+                                          "Time/end=60 us",
+                                          "Adaptivity/levels=1",
+                                          "Adaptivity/coarsen every steps=5",
+                                          "Indicator: front/type=process zone",
+                                          "Solver/tolerance=1e-12"};
+    const Workspace workspace;
+    const Result one = good_run(workspace, "1", {quickstart(), set});
+    const auto changes = [](const Result &result) {
+      return result.summary["counters"]["mesh_changes"].get<double>();
+    };
+    EXPECT_GT(changes(one), 3.);
+    for (const unsigned int ranks : {2u, 3u}) {
+      const Result more = good_run(workspace, std::to_string(ranks),
+                                   {quickstart(), set, ranks});
+      EXPECT_EQ(changes(more), changes(one));
+      expect_below(std::to_string(ranks) + " ranks: energies",
+                   energy_difference(one.history, more.history), 1e-9);
+    }
+  }
 } // namespace end_to_end
