@@ -110,7 +110,7 @@ namespace end_to_end
     overwrite(newest(stored_.directory), damaged);
     expect_refused("checksum");
     std::string newer = good;
-    newer.replace(newer.find("format 1"), 8, "format 7");
+    newer.replace(newer.find("\nformat ") + 8, 1, "7");
     overwrite(newest(stored_.directory), newer);
     expect_refused("in format 7");
     fs::remove(newest(stored_.directory));
