@@ -1,7 +1,8 @@
 #!/bin/sh
 # Every shipped scene on several numbers of ranks, as Markdown on standard output:
 #   [RANKS="2 3 4 8"] [LIMIT=8] sh tests/benchmarks/ranks.sh [scene.prm ...]
-# Each run is stopped after LIMIT seconds; energies of the steps that both have
+# Each run is stopped after LIMIT seconds, four times as many on several ranks that
+# share two cores; energies of the steps that both have
 # made are compared with those of one rank: the largest difference over the
 # largest energy. An hour for all of them on two cores.
 set -u
@@ -15,9 +16,9 @@ ranks=${RANKS:-2 3 4 8}
 limit=${LIMIT:-8}
 
 run() { # run SCENE RANKS
-  if [ "$2" = 1 ]; then set -- "$1" "$2" ""; else
-    set -- "$1" "$2" "mpirun -n $2"; fi
-  timeout -k 60 -s TERM "$limit" $3 ./nsfd "$1" --set Output/fields=false \
+  if [ "$2" = 1 ]; then set -- "$1" "$2" "$limit" ""; else
+    set -- "$1" "$2" $((4 * limit)) "mpirun -n $2"; fi
+  timeout -k 60 -s TERM "$3" $4 ./nsfd "$1" --set Output/fields=false \
     --set Output/report=false --output "$out/$2" --force --quiet \
     >"$out/log" 2>&1
   code=$?
