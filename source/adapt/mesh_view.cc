@@ -1,5 +1,7 @@
 #include "mesh_view.h"
 
+#include "../mesh/elasticity.h"
+
 #include "family.h"
 
 #include "../output/gather.h"
@@ -113,20 +115,17 @@ namespace nsfd
     const auto &points = mesh_.discretization.points();
     const auto stress =
         mean_stresses(mesh_.discretization, mesh_.state.displacement);
-    // xx, yy, zz, xy, xz, yz
-    constexpr unsigned int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
     std::array<std::vector<double>, 2> traction;
     traction.fill(std::vector<double>(points.n_points * dim, 0.));
     const auto places =
         point_places(mesh_.discretization.bodies(), points.n_points);
     for (unsigned int side = 0; side < 2; ++side)
       for (std::size_t i = 0; i < points.n_points; ++i)
-        if (places[side][i].body >= 0)
-          for (unsigned int c = 0; c < dim; ++c)
-            for (unsigned int d = 0; d < dim; ++d)
-              traction[side][i * dim + c] +=
-                  stress[places[side][i].body][at[c][d]] *
-                  points.frame[i * dim * dim + d];
+        if (places[side][i].body >= 0) {
+          const auto t = traction_on<dim>(stress[places[side][i].body],
+                                          &points.frame[i * dim * dim]);
+          std::copy(t.begin(), t.end(), &traction[side][i * dim]);
+        }
     mesh_.dynamics.exchange({{traction[0].data(), traction[1].data()}}, dim);
     for (const auto &face : points.faces) {
       if (face.boundary)

@@ -1,5 +1,7 @@
 #include "spring_shift.h"
 
+#include "../mesh/elasticity.h"
+
 #include "nsfd/dynamics/point_places.h"
 #include "nsfd/input/scene_input.h"
 
@@ -43,19 +45,6 @@ namespace nsfd
         normal[d] /= normal[d].norm() * (normal[d] * along[d] < 0. ? -1. : 1.);
       }
       return normal;
-    }
-
-    /** sigma n, sigma as xx, yy, zz, xy, xz, yz. */
-    template <int dim>
-    Tensor<1, dim> traction(const std::array<double, 6> &stress,
-                            const Tensor<1, dim> &n)
-    {
-      constexpr unsigned int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-      Tensor<1, dim> result;
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d)
-          result[c] += stress[at[c][d]] * n[d];
-      return result;
     }
   } // namespace
 
@@ -115,8 +104,11 @@ namespace nsfd
     const auto normals = middle_normals<dim>(discretization_.corners(body));
     Openings result{};
     for (unsigned int d = 0; d < dim; ++d) {
-      const Tensor<1, dim> &n = normals[d], t = traction<dim>(stress, n);
-      const double pull = t * n;
+      const Tensor<1, dim> &n = normals[d];
+      const auto t = traction_on<dim>(stress, n.begin_raw());
+      double pull = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        pull += t[c] * n[c];
       const bool closed =
           pull < 0. && interface.intact == IntactFaces::unilateral;
       for (unsigned int c = 0; c < dim; ++c)

@@ -32,7 +32,6 @@ namespace nsfd
       if (asked[r] == 0 && wanted[r] == 0)
         continue;
       Neighbor neighbor;
-      neighbor.rank = r;
       neighbor.first = from[r];
       neighbor.count = asked[r];
       for (int k = to[r]; k < to[r + 1]; ++k)

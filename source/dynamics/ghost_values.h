@@ -37,12 +37,11 @@ namespace nsfd
   private:
     struct Neighbor
     {
-      int rank = 0;
       std::size_t first = 0, count = 0; ///< range of ghosts it owns
       std::vector<int> wanted;          ///< own unknowns it has as ghosts
     };
     MPI_Comm mpi_ = MPI_COMM_SELF;
     std::vector<Neighbor> neighbors_;
-    mutable NeighborMessages<double> messages_; ///< one per neighbour
+    mutable NeighborMessages<double> messages_; ///< one per neighbour, with its rank
   };
 } // namespace nsfd

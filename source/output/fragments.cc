@@ -62,26 +62,6 @@ namespace nsfd
     private:
       std::vector<unsigned int> parent_;
     };
-
-    /** Entries for each rank, together on the first one, to their ranks. */
-    template <typename T>
-    std::vector<T> scatter(const Communicator &communicator,
-                           const std::vector<T> &all,
-                           const std::vector<int> &n_per_rank)
-    {
-      int n = 0;
-      MPI_Scatter(n_per_rank.data(), 1, MPI_INT, &n, 1, MPI_INT, 0,
-                  communicator.mpi());
-      std::vector<int> bytes, first{0};
-      for (const int count : n_per_rank) {
-        bytes.push_back(count * int(sizeof(T)));
-        first.push_back(first.back() + bytes.back());
-      }
-      std::vector<T> own(n);
-      MPI_Scatterv(all.data(), bytes.data(), first.data(), MPI_BYTE, own.data(),
-                   n * int(sizeof(T)), MPI_BYTE, 0, communicator.mpi());
-      return own;
-    }
   } // namespace
 
   template <int dim>

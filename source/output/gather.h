@@ -42,7 +42,31 @@ namespace nsfd
     return gather(communicator, own, n_per_rank);
   }
 
-  /** The same on all ranks. */
+  /** Entries on rank 0, so many for each rank, to their ranks. Collective. */
+  template <typename T>
+  std::vector<T> scatter(const Communicator &communicator,
+                         const std::vector<T> &all,
+                         const std::vector<int> &n_per_rank)
+  {
+    static_assert(std::is_trivially_copyable<T>::value);
+    int n = 0;
+    MPI_Scatter(n_per_rank.data(), 1, MPI_INT, &n, 1, MPI_INT, 0,
+                communicator.mpi());
+    std::vector<int> first(communicator.size(), 0);
+    if (communicator.is_root())
+      std::partial_sum(n_per_rank.begin(), n_per_rank.end() - 1,
+                       first.begin() + 1);
+    std::vector<T> own(n);
+    MPI_Datatype type;
+    MPI_Type_contiguous(sizeof(T), MPI_BYTE, &type);
+    MPI_Type_commit(&type);
+    MPI_Scatterv(all.data(), n_per_rank.data(), first.data(), type, own.data(),
+                 n, type, 0, communicator.mpi());
+    MPI_Type_free(&type);
+    return own;
+  }
+
+  /** What gather() returns, on all ranks. */
   inline std::vector<double> gather_all(const Communicator &communicator,
                                         const std::vector<double> &own)
   {

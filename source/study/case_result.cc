@@ -1,5 +1,6 @@
 #include "nsfd/study/case_result.h"
 
+#include "nsfd/base/cost.h"
 #include "nsfd/output/summary_file.h"
 
 #include <nlohmann/json.hpp>
@@ -66,7 +67,7 @@ namespace nsfd
       const Json parts = cost.value("parts", Json::object());
       for (const auto &[name, part] : parts.items()) {
         all += number(part, "seconds");
-        if (name == "waiting for other ranks")
+        if (name == cost_name(Cost::messages))
           waiting = number(part, "seconds");
       }
       result.waiting = all > 0. ? waiting / all : 0.;

@@ -105,4 +105,13 @@ namespace end_to_end
     }
     return size > 0. ? result / size : result;
   }
+
+  std::string replaced(std::string text, const std::string &from,
+                       const std::string &to)
+  {
+    for (auto at = text.find(from); at != std::string::npos;
+         at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+    return text;
+  }
 } // namespace end_to_end

@@ -24,6 +24,10 @@ namespace end_to_end
                            double sign = 1.,
                            std::size_t n_rows = std::size_t(-1));
 
+  /** @p text with @p to wherever it has @p from. */
+  std::string replaced(std::string text, const std::string &from,
+                       const std::string &to);
+
   /** Rows before the first that has damage. */
   std::size_t rows_without_damage(const History &history);
 

@@ -60,12 +60,6 @@ subsection Output
 end
 )";
 
-    std::string replaced(std::string text, const std::string &from,
-                         const std::string &to)
-    {
-      return text.replace(text.find(from), from.size(), to);
-    }
-
     struct Bar {
       std::string end, size;
       std::vector<double> sizes; ///< of the cells along the bar

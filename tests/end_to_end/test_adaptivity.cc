@@ -60,15 +60,6 @@ subsection Output
 end
 )";
 
-    std::string replaced(std::string text, const std::string &from,
-                         const std::string &to)
-    {
-      for (auto at = text.find(from); at != std::string::npos;
-           at = text.find(from, at + to.size()))
-        text.replace(at, from.size(), to);
-      return text;
-    }
-
     std::filesystem::path write_waves(const Workspace &workspace,
                                       const bool bonded)
     {
