@@ -80,11 +80,34 @@ namespace nsfd
     unsigned int interface_points = 2;          ///< per direction of a face
   };
 
+  enum class BulkModel
+  {
+    linear_elastic,
+    rigid,
+    saint_venant_kirchhoff, ///< finite strain
+    neo_hookean             ///< finite strain, compressible
+  };
+
+  /** What a rigid material of a scene with large motions says of its bodies. */
+  struct RigidInput
+  {
+    bool connected = false; ///< cells that touch are one body, else each is one
+    /// the body is the ball (the disc in the plane) around the centre of its
+    /// cells that reaches to their farthest corner; only if connected
+    bool ball = false;
+    /// of each body, in place of those of its cells: kg (kg/m in the plane),
+    /// and kg m^2 about axes along x, y, z through the centre of mass
+    std::optional<double> mass;
+    std::optional<std::array<double, 3>> inertia;
+  };
+
   struct MaterialInput
   {
     std::string name;
     Where where;
-    bool rigid = false;
+    BulkModel model = BulkModel::linear_elastic;
+    bool rigid = false; ///< model = rigid
+    RigidInput rigid_bodies;
     double young = 0., poisson = 0., density = 0.;
     /// per component, expressions of x, y, z (t = 0); default 0
     std::array<Expression, 3> initial_displacement, initial_velocity;
@@ -158,14 +181,51 @@ namespace nsfd
     bool exact_motion = false; ///< of the verification case
   };
 
-  /** A fixed or moving rigid half space; boundary faces may touch it. */
+  enum class ObstacleShape
+  {
+    plane,
+    sphere,  ///< a disc in the plane
+    cylinder ///< without ends; in space only
+  };
+
+  /** A rigid half space, ball or cylinder; boundary faces may touch it. */
   struct ObstacleInput
   {
     std::string name;
     Where where;                          ///< boundary faces that may touch it
-    std::array<double, 3> point{}, normal{}; ///< normal points out of the obstacle, unit length
+    ObstacleShape shape = ObstacleShape::plane;
+    std::array<double, 3> point{}; ///< on the plane, centre, or on the axis
+    /// of a plane, out of the obstacle; axis of a cylinder; unit length
+    std::array<double, 3> normal{};
+    double radius = 0.;
+    bool hollow = false; ///< bodies are inside: a shell, a drum, a pipe
+    /// of the whole obstacle, m/s, functions of t; all empty: it stands still
+    std::array<std::optional<Expression>, 3> velocity;
     double friction = 0., restitution = 0.;
     SlidingInput sliding;
+
+    bool moves() const
+    {
+      return velocity[0] || velocity[1] || velocity[2];
+    }
+  };
+
+  /** Contact between any two surfaces, of scenes with large motions. */
+  struct ContactInput
+  {
+    std::string name;
+    /// of the two bodies, in any order; empty: any
+    std::array<std::string, 2> materials;
+    double friction = 0., restitution = 0.;
+    SlidingInput sliding; ///< wear only
+  };
+
+  /** A place of a rigid body that stays where it is, in large motions. */
+  struct PinInput
+  {
+    std::string name;
+    std::string material;       ///< of the body; it has one body
+    std::array<double, 3> at{}; ///< at t = 0, in the body or outside, m
   };
 
   enum class CohesionRule
@@ -295,6 +355,10 @@ namespace nsfd
     std::vector<InterfaceInput> interfaces;
     std::vector<BoundaryInput> boundaries;
     std::vector<ObstacleInput> obstacles;
+    /// rotations and strains of any size; false: bodies turn and strain little
+    bool large_motion = false;
+    std::vector<ContactInput> contacts; ///< only with large motions
+    std::vector<PinInput> pins;         ///< only with large motions
     std::array<double, 3> gravity{}; ///< m/s^2
     TimeInput time;
     SolverInput solver;
