@@ -68,8 +68,14 @@ namespace nsfd
   {
     solver = SolverRegistry<dim>::instance().create(
         input.solver.method == "auto" ? "chain" : input.solver.method);
-    stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
-                                                *dynamics, *solver, bonded);
+    if (moving) {
+      auto large = std::make_unique<LargeMotion<dim>>(
+          input, *discretization, *moving, *dynamics, *solver);
+      large_motion = large.get();
+      stepper = std::move(large);
+    } else
+      stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
+                                                  *dynamics, *solver, bonded);
   }
 
   template <int dim>
@@ -237,7 +243,9 @@ namespace nsfd
   void Model<dim>::choose_path(const SceneInput &input)
   {
     const double crossing = discretization->crossing_time();
-    if (input.has_bonded_faces())
+    if (input.large_motion)
+      path = "element-wise";
+    else if (input.has_bonded_faces())
       path = input.time.scheme == Scheme::symplectic ? "element-wise" : "global";
     else if (input.solver.path != "auto")
       path = input.solver.path;
@@ -253,6 +261,12 @@ namespace nsfd
   {
     const auto &bodies = discretization->bodies();
     const auto &points = discretization->points();
+    if (input.large_motion) {
+      moving = std::make_unique<MovingBodies<dim>>(input, *discretization);
+      dynamics = make_moving_dynamics<dim>(communicator, moving->bodies(),
+                                           moving->points());
+      return;
+    }
     if (input.has_bonded_faces() && input.time.scheme == Scheme::symplectic) {
       auto joined =
           make_explicit_bonded_dynamics<dim>(communicator, bodies, points);

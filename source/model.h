@@ -1,5 +1,7 @@
 #pragma once
 
+#include "motion/large_motion.h"
+
 #include "nsfd/dynamics/bonded.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
@@ -28,9 +30,11 @@ namespace nsfd
     std::string path; ///< of the linear algebra: element-wise or global
     std::unique_ptr<Dynamics<dim>> dynamics;
     BondedDynamics<dim> *bonded = nullptr; ///< the same, if faces are bonded
+    std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
+    LargeMotion<dim> *large_motion = nullptr; ///< the same, or null
     std::unique_ptr<QuasiStatic<dim>> quasi_static; ///< or null
 
     /** Steps in time from @p start on. */

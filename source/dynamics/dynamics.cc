@@ -18,17 +18,31 @@ namespace nsfd
     : communicator_(communicator)
     , bodies_(bodies)
     , points_(points)
-    , order_(shared_first(bodies, points))
-    , cartesian_((points.n_points + 1) * dim, 0.)
-    , side_1_((points.n_points + 1) * dim, 0.)
-    , side_2_((points.n_points + 1) * dim, 0.)
   {
-    for (const BodyClass &body : bodies.classes)
+    set_layout();
+  }
+
+  template <int dim>
+  void Dynamics<dim>::set_layout()
+  {
+    order_ = shared_first(bodies_, points_);
+    for (auto *vector : {&cartesian_, &side_1_, &side_2_})
+      vector->assign((points_.n_points + 1) * dim, 0.);
+    blocks_.clear();
+    for (const BodyClass &body : bodies_.classes)
       blocks_.emplace_back().trace_transposed = body.trace.transposed();
-    face_offset_.push_back(0);
-    for (const auto &face : points.faces)
+    face_offset_.assign(1, 0);
+    for (const auto &face : points_.faces)
       face_offset_.push_back(face_offset_.back() +
                              std::size_t(face.count) * dim * face.count * dim);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::renew(const double time_step, const double theta)
+  {
+    set_layout();
+    time_step_ = theta_ = 0.;
+    reinit(time_step, theta);
   }
 
   template <int dim>

@@ -20,7 +20,7 @@ namespace nsfd
      * with explicit bodies.
      */
     template <int dim, typename Base>
-    class ElementwiseDynamics final : public Base, public InnerSolver
+    class FaceBlocks : public Base
     {
     public:
       using Base::Base;
@@ -66,34 +66,6 @@ namespace nsfd
           else
             multiply(A, n, r + first, z + first);
         }
-      }
-
-      void reinit(const double time_step, const double theta) override
-      {
-        const bool changes =
-          time_step != this->time_step_ || theta != this->theta_;
-        Dynamics<dim>::reinit(time_step, theta);
-        if (!changes)
-          return;
-        if (theta != 0. && std::is_base_of_v<BondedDynamics<dim>, Base>)
-          throw std::logic_error("bodies with explicit bonds are explicit");
-        const Charge charge(Cost::blocks);
-        if (!lanes_)
-          lanes_ = std::make_unique<LaneSystem<dim>>(
-            this->communicator_, this->bodies_, this->points_);
-        lanes_->reinit(*this);
-      }
-
-      unsigned int solve_inner(const InnerSystem &system,
-                               const std::vector<double> &r,
-                               std::vector<double> &x) override
-      {
-        const auto before = lanes_->applications();
-        const unsigned int iterations =
-          system.jacobian ? lanes_->gmres(system, r, x)
-                          : lanes_->conjugate_gradients(system, r, x);
-        this->counters_.delassus += lanes_->applications() - before;
-        return iterations;
       }
 
     private:
@@ -167,9 +139,57 @@ namespace nsfd
       }
 
       std::vector<double> factors_, inverse_;
+    };
+
+    /** With Newton systems in single precision, over lanes of bodies. */
+    template <int dim, typename Base>
+    class ElementwiseDynamics final : public FaceBlocks<dim, Base>,
+                                      public InnerSolver
+    {
+    public:
+      using FaceBlocks<dim, Base>::FaceBlocks;
+
+      void reinit(const double time_step, const double theta) override
+      {
+        const bool changes =
+          time_step != this->time_step_ || theta != this->theta_;
+        Dynamics<dim>::reinit(time_step, theta);
+        if (!changes)
+          return;
+        if (theta != 0. && std::is_base_of_v<BondedDynamics<dim>, Base>)
+          throw std::logic_error("bodies with explicit bonds are explicit");
+        const Charge charge(Cost::blocks);
+        if (!lanes_)
+          lanes_ = std::make_unique<LaneSystem<dim>>(
+            this->communicator_, this->bodies_, this->points_);
+        lanes_->reinit(*this);
+      }
+
+      unsigned int solve_inner(const InnerSystem &system,
+                               const std::vector<double> &r,
+                               std::vector<double> &x) override
+      {
+        const auto before = lanes_->applications();
+        const unsigned int iterations =
+          system.jacobian ? lanes_->gmres(system, r, x)
+                          : lanes_->conjugate_gradients(system, r, x);
+        this->counters_.delassus += lanes_->applications() - before;
+        return iterations;
+      }
+
+    private:
       std::unique_ptr<LaneSystem<dim>> lanes_;
     };
   } // namespace
+
+  template <int dim>
+  std::unique_ptr<Dynamics<dim>>
+  make_moving_dynamics(const Communicator &communicator, const Bodies &bodies,
+                       const InterfacePoints<dim> &points)
+  {
+    return std::make_unique<FaceBlocks<dim, Dynamics<dim>>>(communicator,
+                                                            bodies, points);
+  }
 
   template <int dim>
   std::unique_ptr<Dynamics<dim>>
@@ -191,6 +211,10 @@ namespace nsfd
       communicator, bodies, points);
   }
 
+  template std::unique_ptr<Dynamics<2>> make_moving_dynamics<2>(
+    const Communicator &, const Bodies &, const InterfacePoints<2> &);
+  template std::unique_ptr<Dynamics<3>> make_moving_dynamics<3>(
+    const Communicator &, const Bodies &, const InterfacePoints<3> &);
   template std::unique_ptr<Dynamics<2>> make_elementwise_dynamics<2>(
     const Communicator &, const Bodies &, const InterfacePoints<2> &);
   template std::unique_ptr<Dynamics<3>> make_elementwise_dynamics<3>(

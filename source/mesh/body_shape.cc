@@ -112,7 +112,7 @@ namespace nsfd
     shape.corners = corners;
     set_tables(shape);
     body.material = material;
-    body.rigid = input_.materials[material].rigid;
+    body.rigid = input_.materials[material].rigid && !input_.large_motion;
     body.mass = mass(shape, material);
     body.trace = trace(shape);
     body.n_slots = unsigned(shape.slot_positions.size());
@@ -195,6 +195,8 @@ namespace nsfd
     const double lambda = elasticity.lambda, mu = elasticity.mu;
     const unsigned int n = shape.n_nodes;
     Block stiffness(n * dim, n * dim);
+    if (input_.materials[material].rigid)
+      return stiffness; // of nodes that a rigid body moves
     for (unsigned int q = 0; q < shape.JxW.size(); ++q)
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j) {

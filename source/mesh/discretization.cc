@@ -68,6 +68,7 @@ namespace nsfd
     points_ = std::move(faces.points);
     origins_ = std::move(faces.origins);
     springs_inside_ = std::move(faces.springs_inside);
+    obstacle_faces_ = std::move(faces.obstacle_faces);
     fill_slots(points_, *cells);
     cells_ = std::move(cells);
 
@@ -76,7 +77,7 @@ namespace nsfd
       const BodyClass &body = bodies().classes[k];
       const double height = cells_->shapes[k].height;
       size = std::min(size, height);
-      if (!body.rigid)
+      if (!input.materials[body.material].rigid)
         crossing =
             std::min(crossing, height / pressure_wave_speed(body.material));
     }
@@ -109,6 +110,13 @@ namespace nsfd
   unsigned int Discretization<dim>::material_of(const unsigned int body) const
   {
     return cells_->body_class(body).material;
+  }
+
+  template <int dim>
+  const BodyShape<dim> &
+  Discretization<dim>::shape(const unsigned int body) const
+  {
+    return cells_->shape(body);
   }
 
   template <int dim>

@@ -69,6 +69,7 @@ namespace nsfd
 
       std::vector<NewFace<dim>> faces; ///< those of this rank first
       std::vector<int> springs_inside; ///< per body, or empty: none
+      std::vector<ObstacleFace> obstacle_faces;
       /// centre of the first face, by its coordinates, that no block holds for
       std::optional<Point<dim>> without_block;
 
@@ -169,6 +170,11 @@ namespace nsfd
         const auto &obstacle = input_.obstacles[b];
         if (!groups_.holds_boundary_face(obstacle.where, cell, f))
           continue;
+        if (input_.large_motion) {
+          obstacle_faces.push_back(
+              {unsigned(body_of_[cell->active_cell_index()]), f, b});
+          continue;
+        }
         auto face = make_face(cell, f, {PointOrigin::Kind::obstacle, b});
         Tensor<1, dim> n;
         for (unsigned int c = 0; c < dim; ++c)
@@ -341,6 +347,7 @@ namespace nsfd
     demand_blocks(communicator, collector.without_block);
     FacePoints<dim> result;
     result.springs_inside = std::move(collector.springs_inside);
+    result.obstacle_faces = std::move(collector.obstacle_faces);
     auto &points = result.points;
     std::size_t n = 0;
     for (const auto &face : collector.faces)

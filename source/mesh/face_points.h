@@ -14,6 +14,7 @@ namespace nsfd
     InterfacePoints<dim> points;
     std::vector<PointOrigin> origins; ///< per point
     std::vector<int> springs_inside;  ///< per body, or empty: none
+    std::vector<ObstacleFace> obstacle_faces; ///< with large motions
   };
 
   /**

@@ -77,8 +77,9 @@ namespace nsfd
       start.slip_max = state.slip_max;
       std::vector<double> stored(problem.n_owned, 0.);
       for (std::size_t i = 0; i < problem.n_owned; ++i) {
-        if (state.kind[i] == PointKind::bonded)
-          continue; // in the stiffness of the bodies
+        if (state.kind[i] == PointKind::bonded ||
+            state.kind[i] == PointKind::parted)
+          continue; // in the stiffness of the bodies, or nowhere
         if (state.two_sided[i])
           start.compression_stiffness[i] = intact_stiffness<dim>(problem, i);
         stored[i] = problem.weight[i] * stored_energy<dim>(start, i);
@@ -124,7 +125,7 @@ namespace nsfd
     energy.elastic =
         half_product(dynamics, Operator::stiffness, state.displacement);
     energy.cohesive =
-        dynamics.communicator().sum(stored_energy(problem, state));
+        stored_in_points(dynamics.communicator(), problem, state);
   }
 
   template <int dim>
@@ -134,19 +135,54 @@ namespace nsfd
                       const OneStepProblem<dim> &problem,
                       BondedDynamics<dim> *bonded)
   {
-    const auto &points = discretization.points();
-    State state;
-    state.displacement = initial_field(input, discretization,
-                                       &MaterialInput::initial_displacement);
-    state.velocity =
-        initial_field(input, discretization, &MaterialInput::initial_velocity);
-
-    const std::size_t n = points.n_points;
+    State state = initial_motion(input, discretization);
+    const std::size_t n = discretization.points().n_points;
     state.jump.assign(n * dim, 0.);
     state.relative_velocity.assign(n * dim, 0.);
     dynamics.relative_velocity(state.displacement.data(), state.jump.data());
     dynamics.relative_velocity(state.velocity.data(),
                                state.relative_velocity.data());
+    set_points(input, discretization, problem, state);
+    if (bonded)
+      bonded->set_bonds(bonded_points(state));
+    set_energies(dynamics, problem, state);
+    begin_books(state);
+    return state;
+  }
+
+  template <int dim>
+  State initial_motion(const SceneInput &input,
+                       const Discretization<dim> &discretization)
+  {
+    State state;
+    state.displacement = initial_field(input, discretization,
+                                       &MaterialInput::initial_displacement);
+    state.velocity =
+        initial_field(input, discretization, &MaterialInput::initial_velocity);
+    return state;
+  }
+
+  void begin_books(State &state)
+  {
+    const auto &energy = state.energy;
+    state.initial_energy = energy.kinetic + energy.elastic + energy.cohesive;
+    state.largest_energy = state.initial_energy;
+  }
+
+  template <int dim>
+  double stored_in_points(const Communicator &communicator,
+                          const OneStepProblem<dim> &problem,
+                          const State &state)
+  {
+    return communicator.sum(stored_energy(problem, state));
+  }
+
+  template <int dim>
+  void set_points(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const OneStepProblem<dim> &problem, State &state)
+  {
+    const std::size_t n = discretization.points().n_points;
     state.impulse.assign(n * dim, 0.);
     state.opening_max.assign(n, 0.);
     for (const auto &block : input.interfaces)
@@ -174,32 +210,29 @@ namespace nsfd
         state.kind[i] = PointKind::free;
         state.beta[i] = 0.;
         break;
-      case PointOrigin::Kind::motion:
+      default:
         break;
       }
     }
-
-    if (bonded)
-      bonded->set_bonds(bonded_points(state));
-    set_energies(dynamics, problem, state);
-    auto &energy = state.energy;
-    state.initial_energy = energy.kinetic + energy.elastic + energy.cohesive;
-    state.largest_energy = state.initial_energy;
-    return state;
   }
 
-  template double initial_gap(const SceneInput &, const Discretization<2> &,
-                              std::size_t);
-  template double initial_gap(const SceneInput &, const Discretization<3> &,
-                              std::size_t);
-  template void set_energies(const Dynamics<2> &, const OneStepProblem<2> &,
-                             State &);
-  template void set_energies(const Dynamics<3> &, const OneStepProblem<3> &,
-                             State &);
-  template State initial_state(const SceneInput &, const Discretization<2> &,
-                               const Dynamics<2> &, const OneStepProblem<2> &,
-                               BondedDynamics<2> *);
-  template State initial_state(const SceneInput &, const Discretization<3> &,
-                               const Dynamics<3> &, const OneStepProblem<3> &,
-                               BondedDynamics<3> *);
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template double initial_gap(const SceneInput &, const Discretization<dim> &, \
+                              std::size_t);                                    \
+  template void set_energies(const Dynamics<dim> &,                            \
+                             const OneStepProblem<dim> &, State &);            \
+  template State initial_motion(const SceneInput &,                            \
+                                const Discretization<dim> &);                  \
+  template double stored_in_points(                                            \
+      const Communicator &, const OneStepProblem<dim> &, const State &);       \
+  template void set_points(const SceneInput &, const Discretization<dim> &,    \
+                           const OneStepProblem<dim> &, State &);              \
+  template State initial_state(const SceneInput &,                             \
+                               const Discretization<dim> &,                    \
+                               const Dynamics<dim> &,                          \
+                               const OneStepProblem<dim> &,                    \
+                               BondedDynamics<dim> *)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
 } // namespace nsfd

@@ -36,4 +36,27 @@ namespace nsfd
   template <int dim>
   void set_energies(const Dynamics<dim> &dynamics,
                     const OneStepProblem<dim> &problem, State &state);
+
+  /** Displacements and velocities of the bodies alone. */
+  template <int dim>
+  State initial_motion(const SceneInput &input,
+                       const Discretization<dim> &discretization);
+
+  /**
+   * What the points are and remember at t = 0, from the jumps of @p state; gaps
+   * of obstacles go into these.
+   */
+  template <int dim>
+  void set_points(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const OneStepProblem<dim> &problem, State &state);
+
+  /** Of springs and cohesion at the jumps of @p state, in J. Collective. */
+  template <int dim>
+  double stored_in_points(const Communicator &communicator,
+                          const OneStepProblem<dim> &problem,
+                          const State &state);
+
+  /** From the energies of @p state on. */
+  void begin_books(State &state);
 } // namespace nsfd

@@ -12,10 +12,6 @@ namespace nsfd
 {
   namespace
   {
-    /** Sums over the bodies. */
-    enum BodyRow { kinetic, elastic, theta_mass, theta_stiffness, loads };
-    constexpr unsigned int n_body_rows = 5;
-
     /** Sums over the points. */
     enum PointRow {
       stored,
@@ -37,7 +33,8 @@ namespace nsfd
       PointBook(const Discretization<dim> &discretization,
                 const UniquenessBound<dim> &uniqueness,
                 const OneStepProblem<dim> &problem,
-                const LawEvaluation<dim> &evaluation, double work_theta,
+                const LawEvaluation<dim> &evaluation,
+                const std::vector<PointOrigin> &origins, double work_theta,
                 const State &old, State &next);
 
       void book(std::size_t point);
@@ -77,6 +74,7 @@ namespace nsfd
       const UniquenessBound<dim> &uniqueness_;
       const OneStepProblem<dim> &problem_;
       const LawEvaluation<dim> &evaluation_;
+      const std::vector<PointOrigin> &origins_;
       const double work_theta_; ///< of the velocity that impulses work with
       const State &old_;
       State &next_;
@@ -100,6 +98,7 @@ namespace nsfd
                               const UniquenessBound<dim> &uniqueness,
                               const OneStepProblem<dim> &problem,
                               const LawEvaluation<dim> &evaluation,
+                              const std::vector<PointOrigin> &origins,
                               const double work_theta, const State &old,
                               State &next)
         : n_owned(problem.n_owned),
@@ -108,8 +107,8 @@ namespace nsfd
           reactions(discretization.driven_boundaries().size() * dim * n_owned,
                     0.),
           discretization_(discretization), uniqueness_(uniqueness),
-          problem_(problem), evaluation_(evaluation), work_theta_(work_theta),
-          old_(old), next_(next)
+          problem_(problem), evaluation_(evaluation), origins_(origins),
+          work_theta_(work_theta), old_(old), next_(next)
     {
       carry_history(old, next);
       next.dilated = old.dilated;
@@ -121,8 +120,9 @@ namespace nsfd
     template <int dim>
     void PointBook<dim>::book(const std::size_t i)
     {
-      if (old_.kind[i] == PointKind::bonded)
-        return; // its energy is one of the bodies
+      if (old_.kind[i] == PointKind::bonded ||
+          old_.kind[i] == PointKind::parted)
+        return; // its energy is one of the bodies, or of other points
       Vector U, U_theta;
       for (unsigned int c = 0; c < dim; ++c) {
         U[c] = next_.relative_velocity[i * dim + c];
@@ -148,7 +148,7 @@ namespace nsfd
       double power = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         power += P[c] * U_theta[c];
-      const PointOrigin origin = discretization_.origins()[i];
+      const PointOrigin origin = origins_[i];
       if (origin.kind == PointOrigin::Kind::motion) {
         put(motion, i, power);
         const auto &driven = discretization_.driven_boundaries();
@@ -317,7 +317,7 @@ namespace nsfd
 
   /** Energies, what theta > 1/2 takes, and the work of the loads. */
   template <int dim>
-  std::vector<double>
+  BodyEnergies
   Ledger<dim>::book_bodies(const std::vector<double> &forces, const double h,
                            const State &old, const State &next) const
   {
@@ -326,7 +326,8 @@ namespace nsfd
     const std::size_t n = next.velocity.size();
     // row by row: all terms of all rows at once would be the largest thing of
     // the whole step
-    std::vector<double> terms(n), change, result(n_body_rows, 0.);
+    std::vector<double> terms(n), change;
+    BodyEnergies result;
     const auto energy = [&](const Operator op, const std::vector<double> &x) {
       dynamics_.apply(op, x.data(), terms.data());
       for (std::size_t i = 0; i < n; ++i)
@@ -341,23 +342,23 @@ namespace nsfd
         change[i] = after[i] - before[i];
       return change;
     };
-    result[kinetic] = 0.5 * energy(Operator::mass, next.velocity);
+    result.kinetic = 0.5 * energy(Operator::mass, next.velocity);
     if (symplectic_) {
       std::vector<double> product(n);
       dynamics_.apply(Operator::stiffness, next.displacement.data(),
                       product.data());
       for (std::size_t i = 0; i < n; ++i)
         terms[i] = 0.5 * next.displacement[i] * product[i];
-      result[elastic] = communicator.sum(terms);
-      result[theta_stiffness] = symplectic_share(h, product, old, next);
+      result.elastic = communicator.sum(terms);
+      result.of_strain = symplectic_share(h, product, old, next);
     } else
-      result[elastic] = 0.5 * energy(Operator::stiffness, next.displacement);
+      result.elastic = 0.5 * energy(Operator::stiffness, next.displacement);
     if (!symplectic_ && theta_ > 0.5) {
       const double share = theta_ - 0.5;
-      result[theta_mass] =
+      result.of_mass =
           share *
           energy(Operator::mass, change_of(next.velocity, old.velocity));
-      result[theta_stiffness] =
+      result.of_strain =
           share * energy(Operator::stiffness,
                          change_of(next.displacement, old.displacement));
     }
@@ -365,7 +366,7 @@ namespace nsfd
       for (std::size_t i = 0; i < n; ++i)
         terms[i] = h * forces[i] * (theta_ * next.velocity[i] +
                                     (1. - theta_) * old.velocity[i]);
-      result[loads] = communicator.sum(terms);
+      result.work = communicator.sum(terms);
     }
     return result;
   }
@@ -408,13 +409,13 @@ namespace nsfd
   template <int dim>
   void Ledger<dim>::book(const OneStepProblem<dim> &problem,
                          const LawEvaluation<dim> &evaluation,
-                         const std::vector<double> &forces, const State &old,
+                         const std::vector<PointOrigin> &origins,
+                         const BodyEnergies &bodies, const State &old,
                          State &next, StepReport &report)
   {
     const auto &communicator = dynamics_.communicator();
-    const auto body = book_bodies(forces, problem.time_step, old, next);
     PointBook<dim> points(discretization_, uniqueness_, problem, evaluation,
-                          theta_, old, next);
+                          origins, theta_, old, next);
     for (std::size_t i = 0; i < problem.n_points; ++i)
       points.book(i);
     const auto sums =
@@ -425,8 +426,8 @@ namespace nsfd
 
     EnergyLines &energy = next.energy;
     energy = old.energy;
-    energy.kinetic = body[kinetic];
-    energy.elastic = body[elastic];
+    energy.kinetic = bodies.kinetic;
+    energy.elastic = bodies.elastic;
     energy.cohesive = sums[stored];
     energy.damage += sums[damage];
     energy.friction += sums[friction];
@@ -439,8 +440,8 @@ namespace nsfd
                    communicator.max(points.viscous_traction));
     }
     energy.numerical +=
-        sums[numerical] + body[theta_mass] + body[theta_stiffness];
-    energy.work += sums[motion] + body[loads];
+        sums[numerical] + bodies.of_mass + bodies.of_strain;
+    energy.work += sums[motion] + bodies.work;
     next.pressure_work = old.pressure_work;
     if (!next.pressure.empty()) {
       const double work = pressure_work(problem, old, next);

@@ -11,6 +11,14 @@ namespace nsfd
 {
   struct StepReport;
 
+  /** What the bodies store, lose and take from loads in a step, in J. */
+  struct BodyEnergies
+  {
+    double kinetic = 0., elastic = 0.; ///< after the step
+    double of_mass = 0., of_strain = 0.; ///< what theta > 1/2 takes
+    double work = 0.;                    ///< of the loads
+  };
+
   /**
    * The books of a step that has been solved: every energy line on its own
    * (report, 5.3), what the points remember (d_m, beta, kind, slip, bound of
@@ -26,13 +34,19 @@ namespace nsfd
 
     /**
      * From @p old to @p next, whose motion and impulses are known: everything
-     * else of @p next, and all of @p report but the solver's. @p forces are
-     * the loads of the step. Collective.
+     * else of @p next, and all of @p report but the solver's. @p origins are
+     * those of the points of @p problem. Collective.
      */
     void book(const OneStepProblem<dim> &problem,
               const LawEvaluation<dim> &evaluation,
-              const std::vector<double> &forces, const State &old, State &next,
+              const std::vector<PointOrigin> &origins,
+              const BodyEnergies &bodies, const State &old, State &next,
               StepReport &report);
+
+    /** Of small motions; @p forces are the loads of the step. Collective. */
+    BodyEnergies book_bodies(const std::vector<double> &forces,
+                             double time_step, const State &old,
+                             const State &next) const;
 
     /** Force on each driven boundary during the last step, dim per boundary. */
     const std::vector<double> &reactions() const { return reactions_; }
@@ -40,10 +54,6 @@ namespace nsfd
   private:
     double pressure_work(const OneStepProblem<dim> &problem, const State &old,
                          const State &next) const;
-    std::vector<double> book_bodies(const std::vector<double> &forces,
-                                    double time_step, const State &old,
-                                    const State &next) const;
-
     double symplectic_share(double time_step,
                             const std::vector<double> &product,
                             const State &old, const State &next) const;

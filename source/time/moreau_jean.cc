@@ -132,16 +132,14 @@ namespace nsfd
       control.tolerance = input_.solver.tolerance;
       control.maximum_iterations = input_.solver.maximum_iterations;
       control.idle_rounds = idle_rounds;
-      report.solver = solve(control, energy_scale, next.impulse, evaluation);
+      report.solver =
+          solve(solver_, problem_, discretization_.origins(), control,
+                energy_scale, next.impulse, evaluation);
     }
     save_problem<dim>(input_, problem_, dynamics_, evaluation, report.solver,
                       old.step + 1, old.time);
     if (!report.solver.converged)
-      throw StepRejected(fmt::format(
-        "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "
-        "after {} Newton steps and {} sweeps; worst face {}",
-        h, old.time, report.solver.residual, report.solver.newton,
-        report.solver.sweeps, describe(evaluation.worst_point)));
+      reject(h, old.time, report.solver, evaluation.worst_point);
     {
       const Stopwatch watch(timings_.update);
       const Charge charge(Cost::update);
@@ -151,15 +149,11 @@ namespace nsfd
       charge_memory("vectors of a step and its solver");
     const Stopwatch watch(timings_.ledger);
     const Charge charge(Cost::ledger);
-    ledger_->book(problem_, evaluation, forces_, old, next, report);
-    // it closes for any impulses, unless they have lost their digits
-    if (report.ledger_defect * next.largest_energy >
-        1e-6 * std::max(next.largest_energy, energy_scale))
-      throw StepRejected(fmt::format(
-        "the energies of the step of {:.4g} at t = {:.6g} do not add up "
-        "(relative defect {:.1e}): rows that ask for the same have made "
-        "impulses too large; worst face {}",
-        h, old.time, report.ledger_defect, describe(evaluation.worst_point)));
+    ledger_->book(problem_, evaluation, discretization_.origins(),
+                  ledger_->book_bodies(forces_, h, old, next), old, next,
+                  report);
+    check_books(h, old.time, energy_scale, next, report,
+                evaluation.worst_point);
     if (bulk_) {
       const BondReport bonds =
         release_bonds(problem_, *bulk_, old, next);
@@ -168,6 +162,35 @@ namespace nsfd
       report.share = bonds.share;
     }
     return report;
+  }
+
+  template <int dim>
+  void MoreauJean<dim>::reject(const double h, const double time,
+                               const SolverReport &report,
+                               const std::size_t worst_point) const
+  {
+    throw StepRejected(fmt::format(
+      "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "
+      "after {} Newton steps and {} sweeps; worst face {}",
+      h, time, report.residual, report.newton, report.sweeps,
+      describe(worst_point)));
+  }
+
+  /** They close for any impulses, unless these have lost their digits. */
+  template <int dim>
+  void MoreauJean<dim>::check_books(const double h, const double time,
+                                    const double energy_scale,
+                                    const State &next,
+                                    const StepReport &report,
+                                    const std::size_t worst_point) const
+  {
+    if (report.ledger_defect * next.largest_energy >
+        1e-6 * std::max(next.largest_energy, energy_scale))
+      throw StepRejected(fmt::format(
+        "the energies of the step of {:.4g} at t = {:.6g} do not add up "
+        "(relative defect {:.1e}): rows that ask for the same have made "
+        "impulses too large; worst face {}",
+        h, time, report.ledger_defect, describe(worst_point)));
   }
 
   /** Assembled again only if they depend on time. */
@@ -215,17 +238,19 @@ namespace nsfd
     dynamics_.set_free_velocity(&v_free_);
   }
 
-  /** Again as long as extrinsic points reach their strength. */
   template <int dim>
-  SolverReport MoreauJean<dim>::solve(const SolverControl &control,
+  SolverReport MoreauJean<dim>::solve(NonsmoothSolver<dim> &solver,
+                                      OneStepProblem<dim> &problem,
+                                      const std::vector<PointOrigin> &origins,
+                                      const SolverControl &control,
                                       const double energy_scale,
                                       std::vector<double> &impulse,
                                       LawEvaluation<dim> &evaluation)
   {
     SolverReport report;
     for (unsigned int round = 0;; ++round) {
-      const SolverReport part = solver_.solve(
-        problem_, dynamics_, energy_scale, control, impulse, evaluation);
+      const SolverReport part = solver.solve(
+        problem, dynamics_, energy_scale, control, impulse, evaluation);
       report.newton += part.newton;
       report.krylov += part.krylov;
       report.sweeps += part.sweeps;
@@ -236,7 +261,7 @@ namespace nsfd
                              part.switches.end());
       ++counters_.solves;
       if (!part.converged || !has_extrinsic_ || round > 30 ||
-          !activate(dynamics_, discretization_.origins(), impulse, problem_))
+          !activate(dynamics_, origins, impulse, problem))
         break;
       ++counters_.activation_rounds;
     }
@@ -303,12 +328,10 @@ namespace nsfd
   }
 
   template <int dim>
-  std::string MoreauJean<dim>::describe(const std::size_t i) const
+  std::string MoreauJean<dim>::describe(const PointOrigin &origin,
+                                        const double *x) const
   {
-    if (i >= problem_.n_points)
-      return "unknown";
     std::string name;
-    const PointOrigin origin = discretization_.origins()[i];
     switch (origin.kind) {
     case PointOrigin::Kind::interface:
       name = "Interface: " + input_.interfaces[origin.block].name;
@@ -319,12 +342,26 @@ namespace nsfd
     case PointOrigin::Kind::obstacle:
       name = "Obstacle: " + input_.obstacles[origin.block].name;
       break;
+    case PointOrigin::Kind::surface:
+      name = "Contact: " + input_.contacts[origin.block].name;
+      break;
+    case PointOrigin::Kind::pin:
+      name = "Pin: " + input_.pins[origin.block].name;
+      break;
     }
-    const auto x = discretization_.position(i);
     std::string place;
     for (unsigned int c = 0; c < dim; ++c)
       place += fmt::format("{}{:.6g}", c ? ", " : "", x[c]);
     return fmt::format("at ({}) of `{}`", place, name);
+  }
+
+  template <int dim>
+  std::string MoreauJean<dim>::describe(const std::size_t i) const
+  {
+    if (i >= discretization_.origins().size())
+      return "unknown";
+    return describe(discretization_.origins()[i],
+                    &discretization_.points().position[i * dim]);
   }
 
   template class MoreauJean<2>;

@@ -36,6 +36,17 @@ namespace nsfd
     archive.points("bond_traction", s.bond_traction);
     archive.points("pressure", s.pressure);
     archive.points("point_force", s.point_force);
+    archive.common("rigid", s.rigid);
+    archive.common("obstacle_shift", s.obstacle_shift);
+    archive.common("surface_impulse", s.surface_impulse);
+    archive.common("surface_slip", s.surface_slip);
+    archive.common("surface_worn", s.surface_worn);
+    archive.common("surface_wear_speed", s.surface_wear_speed);
+    archive.common("surface_bound", s.surface_bound);
+    std::vector<double> touches(s.surface_contact.begin(),
+                                s.surface_contact.end());
+    archive.common("surface_contact", touches);
+    s.surface_contact.assign(touches.begin(), touches.end());
     bool has_viscous = s.viscous_traction.has_value();
     double viscous = s.viscous_traction.value_or(0.);
     archive.numbers("viscous_traction", has_viscous, viscous);

@@ -39,12 +39,14 @@ namespace nsfd
       return interaction;
     }
 
-    Interaction interaction_of(const ObstacleInput &obstacle)
+    /** Of an obstacle or of two surfaces. */
+    template <typename Block>
+    Interaction contact_of(const Block &block)
     {
       Interaction interaction;
-      interaction.friction = obstacle.friction;
-      interaction.restitution = obstacle.restitution;
-      interaction.wear = obstacle.sliding.wear;
+      interaction.friction = block.friction;
+      interaction.restitution = block.restitution;
+      interaction.wear = block.sliding.wear;
       return interaction;
     }
 
@@ -105,7 +107,8 @@ namespace nsfd
       problem.contact[i] = 0;
       problem.mask[i] = 0;
       problem.compression_stiffness[i] = 0.;
-      if (old.kind[i] == PointKind::bonded) {
+      if (old.kind[i] == PointKind::bonded ||
+          old.kind[i] == PointKind::parted) {
         problem.kind[i] = PointKind::free; // without contact: no impulse
         return;
       }
@@ -152,8 +155,10 @@ namespace nsfd
                        const Discretization<dim> &discretization,
                        const State &old, OneStepProblem<dim> &problem)
     {
-      for (std::size_t i = 0; i < problem.viscosity.size(); ++i) {
-        const PointOrigin origin = discretization.origins()[i];
+      const auto &origins = discretization.origins();
+      for (std::size_t i = 0; i < origins.size() && !problem.viscosity.empty();
+           ++i) {
+        const PointOrigin origin = origins[i];
         if (origin.kind != PointOrigin::Kind::interface)
           continue;
         const auto &block = input.interfaces[origin.block];
@@ -181,9 +186,10 @@ namespace nsfd
                        const Discretization<dim> &discretization,
                        const State &old, OneStepProblem<dim> &problem)
     {
-      for (std::size_t i = 0; i < problem.dilatancy.size(); ++i) {
-        const SlidingInput *sliding =
-            sliding_of(input, discretization.origins()[i]);
+      const auto &origins = discretization.origins();
+      for (std::size_t i = 0; i < origins.size() && !problem.dilatancy.empty();
+           ++i) {
+        const SlidingInput *sliding = sliding_of(input, origins[i]);
         if (sliding == nullptr || sliding->dilatancy == 0.)
           continue;
         const auto &interaction = problem.interactions[problem.interaction[i]];
@@ -206,8 +212,9 @@ namespace nsfd
                     OneStepProblem<dim> &problem)
     {
       const double h = problem.time_step, t = old.time + h;
-      for (std::size_t i = 0; i < problem.n_points; ++i) {
-        if (discretization.origins()[i].kind != PointOrigin::Kind::motion)
+      const auto &origins = discretization.origins();
+      for (std::size_t i = 0; i < origins.size(); ++i) {
+        if (origins[i].kind != PointOrigin::Kind::motion)
           continue;
         problem.mask[i] = 0;
         for (unsigned int c = 0; c < dim; ++c) {
@@ -256,7 +263,8 @@ namespace nsfd
     const auto lifts = [](const auto &block) { return block.sliding.lifts(); };
     return std::any_of(input.interfaces.begin(), input.interfaces.end(),
                        lifts) ||
-           std::any_of(input.obstacles.begin(), input.obstacles.end(), lifts);
+           std::any_of(input.obstacles.begin(), input.obstacles.end(), lifts) ||
+           std::any_of(input.contacts.begin(), input.contacts.end(), lifts);
   }
 
   template <int dim>
@@ -283,13 +291,15 @@ namespace nsfd
     problem.rule = input.time.cohesion_rule;
 
     // one interaction per interface block, then per obstacle, then a support,
-    // then those of blocks with stiffer springs
+    // then per contact of surfaces, then those of blocks with stiffer springs
     for (const auto &block : input.interfaces)
       problem.interactions.push_back(interaction_of(block));
     for (const auto &obstacle : input.obstacles)
-      problem.interactions.push_back(interaction_of(obstacle));
+      problem.interactions.push_back(contact_of(obstacle));
     const auto support = unsigned(problem.interactions.size());
     problem.interactions.emplace_back();
+    for (const auto &contact : input.contacts)
+      problem.interactions.push_back(contact_of(contact));
     std::map<std::pair<unsigned int, double>, unsigned int> stiffer_ones;
 
     if (has_opening_viscosity(input))
@@ -326,6 +336,9 @@ namespace nsfd
       case PointOrigin::Kind::motion:
         problem.interaction[i] = support;
         break;
+      case PointOrigin::Kind::surface:
+      case PointOrigin::Kind::pin:
+        break; // of single steps only
       }
     }
     return problem;

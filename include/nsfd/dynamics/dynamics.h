@@ -33,6 +33,9 @@ namespace nsfd
     /** Build what depends on the step; nothing if it has not changed. */
     virtual void reinit(double time_step, double theta);
 
+    /** Bodies or points are others than before: everything anew. Collective. */
+    void renew(double time_step, double theta);
+
     /**
      * U = W P over all points. One exchange with the neighbouring ranks, behind
      * the work for bodies that share no point with them.
@@ -198,6 +201,7 @@ namespace nsfd
     const BodyOrder &order() const { return order_; }
 
   protected:
+    void set_layout();
     void build_face_blocks();
 
     const Communicator &communicator_;
@@ -224,6 +228,15 @@ namespace nsfd
   private:
     mutable NeighborMessages<double> messages_;
   };
+
+  /**
+   * The same operator for bodies and points that change: renew() is cheap,
+   * nothing is kept in another form.
+   */
+  template <int dim>
+  std::unique_ptr<Dynamics<dim>>
+  make_moving_dynamics(const Communicator &communicator, const Bodies &bodies,
+                       const InterfacePoints<dim> &points);
 
   /** Preconditioned by the face blocks of W: for steps up to some crossings. */
   template <int dim>

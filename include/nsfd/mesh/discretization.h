@@ -26,6 +26,8 @@ namespace nsfd
   template <int dim>
   struct Cells;
   template <int dim>
+  struct BodyShape;
+  template <int dim>
   class Loads;
 
   /** Where a point of InterfacePoints comes from. */
@@ -33,7 +35,9 @@ namespace nsfd
     enum class Kind : unsigned char {
       interface, ///< between two cells, `block` of SceneInput::interfaces
       motion,    ///< prescribed motion, `block` of boundaries
-      obstacle   ///< `block` of obstacles
+      obstacle,  ///< `block` of obstacles
+      surface,   ///< of large motions, for one step: `block` of contacts
+      pin        ///< of large motions: `block` of pins
     };
     Kind kind = Kind::interface;
     unsigned int block = 0;
@@ -42,11 +46,19 @@ namespace nsfd
     double compliance = 1.;
   };
 
+  /** Where an obstacle may be touched, in scenes with large motions. */
+  struct ObstacleFace
+  {
+    unsigned int body = 0, face = 0, obstacle = 0;
+  };
+
   /**
    * The cells of this rank as bodies, and the points on their faces: matrices,
    * traces, frames, weights. Straight-sided cells; cells of the same shape and
    * material share their blocks, built from the shape rounded to 2^-42 of its
-   * size, so that they are the same on every rank. Units of the scene.
+   * size, so that they are the same on every rank. Units of the scene. With
+   * large motions rigid cells have nodal unknowns too, without stiffness, and
+   * obstacles no points: see motion/moving_bodies.h.
    */
   template <int dim>
   class Discretization
@@ -85,6 +97,15 @@ namespace nsfd
     int springs_inside(unsigned int body) const
     {
       return springs_inside_.empty() ? -1 : springs_inside_[body];
+    }
+
+    /** Tables of the cell of a body, relative to its corner 0. */
+    const BodyShape<dim> &shape(unsigned int body) const;
+
+    /** Empty but in scenes with large motions. */
+    const std::vector<ObstacleFace> &obstacle_faces() const
+    {
+      return obstacle_faces_;
     }
 
     /** Which face of its cell a slot of a body is on. */
@@ -159,6 +180,7 @@ namespace nsfd
     InterfacePoints<dim> points_;
     std::vector<PointOrigin> origins_;
     std::vector<int> springs_inside_; ///< by body; empty: none anywhere
+    std::vector<ObstacleFace> obstacle_faces_;
     std::unique_ptr<const Loads<dim>> loads_;
     unsigned long long n_global_cells_ = 0;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;

@@ -39,7 +39,8 @@ namespace nsfd
     cohesive,   ///< intrinsic, or extrinsic after activation
     rigid,      ///< extrinsic before activation: U = 0 up to the strength
     free,       ///< contact and friction only, beta = 0
-    bonded      ///< carries through the bulk, not by an impulse
+    bonded,     ///< carries through the bulk, not by an impulse
+    parted      ///< broken, its lips are left to the search for contacts
   };
 
   /**

@@ -57,10 +57,10 @@ namespace nsfd
                Dynamics<dim> &dynamics,
                NonsmoothSolver<dim> &solver,
                BondedDynamics<dim> *bonded = nullptr);
-    ~MoreauJean();
+    virtual ~MoreauJean();
 
     /** State at t = 0: positions, velocities, gaps, broken points. */
-    State initial_state() const;
+    virtual State initial_state() const;
 
     /**
      * The motion and the points of @p state are known: its stored energies,
@@ -73,9 +73,9 @@ namespace nsfd
      * problem was not solved to the tolerance. @p idle_rounds as in
      * SolverControl: how soon the solver may give up.
      */
-    StepReport advance(const State &old, double time_step, State &next,
-                       unsigned int idle_rounds =
-                         SolverControl().idle_rounds);
+    virtual StepReport advance(const State &old, double time_step, State &next,
+                               unsigned int idle_rounds =
+                                 SolverControl().idle_rounds);
 
     /**
      * Up to which a step has one solution, by the points that soften at
@@ -116,13 +116,24 @@ namespace nsfd
   protected:
     void set_loads(double time);
     void move_freely(const State &old, const std::vector<double> &pressure);
-    SolverReport solve(const SolverControl &control,
+    /** Again as long as extrinsic points reach their strength. */
+    SolverReport solve(NonsmoothSolver<dim> &solver,
+                       OneStepProblem<dim> &problem,
+                       const std::vector<PointOrigin> &origins,
+                       const SolverControl &control,
                        double energy_scale,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation);
+    [[noreturn]] void reject(double time_step, double time,
+                             const SolverReport &report,
+                             std::size_t worst_point) const;
+    void check_books(double time_step, double time, double energy_scale,
+                     const State &next, const StepReport &report,
+                     std::size_t worst_point) const;
     void move(const State &old, const LawEvaluation<dim> &evaluation,
               State &next) const;
-    std::string describe(std::size_t point) const;
+    virtual std::string describe(std::size_t point) const;
+    std::string describe(const PointOrigin &origin, const double *place) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;

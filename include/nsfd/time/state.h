@@ -45,5 +45,14 @@ namespace nsfd
            pressure_work = 0.; ///< of cracks, a part of the work
     std::vector<double> point_force; ///< of an equilibrium, N; empty if the
                                      ///< state is none
+    // Of large motions, empty without: per rigid body centre, velocity,
+    // quaternion (body to space), spin in the frame of the body (13 numbers)
+    std::vector<double> rigid;
+    std::vector<double> obstacle_shift; ///< of moving ones, 3 per obstacle, m
+    /// per place of a surface, see motion/surface_contacts.h: dim components,
+    /// and what a point remembers
+    std::vector<double> surface_impulse, surface_slip, surface_worn,
+        surface_wear_speed, surface_bound;
+    std::vector<std::uint8_t> surface_contact;
   };
 } // namespace nsfd

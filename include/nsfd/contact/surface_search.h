@@ -1,0 +1,138 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Surfaces of bodies without their positions. A vertex belongs to one body;
+   * facets of one body share their vertices, those of two bodies never do.
+   */
+  template <int dim>
+  struct Surfaces {
+    /**
+     * A flat piece: 2 vertices in the plane, its outward normal being b - a
+     * turned by -90 degrees; 3 or 4 in space, counter-clockwise seen from
+     * outside, 4 of them convex and perhaps slightly warped.
+     */
+    struct Facet {
+      std::array<unsigned int, 4> vertex{};
+      unsigned int n_vertices = dim;
+      unsigned int body = 0;
+      std::uint64_t key = 0; ///< unique; decides where geometry does not
+    };
+    /** A vertex of a facet that may touch facets of other bodies. */
+    struct Point {
+      unsigned int vertex = 0, facet = 0;
+    };
+    struct Ball {
+      unsigned int body = 0;
+      double radius = 0.;
+      std::uint64_t key = 0;
+      unsigned int vertex = 0; ///< the centre
+    };
+
+    std::vector<Facet> facets;
+    std::vector<Point> points;
+    std::vector<Ball> balls;
+    std::size_t n_vertices = 0;
+  };
+
+  /**
+   * The flat shape of a facet. A warped quadrilateral has the normal of its two
+   * diagonals, the mean one: it does not jump inside the facet, unlike that of
+   * two triangles, and is the same for whichever vertex comes first.
+   */
+  template <int dim>
+  struct Plane {
+    std::array<double, dim> normal{}, centre{};
+    double size = 0.; ///< length or square root of the area
+  };
+
+  /**
+   * A place on a facet and what is near it. The normal leads away from the
+   * body of the facet; lengths are those of the positions.
+   */
+  template <int dim>
+  struct FacetPair {
+    unsigned int index = 0; ///< of the point or of the ball
+    unsigned int facet = 0;
+    double gap = 0.;
+    std::array<double, dim> normal{}, closest{};
+    std::array<double, 4> weights{}; ///< of the vertices of the facet
+  };
+
+  /** ball < other; the normal leads from the other ball to this one. */
+  template <int dim>
+  struct BallPair {
+    unsigned int ball = 0, other = 0;
+    double gap = 0.;
+    std::array<double, dim> normal{}, closest{}; ///< closest: on the other
+  };
+
+  template <int dim>
+  struct NearPairs {
+    std::vector<FacetPair<dim>> points; ///< at most one per point
+    std::vector<FacetPair<dim>> balls;  ///< one per place that a ball is near
+    std::vector<BallPair<dim>> ball_balls;
+  };
+
+  /** Bodies that are still glued; asked for two different bodies only. */
+  using JoinedBodies = std::function<bool(unsigned int, unsigned int)>;
+
+  /** List i is entries first[i] to first[i + 1]. */
+  struct IndexLists {
+    std::vector<std::size_t> first;
+    std::vector<unsigned int> entries;
+  };
+
+  /** What may be near what until something has moved by half the skin. */
+  struct NearCandidates {
+    std::vector<unsigned int> order; ///< points, those of a vertex in a row
+    IndexLists facets_of_points;     ///< one list per place in `order`
+    IndexLists facets_of_balls;
+    IndexLists balls_of_balls; ///< later balls only
+  };
+
+  /**
+   * Finds which points and balls are near which facets and balls of other
+   * bodies. Candidates are searched in a tree of boxes with a skin around them
+   * and kept while nothing has moved by more than half the skin. Pairs depend
+   * on positions and keys only, not on the order of facets or the history.
+   */
+  template <int dim>
+  class SurfaceSearch
+  {
+  public:
+    /**
+     * To be called when the surfaces or the glued bodies are no longer those of
+     * the last call of `find`.
+     */
+    void topology_changed() { searched_at_.clear(); }
+
+    /**
+     * x: dim coordinates per vertex. Gaps up to `reach` are of interest. The
+     * pairs are those of points by vertex, those of balls by ball.
+     */
+    void find(const Surfaces<dim> &surfaces, const double *x, double reach,
+              const JoinedBodies &joined, NearPairs<dim> &pairs);
+
+    /** How often candidates have been searched. */
+    std::size_t n_searches() const { return n_searches_; }
+
+  private:
+    bool candidates_hold(const Surfaces<dim> &surfaces, const double *x,
+                         double reach) const;
+
+    NearCandidates candidates_;
+    std::vector<Plane<dim>> planes_;
+    std::vector<double> searched_at_; ///< x of the last search
+    std::array<std::size_t, 3> searched_sizes_{};
+    double searched_reach_ = 0., skin_ = 0.;
+    std::size_t n_searches_ = 0;
+  };
+} // namespace nsfd

@@ -1,0 +1,552 @@
+#include "large_motion.h"
+
+#include "../time/common_books.h"
+#include "../time/crack_pressure.h"
+#include "../time/driven_motion.h"
+#include "../time/initial_state.h"
+#include "../time/ledger.h"
+#include "../time/save_problem.h"
+#include "../time/step_data.h"
+
+#include "nsfd/base/cost.h"
+#include "nsfd/base/stopwatch.h"
+#include "nsfd/input/scene_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Velocities rest: of the root of the kinetic energy. */
+    constexpr double velocity_tolerance = 1e-12;
+    constexpr unsigned int most_iterations = 40;
+
+    /** Appends @p n values of @p value to an array that has any. */
+    template <typename Array>
+    void append(Array &array, const std::size_t n,
+                const typename Array::value_type value)
+    {
+      if (!array.empty())
+        array.insert(array.end(), n, value);
+    }
+  } // namespace
+
+  template <int dim>
+  LargeMotion<dim>::LargeMotion(const SceneInput &input,
+                                const Discretization<dim> &discretization,
+                                MovingBodies<dim> &bodies,
+                                Dynamics<dim> &dynamics,
+                                NonsmoothSolver<dim> &solver)
+      : MoreauJean<dim>(input, discretization, dynamics, solver),
+        bodies_(bodies)
+  {
+    if (!input.contacts.empty() || !input.obstacles.empty())
+      contacts_ = std::make_unique<SurfaceContacts<dim>>(input, discretization,
+                                                         bodies);
+  }
+
+  template <int dim>
+  LargeMotion<dim>::~LargeMotion() = default;
+
+  template <int dim>
+  State LargeMotion<dim>::initial_state() const
+  {
+    const SceneInput &input = this->input_;
+    State state = initial_motion(input, this->discretization_);
+    bodies_.set_initial(state);
+    if (std::any_of(input.obstacles.begin(), input.obstacles.end(),
+                    [](const auto &obstacle) { return obstacle.moves(); }))
+      state.obstacle_shift.assign(3 * input.obstacles.size(), 0.);
+    bodies_.start(state, 0., input.time.theta,
+                  std::vector<double>(state.velocity.size(), 0.),
+                  state.obstacle_shift, state.obstacle_shift);
+    bodies_.set_rows({});
+    bodies_.set_middle();
+    this->dynamics_.renew(0., input.time.theta);
+    const std::size_t n = bodies_.points().n_points;
+    const auto jumps = bodies_.jumps(state.displacement);
+    state.jump.assign(n * dim, 0.);
+    for (std::size_t i = 0; i < n; ++i)
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int d = 0; d < dim; ++d)
+          state.jump[i * dim + a] +=
+              bodies_.points().frame[(i * dim + a) * dim + d] *
+              jumps[i * dim + d];
+    state.relative_velocity.resize(n * dim);
+    this->dynamics_.relative_velocity(bodies_.old_velocity().data(),
+                                      state.relative_velocity.data());
+    set_points(input, this->discretization_, this->problem_, state);
+    // cells of one rigid body hold together whatever the law
+    for (const auto &face : bodies_.points().faces)
+      if (!face.boundary && face.bodies[0] < 0)
+        for (unsigned int i = face.first; i < face.first + face.count; ++i) {
+          state.kind[i] = PointKind::bonded;
+          state.beta[i] = 1.;
+        }
+    if (contacts_)
+      contacts_->set_initial(state);
+    const BodyEnergies energies = bodies_.energies(state);
+    state.energy.kinetic = energies.kinetic;
+    state.energy.elastic = energies.elastic;
+    state.energy.cohesive = stored_in_points(this->dynamics_.communicator(),
+                                             this->problem_, state);
+    begin_books(state);
+    return state;
+  }
+
+  // ------------------------------------------------------- data of one step
+
+  template <int dim>
+  std::vector<MovingRow<dim>> LargeMotion<dim>::pins(const State &old) const
+  {
+    std::vector<MovingRow<dim>> result;
+    for (unsigned int k = 0; k < this->input_.pins.size(); ++k) {
+      MovingRow<dim> row;
+      row.partner = MovingRow<dim>::Partner::pin;
+      row.body_2 = bodies_.body_of_pin(k);
+      row.pin = row.block = k;
+      row.weight = 1.;
+      // as a support
+      row.interaction = unsigned(this->input_.interfaces.size() +
+                                 this->input_.obstacles.size());
+      row.jump = bodies_.pin_drift(k, old);
+      result.push_back(row);
+    }
+    return result;
+  }
+
+  template <int dim>
+  void LargeMotion<dim>::set_shifts(const State &old, const double h,
+                                    State &next) const
+  {
+    next.obstacle_shift = old.obstacle_shift;
+    const double theta = this->input_.time.theta;
+    const auto &obstacles = this->input_.obstacles;
+    for (std::size_t k = 0; k < next.obstacle_shift.size(); ++k)
+      if (const auto &velocity = obstacles[k / 3].velocity[k % 3])
+        next.obstacle_shift[k] +=
+            h * (theta * velocity->at(dealii::Point<dim>(), old.time + h) +
+                 (1. - theta) * velocity->at(dealii::Point<dim>(), old.time));
+  }
+
+  /** State and problem with the contacts of the step behind the points. */
+  template <int dim>
+  void LargeMotion<dim>::extend(const State &old)
+  {
+    const auto &rows = bodies_.rows();
+    const std::size_t n = this->discretization_.points().n_points,
+                      m = rows.size();
+    old_ = old;
+    for (auto *array :
+         {&old_.jump, &old_.relative_velocity, &old_.impulse})
+      array->resize((n + m) * dim, 0.);
+    for (auto *array : {&old_.opening_max, &old_.beta, &old_.slip,
+                        &old_.penetration_bound})
+      array->resize(n + m, 0.);
+    for (auto *array : {&old_.slip_max, &old_.dilated, &old_.worn,
+                        &old_.dilation_speed, &old_.wear_speed,
+                        &old_.pressure})
+      append(*array, m, 0.);
+    old_.kind.resize(n + m, PointKind::free);
+    old_.two_sided.resize(n + m, 0);
+    old_.contact.resize(n + m, 0);
+
+    OneStepProblem<dim> &problem = step_problem_;
+    problem.resize(n + m);
+    problem.n_owned = n + m;
+    problem.theta = this->problem_.theta;
+    problem.rule = this->problem_.rule;
+    problem.interactions = this->problem_.interactions;
+    const auto take = [](const auto &from, auto &to) {
+      std::copy(from.begin(), from.end(), to.begin());
+    };
+    take(this->problem_.interaction, problem.interaction);
+    take(this->problem_.weight, problem.weight);
+    take(this->problem_.strength_factor, problem.strength_factor);
+    take(this->problem_.opening_factor, problem.opening_factor);
+    if (!this->problem_.viscosity.empty())
+      problem.viscosity.assign(n + m, 0.);
+    if (!this->problem_.dilatancy.empty()) {
+      problem.dilatancy.assign(n + m, 0.);
+      problem.lift_left.assign(n + m, 0.);
+    }
+    origins_ = this->discretization_.origins();
+    for (std::size_t k = 0; k < m; ++k) {
+      const MovingRow<dim> &row = rows[k];
+      const std::size_t i = n + k;
+      using Partner = typename MovingRow<dim>::Partner;
+      PointOrigin origin;
+      origin.block = row.block;
+      origin.kind = row.partner == Partner::pin ? PointOrigin::Kind::pin
+                    : row.partner == Partner::obstacle
+                        ? PointOrigin::Kind::obstacle
+                        : PointOrigin::Kind::surface;
+      origins_.push_back(origin);
+      problem.interaction[i] = row.interaction;
+      problem.weight[i] = row.weight;
+      if (row.partner == Partner::pin)
+        old_.kind[i] = PointKind::prescribed;
+      if (row.place == row.nowhere)
+        continue;
+      old_.slip[i] = old.surface_slip[row.place];
+      old_.penetration_bound[i] = old.surface_bound[row.place];
+      old_.contact[i] = old.surface_contact[row.place];
+      if (!old_.worn.empty()) {
+        old_.worn[i] = old.surface_worn[row.place];
+        old_.wear_speed[i] = old.surface_wear_speed[row.place];
+      }
+    }
+  }
+
+  template <int dim>
+  void LargeMotion<dim>::start(const State &old, const double h, State &next)
+  {
+    const double theta = this->input_.time.theta;
+    this->set_loads(old.time + theta * h);
+    set_shifts(old, h, next);
+    bodies_.start(old, h, theta, this->forces_, old.obstacle_shift,
+                  next.obstacle_shift);
+    std::vector<MovingRow<dim>> rows;
+    if (contacts_) {
+      const Stopwatch watch(motion_counters_.search_seconds);
+      rows = contacts_->rows(old, h);
+    }
+    const auto held = pins(old);
+    rows.insert(rows.end(), held.begin(), held.end());
+    bodies_.set_rows(std::move(rows));
+    extend(old);
+    mesh_jumps_ = bodies_.jumps(old.displacement);
+    crack_impulse_.assign(old_.impulse.size(), 0.);
+    if (this->crack_pressure_) {
+      this->crack_pressure_->evaluate(old, old.time + theta * h,
+                                      next.pressure);
+      const auto P = this->crack_pressure_->impulse(next.pressure, h);
+      std::copy(P.begin(), P.end(), crack_impulse_.begin());
+      append(next.pressure, bodies_.rows().size(), 0.);
+    }
+  }
+
+  /** Of the obstacle of a contact, in its frame; zero for others. */
+  template <int dim>
+  std::array<double, dim>
+  LargeMotion<dim>::obstacle_velocity(const std::size_t k,
+                                      const double time) const
+  {
+    std::array<double, dim> result{};
+    const MovingRow<dim> &row = bodies_.rows()[k];
+    if (row.partner != MovingRow<dim>::Partner::obstacle)
+      return result;
+    const auto &obstacle = this->input_.obstacles[row.obstacle];
+    const std::size_t i = this->discretization_.points().n_points + k;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (obstacle.velocity[d]) {
+        const double v = obstacle.velocity[d]->at(dealii::Point<dim>(), time);
+        for (unsigned int a = 0; a < dim; ++a)
+          result[a] += bodies_.points().frame[(i * dim + a) * dim + d] * v;
+      }
+    return result;
+  }
+
+  template <int dim>
+  void LargeMotion<dim>::relative_velocity(const std::vector<double> &v,
+                                           const double time,
+                                           std::vector<double> &U) const
+  {
+    this->dynamics_.relative_velocity(v.data(), U.data());
+    const std::size_t n = this->discretization_.points().n_points;
+    for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
+      const auto own = obstacle_velocity(k, time);
+      for (unsigned int a = 0; a < dim; ++a)
+        U[(n + k) * dim + a] -= own[a];
+    }
+  }
+
+  /** In the frames at hand: jumps, relative velocities, what acts where. */
+  template <int dim>
+  void LargeMotion<dim>::set_problem(const double h)
+  {
+    const auto &rows = bodies_.rows();
+    const auto &frame = bodies_.points().frame;
+    const std::size_t n = this->discretization_.points().n_points;
+    for (std::size_t i = 0; i < n; ++i)
+      for (unsigned int a = 0; a < dim; ++a) {
+        double value = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          value +=
+              frame[(i * dim + a) * dim + d] * mesh_jumps_[i * dim + d];
+        old_.jump[i * dim + a] = value;
+      }
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      for (unsigned int a = 0; a < dim; ++a)
+        old_.jump[(n + k) * dim + a] =
+            rows[k].partner == MovingRow<dim>::Partner::pin ? rows[k].jump[a]
+            : a == 0                                        ? rows[k].gap
+                                                            : 0.;
+    relative_velocity(bodies_.old_velocity(), old_.time,
+                      old_.relative_velocity);
+    set_step(this->input_, this->discretization_, this->dynamics_,
+             *this->motion_, old_, h, step_problem_);
+    // what is joined stays where it is: the mean velocity vanishes
+    const double theta = step_problem_.theta;
+    for (std::size_t i = 0; i < step_problem_.n_points; ++i)
+      if (step_problem_.kind[i] == PointKind::prescribed &&
+          origins_[i].kind != PointOrigin::Kind::motion)
+        for (unsigned int a = 0; a < dim; ++a)
+          step_problem_.given_velocity[i * dim + a] =
+              -(1. - theta) / theta * old_.relative_velocity[i * dim + a];
+  }
+
+  /** The impulses of the last step, in the frames at hand. */
+  template <int dim>
+  void LargeMotion<dim>::warm_start(const State &old)
+  {
+    const std::size_t n = this->discretization_.points().n_points;
+    impulse_ = old_.impulse;
+    const auto &rows = bodies_.rows();
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere;
+           ++a)
+        for (unsigned int d = 0; d < dim; ++d)
+          impulse_[(n + k) * dim + a] +=
+              bodies_.points().frame[((n + k) * dim + a) * dim + d] *
+              old.surface_impulse[rows[k].place * dim + d];
+    // what does not touch in this step has none
+    for (std::size_t i = 0; i < step_problem_.n_points; ++i)
+      if (step_problem_.kind[i] == PointKind::free && !step_problem_.contact[i])
+        std::fill_n(impulse_.begin() + long(i * dim), dim, 0.);
+  }
+
+  // ---------------------------------------------------------- the iteration
+
+  template <int dim>
+  bool LargeMotion<dim>::move_bodies(const std::vector<double> &v)
+  {
+    std::vector<double> all(impulse_), r(v.size());
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k] += crack_impulse_[k];
+    this->dynamics_.generalised_impulse(all.data(), r.data());
+    return bodies_.move(r, v);
+  }
+
+  template <int dim>
+  SolverReport
+  LargeMotion<dim>::iterate(const State &old, const double h,
+                            const SolverControl &control,
+                            std::unique_ptr<LawEvaluation<dim>> &evaluation)
+  {
+    auto &dynamics = this->dynamics_;
+    const double theta = this->input_.time.theta;
+    SolverReport total;
+    std::vector<double> difference(bodies_.old_velocity().size());
+    for (unsigned int round = 0;; ++round) {
+      const std::vector<double> v_middle = bodies_.velocity();
+      bodies_.set_middle();
+      dynamics.renew(h, theta);
+      set_problem(h);
+      if (round == 0) {
+        warm_start(old);
+        if (!move_bodies(v_middle))
+          throw StepRejected(lost_body(h, old.time));
+      }
+      // linear in what further impulses do
+      this->v_free_ = bodies_.velocity();
+      std::vector<double> less(impulse_);
+      for (double &P : less)
+        P = -P;
+      dynamics.add_velocity_change(less.data(), this->v_free_.data());
+      relative_velocity(this->v_free_, old.time + h,
+                        step_problem_.free_velocity);
+      dynamics.set_free_velocity(&this->v_free_);
+      if (round == 0)
+        energy_scale_ = 2. * old.energy.kinetic +
+                        bodies_.kinetic_product(this->v_free_, this->v_free_);
+      evaluation = std::make_unique<LawEvaluation<dim>>(
+          step_problem_, dynamics, energy_scale_, control.tolerance);
+      const auto solver = SolverRegistry<dim>::instance().create(
+          this->input_.solver.method == "auto" ? "chain"
+                                               : this->input_.solver.method);
+      const SolverReport part =
+          this->solve(*solver, step_problem_, origins_, control, energy_scale_,
+                      impulse_, *evaluation);
+      total.newton += part.newton;
+      total.krylov += part.krylov;
+      total.sweeps += part.sweeps;
+      total.line_searches += part.line_searches;
+      total.residual = part.residual;
+      total.converged = part.converged;
+      total.switches.insert(total.switches.end(), part.switches.begin(),
+                            part.switches.end());
+      if (!part.converged)
+        return total;
+      std::vector<double> v = this->v_free_;
+      dynamics.add_velocity_change(impulse_.data(), v.data());
+      if (!move_bodies(v))
+        throw StepRejected(lost_body(h, old.time));
+      for (std::size_t k = 0; k < difference.size(); ++k)
+        difference[k] = bodies_.velocity()[k] - v_middle[k];
+      const double change = bodies_.kinetic_product(difference, difference);
+      ++motion_counters_.iterations;
+      motion_counters_.most_iterations =
+          std::max<unsigned long long>(motion_counters_.most_iterations, round + 1);
+      if (change <= velocity_tolerance * velocity_tolerance * energy_scale_)
+        return total;
+      if (round == most_iterations || !std::isfinite(change))
+        throw StepRejected(fmt::format(
+            "the motion of the step of {:.4g} at t = {:.6g} did not come to "
+            "rest: velocities change by {:.1e} of all after {} iterations",
+            h, old.time, std::sqrt(change / energy_scale_), round + 1));
+    }
+  }
+
+  template <int dim>
+  std::string LargeMotion<dim>::lost_body(const double h,
+                                          const double time) const
+  {
+    return fmt::format("a body has no motion in the step of {:.4g} at t = "
+                       "{:.6g}: it would be turned inside out",
+                       h, time);
+  }
+
+  template <int dim>
+  StepReport LargeMotion<dim>::advance(const State &old, const double h,
+                                       State &next,
+                                       const unsigned int idle_rounds)
+  {
+    {
+      const Stopwatch watch(this->timings_.assembly);
+      const Charge charge(Cost::free_motion);
+      start(old, h, next);
+    }
+    StepReport report;
+    std::unique_ptr<LawEvaluation<dim>> evaluation;
+    {
+      const Stopwatch watch(this->timings_.solve);
+      const Charge charge(Cost::solver);
+      SolverControl control;
+      control.tolerance = this->input_.solver.tolerance;
+      control.maximum_iterations = this->input_.solver.maximum_iterations;
+      control.idle_rounds = idle_rounds;
+      report.solver = iterate(old, h, control, evaluation);
+    }
+    save_problem<dim>(this->input_, step_problem_, this->dynamics_,
+                      *evaluation, report.solver, old.step + 1, old.time);
+    if (!report.solver.converged)
+      this->reject(h, old.time, report.solver, evaluation->worst_point);
+    const Stopwatch watch(this->timings_.ledger);
+    const Charge charge(Cost::ledger);
+    finish(h, *evaluation, next, report);
+    this->check_books(h, old.time, energy_scale_, next, report,
+                      evaluation->worst_point);
+    remember_surfaces(old, next);
+    if (contacts_)
+      contacts_->part(next);
+    return report;
+  }
+
+  template <int dim>
+  void LargeMotion<dim>::finish(const double h,
+                                const LawEvaluation<dim> &evaluation,
+                                State &next, StepReport &report)
+  {
+    const double theta = step_problem_.theta;
+    next.step = old_.step + 1;
+    next.time = old_.time + h;
+    next.impulse = impulse_;
+    next.relative_velocity.resize(impulse_.size());
+    relative_velocity(bodies_.velocity(), next.time, next.relative_velocity);
+    next.jump.resize(impulse_.size());
+    for (std::size_t k = 0; k < impulse_.size(); ++k)
+      next.jump[k] = step_problem_.jump_free[k] +
+                     h * theta * next.relative_velocity[k];
+    bodies_.finish(next);
+    this->ledger_->book(step_problem_, evaluation, origins_, bodies_.book(),
+                        old_, next, report);
+    next.energy.work += obstacle_work();
+    // springs of two stiffnesses store other energies as their frames turn
+    double stored = 0.;
+    for (std::size_t i = 0; i < this->problem_.n_points; ++i)
+      stored += step_problem_.weight[i] *
+                stored_energy<dim>(step_problem_, i);
+    next.energy.numerical -= stored - old_.energy.cohesive;
+    close_books(old_, next, report);
+  }
+
+  template <int dim>
+  double LargeMotion<dim>::obstacle_work() const
+  {
+    const double theta = this->input_.time.theta;
+    const std::size_t n = this->discretization_.points().n_points;
+    double work = 0.;
+    for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
+      const auto before = obstacle_velocity(k, old_.time),
+                 after = obstacle_velocity(k, old_.time +
+                                                  step_problem_.time_step);
+      for (unsigned int a = 0; a < dim; ++a)
+        work += impulse_[(n + k) * dim + a] *
+                (theta * after[a] + (1. - theta) * before[a]);
+    }
+    return work;
+  }
+
+  /** Contacts live for one step; what their places remember stays. */
+  template <int dim>
+  void LargeMotion<dim>::remember_surfaces(const State &old, State &next) const
+  {
+    next.surface_impulse.assign(old.surface_impulse.size(), 0.);
+    next.surface_slip = old.surface_slip;
+    next.surface_worn = old.surface_worn;
+    next.surface_wear_speed.assign(old.surface_wear_speed.size(), 0.);
+    next.surface_bound = old.surface_bound;
+    next.surface_contact.assign(old.surface_contact.size(), 0);
+    const std::size_t n = this->discretization_.points().n_points;
+    const auto &rows = bodies_.rows();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const std::size_t place = rows[k].place, i = n + k;
+      if (place == rows[k].nowhere)
+        continue;
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int d = 0; d < dim; ++d)
+          next.surface_impulse[place * dim + d] +=
+              bodies_.points().frame[(i * dim + a) * dim + d] *
+              next.impulse[i * dim + a];
+      next.surface_slip[place] = next.slip[i];
+      next.surface_bound[place] =
+          std::max(next.surface_bound[place], next.penetration_bound[i]);
+      next.surface_contact[place] |= next.contact[i];
+      if (!next.worn.empty()) {
+        next.surface_worn[place] = next.worn[i];
+        next.surface_wear_speed[place] = next.wear_speed[i];
+      }
+    }
+    const auto cut = [n](auto &array, const std::size_t width) {
+      if (array.size() > n * width)
+        array.resize(n * width);
+    };
+    for (auto *array : {&next.jump, &next.relative_velocity, &next.impulse})
+      cut(*array, dim);
+    for (auto *array :
+         {&next.opening_max, &next.slip_max, &next.beta, &next.slip,
+          &next.dilated, &next.worn, &next.dilation_speed, &next.wear_speed,
+          &next.penetration_bound, &next.pressure})
+      cut(*array, 1);
+    cut(next.kind, 1);
+    cut(next.two_sided, 1);
+    cut(next.contact, 1);
+  }
+
+  template <int dim>
+  std::string LargeMotion<dim>::describe(const std::size_t i) const
+  {
+    if (i >= origins_.size())
+      return "unknown";
+    return MoreauJean<dim>::describe(origins_[i],
+                                     &bodies_.points().position[i * dim]);
+  }
+
+  template class LargeMotion<2>;
+  template class LargeMotion<3>;
+} // namespace nsfd

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <deal.II/base/tensor.h>
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace nsfd
+{
+  /**
+   * A contact of one step between body 2, whose place it follows, and body 1
+   * or an obstacle: a node or a ball of body 2 against a facet, a ball, an
+   * obstacle; or a pin that holds a place of body 2. The normal leads from
+   * body 1 to body 2.
+   */
+  template <int dim>
+  struct MovingRow
+  {
+    enum class Partner : unsigned char
+    {
+      facet,
+      ball,
+      obstacle,
+      pin
+    };
+    static constexpr std::size_t nowhere =
+        std::numeric_limits<std::size_t>::max();
+
+    Partner partner = Partner::facet;
+    int body_1 = -1;
+    unsigned int body_2 = 0;
+    std::size_t node = nowhere;  ///< of body 2; nowhere: it is a ball
+    unsigned int cell = 0;       ///< with this node
+    unsigned int facet_cell = 0; ///< of body 1
+    std::array<std::size_t, 4> facet{}; ///< nodes, the outside as in Surfaces
+    unsigned int n_facet = 0;
+    std::array<double, 4> weights{}; ///< of these nodes at the start
+    unsigned int obstacle = 0, pin = 0;
+    double gap = 0.;            ///< at the start of the step, m
+    double weight = 0.;         ///< m or m^2
+    unsigned int interaction = 0; ///< index into OneStepProblem::interactions
+    unsigned int block = 0;
+    std::size_t place = nowhere; ///< of what it remembers
+    dealii::Tensor<1, dim> jump; ///< of a pin: how far it is off
+  };
+} // namespace nsfd

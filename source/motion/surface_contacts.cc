@@ -1,0 +1,427 @@
+#include "surface_contacts.h"
+
+#include "obstacle_shape.h"
+
+#include "nsfd/input/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  template <int dim>
+  SurfaceContacts<dim>::SurfaceContacts(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      const MovingBodies<dim> &bodies)
+      : input_(input), discretization_(discretization), bodies_(bodies)
+  {
+    const auto &cells = discretization.bodies();
+    for (const auto &body : cells.classes)
+      faces_.push_back(
+          body.bodies.empty()
+              ? std::vector<FaceNodes>()
+              : face_nodes(discretization.element(),
+                           discretization.shape(body.bodies[0])));
+    first_place_.push_back(0);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      std::size_t n = 0;
+      for (const auto &face : faces_[cells.class_of[c]])
+        n += face.nodes.size();
+      first_place_.push_back(first_place_.back() + n);
+    }
+    const std::size_t n = input.materials.size();
+    block_by_materials_.assign(n * n, -1);
+    for (std::size_t k = input.contacts.size(); k-- > 0;)
+      for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t b = 0; b < n; ++b) {
+          const auto &names = input.contacts[k].materials;
+          const auto is = [&](const std::size_t i, const std::size_t j) {
+            return names[0].empty() || (input.materials[i].name == names[0] &&
+                                        input.materials[j].name == names[1]);
+          };
+          if (is(a, b) || is(b, a))
+            block_by_materials_[a * n + b] = int(k);
+        }
+    merge_nodes();
+    set_boundary();
+  }
+
+  /** Cells of one rigid body have their own nodes at the same places. */
+  template <int dim>
+  void SurfaceContacts<dim>::merge_nodes()
+  {
+    State rest;
+    rest.displacement.assign(discretization_.n_nodal(), 0.);
+    const auto x = bodies_.positions(rest);
+    const double unit = 1e-9 * discretization_.extent();
+    std::map<std::pair<unsigned int, std::array<long long, dim>>, unsigned int>
+        first;
+    merged_.resize(bodies_.n_nodes());
+    for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
+      const std::size_t begin = discretization_.first_node(c);
+      const unsigned int b = bodies_.body_of_cell(c);
+      for (std::size_t i = begin; i < begin + discretization_.shape(c).n_nodes;
+           ++i) {
+        merged_[i] = unsigned(i);
+        if (!bodies_.is_rigid(b))
+          continue;
+        std::array<long long, dim> at;
+        for (unsigned int d = 0; d < dim; ++d)
+          at[d] = std::llround(x[i * dim + d] / unit);
+        merged_[i] =
+            first.emplace(std::pair(b, at), unsigned(i)).first->second;
+      }
+    }
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::set_boundary()
+  {
+    const auto &cells = discretization_.bodies();
+    const auto &points = discretization_.points();
+    for (unsigned int c = 0; c < cells.size(); ++c) {
+      auto &face_of = mesh_face_.emplace_back(
+          faces_[cells.class_of[c]].size(), -1);
+      for (std::size_t s = cells.first_slot[c]; s < cells.first_slot[c + 1];
+           ++s) {
+        const unsigned int i = cells.slot_point[s];
+        if (i < points.n_points && discretization_.origins()[i].kind ==
+                                       PointOrigin::Kind::interface)
+          face_of[discretization_.face_of_slot(
+              c, unsigned(s - cells.first_slot[c]))] = int(points.face_of[i]);
+      }
+    }
+  }
+
+  template <int dim>
+  std::size_t SurfaceContacts<dim>::place_of(const unsigned int cell,
+                                             const unsigned int face,
+                                             const unsigned int node) const
+  {
+    const auto &faces = faces_[discretization_.bodies().class_of[cell]];
+    std::size_t place = first_place_[cell] + node;
+    for (unsigned int f = 0; f < face; ++f)
+      place += faces[f].nodes.size();
+    return place;
+  }
+
+  template <int dim>
+  int SurfaceContacts<dim>::block_of(const unsigned int body_1,
+                                     const unsigned int body_2) const
+  {
+    return block_by_materials_[bodies_.material_of(body_1) *
+                                   input_.materials.size() +
+                               bodies_.material_of(body_2)];
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::set_initial(State &state) const
+  {
+    const std::size_t n = first_place_.back() + bodies_.size();
+    state.surface_impulse.assign(n * dim, 0.);
+    state.surface_contact.assign(n, 0);
+    for (auto *array : {&state.surface_slip, &state.surface_bound})
+      array->assign(n, 0.);
+    if (!state.worn.empty())
+      for (auto *array : {&state.surface_worn, &state.surface_wear_speed})
+        array->assign(n, 0.);
+    part(state);
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::part(State &state) const
+  {
+    const auto &faces = bodies_.points().faces;
+    const std::size_t n_faces = discretization_.points().faces.size();
+    std::unordered_set<Pair> held;
+    const auto is_between = [&](const std::size_t f) {
+      return faces[f].bodies[0] >= 0 && faces[f].bodies[1] >= 0 &&
+             block_of(unsigned(faces[f].bodies[0]),
+                      unsigned(faces[f].bodies[1])) >= 0;
+    };
+    const auto bodies_of = [&](const std::size_t f) {
+      return pair_of(unsigned(faces[f].bodies[0]),
+                     unsigned(faces[f].bodies[1]));
+    };
+    for (std::size_t f = 0; f < n_faces; ++f)
+      for (unsigned int i = faces[f].first;
+           is_between(f) && i < faces[f].first + faces[f].count; ++i)
+        if (state.kind[i] != PointKind::free &&
+            state.kind[i] != PointKind::parted)
+          held.insert(bodies_of(f));
+    for (std::size_t f = 0; f < n_faces; ++f)
+      if (is_between(f) && held.count(bodies_of(f)) == 0)
+        for (unsigned int i = faces[f].first;
+             i < faces[f].first + faces[f].count; ++i)
+          state.kind[i] = PointKind::parted;
+  }
+
+  // ---------------------------------------------------------------- surfaces
+
+  template <int dim>
+  bool SurfaceContacts<dim>::is_surface(const unsigned int cell,
+                                        const unsigned int face,
+                                        const State &state) const
+  {
+    const int f = mesh_face_[cell][face];
+    return f < 0 ||
+           state.kind[bodies_.points().faces[std::size_t(f)].first] ==
+               PointKind::parted;
+  }
+
+  /** True if the surfaces are others than in the last step. */
+  template <int dim>
+  bool SurfaceContacts<dim>::follow(const State &state)
+  {
+    const auto &faces = bodies_.points().faces;
+    const std::size_t n_faces = discretization_.points().faces.size();
+    std::vector<char> parted(n_faces);
+    for (std::size_t f = 0; f < n_faces; ++f)
+      parted[f] = state.kind[faces[f].first] == PointKind::parted;
+    if (known_ && parted == parted_)
+      return false;
+    known_ = true;
+    parted_ = std::move(parted);
+    joined_.clear();
+    for (std::size_t f = 0; f < n_faces; ++f)
+      if (!parted_[f] && faces[f].bodies[0] >= 0 && faces[f].bodies[1] >= 0)
+        joined_.insert(pair_of(unsigned(faces[f].bodies[0]),
+                               unsigned(faces[f].bodies[1])));
+    surfaces_ = Surfaces<dim>();
+    point_origins_.clear();
+    facet_cells_.clear();
+    for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
+      const unsigned int b = bodies_.body_of_cell(c);
+      const std::size_t n = input_.materials.size();
+      const auto blocks =
+          block_by_materials_.begin() + long(bodies_.material_of(b) * n);
+      if (bodies_.ball_radius(b) > 0. ||
+          std::all_of(blocks, blocks + long(n),
+                      [](const int k) { return k < 0; }))
+        continue;
+      for (unsigned int f = 0; f < mesh_face_[c].size(); ++f)
+        if (is_surface(c, f, state))
+          add_face(c, f);
+    }
+    for (unsigned int b = 0; b < bodies_.size(); ++b)
+      if (bodies_.ball_radius(b) > 0.)
+        surfaces_.balls.push_back({b, bodies_.ball_radius(b),
+                                   std::uint64_t(b),
+                                   unsigned(bodies_.centre_node(b))});
+    surfaces_.n_vertices = bodies_.positions(state).size() / dim;
+    counters_.facets =
+        std::max<unsigned long long>(counters_.facets, surfaces_.facets.size());
+    add_obstacle_faces(state);
+    return true;
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::add_face(const unsigned int c,
+                                      const unsigned int f)
+  {
+    const FaceNodes &face = faces_[discretization_.bodies().class_of[c]][f];
+    const std::size_t first = discretization_.first_node(c);
+    std::vector<char> has_point(discretization_.shape(c).n_nodes, 0);
+    for (std::size_t p = 0; p < face.pieces.size(); ++p) {
+      typename Surfaces<dim>::Facet facet;
+      facet.n_vertices = unsigned(face.pieces[p].size());
+      for (unsigned int v = 0; v < facet.n_vertices; ++v)
+        facet.vertex[v] = merged_[first + face.pieces[p][v]];
+      facet.body = bodies_.body_of_cell(c);
+      facet.key = std::uint64_t(place_of(c, f, 0)) * 64 + p;
+      for (unsigned int v = 0; v < facet.n_vertices; ++v) {
+        const unsigned int node = face.pieces[p][v];
+        if (has_point[node])
+          continue;
+        has_point[node] = 1;
+        surfaces_.points.push_back(
+            {facet.vertex[v], unsigned(surfaces_.facets.size())});
+        const auto j = unsigned(
+            std::find(face.nodes.begin(), face.nodes.end(), node) -
+            face.nodes.begin());
+        point_origins_.push_back({c, f, j});
+      }
+      surfaces_.facets.push_back(facet);
+      facet_cells_.push_back(c);
+    }
+  }
+
+  /** Named faces, and new surfaces where the obstacle is for all. */
+  template <int dim>
+  void SurfaceContacts<dim>::add_obstacle_faces(const State &state)
+  {
+    obstacle_faces_ = discretization_.obstacle_faces();
+    for (unsigned int o = 0; o < input_.obstacles.size(); ++o)
+      if (input_.obstacles[o].where.kind == Where::Kind::all)
+        for (unsigned int c = 0; c < mesh_face_.size(); ++c)
+          for (unsigned int f = 0; f < mesh_face_[c].size(); ++f)
+            if (mesh_face_[c][f] >= 0 && is_surface(c, f, state))
+              obstacle_faces_.push_back({c, f, o});
+  }
+
+  // -------------------------------------------------------------------- rows
+
+  template <int dim>
+  std::vector<MovingRow<dim>>
+  SurfaceContacts<dim>::rows(const State &old, const double h)
+  {
+    if (follow(old))
+      search_.topology_changed();
+    // twice the speed of two bodies that meet, and what rests
+    const double reach = 2. * h * bodies_.largest_speed(old) +
+                         1e-9 * discretization_.extent();
+    std::vector<Row> result;
+    if (!input_.contacts.empty())
+      add_surface_rows(old, reach, result);
+    add_obstacle_rows(old, reach, result);
+    counters_.rows += result.size();
+    counters_.searches = search_.n_searches();
+    for (const Row &row : result)
+      counters_.largest_overlap =
+          std::max(counters_.largest_overlap, -row.gap);
+    return result;
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::set_partner(const FacetPair<dim> &pair,
+                                         Row &row) const
+  {
+    const auto &facet = surfaces_.facets[pair.facet];
+    row.partner = Row::Partner::facet;
+    row.body_1 = int(facet.body);
+    row.facet_cell = facet_cells_[pair.facet];
+    row.n_facet = facet.n_vertices;
+    for (unsigned int v = 0; v < row.n_facet; ++v)
+      row.facet[v] = facet.vertex[v];
+    row.weights = pair.weights;
+    row.gap = pair.gap;
+    row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+    // interfaces, obstacles, the support, contacts: see constant_data()
+    row.interaction = unsigned(input_.interfaces.size() +
+                               input_.obstacles.size() + 1 + row.block);
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::add_surface_rows(const State &old,
+                                              const double reach,
+                                              std::vector<Row> &rows)
+  {
+    const auto x = bodies_.positions(old);
+    search_.find(
+        surfaces_, x.data(), reach,
+        [this](const unsigned int a, const unsigned int b) {
+          return block_of(a, b) < 0 || joined_.count(pair_of(a, b)) > 0;
+        },
+        pairs_);
+    for (const auto &pair : pairs_.points) {
+      const Origin &origin = point_origins_[pair.index];
+      const auto &face =
+          faces_[discretization_.bodies().class_of[origin.cell]][origin.face];
+      Row row;
+      row.body_2 = bodies_.body_of_cell(origin.cell);
+      row.cell = origin.cell;
+      row.node = discretization_.first_node(origin.cell) +
+                 face.nodes[origin.node];
+      row.weight = face.weights[origin.node];
+      row.place = place_of(origin.cell, origin.face, origin.node);
+      set_partner(pair, row);
+      rows.push_back(row);
+    }
+    const auto ball_row = [&](const unsigned int index) {
+      Row row;
+      const auto &ball = surfaces_.balls[index];
+      row.body_2 = ball.body;
+      row.place = first_place_.back() + ball.body;
+      row.weight = dim == 2 ? ball.radius : ball.radius * ball.radius;
+      return row;
+    };
+    for (const auto &pair : pairs_.balls) {
+      Row row = ball_row(pair.index);
+      set_partner(pair, row);
+      rows.push_back(row);
+    }
+    for (const auto &pair : pairs_.ball_balls) {
+      Row row = ball_row(pair.ball);
+      row.partner = Row::Partner::ball;
+      row.body_1 = int(surfaces_.balls[pair.other].body);
+      row.gap = pair.gap;
+      row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+      row.interaction = unsigned(input_.interfaces.size() +
+                                 input_.obstacles.size() + 1 + row.block);
+      rows.push_back(row);
+    }
+  }
+
+  /** One row per node and obstacle: that of its largest face. */
+  template <int dim>
+  void SurfaceContacts<dim>::add_obstacle_rows(const State &old,
+                                               const double reach,
+                                               std::vector<Row> &rows) const
+  {
+    const auto x = bodies_.positions(old);
+    const auto at = [&](const std::size_t node) {
+      Point<dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = x[node * dim + d];
+      return result;
+    };
+    const auto geometry = [&](const unsigned int o) {
+      return ObstacleGeometry<dim>(
+          input_.obstacles[o],
+          old.obstacle_shift.empty() ? nullptr : &old.obstacle_shift[3 * o]);
+    };
+    std::map<std::pair<unsigned int, unsigned int>, std::size_t> known;
+    const auto add = [&](Row row, const unsigned int o) {
+      row.partner = Row::Partner::obstacle;
+      row.obstacle = row.block = o;
+      row.interaction = unsigned(input_.interfaces.size()) + o;
+      rows.push_back(row);
+    };
+    for (const auto &[c, f, o] : obstacle_faces_) {
+      const unsigned int b = bodies_.body_of_cell(c);
+      if (bodies_.ball_radius(b) > 0.) {
+        Row row;
+        row.body_2 = b;
+        row.gap = geometry(o).gap(at(bodies_.centre_node(b))) -
+                  bodies_.ball_radius(b);
+        row.place = first_place_.back() + b;
+        row.weight = dim == 2 ? bodies_.ball_radius(b)
+                              : std::pow(bodies_.ball_radius(b), 2);
+        if (row.gap <= reach &&
+            known.emplace(std::pair(unsigned(bodies_.n_nodes()) + b, o), 0)
+                .second)
+          add(row, o);
+        continue;
+      }
+      const FaceNodes &face = faces_[discretization_.bodies().class_of[c]][f];
+      const std::size_t first = discretization_.first_node(c);
+      for (unsigned int j = 0; j < face.nodes.size(); ++j) {
+        Row row;
+        row.node = first + face.nodes[j];
+        row.gap = geometry(o).gap(at(row.node));
+        if (row.gap > reach)
+          continue;
+        row.body_2 = b;
+        row.cell = c;
+        row.place = place_of(c, f, j);
+        row.weight = face.weights[j];
+        const auto [entry, is_new] = known.emplace(
+            std::pair(merged_[row.node], o), rows.size());
+        if (is_new)
+          add(row, o);
+        else if (row.weight > rows[entry->second].weight) {
+          row.partner = Row::Partner::obstacle;
+          row.obstacle = row.block = o;
+          row.interaction = rows[entry->second].interaction;
+          rows[entry->second] = row;
+        }
+      }
+    }
+  }
+
+  template class SurfaceContacts<2>;
+  template class SurfaceContacts<3>;
+} // namespace nsfd

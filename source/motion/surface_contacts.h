@@ -1,0 +1,100 @@
+#pragma once
+
+#include "face_nodes.h"
+#include "moving_bodies.h"
+
+#include "nsfd/contact/surface_search.h"
+
+#include <memory>
+#include <unordered_set>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The surfaces of the moving bodies: sides of the mesh, lips of faces that
+   * have broken between two bodies, balls. It says which of their places touch
+   * another surface or an obstacle in a step.
+   *
+   * A place of a surface is a node on a face of a cell, or a ball; what it
+   * remembers (slip, wear, the last impulse) stays with it whatever it
+   * touches, in the arrays `surface_...` of the state.
+   */
+  template <int dim>
+  class SurfaceContacts
+  {
+  public:
+    SurfaceContacts(const SceneInput &input,
+                    const Discretization<dim> &discretization,
+                    const MovingBodies<dim> &bodies);
+
+    /** Nothing remembered; broken faces are surfaces from the start. */
+    void set_initial(State &state) const;
+
+    /**
+     * Points between two bodies that nothing holds together any more are left
+     * to the search: `parted`.
+     */
+    void part(State &state) const;
+
+    /** What may touch in a step of @p time_step from @p old. */
+    std::vector<MovingRow<dim>> rows(const State &old, double time_step);
+
+    struct Counters
+    {
+      unsigned long long searches = 0, facets = 0, rows = 0;
+      double largest_overlap = 0.; ///< of all pairs at starts of steps, m
+    };
+    const Counters &counters() const { return counters_; }
+
+  private:
+    using Row = MovingRow<dim>;
+    using Pair = std::uint64_t;
+
+    static Pair pair_of(const unsigned int a, const unsigned int b)
+    {
+      return a < b ? (Pair(a) << 32 | b) : (Pair(b) << 32 | a);
+    }
+    std::size_t place_of(unsigned int cell, unsigned int face,
+                         unsigned int node) const;
+    int block_of(unsigned int body_1, unsigned int body_2) const;
+    void merge_nodes();
+    void set_boundary();
+    bool is_surface(unsigned int cell, unsigned int face,
+                    const State &state) const;
+    bool follow(const State &state);
+    void add_face(unsigned int cell, unsigned int face);
+    void add_obstacle_faces(const State &state);
+    void add_surface_rows(const State &old, double reach,
+                          std::vector<Row> &rows);
+    void add_obstacle_rows(const State &old, double reach,
+                           std::vector<Row> &rows) const;
+    void set_partner(const FacetPair<dim> &pair, Row &row) const;
+
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    const MovingBodies<dim> &bodies_;
+    std::vector<std::vector<FaceNodes>> faces_; ///< per class of cells
+    std::vector<std::size_t> first_place_;      ///< per cell, then of balls
+    std::vector<std::vector<int>> mesh_face_;   ///< per cell and face: of the
+                                                ///< points, -1 at the boundary
+    std::vector<unsigned int> merged_; ///< node of the body at the same place
+    std::vector<int> block_by_materials_;
+
+    // of the surfaces at hand
+    std::vector<char> parted_; ///< per face of the mesh points
+    bool known_ = false;
+    std::unordered_set<Pair> joined_;
+    Surfaces<dim> surfaces_;
+    struct Origin
+    {
+      unsigned int cell, face, node; ///< node of the face
+    };
+    std::vector<Origin> point_origins_;
+    std::vector<unsigned int> facet_cells_;
+    std::vector<ObstacleFace> obstacle_faces_;
+    SurfaceSearch<dim> search_;
+    NearPairs<dim> pairs_;
+    Counters counters_;
+  };
+} // namespace nsfd
