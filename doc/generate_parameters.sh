@@ -116,6 +116,74 @@ subsection Time
 end
 END
 
+# Rotations and strains of any size: every kind of body, obstacle and contact.
+cat >"$scratch/large.prm" <<'END'
+# large - a ball of several cells on a soft block in a drum.
+set dimension = 3
+set motion    = large
+subsection Mesh
+  set type         = brick
+  set upper corner = 3, 1, 1
+  set cells        = 3, 1, 1
+end
+subsection Material: ball
+  set where   = x < 1
+  set model   = rigid
+  set density = 1
+  set bodies  = connected
+  set surface = ball
+end
+subsection Material: block
+  set model         = neo-hookean
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+end
+subsection Interface: joint
+  set where     = x < 1.5
+  set law       = camacho-ortiz
+  set strength  = 1
+  set toughness = 1
+end
+subsection Interface: others
+  set law = rigid
+end
+subsection Boundary: right
+  set pressure = 1
+end
+subsection Obstacle: floor
+  set point  = 0, 0, -1
+  set normal = 0, 0, 1
+end
+subsection Obstacle: hammer
+  set shape      = sphere
+  set point      = 9, 0, 0
+  set radius     = 1
+  set velocity x = -1
+end
+subsection Obstacle: drum
+  set shape  = cylinder
+  set point  = 0, 0, 0
+  set axis   = 0, 1, 0
+  set radius = 5
+  set hollow = true
+end
+subsection Contact: of the ball
+  set between  = [ball, block]
+  set friction = 0.5
+end
+subsection Contact: others
+end
+subsection Pin: hinge
+  set material = ball
+  set at       = 0, 0, 0
+end
+subsection Time
+  set end  = 1
+  set step = 1 ms
+end
+END
+
 # Equilibria: every entry of their section Time.
 cat >"$scratch/static.prm" <<'END'
 # static - a bar pulled from equilibrium to equilibrium.
@@ -200,7 +268,8 @@ that it does not use.
   name of a body, a material or boundary id of a generator's mesh, or a
   condition on the centre of the cell or face. The first Material block that
   holds owns a cell, the first Interface block an interior face; Boundary and
-  Obstacle blocks add up.
+  Obstacle blocks add up. Of Contact blocks the first that names the materials
+  of two bodies is theirs; bodies without one pass through each other.
 - A line ends with `\` if the next one continues it; `#` starts a comment;
   `include FILE` reads another file.
 - `--set 'Section/name=value'` changes an entry from the command line; a block
@@ -224,6 +293,23 @@ END
 
 END
   sections "$scratch/parts.prm" '(Obstacle|Material): .*'
+  cat <<'END'
+
+## Large motions: rotations and strains of any size
+
+`set motion = large` at the top. Materials are then `rigid`, `saint-venant
+kirchhoff` or `neo-hookean` (in plane strain and in space), obstacles may be
+round and may move, and surfaces touch wherever they meet. `mass` and `principal
+inertia` stand in place of those of the cells: in the plane they are per
+thickness, and the inertia is one number, about z. `Boundary/pressure` is a dead
+load: along the normal and per area of the face at t = 0.
+
+There is no mesh that changes, no bonded face (intact faces of extrinsic laws
+are `rigid`), no equilibrium, no scheme but `moreau-jean` and no `path = global`.
+
+END
+  sections "$scratch/large.prm" \
+    '(Material|Interface: joint|Boundary|Obstacle|Contact|Pin)(: .*)?'
   cat <<'END'
 
 ## Time, with quasi-static steps

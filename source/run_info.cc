@@ -3,6 +3,7 @@
 #include "nsfd/base/version.h"
 #include "nsfd/simulation.h"
 #include "scene/group_report.h"
+#include "scene/motion_report.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -56,7 +57,9 @@ namespace nsfd
     parts.emplace_back("element", model.discretization->element().get_name());
     for (const auto &material : input.materials)
       parts.emplace_back("material " + material.name,
-                         material.rigid ? "rigid" : "linear elastic");
+                         model_name(material.model));
+    for (const auto &[keyword, sentence] : motion_report(input))
+      parts.emplace_back(keyword, sentence);
     for (const auto &block : input.interfaces) {
       parts.emplace_back("interface " + block.name, block.law_name);
       if (block.strength_scatter.is_random() ||
@@ -69,7 +72,11 @@ namespace nsfd
     for (const unsigned int b : model.discretization->driven_boundaries())
       parts.emplace_back("motion", input.boundaries[b].name);
     for (const auto &obstacle : input.obstacles)
-      parts.emplace_back("obstacle", obstacle.name);
+      parts.emplace_back("obstacle",
+                         input.large_motion
+                             ? obstacle.name + ": " +
+                                   describe_obstacle(obstacle, input.dimension)
+                             : obstacle.name);
     if (model.discretization->has_loads())
       parts.emplace_back("loads", "body forces and tractions");
     parts.emplace_back("dynamics", model.path);

@@ -18,7 +18,7 @@ namespace nsfd
   struct Expression::Compiled {
     std::string text;
     double constant = 0.;
-    bool depends_on_time = false;
+    bool depends_on_time = false, depends_on_position = false;
     mutable std::unique_ptr<mu::Parser> parser; ///< null: not a formula
     Function function;                          ///< empty: not one either
     mutable double x = 0., y = 0., z = 0., t = 0.;
@@ -83,11 +83,12 @@ namespace nsfd
 
   std::shared_ptr<const Expression::Compiled>
   compile_translated(const std::string &translated, const std::string &text,
-                     const bool depends_on_time)
+                     const bool depends_on_time, const bool depends_on_position)
   {
     auto compiled = std::make_shared<Expression::Compiled>();
     compiled->text = text;
     compiled->depends_on_time = depends_on_time;
+    compiled->depends_on_position = depends_on_position;
     compiled->parser = std::make_unique<mu::Parser>();
     mu::Parser &parser = *compiled->parser;
     add_functions(parser);
@@ -125,6 +126,7 @@ namespace nsfd
     auto compiled = std::make_shared<Compiled>();
     compiled->text = text;
     compiled->depends_on_time = depends_on_time;
+    compiled->depends_on_position = true;
     compiled->function = std::move(function);
     compiled_ = std::move(compiled);
   }
@@ -146,6 +148,11 @@ namespace nsfd
   bool Expression::depends_on_time() const
   {
     return compiled_->depends_on_time;
+  }
+
+  bool Expression::depends_on_position() const
+  {
+    return compiled_->depends_on_position;
   }
 
   bool Expression::is_constant() const

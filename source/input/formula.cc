@@ -34,8 +34,8 @@ namespace nsfd
         }
       }
       result.depends_on_time = parser.uses_time();
-      result.compiled =
-          compile_translated(part.translated, text, parser.uses_time());
+      result.compiled = compile_translated(
+          part.translated, text, parser.uses_time(), parser.uses_position());
       if (!parser.uses_variables()) {
         const double value = Expression(result.compiled)(0., 0., 0., 0.);
         if (!std::isfinite(value))

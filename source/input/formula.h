@@ -50,5 +50,5 @@ namespace nsfd
    */
   std::shared_ptr<const Expression::Compiled>
   compile_translated(const std::string &translated, const std::string &text,
-                     bool depends_on_time);
+                     bool depends_on_time, bool depends_on_position);
 } // namespace nsfd

@@ -205,7 +205,7 @@ namespace nsfd::formula
               fmt::format("`{}` cannot stand here: a number is expected", name),
               "write a number, or constants and functions of them");
         uses_variables_ = true;
-        uses_time_ = uses_time_ || name == "t";
+        (name == "t" ? uses_time_ : uses_position_) = true;
         return {name, {Certainty::natural, variable.second}, begin, end};
       }
     const auto constant = constants_.find(name);

@@ -43,6 +43,7 @@ namespace nsfd::formula
 
     bool uses_variables() const { return uses_variables_; }
     bool uses_time() const { return uses_time_; }
+    bool uses_position() const { return uses_position_; }
 
   private:
     const std::string &text_;
@@ -50,7 +51,7 @@ namespace nsfd::formula
     const bool with_variables_;
     std::size_t at_ = 0, last_end_ = 0;
     unsigned int depth_ = 0;
-    bool uses_variables_ = false, uses_time_ = false;
+    bool uses_variables_ = false, uses_time_ = false, uses_position_ = false;
 
     [[noreturn]] void fail(const std::size_t begin, const std::size_t end,
                            const std::string &message,

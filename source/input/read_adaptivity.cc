@@ -18,6 +18,10 @@ namespace nsfd
         if (bad)
           reader.error("levels", what, advice);
       };
+      if (scene.large_motion)
+        return refuse(true,
+                      "the mesh of scenes with motion = large does not change",
+                      "remove the section Adaptivity, or write motion = small");
       refuse(has_simplices(scene),
              "only meshes of quads and hexes can change: triangles and "
              "tetrahedra have no hanging faces",

@@ -2,24 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace nsfd
 {
   namespace
   {
-    /** An entry that may be left out. */
-    std::optional<Expression> read_optional(SectionReader &reader,
-                                            const std::string &name,
-                                            const Unit unit,
-                                            const std::string &text)
-    {
-      if (!reader.optional(name, text))
-        return {};
-      return reader.expression(name, "", unit, text);
-    }
-
     /** @return true if the component is prescribed or loaded. */
     bool read_component(SectionReader &reader, const unsigned int c,
                         BoundaryInput &boundary)
@@ -27,12 +13,12 @@ namespace nsfd
       const std::string velocity = component_name("velocity", c);
       const std::string displacement = component_name("displacement", c);
       const std::string traction = component_name("traction", c);
-      boundary.velocity[c] = read_optional(reader, velocity, units::velocity,
-                                           "m/s, of x, y, z, t");
-      boundary.displacement[c] = read_optional(
+      boundary.velocity[c] = read_optional_expression(
+          reader, velocity, units::velocity, "m/s, of x, y, z, t");
+      boundary.displacement[c] = read_optional_expression(
           reader, displacement, units::length, "m, of x, y, z, t");
-      const auto load =
-          read_optional(reader, traction, units::pressure, "Pa, of x, y, z, t");
+      const auto load = read_optional_expression(
+          reader, traction, units::pressure, "Pa, of x, y, z, t");
       if (load) {
         boundary.traction[c] = *load;
         boundary.has_traction = true;
@@ -78,9 +64,12 @@ namespace nsfd
       }
       refuse_third_component(reader, {"velocity", "displacement", "traction"},
                              scene);
-      if (const auto pressure =
-              read_optional(reader, "pressure", units::pressure,
-                            "Pa, of x, y, z, t; pushes on the body")) {
+      if (const auto pressure = read_optional_expression(
+              reader, "pressure", units::pressure,
+              scene.large_motion
+                  ? "Pa, of x, y, z, t; pushes on the body: a dead load, "
+                    "along the normal and per area of t = 0"
+                  : "Pa, of x, y, z, t; pushes on the body")) {
         boundary.pressure = *pressure;
         boundary.has_pressure = true;
       }
@@ -91,47 +80,17 @@ namespace nsfd
                      "write for example: set velocity x = 0");
       return boundary;
     }
-
-    ObstacleInput read_obstacle(SectionReader &reader, const SceneInput &scene)
-    {
-      ObstacleInput obstacle;
-      obstacle.name = reader.block_name();
-      obstacle.where = read_where(
-          reader, "all", WhereUse::boundary_faces, scene,
-          "boundary faces that may touch it: all, a side, a group or "
-          "an expression");
-      const unsigned int dim = scene.dimension;
-      const std::vector<double> point = reader.numbers(
-          "point", "", units::length, Range::any(), dim, "m, on its surface");
-      std::vector<double> normal =
-          reader.numbers("normal", "", units::none, Range::any(), dim,
-                         "out of the obstacle, of any length");
-      // scaled first: squares of huge or tiny components stay finite
-      double largest = 0., length = 0.;
-      for (const double n : normal)
-        largest = std::max(largest, std::abs(n));
-      if (largest == 0.)
-        reader.error("normal", "normal = 0 has no direction",
-                     dim == 2 ? "write for example: 0, 1"
-                              : "write for example: 0, 0, 1");
-      else
-        for (double &n : normal)
-          length += (n / largest) * (n / largest);
-      for (unsigned int d = 0; d < dim; ++d) {
-        obstacle.point[d] = point[d];
-        obstacle.normal[d] =
-            largest == 0. ? 0. : normal[d] / largest / std::sqrt(length);
-      }
-      obstacle.friction =
-          reader.number("friction", "0", units::none, Range::non_negative(),
-                        "coefficient of Coulomb friction");
-      obstacle.restitution =
-          reader.number("restitution", "0", units::none, Range::closed(0., 1.),
-                        "of Newton's impact law");
-      obstacle.sliding = read_sliding(reader, obstacle.friction);
-      return obstacle;
-    }
   } // namespace
+
+  std::optional<Expression> read_optional_expression(SectionReader &reader,
+                                                     const std::string &name,
+                                                     const Unit unit,
+                                                     const std::string &text)
+  {
+    if (!reader.optional(name, text))
+      return {};
+    return reader.expression(name, "", unit, text);
+  }
 
   void read_boundaries(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene)
@@ -139,15 +98,6 @@ namespace nsfd
     for (ParameterSection *block : file.open_blocks("Boundary")) {
       SectionReader reader(*block, errors);
       scene.boundaries.push_back(read_boundary(reader, scene));
-    }
-  }
-
-  void read_obstacles(ParameterFile &file, InputErrors &errors,
-                      SceneInput &scene)
-  {
-    for (ParameterSection *block : file.open_blocks("Obstacle")) {
-      SectionReader reader(*block, errors);
-      scene.obstacles.push_back(read_obstacle(reader, scene));
     }
   }
 

@@ -69,6 +69,11 @@ namespace nsfd
                    "path = element-wise contradicts bonded faces, which couple "
                    "the bodies",
                    "write auto, or take rigid faces");
+    if (solver.path == "global" && scene.large_motion)
+      reader.error("path",
+                   "path = global has one matrix for all steps, and bodies of "
+                   "motion = large turn",
+                   "write auto or element-wise");
     if (solver.method == "gauss seidel" && scene.has_bonded_faces())
       reader.error("method",
                    "method = gauss seidel works body by body, and bonded faces "

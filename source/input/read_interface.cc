@@ -96,26 +96,33 @@ namespace nsfd
       input.has_broken = !input.broken.is_zero();
     }
 
-    IntactFaces read_intact_faces(SectionReader &reader,
-                                  const InterfaceInput &input)
+    /** Bonds act on the bulk of cells as small strains have it. */
+    void refuse_bonds(SectionReader &reader, const std::string &name)
+    {
+      reader.error(name,
+                   fmt::format("{} = bonded joins bodies that turn and strain "
+                               "little, and the scene has motion = large",
+                               name),
+                   "write rigid");
+    }
+
+    void check_intact_faces(SectionReader &reader, const InterfaceInput &input,
+                            const std::string &name, const bool large_motion)
     {
       const bool extrinsic = input.law && input.law->extrinsic();
-      // rigid rows on all faces make W singular, and tractions ambiguous
-      const bool everywhere = input.where.kind == Where::Kind::all;
-      const std::string name = reader.choice(
-          "intact faces",
-          !extrinsic ? "spring" : everywhere ? "bonded" : "rigid",
-          {"spring", "unilateral", "rigid", "bonded"},
-          "while beta = 1: spring or unilateral (intrinsic laws), rigid or "
-          "bonded (extrinsic laws; default: bonded if where = all)");
       const bool joined = name == "rigid" || name == "bonded";
       if (extrinsic && !joined)
         reader.error("intact faces",
                      fmt::format("intact faces = {} needs a stiffness, and the "
                                  "extrinsic law {} has none",
                                  name, input.law_name),
-                     "write rigid or bonded, or take an intrinsic law");
-      else if (extrinsic && everywhere && name == "rigid")
+                     large_motion
+                         ? "write rigid, or take an intrinsic law"
+                         : "write rigid or bonded, or take an intrinsic law");
+      else if (extrinsic && large_motion && name == "bonded")
+        refuse_bonds(reader, "intact faces");
+      else if (extrinsic && !large_motion && name == "rigid" &&
+               input.where.kind == Where::Kind::all)
         reader.error("intact faces",
                      fmt::format("intact faces = rigid with where = all and "
                                  "the law {}: rigid rows on all faces make the "
@@ -129,6 +136,28 @@ namespace nsfd
                                  "of the law {}",
                                  name, input.law_name),
                      "write spring or unilateral, or take an extrinsic law");
+    }
+
+    IntactFaces read_intact_faces(SectionReader &reader,
+                                  const InterfaceInput &input,
+                                  const bool large_motion)
+    {
+      const bool extrinsic = input.law && input.law->extrinsic();
+      // rigid rows on all faces make W singular, and tractions ambiguous: but
+      // there are no bonds in large motions
+      const bool bonds = !large_motion && input.where.kind == Where::Kind::all;
+      const std::string name = reader.choice(
+          "intact faces",
+          !extrinsic ? "spring"
+          : bonds    ? "bonded"
+                     : "rigid",
+          {"spring", "unilateral", "rigid", "bonded"},
+          large_motion
+              ? "while beta = 1: spring or unilateral (intrinsic laws), rigid "
+                "(extrinsic laws)"
+              : "while beta = 1: spring or unilateral (intrinsic laws), rigid "
+                "or bonded (extrinsic laws; default: bonded if where = all)");
+      check_intact_faces(reader, input, name, large_motion);
       if (name == "bonded")
         return IntactFaces::bonded;
       if (name == "unilateral")
@@ -239,6 +268,8 @@ namespace nsfd
       if (input.law_name == "rigid" || input.law_name == "bonded") {
         input.intact = input.law_name == "rigid" ? IntactFaces::rigid
                                                  : IntactFaces::bonded;
+        if (scene.large_motion && input.law_name == "bonded")
+          refuse_bonds(reader, "law");
         const std::string reason =
             fmt::format("faces of the law `{}` never open", input.law_name);
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
@@ -264,7 +295,7 @@ namespace nsfd
         read_cohesive_block(reader, input);
       read_contact(reader, input);
       read_damage_start(reader, input);
-      input.intact = read_intact_faces(reader, input);
+      input.intact = read_intact_faces(reader, input, scene.large_motion);
       read_crack_pressure(reader, input);
       return input;
     }
@@ -328,10 +359,15 @@ namespace nsfd
                                sliding.dilatancy, friction),
                    "write at most the friction coefficient, which counts the "
                    "climb");
-    sliding.wear = reader.number(
+    sliding.wear = read_wear(reader);
+    return sliding;
+  }
+
+  double read_wear(SectionReader &reader)
+  {
+    return reader.number(
         "wear coefficient", "0", units::wear_coefficient, Range::non_negative(),
         "k in 1/Pa of Archard's law: the gap grows by k p_N |U_T|");
-    return sliding;
   }
 
   double read_friction_exponent(SectionReader &reader)

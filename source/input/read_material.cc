@@ -22,6 +22,72 @@ namespace nsfd
 
   namespace
   {
+    struct KnownModel {
+      BulkModel model;
+      NamedText written;
+    };
+
+    const KnownModel known_models[] = {
+        {BulkModel::linear_elastic,
+         {"linear elastic", "Hooke's law; motion = small"}},
+        {BulkModel::rigid, {"rigid", "bodies do not deform"}},
+        {BulkModel::saint_venant_kirchhoff,
+         {"saint-venant kirchhoff",
+          "Hooke's law between the Green strain and its stress; large "
+          "rotations, moderate strains; motion = large"}},
+        {BulkModel::neo_hookean,
+         {"neo-hookean",
+          "compressible, resists being crushed; motion = large"}},
+    };
+
+    void check_model(SectionReader &reader, const SceneInput &scene,
+                     const BulkModel model)
+    {
+      const char *const name = model_name(model);
+      if (scene.large_motion && model == BulkModel::linear_elastic)
+        reader.error("model",
+                     fmt::format("model = {} is for bodies that turn and "
+                                 "strain little, and the scene has motion = "
+                                 "large",
+                                 name),
+                     "write model = saint-venant kirchhoff or neo-hookean");
+      if (!scene.large_motion && is_finite_strain(model))
+        reader.error("model",
+                     fmt::format("model = {} is for large strains, and the "
+                                 "scene has motion = small",
+                                 name),
+                     "write at the top: set motion = large");
+      if (scene.plane_stress && model == BulkModel::neo_hookean)
+        reader.error(
+            "model",
+            fmt::format("model = {} is not there for plane = stress", name),
+            "write plane = strain, or model = saint-venant "
+            "kirchhoff");
+    }
+
+    /** False if it is none: what the other entries mean is unknown. */
+    bool read_model(SectionReader &reader, const SceneInput &scene,
+                    MaterialInput &material)
+    {
+      std::vector<std::string> names;
+      for (const KnownModel &known : known_models)
+        names.push_back(known.written.name);
+      const unsigned int n_before = reader.errors().n_errors();
+      const std::string name =
+          reader.choice("model", names.front(), names,
+                        fmt::format("{}", fmt::join(names, ", ")));
+      if (reader.errors().n_errors() > n_before) {
+        reader.accept_everything();
+        return false;
+      }
+      for (const KnownModel &known : known_models)
+        if (known.written.name == name)
+          material.model = known.model;
+      material.rigid = material.model == BulkModel::rigid;
+      check_model(reader, scene, material.model);
+      return true;
+    }
+
     void read_elasticity(SectionReader &reader, MaterialInput &material)
     {
       const std::vector<std::string> names = {"Young modulus", "Poisson ratio"};
@@ -34,6 +100,88 @@ namespace nsfd
           reader.number(names[1], "", units::none, {-1., 0.5, true, true},
                         "lateral over "
                         "axial strain");
+    }
+
+    /** What bodies are, and where their surface is. */
+    void read_extent(SectionReader &reader, RigidInput &rigid)
+    {
+      const unsigned int n_before = reader.errors().n_errors();
+      rigid.connected =
+          reader.choice("bodies", "cells", {"cells", "connected"},
+                        "each of the cells, or connected: cells that touch "
+                        "are one body") == "connected";
+      rigid.ball = reader.choice("surface", "mesh", {"mesh", "ball"},
+                                 "that of the mesh, or the ball (disc) around "
+                                 "a connected body's centre out to its "
+                                 "farthest corner") == "ball";
+      if (rigid.ball && !rigid.connected &&
+          reader.errors().n_errors() == n_before)
+        reader.error("surface",
+                     "surface = ball is for bodies of several cells, and "
+                     "every cell is a body here",
+                     "add: set bodies = connected");
+    }
+
+    /** No distribution of mass has a moment above the sum of the others. */
+    void check_inertia(SectionReader &reader, const std::string &name,
+                       const std::array<double, 3> &inertia)
+    {
+      constexpr double round_off = 1e-12;
+      for (unsigned int c = 0; c < 3; ++c) {
+        const double others = inertia[(c + 1) % 3] + inertia[(c + 2) % 3];
+        if (inertia[c] > others * (1. + round_off))
+          return reader.error(
+              name,
+              fmt::format("{}: {:g} about {} is above {:g}, the sum of the "
+                          "two others: no body is like that",
+                          name, inertia[c], "xyz"[c], others),
+              fmt::format("write at most {:g}", others));
+      }
+    }
+
+    void read_mass(SectionReader &reader, const unsigned int dim,
+                   RigidInput &rigid)
+    {
+      const std::string mass = "mass", inertia = "principal inertia";
+      const std::string mass_text =
+          dim == 2 ? "kg/m, of each body; default: that of its cells"
+                   : "kg, of each body; default: that of its cells";
+      if (reader.optional(mass, mass_text))
+        rigid.mass = reader.number(
+            mass, "", dim == 2 ? units::mass_per_length : units::mass,
+            Range::positive(), mass_text);
+      const std::string inertia_text =
+          dim == 2 ? "kg m^2/m about z, of each body; default: that of its "
+                     "cells"
+                   : "kg m^2 about x, y, z through the centre of mass, of each "
+                     "body; default: that of its cells";
+      if (!reader.optional(inertia, inertia_text))
+        return;
+      const unsigned int n_before = reader.errors().n_errors();
+      const std::vector<double> moments = reader.numbers(
+          inertia, "", dim == 2 ? units::inertia_per_length : units::inertia,
+          Range::positive(), dim == 2 ? 1 : 3, inertia_text);
+      if (dim == 2)
+        rigid.inertia = {0., 0., moments[0]};
+      else {
+        rigid.inertia = {moments[0], moments[1], moments[2]};
+        if (reader.errors().n_errors() == n_before)
+          check_inertia(reader, inertia, *rigid.inertia);
+      }
+    }
+
+    void read_rigid_bodies(SectionReader &reader, const SceneInput &scene,
+                           MaterialInput &material)
+    {
+      if (scene.large_motion && material.rigid) {
+        read_extent(reader, material.rigid_bodies);
+        return read_mass(reader, scene.dimension, material.rigid_bodies);
+      }
+      reader.refuse({"bodies", "surface", "mass", "principal inertia"},
+                    material.rigid
+                        ? "it needs motion = large; with motion = small each "
+                          "cell is a body of its density"
+                        : "the material is not rigid");
     }
 
     void read_fields(SectionReader &reader, const SceneInput &scene,
@@ -56,6 +204,22 @@ namespace nsfd
     }
   } // namespace
 
+  const char *model_name(const BulkModel model)
+  {
+    for (const KnownModel &known : known_models)
+      if (known.model == model)
+        return known.written.name.c_str();
+    return "";
+  }
+
+  std::vector<NamedText> known_bulk_models()
+  {
+    std::vector<NamedText> models;
+    for (const KnownModel &known : known_models)
+      models.push_back(known.written);
+    return models;
+  }
+
   void read_materials(ParameterFile &file, InputErrors &errors,
                       SceneInput &scene)
   {
@@ -65,13 +229,13 @@ namespace nsfd
       material.name = block->block_name();
       material.where = read_where(reader, "all", WhereUse::cells, scene,
                                   "all, a group or an expression of x, y, z");
-      material.rigid =
-          reader.choice("model", "linear elastic", {"linear elastic", "rigid"},
-                        "linear elastic or rigid") == "rigid";
-      read_elasticity(reader, material);
-      material.density = reader.number("density", "", units::density,
-                                       Range::positive(), "kg/m^3");
-      read_fields(reader, scene, material);
+      if (read_model(reader, scene, material)) {
+        read_elasticity(reader, material);
+        material.density = reader.number("density", "", units::density,
+                                         Range::positive(), "kg/m^3");
+        read_rigid_bodies(reader, scene, material);
+        read_fields(reader, scene, material);
+      }
       scene.materials.push_back(material);
     }
     if (scene.materials.empty())

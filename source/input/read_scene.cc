@@ -19,7 +19,8 @@ namespace nsfd
         "Mesh",   "Discretization", "Loads",        "Time",      "Solver",
         "Output", "Verification",   "Adaptivity",   "Constants"};
     const std::vector<std::string> block_kinds = {
-        "Body", "Material", "Interface", "Boundary", "Obstacle", "Indicator"};
+        "Body",     "Material", "Interface", "Boundary",
+        "Obstacle", "Contact",  "Pin",       "Indicator"};
     /// of a study, which reads them itself, see study/study_input.h
     const std::vector<std::string> study_kinds = {"Study", "Vary"};
 
@@ -69,7 +70,8 @@ namespace nsfd
                 ? "known are Mesh, Discretization, Time, Loads, Solver, "
                   "Output, Verification, Adaptivity, Constants, and "
                   "Body: ..., Material: ..., Interface: ..., "
-                  "Boundary: ..., Obstacle: ..., Indicator: ..."
+                  "Boundary: ..., Obstacle: ..., Contact: ..., Pin: ..., "
+                  "Indicator: ..."
                 : fmt::format("did you mean `{}{}`?", nearest,
                               contains(block_kinds, nearest)
                                   ? ": " + (section.block_name().empty()
@@ -77,6 +79,22 @@ namespace nsfd
                                                 : section.block_name())
                                   : ""));
       }
+    }
+
+    /** `motion`; a misspelt word says that large ones are meant, unless it is
+     * near to `small`: what hangs on it is not blamed as well. */
+    bool read_large_motion(SectionReader &reader)
+    {
+      const std::string motion =
+          reader.word("motion", "small",
+                      "small, or large: rotations and strains of any size");
+      const std::vector<std::string> known = {"small", "large"};
+      if (!contains(known, motion))
+        reader.error(
+            "motion",
+            fmt::format("motion = {} is neither small nor large", motion),
+            did_you_mean(motion, known));
+      return motion != "small" && nearest_name(motion, known) != "small";
     }
 
     void read_top(ParameterFile &file, InputErrors &errors, SceneInput &scene)
@@ -90,6 +108,7 @@ namespace nsfd
       else
         reader.refuse({"plane"}, "plane strain and plane stress are for "
                                  "dimension = 2");
+      scene.large_motion = read_large_motion(reader);
     }
 
     /** "# name - sentence" becomes title and description. */
@@ -128,6 +147,8 @@ namespace nsfd
       read_interfaces(file, errors, *scene);
       read_boundaries(file, errors, *scene);
       read_obstacles(file, errors, *scene);
+      read_contacts(file, errors, *scene);
+      read_pins(file, errors, *scene);
       read_loads(file, errors, *scene);
       read_time(file, errors, *scene);
       read_solver(file, errors, *scene);
@@ -170,6 +191,7 @@ namespace nsfd
       for (const auto &entry : list)
         parts.push_back({kind, entry.name, entry.text});
     };
+    append("material model", known_bulk_models());
     append("interface law", known_plain_laws());
     const auto append_registered = [&parts](const std::string &kind,
                                             const auto &registry) {

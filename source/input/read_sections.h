@@ -5,6 +5,7 @@
 #include "nsfd/input/scene_input.h"
 #include "nsfd/input/section_reader.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -42,12 +43,20 @@ namespace nsfd
                     const std::string &law_name);
   SlidingInput read_sliding(SectionReader &reader, double friction);
 
+  /** k of Archard's law, 1/Pa. */
+  double read_wear(SectionReader &reader);
+
   /** Boundary and Obstacle blocks, Loads. */
   void read_boundaries(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene);
   void read_obstacles(ParameterFile &file, InputErrors &errors,
                       SceneInput &scene);
   void read_loads(ParameterFile &file, InputErrors &errors, SceneInput &scene);
+
+  /** Contact and Pin blocks, of scenes with large motions only. */
+  void read_contacts(ParameterFile &file, InputErrors &errors,
+                     SceneInput &scene);
+  void read_pins(ParameterFile &file, InputErrors &errors, SceneInput &scene);
 
   /** Time, Solver, Output, Verification. */
   void read_time(ParameterFile &file, InputErrors &errors, SceneInput &scene);
@@ -71,6 +80,20 @@ namespace nsfd
                    WhereUse use, const SceneInput &scene,
                    const std::string &text);
 
+  /** Report a name that no Material block has, at the entry @p entry. */
+  void check_material(SectionReader &reader, const std::string &entry,
+                      const std::string &name, const SceneInput &scene);
+
+  /**
+   * "[a, b]" or "a, b": two materials that exist. @p value is the whole value
+   * of @p entry that @p names ends, and @p example a right one. Empty, and
+   * reported, if they are not two.
+   */
+  std::array<std::string, 2>
+  read_two_materials(SectionReader &reader, const std::string &entry,
+                     const std::string &value, std::string names,
+                     const std::string &example, const SceneInput &scene);
+
   /** left, right, ..., front, back. */
   bool is_side(const std::string &word);
 
@@ -82,6 +105,12 @@ namespace nsfd
                                      const std::string &name,
                                      const std::string &default_text, Unit unit,
                                      const std::string &text);
+
+  /** An expression that may be left out. */
+  std::optional<Expression> read_optional_expression(SectionReader &reader,
+                                                     const std::string &name,
+                                                     Unit unit,
+                                                     const std::string &text);
 
   /** True if the cells are triangles or tetrahedra. */
   bool has_simplices(const SceneInput &scene);
@@ -102,6 +131,7 @@ namespace nsfd
     std::string name, text;
   };
   std::vector<NamedText> known_plain_laws();
+  std::vector<NamedText> known_bulk_models();
 
   /** `auto` and the registered ones. */
   std::vector<NamedText> known_solvers();

@@ -137,6 +137,13 @@ namespace nsfd
                      "are rigid",
                      "remove `start` and `scheme`, or the entry `model = "
                      "rigid` of a material");
+      if (scene.large_motion) {
+        reader.error("start",
+                     "equilibria of scenes with motion = large are not there "
+                     "yet",
+                     "write given, and let the scene come to rest");
+        return true;
+      }
       refuse_rates(reader, scene);
       for (const MaterialInput &material : scene.materials)
         for (unsigned int c = 0; c < scene.dimension; ++c)
@@ -224,6 +231,8 @@ namespace nsfd
         restitution = std::max(restitution, interface.restitution);
       for (const ObstacleInput &obstacle : scene.obstacles)
         restitution = std::max(restitution, obstacle.restitution);
+      for (const ContactInput &contact : scene.contacts)
+        restitution = std::max(restitution, contact.restitution);
       const double bound = 1. / (1. + restitution);
       if (time.theta > bound && time.theta <= 1.)
         reader.warning("theta",
@@ -284,6 +293,20 @@ namespace nsfd
           "error of a step relative to the largest motion");
     }
 
+    /** Only one scheme follows large motions; true if it is not this one. */
+    bool refuse_scheme(SectionReader &reader, const SceneInput &scene,
+                       const std::string &scheme)
+    {
+      if (!scene.large_motion || scheme == "moreau-jean")
+        return false;
+      reader.error(
+          "scheme",
+          fmt::format("scheme = {} is not there for motion = large", scheme),
+          "write scheme = moreau-jean");
+      reader.accept_everything();
+      return true;
+    }
+
     template <typename T>
     T read_named(SectionReader &reader, const std::string &name,
                  const std::vector<std::pair<std::string, T>> &values,
@@ -310,6 +333,8 @@ namespace nsfd
         "scheme", "moreau-jean",
         {"moreau-jean", "symplectic", "arkode", "quasi-static"},
         "moreau-jean, symplectic, arkode or quasi-static");
+    if (refuse_scheme(reader, scene, scheme))
+      return;
     const bool quasi_static = scheme == "quasi-static";
     if (read_start(reader, scene, quasi_static)) {
       scene.statics.emplace();
@@ -344,9 +369,9 @@ namespace nsfd
     time.forecast_gamma2 =
         reader.number("forecast gamma2", "0", units::none,
                       Range::closed(0., 1.), "weight of the new velocity");
-    if (time.forecast_gamma2 != 0.)
+    if (time.forecast_gamma2 != 0. && !scene.large_motion)
       reader.error("forecast gamma2",
-                   "an implicit forecast of the gap is not there yet",
+                   "an implicit forecast of the gap needs motion = large",
                    "write: forecast gamma2 = 0");
     time.cohesion_rule =
         read_named<CohesionRule>(reader, "cohesion rule",

@@ -69,14 +69,6 @@ namespace nsfd
       return names;
     }
 
-    std::vector<std::string> material_names(const SceneInput &scene)
-    {
-      std::vector<std::string> names;
-      for (const MaterialInput &material : scene.materials)
-        names.push_back(material.name);
-      return names;
-    }
-
     /** What a mesh of its own calls its groups: names, and numbers. */
     std::vector<std::string> group_names(const SceneInput &scene)
     {
@@ -186,26 +178,9 @@ namespace nsfd
       std::string rest = collapse_blanks(value.substr(between.size()));
       if (rest.empty())
         return where;
-      if (rest.front() == '[' && rest.back() == ']')
-        rest = rest.substr(1, rest.size() - 2);
-      const std::size_t comma = rest.find(',');
-      if (comma == std::string::npos ||
-          rest.find(',', comma + 1) != std::string::npos) {
-        reader.error(
-            "where",
-            fmt::format("where = {} does not name two materials", value),
-            "write for example: between materials [a, b]");
-        return where;
-      }
-      where.materials = {collapse_blanks(rest.substr(0, comma)),
-                         collapse_blanks(rest.substr(comma + 1))};
-      const std::vector<std::string> known = material_names(scene);
-      for (const std::string &name : where.materials)
-        if (std::find(known.begin(), known.end(), name) == known.end())
-          reader.error("where", fmt::format("there is no material `{}`", name),
-                       did_you_mean(name, known,
-                                    "name blocks `Material: ...` of this "
-                                    "file"));
+      where.materials =
+          read_two_materials(reader, "where", value, rest,
+                             "between materials [a, b]", scene);
       return where;
     }
 
@@ -237,6 +212,42 @@ namespace nsfd
                                       : groups));
     }
   } // namespace
+
+  void check_material(SectionReader &reader, const std::string &entry,
+                      const std::string &name, const SceneInput &scene)
+  {
+    std::vector<std::string> known;
+    for (const MaterialInput &material : scene.materials)
+      known.push_back(material.name);
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      reader.error(entry, fmt::format("there is no material `{}`", name),
+                   did_you_mean(name, known,
+                                "name blocks `Material: ...` of this file"));
+  }
+
+  std::array<std::string, 2>
+  read_two_materials(SectionReader &reader, const std::string &entry,
+                     const std::string &value, std::string names,
+                     const std::string &example, const SceneInput &scene)
+  {
+    if (names.front() == '[' && names.back() == ']')
+      names = names.substr(1, names.size() - 2);
+    const std::size_t comma = names.find(',');
+    if (comma == std::string::npos ||
+        names.find(',', comma + 1) != std::string::npos) {
+      reader.error(
+          entry,
+          fmt::format("{} = {} does not name two materials", entry, value),
+          "write for example: " + example);
+      return {};
+    }
+    const std::array<std::string, 2> result = {
+        collapse_blanks(names.substr(0, comma)),
+        collapse_blanks(names.substr(comma + 1))};
+    for (const std::string &name : result)
+      check_material(reader, entry, name, scene);
+    return result;
+  }
 
   bool is_side(const std::string &word)
   {

@@ -1,12 +1,17 @@
 #include "nsfd/scene/check.h"
 
 #include "group_report.h"
+#include "motion_report.h"
 
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
 #include "nsfd/scene/advice.h"
 #include "nsfd/time/moreau_jean.h"
+
+#include <deal.II/fe/fe.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -56,6 +61,12 @@ namespace nsfd
                               axis[c],
                           discretization.centre(unsigned(b))))
                 break;
+      for (const ObstacleInput &obstacle : input.obstacles)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (obstacle.velocity[c])
+            try_at(*obstacle.velocity[c],
+                   "Obstacle: " + obstacle.name + "/velocity " + axis[c],
+                   dealii::Point<dim>());
       std::vector<char> failed(input.boundaries.size(), 0);
       for (std::size_t i = 0; i < points.n_points; ++i) {
         const PointOrigin origin = discretization.origins()[i];
@@ -381,6 +392,8 @@ namespace nsfd
                              discretization.pressure_wave_speed(m),
                              discretization.shear_wave_speed(m));
       }
+      for (const auto &[keyword, sentence] : motion_report(input))
+        out << fmt::format("  large      {}: {}\n", keyword, sentence);
       const double crossing = discretization.crossing_time();
       const StaticInput statics = input.statics.value_or(StaticInput());
       if (statics.steps)

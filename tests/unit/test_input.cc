@@ -165,6 +165,20 @@ end
     EXPECT_DOUBLE_EQ(read_number("3 m*s^-1", units::velocity), 3.);
   }
 
+  TEST(Quantity, ExamplesOfAdviceCanBeRead)
+  {
+    for (const Unit &unit :
+         {units::none, units::length, units::time, units::mass, units::velocity,
+          units::acceleration, units::density, units::pressure,
+          units::energy_per_area, units::stiffness_per_area,
+          units::viscosity_per_length, units::damage_viscosity,
+          units::wear_coefficient, units::mass_per_area,
+          units::mass_per_length, units::inertia, units::inertia_per_length}) {
+      ASSERT_FALSE(example(unit).empty()) << describe(unit);
+      EXPECT_NE(read_number(example(unit), unit), 0.) << describe(unit);
+    }
+  }
+
   TEST(Quantity, BareNumbersFitEverywhere)
   {
     EXPECT_EQ(read_number("135", units::pressure), 135.);

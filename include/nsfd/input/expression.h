@@ -39,6 +39,9 @@ namespace nsfd
     }
 
     bool depends_on_time() const;
+
+    /** Of a formula: x, y or z occurs. */
+    bool depends_on_position() const;
     bool is_constant() const;
 
     /** True if it is the constant 0. */

@@ -32,6 +32,7 @@ namespace nsfd
     std::string example = {}; ///< entries it needs: "strength = 3 MPa; ..."
   };
 
-  /** Interface laws, verification cases, meshes, solvers, in this order. */
+  /** Material models, interface laws, verification cases, meshes, solvers: in
+   * this order. */
   std::vector<NamedPart> named_parts();
 } // namespace nsfd

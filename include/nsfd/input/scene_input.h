@@ -88,6 +88,16 @@ namespace nsfd
     neo_hookean             ///< finite strain, compressible
   };
 
+  /** As a parameter file writes it: "neo-hookean". */
+  const char *model_name(BulkModel model);
+
+  /** Of scenes with large motions. */
+  inline bool is_finite_strain(const BulkModel model)
+  {
+    return model == BulkModel::saint_venant_kirchhoff ||
+           model == BulkModel::neo_hookean;
+  }
+
   /** What a rigid material of a scene with large motions says of its bodies. */
   struct RigidInput
   {
@@ -95,8 +105,9 @@ namespace nsfd
     /// the body is the ball (the disc in the plane) around the centre of its
     /// cells that reaches to their farthest corner; only if connected
     bool ball = false;
-    /// of each body, in place of those of its cells: kg (kg/m in the plane),
-    /// and kg m^2 about axes along x, y, z through the centre of mass
+    /// of each body, in place of those of its cells: kg, and kg m^2 about axes
+    /// along x, y, z through the centre of mass; in the plane per thickness,
+    /// kg/m and kg m^2/m, about z alone: entry 2
     std::optional<double> mass;
     std::optional<std::array<double, 3>> inertia;
   };
@@ -214,7 +225,8 @@ namespace nsfd
   struct ContactInput
   {
     std::string name;
-    /// of the two bodies, in any order; empty: any
+    /// of the two bodies, in any order; empty: any. The first block that
+    /// holds for two materials is theirs; without one they do not touch
     std::array<std::string, 2> materials;
     double friction = 0., restitution = 0.;
     SlidingInput sliding; ///< wear only

@@ -24,7 +24,9 @@ namespace nsfd
         pressure{1, -1, -2}, energy_per_area{1, 0, -2},
         stiffness_per_area{1, -2, -2}, force_per_volume{1, -2, -2},
         viscosity_per_length{1, -2, -1}, damage_viscosity{1, 0, -1},
-        wear_coefficient{-1, 1, 2}, mass_per_area{1, -2, 0};
+        wear_coefficient{-1, 1, 2}, mass_per_area{1, -2, 0},
+        mass_per_length{1, -1, 0}, inertia{1, 2, 0},
+        inertia_per_length{1, 1, 0};
   } // namespace units
 
   /** Closed or open interval a number must lie in; reported when it does not.

@@ -1,0 +1,149 @@
+#include "read_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Two names of materials, in their order. */
+    using Pair = std::pair<std::string, std::string>;
+
+    /** The blocks of a kind; none, and reported, if motions are small. */
+    std::vector<ParameterSection *> open_large(ParameterFile &file,
+                                               const std::string &kind,
+                                               const std::string &otherwise,
+                                               InputErrors &errors,
+                                               const SceneInput &scene)
+    {
+      auto blocks = file.open_blocks(kind);
+      if (scene.large_motion)
+        return blocks;
+      for (ParameterSection *block : blocks) {
+        errors.error(
+            block->location(),
+            fmt::format("section `{}` needs motion = large", block->name()),
+            "write at the top: set motion = large, or " + otherwise);
+        block->accept_everything();
+      }
+      return {};
+    }
+
+    /** `all`, `[a, b]`; brackets optional. */
+    std::array<std::string, 2> read_pair(SectionReader &reader,
+                                         const SceneInput &scene)
+    {
+      const auto value = reader.raw(
+          "between", "all",
+          "all, or two materials: [a, b], in any order; the first block that "
+          "holds for two bodies is theirs, without one they do not touch");
+      const std::string text = value ? collapse_blanks(value->text()) : "all";
+      if (text == "all")
+        return {};
+      return read_two_materials(reader, "between", text, text, "[a, b]", scene);
+    }
+
+    std::vector<Pair> pairs_of(const ContactInput &contact,
+                               const SceneInput &scene)
+    {
+      if (!contact.materials[0].empty())
+        return {std::minmax(contact.materials[0], contact.materials[1])};
+      std::vector<Pair> pairs;
+      for (const MaterialInput &a : scene.materials)
+        for (const MaterialInput &b : scene.materials)
+          pairs.push_back(std::minmax(a.name, b.name));
+      return pairs;
+    }
+
+    /** Every pair belongs to the first block that names it: one that gets none
+     * is a mistake. @p owners are the blocks of the pairs so far. */
+    void claim_pairs(SectionReader &reader, const ContactInput &contact,
+                     const SceneInput &scene,
+                     std::map<Pair, std::string> &owners)
+    {
+      bool any = false;
+      const std::vector<Pair> pairs = pairs_of(contact, scene);
+      for (const Pair &pair : pairs)
+        any = owners.emplace(pair, contact.name).second || any;
+      if (any || pairs.empty())
+        return;
+      const Pair &first = pairs.front();
+      reader.error("between",
+                   fmt::format("section `{}` never holds: `Contact: {}` comes "
+                               "first for {} and {}{}",
+                               reader.section_name(), owners.at(first),
+                               first.first, first.second,
+                               pairs.size() > 1 ? ", and so on" : ""),
+                   "remove it, or move it up");
+    }
+
+    ContactInput read_contact(SectionReader &reader, const SceneInput &scene)
+    {
+      ContactInput contact;
+      contact.name = reader.block_name();
+      contact.materials = read_pair(reader, scene);
+      contact.friction = read_friction(reader);
+      contact.restitution =
+          reader.number("restitution", "0", units::none, Range::closed(0., 1.),
+                        "of Newton's impact law");
+      contact.sliding.wear = read_wear(reader);
+      reader.refuse({"dilatancy", "dilatancy saturation"},
+                    "dilatancy is of the two sides of one face: Interface "
+                    "blocks have it");
+      return contact;
+    }
+
+    PinInput read_pin(SectionReader &reader, const SceneInput &scene)
+    {
+      PinInput pin;
+      pin.name = reader.block_name();
+      if (const auto value =
+              reader.raw("material", "", "of the rigid body", "steel")) {
+        pin.material = collapse_blanks(value->text());
+        check_material(reader, "material", pin.material, scene);
+      }
+      for (const MaterialInput &material : scene.materials)
+        if (material.name == pin.material && !material.rigid)
+          reader.error("material",
+                       fmt::format("a pin holds a place of a rigid body, and "
+                                   "material `{}` is {}",
+                                   material.name, model_name(material.model)),
+                       "name a material with model = rigid; a Boundary block "
+                       "with velocities 0 holds faces");
+      const std::vector<double> at =
+          reader.numbers("at", "", units::length, Range::any(), scene.dimension,
+                         "m, where it stays; in the body at t = 0, or outside");
+      std::copy(at.begin(), at.end(), pin.at.begin());
+      return pin;
+    }
+  } // namespace
+
+  void read_contacts(ParameterFile &file, InputErrors &errors,
+                     SceneInput &scene)
+  {
+    std::map<Pair, std::string> owners;
+    for (ParameterSection *block :
+         open_large(file, "Contact",
+                    "say in Interface and Obstacle blocks what touches", errors,
+                    scene)) {
+      SectionReader reader(*block, errors);
+      const unsigned int n_before = errors.n_errors();
+      scene.contacts.push_back(read_contact(reader, scene));
+      if (errors.n_errors() == n_before)
+        claim_pairs(reader, scene.contacts.back(), scene, owners);
+    }
+  }
+
+  void read_pins(ParameterFile &file, InputErrors &errors, SceneInput &scene)
+  {
+    for (ParameterSection *block :
+         open_large(file, "Pin", "remove the section", errors, scene)) {
+      SectionReader reader(*block, errors);
+      scene.pins.push_back(read_pin(reader, scene));
+    }
+  }
+} // namespace nsfd
