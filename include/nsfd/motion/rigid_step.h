@@ -22,6 +22,9 @@ namespace nsfd
     Vec3 spin{}; ///< W, the angular velocity in the body frame, rad/s
   };
 
+  /** From the 13 numbers of a state, in the order of the members above. */
+  RigidState rigid_state(const double *numbers);
+
   /** W.J W / 2 + m |V|^2 / 2. */
   double kinetic_energy(const RigidInertia &body, const RigidState &state);
 
