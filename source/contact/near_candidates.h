@@ -1,0 +1,21 @@
+#pragma once
+
+#include "facet_geometry.h"
+
+namespace nsfd
+{
+  /** The room left around all boxes, as a length. */
+  template <int dim>
+  double skin_of(const Surfaces<dim> &surfaces,
+                 const std::vector<Plane<dim>> &planes);
+
+  /**
+   * All that may be a pair at gaps up to `reach` when no vertex has moved by
+   * more than skin / 2.
+   */
+  template <int dim>
+  NearCandidates
+  search_candidates(const Surfaces<dim> &surfaces, const double *x,
+                    const std::vector<Plane<dim>> &planes, double reach,
+                    double skin, const JoinedBodies &joined);
+} // namespace nsfd

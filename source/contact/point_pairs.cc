@@ -1,0 +1,188 @@
+#include "point_pairs.h"
+
+#include "touching_rules.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace nsfd
+{
+  namespace
+  {
+    template <int dim>
+    struct Touch
+    {
+      FacetPair<dim> pair;
+      double opposed = 0.; ///< cosine between the two outward normals
+    };
+
+    template <int dim>
+    class PointTouches
+    {
+    public:
+      PointTouches(const Surfaces<dim> &surfaces, const double *x,
+                   const std::vector<Plane<dim>> &planes, const double reach)
+          : surfaces_(surfaces), x_(x), planes_(planes), reach_(reach)
+      {
+      }
+
+      /** Adds the touch of a point that has one among its candidates. */
+      void add(const unsigned int p, const unsigned int *begin,
+               const unsigned int *end, std::vector<Touch<dim>> &touches)
+      {
+        valid_.clear();
+        const auto &point = surfaces_.points[p];
+        const Plane<dim> &own = planes_[point.facet];
+        const Place<dim> y = place<dim>(x_, point.vertex);
+        const Place<dim> inside = sum(y, inset, difference(own.centre, y));
+        Touch<dim> touch;
+        touch.pair.index = p;
+        for (; begin != end; ++begin)
+          if (touches_facet(own, *begin, y, inside, touch))
+            valid_.push_back(touch);
+        if (valid_.size() == 1)
+          touches.push_back(valid_[0]);
+        else if (!valid_.empty())
+          touches.push_back(*best(same_length * own.size));
+      }
+
+      /**
+       * Two points of a vertex that is inside the same body: it has come
+       * through one facet only, the nearer one. Otherwise a corner that slides
+       * over an edge by a hair is caught by the side.
+       */
+      bool yields(const Touch<dim> &a, const Touch<dim> &b) const
+      {
+        const auto &facet_a = surfaces_.facets[a.pair.facet];
+        const auto &facet_b = surfaces_.facets[b.pair.facet];
+        const double rounding =
+            same_length * std::min(own_size(a), own_size(b));
+        if (facet_a.body != facet_b.body ||
+            std::max(a.pair.gap, b.pair.gap) > rounding || notch(a, b))
+          return false;
+        if (std::abs(a.pair.gap - b.pair.gap) > rounding)
+          return a.pair.gap < b.pair.gap;
+        if (std::abs(a.opposed - b.opposed) > same_length)
+          return a.opposed > b.opposed;
+        return key_of_own(a) > key_of_own(b);
+      }
+
+    private:
+      bool touches_facet(const Plane<dim> &own, const unsigned int f,
+                         const Place<dim> &y, const Place<dim> &inside,
+                         Touch<dim> &touch) const
+      {
+        const Plane<dim> &plane = planes_[f];
+        touch.opposed = dot(own.normal, plane.normal);
+        if (!(touch.opposed < opposed_below))
+          return false;
+        const double depth = deepest * std::min(own.size, plane.size);
+        if (dim == 2 &&
+            !within(dot(plane.normal, difference(y, plane.centre)), depth))
+          return false;
+        const auto &facet = surfaces_.facets[f];
+        if (!projects_into<dim>(facet, plane, x_, inside))
+          return false;
+        const auto foot = closest_place<dim>(facet, plane, x_, y);
+        touch.pair.facet = f;
+        touch.pair.gap = dot(plane.normal, difference(y, foot.place));
+        touch.pair.normal = plane.normal;
+        touch.pair.closest = foot.place;
+        touch.pair.weights = foot.weights;
+        return within(touch.pair.gap, depth);
+      }
+
+      bool within(const double gap, const double depth) const
+      {
+        return gap >= -depth && gap <= reach_;
+      }
+
+      /**
+       * Smallest |gap|, then most opposed, then key. Each round keeps all that
+       * are equal up to round-off: the order of the candidates has no say.
+       */
+      const Touch<dim> *best(const double rounding) const
+      {
+        double gap = std::numeric_limits<double>::max(), opposed = 1.;
+        for (const auto &touch : valid_)
+          gap = std::min(gap, std::abs(touch.pair.gap));
+        for (const auto &touch : valid_)
+          if (std::abs(touch.pair.gap) <= gap + rounding)
+            opposed = std::min(opposed, touch.opposed);
+        const Touch<dim> *result = nullptr;
+        for (const auto &touch : valid_)
+          if (std::abs(touch.pair.gap) <= gap + rounding &&
+              touch.opposed <= opposed + same_length &&
+              (!result || key(touch.pair.facet) < key(result->pair.facet)))
+            result = &touch;
+        return result;
+      }
+
+      /** Facets that look at each other: a vertex may touch both. */
+      bool notch(const Touch<dim> &a, const Touch<dim> &b) const
+      {
+        const Plane<dim> &plane_a = planes_[a.pair.facet],
+                         &plane_b = planes_[b.pair.facet];
+        const Place<dim> way = difference(plane_b.centre, plane_a.centre);
+        const double rounding = same_length * norm(way);
+        return dot(plane_a.normal, way) > rounding &&
+               dot(plane_b.normal, way) < -rounding;
+      }
+
+      std::uint64_t key(const unsigned int f) const
+      {
+        return surfaces_.facets[f].key;
+      }
+      std::uint64_t key_of_own(const Touch<dim> &touch) const
+      {
+        return key(surfaces_.points[touch.pair.index].facet);
+      }
+      double own_size(const Touch<dim> &touch) const
+      {
+        return planes_[surfaces_.points[touch.pair.index].facet].size;
+      }
+
+      const Surfaces<dim> &surfaces_;
+      const double *x_;
+      const std::vector<Plane<dim>> &planes_;
+      double reach_;
+      std::vector<Touch<dim>> valid_;
+    };
+  } // namespace
+
+  template <int dim>
+  void find_point_pairs(const Surfaces<dim> &surfaces, const double *x,
+                        const std::vector<Plane<dim>> &planes,
+                        const double reach, const NearCandidates &candidates,
+                        std::vector<FacetPair<dim>> &pairs)
+  {
+    pairs.clear();
+    PointTouches<dim> points(surfaces, x, planes, reach);
+    const auto &order = candidates.order;
+    const auto &lists = candidates.facets_of_points;
+    std::vector<Touch<dim>> touches; // of one vertex
+    for (std::size_t i = 0, end = 0; i < order.size(); i = end) {
+      const unsigned int vertex = surfaces.points[order[i]].vertex;
+      touches.clear();
+      for (; end < order.size() && surfaces.points[order[end]].vertex == vertex;
+           ++end)
+        if (lists.first[end] != lists.first[end + 1])
+          points.add(order[end], &lists.entries[lists.first[end]],
+                     lists.entries.data() + lists.first[end + 1], touches);
+      for (const auto &touch : touches)
+        if (std::none_of(
+                touches.begin(), touches.end(), [&](const Touch<dim> &other) {
+                  return &other != &touch && points.yields(touch, other);
+                }))
+          pairs.push_back(touch.pair);
+    }
+  }
+
+#define INSTANTIATE(dim)                                                       \
+  template void find_point_pairs<dim>(                                         \
+      const Surfaces<dim> &, const double *, const std::vector<Plane<dim>> &,  \
+      double, const NearCandidates &, std::vector<FacetPair<dim>> &)
+
+  INSTANTIATE(2);
+  INSTANTIATE(3);
+} // namespace nsfd
