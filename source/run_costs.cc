@@ -175,6 +175,11 @@ namespace nsfd
         {"set-up", setup},           {"loads and free motion", t.assembly},
         {"nonsmooth solve", t.solve}, {"update of bodies", t.update},
         {"energy ledger", t.ledger}, {"output", output}};
+    if (model.large_motion)
+      stages.insert(
+          stages.begin() + 2,
+          {"contact search",
+           model.large_motion->motion_counters().search_seconds});
     if (model.quasi_static) {
       const auto &q = model.quasi_static->timings();
       stages.insert(stages.begin() + 1,

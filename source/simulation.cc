@@ -619,8 +619,10 @@ namespace nsfd
       s.rigid_drift_max = state_.rigid_drift;
       s.fragments = fragments_->count();
       double bound = 0.;
-      for (const double value : state_.penetration_bound)
-        bound = std::max(bound, value);
+      for (const auto *bounds :
+           {&state_.penetration_bound, &state_.surface_bound})
+        for (const double value : *bounds)
+          bound = std::max(bound, value);
       s.penetration_bound = communicator_.max(bound);
       if (observer_)
         observer_->finish(state_, s.errors);
@@ -690,6 +692,17 @@ namespace nsfd
       c["redone_steps"] = redone_;
       c["steps_beyond_uniqueness"] = beyond_unique_;
       c["penetration_excess"] = state_.penetration_excess;
+      if (model_.large_motion) {
+        const auto &motion = model_.large_motion->motion_counters();
+        c["motion_iterations"] = double(motion.iterations);
+        c["motion_iterations_most"] = double(motion.most_iterations);
+        if (const auto *contacts = model_.large_motion->contacts()) {
+          c["contact_searches"] = double(contacts->counters().searches);
+          c["contact_facets"] = double(contacts->counters().facets);
+          c["contact_rows"] = double(contacts->counters().rows);
+          c["contact_overlap"] = contacts->counters().largest_overlap;
+        }
+      }
       if (smooth_) {
         c["arkode_steps"] = double(smooth_->counters().steps);
         c["arkode_evaluations"] = double(smooth_->counters().evaluations);

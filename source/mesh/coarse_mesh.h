@@ -55,12 +55,13 @@ namespace nsfd
 
   /**
    * Put the meshes into one; coinciding boundary vertices of different bodies
-   * become one. The body is the material id. Touching faces that do not match
-   * and overlapping boxes are problems.
+   * become one. The body is the material id. Overlapping boxes are problems,
+   * and touching faces that do not match unless @p surfaces_meet anywhere.
    */
   template <int dim>
   CoarseMesh<dim> merge_bodies(const std::vector<BodyInput> &bodies,
                                const std::vector<CoarseMesh<dim>> &meshes,
+                               bool surfaces_meet,
                                std::vector<std::string> &problems);
 
   /** What came from a file; cells may be of several shapes. */

@@ -69,6 +69,7 @@ namespace nsfd
     origins_ = std::move(faces.origins);
     springs_inside_ = std::move(faces.springs_inside);
     obstacle_faces_ = std::move(faces.obstacle_faces);
+    inner_faces_ = std::move(faces.inner_faces);
     fill_slots(points_, *cells);
     cells_ = std::move(cells);
 

@@ -70,6 +70,7 @@ namespace nsfd
       std::vector<NewFace<dim>> faces; ///< those of this rank first
       std::vector<int> springs_inside; ///< per body, or empty: none
       std::vector<ObstacleFace> obstacle_faces;
+      std::vector<InnerFace> inner_faces;
       /// centre of the first face, by its coordinates, that no block holds for
       std::optional<Point<dim>> without_block;
 
@@ -77,6 +78,7 @@ namespace nsfd
       NewFace<dim> make_face(const Cell &cell, unsigned int face_no,
                              PointOrigin origin) const;
       void add_boundary(const Cell &cell, unsigned int face_no);
+      bool is_inner(const Cell &cell, const Cell &neighbor) const;
       void add_interior(const Cell &cell, unsigned int face_no);
       void add_between(const Cell &cell_1, unsigned int face_no_1,
                        const Cell &cell_2);
@@ -184,6 +186,17 @@ namespace nsfd
       }
     }
 
+    /** Both cells belong to one rigid body; all cells are on one rank then. */
+    template <int dim>
+    bool FaceCollector<dim>::is_inner(const Cell &cell,
+                                      const Cell &neighbor) const
+    {
+      const unsigned int m = materials_[cell->active_cell_index()];
+      return input_.large_motion && cell->is_locally_owned() &&
+             m == materials_[neighbor->active_cell_index()] &&
+             input_.materials[m].rigid_bodies.connected;
+    }
+
     /**
      * Body 1 is the cell with the smaller id; of two sizes the smaller cell,
      * whose face it is. A face is made once on a rank: from its body 1 if that
@@ -203,6 +216,14 @@ namespace nsfd
         return;
       }
       const Cell neighbor(cell->neighbor(f));
+      if (is_inner(cell, neighbor)) {
+        if (cell->id() < neighbor->id())
+          inner_faces.push_back(
+              {{{unsigned(body_of_[cell->active_cell_index()]),
+                 unsigned(body_of_[neighbor->active_cell_index()])}},
+               {{f, cell->neighbor_face_no(f)}}});
+        return;
+      }
       if (cell->neighbor_is_coarser(f) || cell->id() < neighbor->id())
         add_between(cell, f, neighbor);
       else if (!neighbor->is_locally_owned())
@@ -348,6 +369,7 @@ namespace nsfd
     FacePoints<dim> result;
     result.springs_inside = std::move(collector.springs_inside);
     result.obstacle_faces = std::move(collector.obstacle_faces);
+    result.inner_faces = std::move(collector.inner_faces);
     auto &points = result.points;
     std::size_t n = 0;
     for (const auto &face : collector.faces)

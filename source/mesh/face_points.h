@@ -15,6 +15,7 @@ namespace nsfd
     std::vector<PointOrigin> origins; ///< per point
     std::vector<int> springs_inside;  ///< per body, or empty: none
     std::vector<ObstacleFace> obstacle_faces; ///< with large motions
+    std::vector<InnerFace> inner_faces;       ///< the same
   };
 
   /**

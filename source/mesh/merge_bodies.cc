@@ -227,6 +227,7 @@ namespace nsfd
   template <int dim>
   CoarseMesh<dim> merge_bodies(const std::vector<BodyInput> &bodies,
                                const std::vector<CoarseMesh<dim>> &meshes,
+                               const bool surfaces_meet,
                                std::vector<std::string> &problems)
   {
     CoarseMesh<dim> all;
@@ -281,14 +282,15 @@ namespace nsfd
             bodies[all.cells[face.cell].material_id].name,
             text(centre(all, all.cells[face.cell]))));
     });
-    find_unmatched_faces(all, bodies, tolerance, problems);
+    if (!surfaces_meet)
+      find_unmatched_faces(all, bodies, tolerance, problems);
     return all;
   }
 
   template CoarseMesh<2> merge_bodies(const std::vector<BodyInput> &,
-                                      const std::vector<CoarseMesh<2>> &,
+                                      const std::vector<CoarseMesh<2>> &, bool,
                                       std::vector<std::string> &);
   template CoarseMesh<3> merge_bodies(const std::vector<BodyInput> &,
-                                      const std::vector<CoarseMesh<3>> &,
+                                      const std::vector<CoarseMesh<3>> &, bool,
                                       std::vector<std::string> &);
 } // namespace nsfd

@@ -289,7 +289,8 @@ namespace nsfd
       }
       if (!problems.empty())
         return {};
-      CoarseMesh<dim> mesh = merge_bodies(input.bodies, meshes, problems);
+      CoarseMesh<dim> mesh = merge_bodies(
+          input.bodies, meshes, !input.contacts.empty(), problems);
       if (problems.empty() && input.mesh.distortion > 0.)
         distort(mesh, input.mesh.distortion, input.mesh.seed);
       return mesh;
@@ -321,12 +322,29 @@ namespace nsfd
       return ends[0] == hash && ends[1] == ~hash;
     }
 
+    /** All cells on the first rank: bodies of any shape touch anywhere. */
+    template <int dim>
+    std::unique_ptr<Triangulation<dim>> on_first_rank(const MPI_Comm communicator)
+    {
+      using Shared = parallel::shared::Triangulation<dim>;
+      auto result = std::make_unique<Shared>(communicator, Shared::none, true,
+                                             Shared::partition_custom_signal);
+      result->signals.post_refinement.connect([mesh = result.get()]() {
+        for (const auto &cell : mesh->active_cell_iterators())
+          cell->set_subdomain_id(0);
+      });
+      return result;
+    }
+
     template <int dim>
     std::unique_ptr<Triangulation<dim>> make(CoarseMesh<dim> &mesh,
+                                             const bool large_motion,
                                              const MPI_Comm communicator)
     {
       std::unique_ptr<Triangulation<dim>> result;
-      if (mesh.cells[0].vertices.size() == dim + 1)
+      if (large_motion)
+        result = on_first_rank<dim>(communicator);
+      else if (mesh.cells[0].vertices.size() == dim + 1)
         result = std::make_unique<parallel::shared::Triangulation<dim>>(
             communicator, Triangulation<dim>::none, true,
             parallel::shared::Triangulation<dim>::partition_metis);
@@ -367,7 +385,7 @@ namespace nsfd
     std::unique_ptr<Triangulation<dim>> result;
     if (found.empty())
       try {
-        result = make(mesh, communicator);
+        result = make(mesh, input.large_motion, communicator);
         if (by_p4est)
           result->refine_global(mesh_input.refinements);
       } catch (const std::exception &exception) {

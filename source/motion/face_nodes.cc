@@ -31,11 +31,11 @@ namespace nsfd
     }
 
     template <int dim>
-    FaceNodes on_hypercube(const FiniteElement<dim> &element,
+    FaceNodes<dim> on_hypercube(const FiniteElement<dim> &element,
                            const unsigned int f)
     {
       const unsigned int constant = f / 2, n = element.degree + 1;
-      FaceNodes face;
+      FaceNodes<dim> face;
       for (unsigned int i = 0; i < element.n_dofs_per_cell(); ++i)
         if (std::abs(element.unit_support_point(i)[constant] - double(f % 2)) <
             1e-8)
@@ -59,14 +59,14 @@ namespace nsfd
     }
 
     template <int dim>
-    FaceNodes on_simplex(const FiniteElement<dim> &element, const unsigned int f)
+    FaceNodes<dim> on_simplex(const FiniteElement<dim> &element, const unsigned int f)
     {
       const ReferenceCell cell = element.reference_cell();
       std::vector<Point<dim>> corners;
       for (unsigned int v = 0; v < dim; ++v)
         corners.push_back(
             cell.template vertex<dim>(cell.face_to_cell_vertices(f, v, 1)));
-      FaceNodes face;
+      FaceNodes<dim> face;
       const auto find = [&](const Point<dim> &x) {
         for (unsigned int i = 0; i < element.n_dofs_per_cell(); ++i)
           if (element.unit_support_point(i).distance(x) < 1e-8)
@@ -115,12 +115,12 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::vector<FaceNodes> face_nodes(const FiniteElement<dim> &element,
+  std::vector<FaceNodes<dim>> face_nodes(const FiniteElement<dim> &element,
                                     const BodyShape<dim> &shape)
   {
-    std::vector<FaceNodes> result;
+    std::vector<FaceNodes<dim>> result;
     for (unsigned int f = 0; f < shape.reference.n_faces(); ++f) {
-      FaceNodes face = shape.reference.is_simplex() ? on_simplex(element, f)
+      FaceNodes<dim> face = shape.reference.is_simplex() ? on_simplex(element, f)
                                                     : on_hypercube(element, f);
       const double measure =
           FaceGeometry<dim>(shape.reference, shape.corners, f).measure();
@@ -131,13 +131,15 @@ namespace nsfd
         if (normal_of(shape, piece) * out < 0.)
           std::reverse(piece.begin(), piece.end());
       }
+      face.normal = normal_of(shape, face.pieces[0]);
+      face.normal /= face.normal.norm();
       result.push_back(std::move(face));
     }
     return result;
   }
 
-  template std::vector<FaceNodes> face_nodes(const FiniteElement<2> &,
+  template std::vector<FaceNodes<2>> face_nodes(const FiniteElement<2> &,
                                              const BodyShape<2> &);
-  template std::vector<FaceNodes> face_nodes(const FiniteElement<3> &,
+  template std::vector<FaceNodes<3>> face_nodes(const FiniteElement<3> &,
                                              const BodyShape<3> &);
 } // namespace nsfd

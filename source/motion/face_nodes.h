@@ -9,6 +9,7 @@
 namespace nsfd
 {
   /** The nodes on one face of a cell, and flat pieces between them. */
+  template <int dim>
   struct FaceNodes
   {
     std::vector<unsigned int> nodes;  ///< of the cell
@@ -16,11 +17,12 @@ namespace nsfd
     /// dim nodes of the cell each, 4 of a quadrilateral; the outside as in
     /// Surfaces
     std::vector<std::vector<unsigned int>> pieces;
+    dealii::Tensor<1, dim> normal; ///< outward at rest, of the first piece
   };
 
   /** Of all faces of a cell. */
   template <int dim>
-  std::vector<FaceNodes>
+  std::vector<FaceNodes<dim>>
   face_nodes(const dealii::FiniteElement<dim, dim> &element,
              const BodyShape<dim> &shape);
 } // namespace nsfd

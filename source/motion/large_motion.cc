@@ -21,9 +21,18 @@ namespace nsfd
 {
   namespace
   {
-    /** Velocities rest: of the root of the kinetic energy. */
-    constexpr double velocity_tolerance = 1e-12;
     constexpr unsigned int most_iterations = 40;
+
+    BodyEnergies sum(const Communicator &all, const BodyEnergies &part)
+    {
+      BodyEnergies result;
+      result.kinetic = all.sum({part.kinetic});
+      result.elastic = all.sum({part.elastic});
+      result.of_mass = all.sum({part.of_mass});
+      result.of_strain = all.sum({part.of_strain});
+      result.work = all.sum({part.work});
+      return result;
+    }
 
     /** Appends @p n values of @p value to an array that has any. */
     template <typename Array>
@@ -80,20 +89,13 @@ namespace nsfd
     this->dynamics_.relative_velocity(bodies_.old_velocity().data(),
                                       state.relative_velocity.data());
     set_points(input, this->discretization_, this->problem_, state);
-    // cells of one rigid body hold together whatever the law
-    for (const auto &face : bodies_.points().faces)
-      if (!face.boundary && face.bodies[0] < 0)
-        for (unsigned int i = face.first; i < face.first + face.count; ++i) {
-          state.kind[i] = PointKind::bonded;
-          state.beta[i] = 1.;
-        }
     if (contacts_)
       contacts_->set_initial(state);
-    const BodyEnergies energies = bodies_.energies(state);
+    const Communicator &all = this->dynamics_.communicator();
+    const BodyEnergies energies = sum(all, bodies_.energies(state));
     state.energy.kinetic = energies.kinetic;
     state.energy.elastic = energies.elastic;
-    state.energy.cohesive = stored_in_points(this->dynamics_.communicator(),
-                                             this->problem_, state);
+    state.energy.cohesive = stored_in_points(all, this->problem_, state);
     begin_books(state);
     return state;
   }
@@ -300,6 +302,45 @@ namespace nsfd
               -(1. - theta) / theta * old_.relative_velocity[i * dim + a];
   }
 
+  /**
+   * (134), (136) for contacts of surfaces: gap + h (gamma_1 rate + gamma_2 U_N),
+   * the rate that of the start of the step, where a contact that rests has
+   * none, and U_N that of the motion at hand. What has once been active in a
+   * step stays so, or the iteration could go round.
+   */
+  template <int dim>
+  void LargeMotion<dim>::forecast(const double h, const bool first)
+  {
+    const auto &time = this->input_.time;
+    const auto &rows = bodies_.rows();
+    const std::size_t n = this->discretization_.points().n_points;
+    if (first)
+      active_.assign(rows.size(), 0);
+    std::vector<double> U;
+    if (time.forecast_gamma2 > 0.) {
+      U.resize(old_.jump.size());
+      relative_velocity(bodies_.velocity(), old_.time + h, U);
+    }
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (rows[k].partner == MovingRow<dim>::Partner::pin)
+        continue;
+      const std::size_t i = n + k;
+      double gap = rows[k].gap + h * time.forecast_gamma1 * rows[k].rate;
+      if (!U.empty())
+        gap += h * time.forecast_gamma2 * U[i * dim];
+      if (!old_.worn.empty())
+        gap += old_.worn[i] + h * time.forecast_gamma1 * old_.wear_speed[i];
+      const auto &law =
+          step_problem_.interactions[step_problem_.interaction[i]];
+      // as set_step() has it for the points of the mesh
+      const bool rests = old_.contact[i] && law.restitution == 0.;
+      if ((first || !U.empty()) &&
+          gap <= (rests ? 1e-9 : 1e-14) * this->discretization_.extent())
+        active_[k] = 1;
+      step_problem_.contact[i] = active_[k];
+    }
+  }
+
   /** The impulses of the last step, in the frames at hand. */
   template <int dim>
   void LargeMotion<dim>::warm_start(const State &old)
@@ -339,7 +380,11 @@ namespace nsfd
                             std::unique_ptr<LawEvaluation<dim>> &evaluation)
   {
     auto &dynamics = this->dynamics_;
+    const Communicator &all = dynamics.communicator();
     const double theta = this->input_.time.theta;
+    // velocities rest, over the root of the kinetic energy: well within what
+    // the solver leaves
+    const double rest = std::max(1e-2 * control.tolerance, 1e-13);
     SolverReport total;
     std::vector<double> difference(bodies_.old_velocity().size());
     for (unsigned int round = 0;; ++round) {
@@ -347,9 +392,10 @@ namespace nsfd
       bodies_.set_middle();
       dynamics.renew(h, theta);
       set_problem(h);
+      forecast(h, round == 0);
       if (round == 0) {
         warm_start(old);
-        if (!move_bodies(v_middle))
+        if (all.any(!move_bodies(v_middle)))
           throw StepRejected(lost_body(h, old.time));
       }
       // linear in what further impulses do
@@ -363,11 +409,12 @@ namespace nsfd
       dynamics.set_free_velocity(&this->v_free_);
       if (round == 0)
         energy_scale_ = 2. * old.energy.kinetic +
-                        bodies_.kinetic_product(this->v_free_, this->v_free_);
+                        all.sum({bodies_.kinetic_product(this->v_free_,
+                                                         this->v_free_)});
       evaluation = std::make_unique<LawEvaluation<dim>>(
           step_problem_, dynamics, energy_scale_, control.tolerance);
       const auto solver = SolverRegistry<dim>::instance().create(
-          this->input_.solver.method == "auto" ? "chain"
+          this->input_.solver.method == "auto" ? "contacts alone"
                                                : this->input_.solver.method);
       const SolverReport part =
           this->solve(*solver, step_problem_, origins_, control, energy_scale_,
@@ -384,15 +431,16 @@ namespace nsfd
         return total;
       std::vector<double> v = this->v_free_;
       dynamics.add_velocity_change(impulse_.data(), v.data());
-      if (!move_bodies(v))
+      if (all.any(!move_bodies(v)))
         throw StepRejected(lost_body(h, old.time));
       for (std::size_t k = 0; k < difference.size(); ++k)
         difference[k] = bodies_.velocity()[k] - v_middle[k];
-      const double change = bodies_.kinetic_product(difference, difference);
+      const double change =
+          all.sum({bodies_.kinetic_product(difference, difference)});
       ++motion_counters_.iterations;
       motion_counters_.most_iterations =
           std::max<unsigned long long>(motion_counters_.most_iterations, round + 1);
-      if (change <= velocity_tolerance * velocity_tolerance * energy_scale_)
+      if (change <= rest * rest * energy_scale_)
         return total;
       if (round == most_iterations || !std::isfinite(change))
         throw StepRejected(fmt::format(
@@ -463,15 +511,16 @@ namespace nsfd
       next.jump[k] = step_problem_.jump_free[k] +
                      h * theta * next.relative_velocity[k];
     bodies_.finish(next);
-    this->ledger_->book(step_problem_, evaluation, origins_, bodies_.book(),
-                        old_, next, report);
-    next.energy.work += obstacle_work();
+    const Communicator &all = this->dynamics_.communicator();
+    this->ledger_->book(step_problem_, evaluation, origins_,
+                        sum(all, bodies_.book()), old_, next, report);
+    next.energy.work += all.sum({obstacle_work()});
     // springs of two stiffnesses store other energies as their frames turn
     double stored = 0.;
-    for (std::size_t i = 0; i < this->problem_.n_points; ++i)
+    for (std::size_t i = 0; i < this->problem_.n_owned; ++i)
       stored += step_problem_.weight[i] *
                 stored_energy<dim>(step_problem_, i);
-    next.energy.numerical -= stored - old_.energy.cohesive;
+    next.energy.numerical -= all.sum({stored}) - old_.energy.cohesive;
     close_books(old_, next, report);
   }
 

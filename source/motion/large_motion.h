@@ -60,6 +60,7 @@ namespace nsfd
     void relative_velocity(const std::vector<double> &v, double time,
                            std::vector<double> &U) const;
     void set_problem(double time_step);
+    void forecast(double time_step, bool first);
     void warm_start(const State &old);
     bool move_bodies(const std::vector<double> &v);
     SolverReport iterate(const State &old, double time_step,
@@ -80,6 +81,7 @@ namespace nsfd
     OneStepProblem<dim> step_problem_;
     std::vector<PointOrigin> origins_;
     std::vector<double> mesh_jumps_; ///< Cartesian, at the start
+    std::vector<char> active_;       ///< contacts of the step: forecast
     std::vector<double> impulse_, crack_impulse_;
     double energy_scale_ = 0.;
   };

@@ -26,8 +26,7 @@ namespace nsfd
     /** Cells that are one rigid body: the first one of each, by cell. */
     template <int dim>
     std::vector<unsigned int>
-    rigid_groups(const SceneInput &input,
-                 const Discretization<dim> &discretization)
+    rigid_groups(const Discretization<dim> &discretization)
     {
       std::vector<unsigned int> first(discretization.bodies().size());
       std::iota(first.begin(), first.end(), 0u);
@@ -36,15 +35,8 @@ namespace nsfd
           c = first[c] = first[first[c]];
         return c;
       };
-      for (const auto &face : discretization.points().faces) {
-        const auto [a, b] = face.bodies;
-        if (a < 0 || b < 0)
-          continue;
-        const unsigned int m = discretization.material_of(unsigned(a));
-        if (m != discretization.material_of(unsigned(b)) ||
-            !input.materials[m].rigid_bodies.connected)
-          continue;
-        const unsigned int i = root(unsigned(a)), j = root(unsigned(b));
+      for (const InnerFace &face : discretization.inner_faces()) {
+        const unsigned int i = root(face.bodies[0]), j = root(face.bodies[1]);
         first[std::max(i, j)] = std::min(i, j);
       }
       for (unsigned int c = 0; c < first.size(); ++c)
@@ -137,7 +129,7 @@ namespace nsfd
   template <int dim>
   void MovingBodies<dim>::make_movers()
   {
-    const auto group = rigid_groups(input_, discretization_);
+    const auto group = rigid_groups(discretization_);
     mover_of_.resize(group.size());
     int n_rigid_bodies = 0;
     for (unsigned int c = 0; c < group.size(); ++c) {
@@ -228,19 +220,13 @@ namespace nsfd
           face.bodies[side] = int(b);
           face.cells[side] = b;
         }
-    // nothing acts inside a body: one side, so that rows do not vanish
-    for (auto &face : points_.faces)
-      if (face.bodies[0] == face.bodies[1])
-        face.bodies[0] = -1;
     slots_.resize(movers_.size());
     const Bodies &cells = discretization_.bodies();
     const auto add = [&](const std::size_t c, const unsigned int slot,
                          const unsigned int point, const int sign) {
-      if (point >= n_mesh_points_ ||
-          (sign < 0 && points_.faces[points_.face_of[point]].bodies[0] < 0))
-        return;
-      slots_[mover_of_[c]].push_back(
-          {unsigned(c), slot, point, static_cast<signed char>(sign)});
+      if (point < n_mesh_points_)
+        slots_[mover_of_[c]].push_back(
+            {unsigned(c), slot, point, static_cast<signed char>(sign)});
     };
     for (std::size_t c = 0; c < cells.size(); ++c)
       for (std::size_t s = cells.first_slot[c]; s < cells.first_slot[c + 1];
@@ -310,13 +296,7 @@ namespace nsfd
   RigidState MovingBodies<dim>::rigid_state(const State &state,
                                             const Mover &mover) const
   {
-    const double *x = state.rigid.data() + 13 * mover.rigid;
-    RigidState result;
-    std::copy_n(x, 3, result.centre.begin());
-    std::copy_n(x + 3, 3, result.velocity.begin());
-    std::copy_n(x + 6, 4, result.orientation.begin());
-    std::copy_n(x + 10, 3, result.spin.begin());
-    return result;
+    return nsfd::rigid_state(state.rigid.data() + 13 * mover.rigid);
   }
 
   /** Nodal displacements of a place and turn. */

@@ -37,7 +37,8 @@ namespace nsfd
     unsigned int n_facet = 0;
     std::array<double, 4> weights{}; ///< of these nodes at the start
     unsigned int obstacle = 0, pin = 0;
-    double gap = 0.;            ///< at the start of the step, m
+    double gap = 0.;  ///< at the start of the step, m
+    double rate = 0.; ///< of the gap at the start of the step, m/s
     double weight = 0.;         ///< m or m^2
     unsigned int interaction = 0; ///< index into OneStepProblem::interactions
     unsigned int block = 0;

@@ -22,7 +22,7 @@ namespace nsfd
     for (const auto &body : cells.classes)
       faces_.push_back(
           body.bodies.empty()
-              ? std::vector<FaceNodes>()
+              ? std::vector<FaceNodes<dim>>()
               : face_nodes(discretization.element(),
                            discretization.shape(body.bodies[0])));
     first_place_.push_back(0);
@@ -84,7 +84,7 @@ namespace nsfd
     const auto &points = discretization_.points();
     for (unsigned int c = 0; c < cells.size(); ++c) {
       auto &face_of = mesh_face_.emplace_back(
-          faces_[cells.class_of[c]].size(), -1);
+          faces_[cells.class_of[c]].size(), boundary);
       for (std::size_t s = cells.first_slot[c]; s < cells.first_slot[c + 1];
            ++s) {
         const unsigned int i = cells.slot_point[s];
@@ -94,6 +94,9 @@ namespace nsfd
               c, unsigned(s - cells.first_slot[c]))] = int(points.face_of[i]);
       }
     }
+    for (const InnerFace &face : discretization_.inner_faces())
+      for (unsigned int side = 0; side < 2; ++side)
+        mesh_face_[face.bodies[side]][face.faces[side]] = inside;
   }
 
   template <int dim>
@@ -167,9 +170,27 @@ namespace nsfd
                                         const State &state) const
   {
     const int f = mesh_face_[cell][face];
-    return f < 0 ||
-           state.kind[bodies_.points().faces[std::size_t(f)].first] ==
-               PointKind::parted;
+    if (f < 0)
+      return f == boundary;
+    return state.kind[bodies_.points().faces[std::size_t(f)].first] ==
+           PointKind::parted;
+  }
+
+  /** Normals at rest of the surfaces that meet at the nodes of rigid bodies. */
+  template <int dim>
+  void SurfaceContacts<dim>::set_sides(const State &state)
+  {
+    sides_at_.clear();
+    for (unsigned int c = 0; c < mesh_face_.size(); ++c)
+      for (unsigned int f = 0; f < mesh_face_[c].size(); ++f) {
+        if (!bodies_.is_rigid(bodies_.body_of_cell(c)) ||
+            !is_surface(c, f, state))
+          continue;
+        const FaceNodes<dim> &face = faces_[discretization_.bodies().class_of[c]][f];
+        for (const unsigned int node : face.nodes)
+          sides_at_[merged_[discretization_.first_node(c) + node]].push_back(
+              {c, f, face.normal});
+      }
   }
 
   /** True if the surfaces are others than in the last step. */
@@ -191,6 +212,7 @@ namespace nsfd
         joined_.insert(pair_of(unsigned(faces[f].bodies[0]),
                                unsigned(faces[f].bodies[1])));
     surfaces_ = Surfaces<dim>();
+    set_sides(state);
     point_origins_.clear();
     facet_cells_.clear();
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
@@ -218,11 +240,37 @@ namespace nsfd
     return true;
   }
 
+  /**
+   * Flat sides of a rigid body touch with their corners: not with nodes inside
+   * of them and, where several of its faces meet, with one of each direction.
+   */
+  template <int dim>
+  bool SurfaceContacts<dim>::is_corner(const unsigned int c,
+                                       const unsigned int f,
+                                       const unsigned int node) const
+  {
+    if (!bodies_.is_rigid(bodies_.body_of_cell(c)))
+      return true;
+    const auto &sides =
+        sides_at_.at(merged_[discretization_.first_node(c) + node]);
+    const auto own = std::find_if(sides.begin(), sides.end(), [&](auto &side) {
+      return side.cell == c && side.face == f;
+    });
+    bool all_flat = true;
+    for (auto side = sides.begin(); side != sides.end(); ++side) {
+      const bool parallel = side->normal * own->normal > 1. - 1e-9;
+      if (parallel && side < own)
+        return false;
+      all_flat = all_flat && parallel;
+    }
+    return !all_flat;
+  }
+
   template <int dim>
   void SurfaceContacts<dim>::add_face(const unsigned int c,
                                       const unsigned int f)
   {
-    const FaceNodes &face = faces_[discretization_.bodies().class_of[c]][f];
+    const FaceNodes<dim> &face = faces_[discretization_.bodies().class_of[c]][f];
     const std::size_t first = discretization_.first_node(c);
     std::vector<char> has_point(discretization_.shape(c).n_nodes, 0);
     for (std::size_t p = 0; p < face.pieces.size(); ++p) {
@@ -237,6 +285,8 @@ namespace nsfd
         if (has_point[node])
           continue;
         has_point[node] = 1;
+        if (!is_corner(c, f, node))
+          continue;
         surfaces_.points.push_back(
             {facet.vertex[v], unsigned(surfaces_.facets.size())});
         const auto j = unsigned(
@@ -277,6 +327,16 @@ namespace nsfd
     if (!input_.contacts.empty())
       add_surface_rows(old, reach, result);
     add_obstacle_rows(old, reach, result);
+    // an explicit forecast is known already
+    const auto &time = input_.time;
+    if (time.forecast_gamma2 == 0. && old.worn.empty())
+      result.erase(std::remove_if(result.begin(), result.end(),
+                                  [&](const Row &row) {
+                                    return row.gap + h * time.forecast_gamma1 *
+                                                         row.rate >
+                                           1e-9 * discretization_.extent();
+                                  }),
+                   result.end());
     counters_.rows += result.size();
     counters_.searches = search_.n_searches();
     for (const Row &row : result)
@@ -286,8 +346,31 @@ namespace nsfd
   }
 
   template <int dim>
+  Tensor<1, dim> SurfaceContacts<dim>::velocity(const State &old,
+                                                const std::size_t node) const
+  {
+    Vector v;
+    for (unsigned int d = 0; d < dim; ++d)
+      v[d] = old.velocity[node * dim + d];
+    return v;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  SurfaceContacts<dim>::centre_velocity(const State &old,
+                                        const unsigned int body) const
+  {
+    const std::size_t r = bodies_.centre_node(body) - bodies_.n_nodes();
+    Vector v;
+    for (unsigned int d = 0; d < dim; ++d)
+      v[d] = old.rigid[13 * r + 3 + d];
+    return v;
+  }
+
+  /** Facet and gap, and its rate with the velocities at the start. */
+  template <int dim>
   void SurfaceContacts<dim>::set_partner(const FacetPair<dim> &pair,
-                                         Row &row) const
+                                         const State &old, Row &row) const
   {
     const auto &facet = surfaces_.facets[pair.facet];
     row.partner = Row::Partner::facet;
@@ -298,6 +381,12 @@ namespace nsfd
       row.facet[v] = facet.vertex[v];
     row.weights = pair.weights;
     row.gap = pair.gap;
+    Vector away = row.node == Row::nowhere ? centre_velocity(old, row.body_2)
+                                           : velocity(old, row.node);
+    for (unsigned int v = 0; v < row.n_facet; ++v)
+      away -= row.weights[v] * velocity(old, row.facet[v]);
+    for (unsigned int d = 0; d < dim; ++d)
+      row.rate += pair.normal[d] * away[d];
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
     // interfaces, obstacles, the support, contacts: see constant_data()
     row.interaction = unsigned(input_.interfaces.size() +
@@ -327,7 +416,7 @@ namespace nsfd
                  face.nodes[origin.node];
       row.weight = face.weights[origin.node];
       row.place = place_of(origin.cell, origin.face, origin.node);
-      set_partner(pair, row);
+      set_partner(pair, old, row);
       rows.push_back(row);
     }
     const auto ball_row = [&](const unsigned int index) {
@@ -340,7 +429,7 @@ namespace nsfd
     };
     for (const auto &pair : pairs_.balls) {
       Row row = ball_row(pair.index);
-      set_partner(pair, row);
+      set_partner(pair, old, row);
       rows.push_back(row);
     }
     for (const auto &pair : pairs_.ball_balls) {
@@ -348,6 +437,10 @@ namespace nsfd
       row.partner = Row::Partner::ball;
       row.body_1 = int(surfaces_.balls[pair.other].body);
       row.gap = pair.gap;
+      const Vector away = centre_velocity(old, row.body_2) -
+                          centre_velocity(old, unsigned(row.body_1));
+      for (unsigned int d = 0; d < dim; ++d)
+        row.rate += pair.normal[d] * away[d];
       row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
       row.interaction = unsigned(input_.interfaces.size() +
                                  input_.obstacles.size() + 1 + row.block);
@@ -375,6 +468,15 @@ namespace nsfd
     };
     std::map<std::pair<unsigned int, unsigned int>, std::size_t> known;
     const auto add = [&](Row row, const unsigned int o) {
+      const bool is_ball = row.node == Row::nowhere;
+      Vector away = is_ball ? centre_velocity(old, row.body_2)
+                            : velocity(old, row.node);
+      for (unsigned int d = 0; d < dim; ++d)
+        if (const auto &own = input_.obstacles[o].velocity[d])
+          away[d] -= own->at(Point<dim>(), old.time);
+      row.rate = away * geometry(o).normal(at(
+                            is_ball ? bodies_.centre_node(row.body_2)
+                                    : row.node));
       row.partner = Row::Partner::obstacle;
       row.obstacle = row.block = o;
       row.interaction = unsigned(input_.interfaces.size()) + o;
@@ -396,9 +498,11 @@ namespace nsfd
           add(row, o);
         continue;
       }
-      const FaceNodes &face = faces_[discretization_.bodies().class_of[c]][f];
+      const FaceNodes<dim> &face = faces_[discretization_.bodies().class_of[c]][f];
       const std::size_t first = discretization_.first_node(c);
       for (unsigned int j = 0; j < face.nodes.size(); ++j) {
+        if (!is_corner(c, f, face.nodes[j]))
+          continue;
         Row row;
         row.node = first + face.nodes[j];
         row.gap = geometry(o).gap(at(row.node));
@@ -413,10 +517,10 @@ namespace nsfd
         if (is_new)
           add(row, o);
         else if (row.weight > rows[entry->second].weight) {
-          row.partner = Row::Partner::obstacle;
-          row.obstacle = row.block = o;
-          row.interaction = rows[entry->second].interaction;
-          rows[entry->second] = row;
+          rows[entry->second].place = row.place; // the rest is that of the node
+          rows[entry->second].weight = row.weight;
+          rows[entry->second].cell = row.cell;
+          rows[entry->second].node = row.node;
         }
       }
     }

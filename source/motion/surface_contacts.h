@@ -6,6 +6,7 @@
 #include "nsfd/contact/surface_search.h"
 
 #include <memory>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -49,6 +50,7 @@ namespace nsfd
 
   private:
     using Row = MovingRow<dim>;
+    using Vector = dealii::Tensor<1, dim>;
     using Pair = std::uint64_t;
 
     static Pair pair_of(const unsigned int a, const unsigned int b)
@@ -63,25 +65,38 @@ namespace nsfd
     bool is_surface(unsigned int cell, unsigned int face,
                     const State &state) const;
     bool follow(const State &state);
+    void set_sides(const State &state);
+    bool is_corner(unsigned int cell, unsigned int face,
+                   unsigned int node) const;
     void add_face(unsigned int cell, unsigned int face);
     void add_obstacle_faces(const State &state);
     void add_surface_rows(const State &old, double reach,
                           std::vector<Row> &rows);
     void add_obstacle_rows(const State &old, double reach,
                            std::vector<Row> &rows) const;
-    void set_partner(const FacetPair<dim> &pair, Row &row) const;
+    void set_partner(const FacetPair<dim> &pair, const State &old,
+                     Row &row) const;
+    Vector velocity(const State &old, std::size_t node) const;
+    Vector centre_velocity(const State &old, unsigned int body) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const MovingBodies<dim> &bodies_;
-    std::vector<std::vector<FaceNodes>> faces_; ///< per class of cells
+    std::vector<std::vector<FaceNodes<dim>>> faces_; ///< per class of cells
     std::vector<std::size_t> first_place_;      ///< per cell, then of balls
-    std::vector<std::vector<int>> mesh_face_;   ///< per cell and face: of the
-                                                ///< points, -1 at the boundary
+    static constexpr int boundary = -1, inside = -2;
+    std::vector<std::vector<int>> mesh_face_; ///< per cell and face: that of
+                                              ///< the points, or one of these
     std::vector<unsigned int> merged_; ///< node of the body at the same place
     std::vector<int> block_by_materials_;
 
     // of the surfaces at hand
+    struct Side
+    {
+      unsigned int cell, face;
+      Vector normal;
+    };
+    std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
     std::vector<char> parted_; ///< per face of the mesh points
     bool known_ = false;
     std::unordered_set<Pair> joined_;

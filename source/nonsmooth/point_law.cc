@@ -787,6 +787,7 @@ namespace nsfd
     case PointKind::prescribed: frozen.secant = Secant::rigid(); return frozen;
     case PointKind::rigid: return frozen; // has no secant before it opens
     case PointKind::bonded:
+    case PointKind::parted:
     case PointKind::free: beta = 0.; break;
     case PointKind::elastic:
       frozen.secant = {interaction.normal_stiffness,

@@ -30,6 +30,7 @@ namespace nsfd
           return true;
         break;
       case PointKind::free:
+      case PointKind::parted:
         break;
       }
     return false;
@@ -100,6 +101,8 @@ namespace nsfd
     for (const Link &link : links_)
       if (link.other >= 0 && carries<dim>(state, faces[link.face]))
         bodies.join(link.body, unsigned(link.other));
+    for (const InnerFace &face : discretization_.inner_faces())
+      bodies.join(face.bodies[0], face.bodies[1]);
     piece_.resize(n);
     n_pieces_ = 0;
     for (unsigned int b = 0; b < n; ++b)

@@ -99,6 +99,10 @@ namespace nsfd
     }
     if (case_.wants_opening())
       set_opening(state, view);
+    std::vector<RigidState> rigid_bodies;
+    for (std::size_t b = 0; b < state.rigid.size() / 13; ++b)
+      rigid_bodies.push_back(rigid_state(&state.rigid[13 * b]));
+    view.rigid_bodies = &rigid_bodies;
     case_.observe(view);
   }
 

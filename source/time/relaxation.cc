@@ -229,7 +229,9 @@ namespace nsfd
     {
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
-      report = this->solve(control, energy_scale, impulse, evaluation);
+      report = this->solve(this->solver_, this->problem_,
+                           this->discretization_.origins(), control,
+                           energy_scale, impulse, evaluation);
     }
     const Stopwatch watch(this->timings_.update);
     const Charge charge(Cost::update);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "../../source/motion/large_motion.h"
+
 #include "nsfd/dynamics/bonded.h"
 #include "nsfd/input/read_scene.h"
 #include "nsfd/mesh/discretization.h"
@@ -57,7 +59,11 @@ namespace nsfd
         if (input->time.step_kind != StepKind::time)
           time_step *= discretization->crossing_time();
 
-        if (input->has_bonded_faces()) {
+        if (input->large_motion) {
+          moving = std::make_unique<MovingBodies<dim>>(*input, *discretization);
+          dynamics = make_moving_dynamics<dim>(communicator, moving->bodies(),
+                                               moving->points());
+        } else if (input->has_bonded_faces()) {
           const auto &bodies = discretization->bodies();
           const auto &points = discretization->points();
           auto joined =
@@ -79,8 +85,12 @@ namespace nsfd
               communicator, discretization->bodies(), discretization->points());
         solver = SolverRegistry<dim>::instance().create(
             input->solver.method == "auto" ? "chain" : input->solver.method);
-        stepper = std::make_unique<MoreauJean<dim>>(*input, *discretization,
-                                                    *dynamics, *solver, bonded);
+        if (moving)
+          stepper = std::make_unique<LargeMotion<dim>>(
+              *input, *discretization, *moving, *dynamics, *solver);
+        else
+          stepper = std::make_unique<MoreauJean<dim>>(
+              *input, *discretization, *dynamics, *solver, bonded);
         dynamics->reinit(time_step, input->time.bulk_theta());
         state = stepper->initial_state();
         next = state;
@@ -129,6 +139,7 @@ namespace nsfd
       std::unique_ptr<Discretization<dim>> discretization;
       std::unique_ptr<Dynamics<dim>> dynamics;
       BondedDynamics<dim> *bonded = nullptr; ///< the same, or null
+      std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
       std::unique_ptr<NonsmoothSolver<dim>> solver;
       std::unique_ptr<MoreauJean<dim>> stepper;
       double time_step = 0.;

@@ -52,6 +52,12 @@ namespace nsfd
     unsigned int body = 0, face = 0, obstacle = 0;
   };
 
+  /** Between two cells of one rigid body, in scenes with large motions. */
+  struct InnerFace
+  {
+    std::array<unsigned int, 2> bodies, faces;
+  };
+
   /**
    * The cells of this rank as bodies, and the points on their faces: matrices,
    * traces, frames, weights. Straight-sided cells; cells of the same shape and
@@ -107,6 +113,9 @@ namespace nsfd
     {
       return obstacle_faces_;
     }
+
+    /** The same; such faces have no points. */
+    const std::vector<InnerFace> &inner_faces() const { return inner_faces_; }
 
     /** Which face of its cell a slot of a body is on. */
     unsigned int face_of_slot(unsigned int body, unsigned int slot) const;
@@ -181,6 +190,7 @@ namespace nsfd
     std::vector<PointOrigin> origins_;
     std::vector<int> springs_inside_; ///< by body; empty: none anywhere
     std::vector<ObstacleFace> obstacle_faces_;
+    std::vector<InnerFace> inner_faces_;
     std::unique_ptr<const Loads<dim>> loads_;
     unsigned long long n_global_cells_ = 0;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/base/registry.h"
+#include "nsfd/motion/rigid_step.h"
 #include "nsfd/output/run_record.h"
 
 #include <array>
@@ -31,6 +32,9 @@ namespace nsfd
     /// cells in an order that does not depend on the rank count; gathered only
     /// for cases that ask for it
     const std::vector<CellState> *cells = nullptr;
+    /// rigid bodies of a scene with large motions, by their first cells; in
+    /// the plane they turn about z
+    const std::vector<RigidState> *rigid_bodies = nullptr;
     /// mean u_N and U_N over the points of the obstacles, m and m/s; only for
     /// cases that ask for them
     double opening = 0., opening_rate = 0.;

@@ -1,0 +1,352 @@
+#include "make_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+// Whole steps of scenes with large motions. Energies and momenta are computed
+// here from states and masses, not taken from the ledger.
+
+using namespace nsfd;
+using nsfd::test::Scene;
+
+namespace
+{
+  using Vec = std::array<double, 3>;
+
+  /** Linear and angular momentum about the origin, of nodal masses. */
+  template <int dim>
+  std::array<Vec, 2> momenta(const Scene<dim> &scene)
+  {
+    std::array<Vec, 2> result{};
+    const auto &d = *scene.discretization;
+    std::vector<double> x(scene.state.displacement);
+    const auto rest = d.interpolate(
+        [](const dealii::Point<dim> &place, unsigned int, double *values) {
+          for (unsigned int c = 0; c < dim; ++c)
+            values[c] = place[c];
+        });
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] += rest[i];
+    const auto &bodies = d.bodies();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Block &M = bodies.classes[bodies.class_of[b]].mass;
+      const std::size_t first = bodies.first_dof[b];
+      for (unsigned int i = 0; i < M.rows; i += dim)
+        for (unsigned int j = 0; j < M.rows; j += dim) {
+          Vec at{}, v{};
+          for (unsigned int c = 0; c < dim; ++c) {
+            at[c] = x[first + i + c];
+            v[c] = scene.state.velocity[first + j + c];
+            result[0][c] += M(i, j) * v[c];
+          }
+          const double m = M(i, j);
+          result[1][0] += m * (at[1] * v[2] - at[2] * v[1]);
+          result[1][1] += m * (at[2] * v[0] - at[0] * v[2]);
+          result[1][2] += m * (at[0] * v[1] - at[1] * v[0]);
+        }
+    }
+    return result;
+  }
+
+  /** With bodies that do not strain. */
+  std::string rigid(std::string text, const std::string &entries)
+  {
+    const std::size_t begin = text.find("  set model "),
+                      end = text.find("  set density");
+    return text.replace(begin, end - begin, "  set model = rigid\n" + entries);
+  }
+
+  double norm(const Vec &a)
+  {
+    return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+  }
+
+  Vec difference(const Vec &a, const Vec &b)
+  {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  }
+
+  template <int dim>
+  void keeps_energy_and_momenta(const std::string &text,
+                                const std::vector<std::string> &overrides,
+                                const unsigned int n_steps,
+                                const double tolerance)
+  {
+    Scene<dim> scene(text, overrides);
+    const double energy = scene.energy();
+    const auto start = momenta(scene);
+    for (unsigned int k = 0; k < n_steps; ++k) {
+      const StepReport report = scene.advance();
+      EXPECT_LT(report.ledger_defect, 1e-10);
+      ASSERT_NEAR(scene.energy(), energy, tolerance * energy) << "step " << k;
+    }
+    const auto end = momenta(scene);
+    const double size = norm(start[0]) + 1e-3 * norm(start[1]);
+    EXPECT_LT(norm(difference(end[0], start[0])), tolerance * size);
+    EXPECT_LT(norm(difference(end[1], start[1])),
+              tolerance * norm(start[1]));
+  }
+
+  // --- tumbling
+
+  /** Springs of equal stiffness in both directions store what they are given
+      whichever way they look. */
+  const std::string block = R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 2, 1
+  set cells        = 4, 2
+end
+subsection Material: rubber
+  set model              = neo-hookean
+  set Young modulus      = 100
+  set Poisson ratio      = 0.3
+  set density            = 1
+  set initial velocity x = 1 - 2 * (y - 0.5) + 0.3 * x
+  set initial velocity y = 2 * (x - 1)
+end
+subsection Interface: all
+  set law                  = elastic
+  set normal stiffness     = 1e4
+  set tangential stiffness = 1e4
+end
+subsection Time
+  set end   = 1000
+  set step  = 0.01
+  set theta = 0.5
+end
+subsection Solver
+  set tolerance = 1e-13
+end
+)";
+
+  TEST(LargeMotion, TumblingBlockKeepsEnergyAndMomenta)
+  {
+    keeps_energy_and_momenta<2>(block, {}, 400, 1e-10);
+    keeps_energy_and_momenta<2>(
+        block, {"Material: rubber/model=saint-venant kirchhoff"}, 200, 1e-10);
+  }
+
+  TEST(LargeMotion, TumblingBlockInSpace)
+  {
+    const std::string text = R"(
+set dimension = 3
+set motion    = large
+subsection Mesh
+  set type         = brick
+  set upper corner = 3, 2, 1
+  set cells        = 3, 2, 1
+end
+subsection Material: rubber
+  set model              = neo-hookean
+  set Young modulus      = 100
+  set Poisson ratio      = 0.3
+  set density            = 1
+  set initial velocity x = 0.1 * (z - 0.5) - 0.2 * (y - 1)
+  set initial velocity y = 0.2 * (x - 1.5) - 1 * (z - 0.5)
+  set initial velocity z = 1 * (y - 1) - 0.1 * (x - 1.5)
+end
+subsection Interface: all
+  set law                  = elastic
+  set normal stiffness     = 1e4
+  set tangential stiffness = 1e4
+end
+subsection Time
+  set end   = 1000
+  set step  = 0.02
+  set theta = 0.5
+end
+subsection Solver
+  set tolerance = 1e-13
+end
+)";
+    keeps_energy_and_momenta<3>(text, {}, 60, 1e-10);
+  }
+
+  TEST(LargeMotion, RigidCellsOnSpringsTumble)
+  {
+    keeps_energy_and_momenta<2>(rigid(block, ""),
+                                {"Interface: all/normal stiffness=1e3",
+                                 "Interface: all/tangential stiffness=1e3"},
+                                300, 1e-10);
+  }
+
+  TEST(LargeMotion, MoreDampingThanHalfIsBooked)
+  {
+    Scene<2> scene(block, {"Time/theta=0.75"});
+    const double energy = scene.energy();
+    for (unsigned int k = 0; k < 50; ++k)
+      EXPECT_LT(scene.advance().ledger_defect, 1e-10);
+    EXPECT_LT(scene.energy(), energy);
+    EXPECT_GT(scene.state.energy.numerical, 0.);
+    EXPECT_NEAR(scene.energy() + scene.state.energy.numerical, energy,
+                1e-9 * energy);
+  }
+
+  // --- a turned scene is the same scene
+
+  TEST(LargeMotion, TurnedSceneIsTheSame)
+  {
+    // by 170 degrees about the origin, at rest and in motion
+    const std::vector<std::string> turned = {
+        "Constants/c=cos(170/180 * pi)", "Constants/s=sin(170/180 * pi)",
+        "Material: rubber/initial displacement x=(c - 1) * x - s * y",
+        "Material: rubber/initial displacement y=s * x + (c - 1) * y",
+        "Material: rubber/initial velocity x="
+        "c * (1 - 2 * (y - 0.5) + 0.3 * x) - s * (2 * (x - 1))",
+        "Material: rubber/initial velocity y="
+        "s * (1 - 2 * (y - 0.5) + 0.3 * x) + c * (2 * (x - 1))"};
+    Scene<2> one(block), other(block, turned);
+    EXPECT_NEAR(other.state.energy.elastic, 0., 1e-12 * one.energy());
+    for (unsigned int k = 0; k < 100; ++k) {
+      one.advance();
+      other.advance();
+    }
+    EXPECT_NEAR(one.state.energy.elastic, other.state.energy.elastic,
+                1e-8 * one.energy());
+    EXPECT_NEAR(one.state.energy.cohesive, other.state.energy.cohesive,
+                1e-8 * one.energy());
+    EXPECT_NEAR(one.state.energy.kinetic, other.state.energy.kinetic,
+                1e-8 * one.energy());
+    for (std::size_t i = 0; i < one.state.jump.size(); ++i)
+      EXPECT_NEAR(one.state.jump[i], other.state.jump[i], 1e-9);
+  }
+
+  // --- contact
+
+  /** Two blocks; the upper one falls on the lower one and slides. */
+  const std::string blocks = R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type = bodies
+end
+subsection Body: low
+  set type         = rectangle
+  set lower corner = 0, 0
+  set upper corner = 4, 1
+  set cells        = 4, 1
+end
+subsection Body: high
+  set type         = rectangle
+  set lower corner = 0.3, 1.05
+  set upper corner = 1.3, 1.55
+  set cells        = 2, 1
+end
+subsection Material: all
+  set model              = neo-hookean
+  set Young modulus      = 100
+  set Poisson ratio      = 0.3
+  set density            = 1
+  set initial velocity x = if(y > 1, 2, 0)
+  set initial velocity y = if(y > 1, -1, 0)
+end
+subsection Interface: all
+  set law                  = elastic
+  set normal stiffness     = 1e4
+  set tangential stiffness = 1e4
+end
+subsection Contact: all
+  set between  = all
+  set friction = 0.3
+end
+subsection Time
+  set end   = 1000
+  set step  = 0.005
+  set theta = 0.5
+end
+subsection Solver
+  set tolerance = 1e-12
+end
+)";
+
+  TEST(LargeMotion, ContactKeepsMomenta)
+  {
+    Scene<2> scene(blocks);
+    const auto start = momenta(scene);
+    const double energy = scene.energy();
+    bool touched = false;
+    for (unsigned int k = 0; k < 300; ++k) {
+      const StepReport report = scene.advance();
+      EXPECT_LT(report.ledger_defect, 1e-9);
+      touched = touched || report.active > 0;
+      ASSERT_LE(scene.energy(), energy * (1. + 1e-9));
+    }
+    EXPECT_TRUE(touched);
+    EXPECT_GT(scene.state.energy.friction, 0.);
+    const auto end = momenta(scene);
+    EXPECT_LT(norm(difference(end[0], start[0])), 1e-10 * norm(start[0]));
+    EXPECT_LT(norm(difference(end[1], start[1])), 1e-9 * norm(start[1]));
+    EXPECT_LE(scene.state.penetration_excess, 1e-12);
+  }
+
+  /** A rigid block slides over the joints of a row of loose ones. */
+  const std::string row = R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type = bodies
+end
+subsection Body: low
+  set type         = rectangle
+  set lower corner = 0, 0
+  set upper corner = 4, 1
+  set cells        = 4, 1
+end
+subsection Body: high
+  set type         = rectangle
+  set lower corner = 0.3, 1
+  set upper corner = 1.3, 1.5
+  set cells        = 2, 1
+end
+subsection Material: row
+  set where   = y < 1
+  set model   = rigid
+  set density = 1
+end
+subsection Material: block
+  set model              = rigid
+  set bodies             = connected
+  set density            = 1
+  set initial velocity x = 2
+end
+subsection Interface: loose
+  set law = contact
+end
+subsection Contact: all
+  set friction = 0
+end
+subsection Obstacle: ground
+  set point  = 0, 1e-12
+  set normal = 0, 1
+end
+subsection Loads
+  set gravity = 0, -1
+end
+subsection Time
+  set end   = 1000
+  set step  = 0.005
+  set theta = 0.5
+end
+subsection Solver
+  set tolerance = 1e-12
+end
+)";
+
+  TEST(LargeMotion, SlidesFromFacetToFacet)
+  {
+    Scene<2> scene(row);
+    for (unsigned int k = 0; k < 200; ++k) {
+      scene.advance();
+      ASSERT_NEAR(scene.state.energy.kinetic, 0.5 * 0.5 * 4., 1e-10)
+          << "step " << k;
+    }
+    EXPECT_LT(scene.state.penetration, 1e-9);
+  }
+} // namespace
