@@ -416,4 +416,89 @@ namespace end_to_end
                    1e-8);
     }
   }
+
+  // 1e4 revolutions, ten steps each: what the rule conserves, it conserves.
+  TEST(Stability, HugeRotation)
+  {
+    const Workspace workspace;
+    const Result result =
+        good_run(workspace, "huge_rotation", launch("huge_rotation"));
+    ASSERT_TRUE(result.completed());
+    expect_below("energy", result.error("energy"), 1e-12, "exact");
+    expect_below("angular momentum", result.error("momentum"), 1e-12, "exact");
+    expect_below("axis to angular momentum, radians", result.error("tilt"),
+                 1e-10, "from both");
+    expect_below("length of the quaternion", result.error("orthogonality"),
+                 1e-14, "normalised");
+  }
+
+  // Where no smooth motion exists the rod is caught by an impact; where two
+  // do, either is an answer.
+  TEST(Stability, Painleve)
+  {
+    const Workspace workspace;
+    for (const char *step : {"0.1 ms", "1 us"}) {
+      const Result caught =
+          good_run(workspace, std::string("caught, ") + step,
+                   launch("painleve",
+                          {std::string("Constants/step=") + step}));
+      ASSERT_TRUE(caught.completed());
+      expect_below("p", std::abs(caught.error("exact_p") + 0.1258827), 1e-7);
+      expect_below("spin of the impact without a collision",
+                   caught.error("caught") / (step[0] == '1' ? 1e-6 : 1e-4), 1.,
+                   "g h over the speed, of order h");
+      expect_below("energy gained", caught.error("energy_gained"), 1e-12,
+                   "friction takes energy");
+    }
+    const Result either = good_run(
+        workspace, "either", launch("painleve", {"Constants/spin=5 1/s"}));
+    ASSERT_TRUE(either.completed());
+    expect_below("b over g", std::abs(either.error("exact_b_over_g") - 1.37523),
+                 1e-5, "omega^2 l sin a / g - 1");
+    expect_below("spin, to the nearer of both solutions",
+                 std::min(either.error("caught"), either.error("flies")), 1e-4,
+                 "of order h");
+    expect_below("energy gained", either.error("energy_gained"), 1e-12,
+                 "friction takes energy");
+  }
+
+  TEST(Stability, HugeFrictionOfAnObliqueImpact)
+  {
+    const Workspace workspace;
+    for (const char *mu : {"10", "1e3"}) {
+      const Result result =
+          good_run(workspace, mu,
+                   {scene("oblique"),
+                    {std::string("Obstacle: wall/friction=") + mu}});
+      ASSERT_TRUE(result.completed());
+      for (const char *key : {"normal", "tangential", "energy"})
+        expect_below(std::string("mu = ") + mu + ", " + key, result.error(key),
+                     1e-12, "sticks");
+    }
+  }
+
+  // Infinitely many impacts in finite time. All of the work is lost in them:
+  // disc k falls by k gaps, and by what the contacts below it overlap.
+  TEST(Stability, Zeno)
+  {
+    const Workspace workspace;
+    const Result result = good_run(workspace, "zeno", launch("zeno"));
+    ASSERT_TRUE(result.completed());
+    const auto &kinetic = result.history["kinetic"];
+    expect_below("kinetic energy at the end, over its largest",
+                 kinetic.back() /
+                     *std::max_element(kinetic.begin(), kinetic.end()),
+                 1e-18, "rest");
+    const double mass = std::acos(-1.) * 0.5, gap = 0.1, n = 50.;
+    const double work = mass * 9.81 * gap * n * (n + 1.) / 2.;
+    expect_below("energy lost over that of the gaps, less 1, in overlaps",
+                 (result.dissipated("impact") / work - 1.) * gap /
+                     result.number("penetration_max"),
+                 1.);
+    EXPECT_GT(result.dissipated("impact") / work, 1. - 1e-9);
+    expect_below("largest overlap over the way of a step",
+                 result.number("penetration_max") /
+                     (2e-3 * std::sqrt(2. * 9.81 * n * gap)),
+                 1., "seen within the last half of a step");
+  }
 } // namespace end_to_end
