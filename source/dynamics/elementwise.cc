@@ -180,6 +180,41 @@ namespace nsfd
     private:
       std::unique_ptr<LaneSystem<dim>> lanes_;
     };
+
+    /** The same where every step has bodies and points of its own. */
+    template <int dim>
+    class MovingDynamics final : public FaceBlocks<dim, Dynamics<dim>>,
+                                 public InnerSolver
+    {
+    public:
+      using FaceBlocks<dim, Dynamics<dim>>::FaceBlocks;
+
+      void reinit(const double time_step, const double theta) override
+      {
+        Dynamics<dim>::reinit(time_step, theta);
+        lanes_.reset();
+      }
+
+      unsigned int solve_inner(const InnerSystem &system,
+                               const std::vector<double> &r,
+                               std::vector<double> &x) override
+      {
+        if (!lanes_) {
+          lanes_ = std::make_unique<LaneSystem<dim>>(
+            this->communicator_, this->bodies_, this->points_);
+          lanes_->reinit(*this);
+        }
+        const auto before = lanes_->applications();
+        const unsigned int iterations =
+          system.jacobian ? lanes_->gmres(system, r, x)
+                          : lanes_->conjugate_gradients(system, r, x);
+        this->counters_.delassus += lanes_->applications() - before;
+        return iterations;
+      }
+
+    private:
+      std::unique_ptr<LaneSystem<dim>> lanes_;
+    };
   } // namespace
 
   template <int dim>
@@ -187,8 +222,7 @@ namespace nsfd
   make_moving_dynamics(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points)
   {
-    return std::make_unique<FaceBlocks<dim, Dynamics<dim>>>(communicator,
-                                                            bodies, points);
+    return std::make_unique<MovingDynamics<dim>>(communicator, bodies, points);
   }
 
   template <int dim>

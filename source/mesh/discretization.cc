@@ -5,6 +5,8 @@
 #include "face_points.h"
 #include "loads.h"
 
+#include "../motion/cauchy_stress.h"
+
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
 
@@ -199,6 +201,8 @@ namespace nsfd
     const auto &material = input_->materials[material_of(body)];
     if (material.rigid)
       return {};
+    if (is_finite_strain(material.model))
+      return cauchy_stress<dim>(material, input_->plane_stress, gradient);
     return LinearElasticity<dim>(material, input_->plane_stress)
         .stress(gradient);
   }

@@ -384,7 +384,7 @@ namespace nsfd
     const double theta = this->input_.time.theta;
     // velocities rest, over the root of the kinetic energy: well within what
     // the solver leaves
-    const double rest = std::max(1e-2 * control.tolerance, 1e-13);
+    const double rest = std::max(0.1 * control.tolerance, 1e-13);
     SolverReport total;
     std::vector<double> difference(bodies_.old_velocity().size());
     for (unsigned int round = 0;; ++round) {

@@ -19,6 +19,18 @@ namespace nsfd
       return reference > 0. ? error / reference : error;
     }
 
+    /** The values of the first rank, which moves all rigid bodies. */
+    std::vector<double> of_first_rank(const Communicator &communicator,
+                                      std::vector<double> values)
+    {
+      unsigned long long n = values.size();
+      MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, communicator.mpi());
+      values.resize(n);
+      if (n > 0)
+        MPI_Bcast(values.data(), int(n), MPI_DOUBLE, 0, communicator.mpi());
+      return values;
+    }
+
     /**
      * The points of a face. In the plane a face is straight, and the pieces
      * that its points stand for follow each other along it.
@@ -99,9 +111,10 @@ namespace nsfd
     }
     if (case_.wants_opening())
       set_opening(state, view);
+    const auto rigid = of_first_rank(communicator_, state.rigid);
     std::vector<RigidState> rigid_bodies;
-    for (std::size_t b = 0; b < state.rigid.size() / 13; ++b)
-      rigid_bodies.push_back(rigid_state(&state.rigid[13 * b]));
+    for (std::size_t b = 0; b < rigid.size() / 13; ++b)
+      rigid_bodies.push_back(rigid_state(&rigid[13 * b]));
     view.rigid_bodies = &rigid_bodies;
     case_.observe(view);
   }

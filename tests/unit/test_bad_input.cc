@@ -338,7 +338,7 @@ end
         {"misspelt_choice", "set mass = consistent", "set mass = consistant",
          "did you mean `consistent`?", "set mass = consistant"},
         {"method", "set method = auto", "set method = magic",
-         "method = magic is not one of: auto, anderson, chain, dual newton, fixed point, gauss seidel, interior point",
+         "method = magic is not one of: auto, anderson, chain, contacts alone, dual newton, fixed point, gauss seidel, interior point",
          "set method = magic"},
         {"unknown_law", "camacho-ortiz", "camacho-ortis",
          "did you mean `camacho-ortiz`?", "set law = camacho-ortis"},

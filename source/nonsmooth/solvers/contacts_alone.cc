@@ -174,6 +174,7 @@ namespace nsfd
         const ContactReport part =
             solve_contact_problem(contact_, "auto", control, r);
         report.newton += part.factorisations;
+        report.sweeps += part.iterations;
         report.krylov += part.products;
         std::fill(impulse.begin(), impulse.end(), 0.);
         for (std::size_t k = 0; k < r.size(); ++k)
