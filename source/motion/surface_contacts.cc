@@ -393,6 +393,31 @@ namespace nsfd
                                input_.obstacles.size() + 1 + row.block);
   }
 
+  /**
+   * Two corners of flat sides that face each other, as those of a face that has
+   * just broken, meet once: each would ask for the same, and the problem would
+   * have no unique impulses.
+   */
+  template <int dim>
+  bool SurfaceContacts<dim>::is_seen_from_there(const FacetPair<dim> &pair,
+                                                const Row &row)
+  {
+    constexpr double at_corner = 0.99, opposed = -0.999;
+    for (unsigned int v = 0; v < row.n_facet; ++v) {
+      if (row.weights[v] < at_corner)
+        continue;
+      Vector normal;
+      for (unsigned int d = 0; d < dim; ++d)
+        normal[d] = pair.normal[d];
+      const unsigned int own = merged_[row.node], other = row.facet[v];
+      const auto known = seen_.find(Pair(other) << 32 | own);
+      if (known != seen_.end() && known->second * normal < opposed)
+        return true;
+      seen_.emplace(Pair(own) << 32 | other, normal);
+    }
+    return false;
+  }
+
   template <int dim>
   void SurfaceContacts<dim>::add_surface_rows(const State &old,
                                               const double reach,
@@ -405,6 +430,7 @@ namespace nsfd
           return block_of(a, b) < 0 || joined_.count(pair_of(a, b)) > 0;
         },
         pairs_);
+    seen_.clear();
     for (const auto &pair : pairs_.points) {
       const Origin &origin = point_origins_[pair.index];
       const auto &face =
@@ -417,7 +443,8 @@ namespace nsfd
       row.weight = face.weights[origin.node];
       row.place = place_of(origin.cell, origin.face, origin.node);
       set_partner(pair, old, row);
-      rows.push_back(row);
+      if (!is_seen_from_there(pair, row))
+        rows.push_back(row);
     }
     const auto ball_row = [&](const unsigned int index) {
       Row row;

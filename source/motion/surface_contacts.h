@@ -76,6 +76,7 @@ namespace nsfd
                            std::vector<Row> &rows) const;
     void set_partner(const FacetPair<dim> &pair, const State &old,
                      Row &row) const;
+    bool is_seen_from_there(const FacetPair<dim> &pair, const Row &row);
     Vector velocity(const State &old, std::size_t node) const;
     Vector centre_velocity(const State &old, unsigned int body) const;
 
@@ -110,6 +111,8 @@ namespace nsfd
     std::vector<ObstacleFace> obstacle_faces_;
     SurfaceSearch<dim> search_;
     NearPairs<dim> pairs_;
+    /// normals of contacts between two corners, by own node and other one
+    std::unordered_map<Pair, Vector> seen_;
     Counters counters_;
   };
 } // namespace nsfd

@@ -233,6 +233,26 @@ namespace end_to_end
     }
   }
 
+  // Bodies that move far are all on the first rank; the others wait.
+  TEST(Ranks, LargeMotionsAreTheSameBitForBit)
+  {
+    const Workspace workspace;
+    const std::vector<Launch> launches = {
+        {scene("rocking"), {"Time/end=0.05 s"}},
+        {quickstart().parent_path() / "benchmarks/falling_wall.prm",
+         {"Time/end=20 ms", "Output/fields=false"}}};
+    for (const Launch &launch : launches) {
+      const std::string name = launch.file.stem().string();
+      const Result one = good_run(workspace, name + " on 1 rank", launch);
+      Launch on_three = launch;
+      on_three.ranks = 3;
+      const Result three = good_run(workspace, name + " on 3 ranks", on_three);
+      ASSERT_TRUE(one.completed() && three.completed());
+      EXPECT_TRUE(one.history_text == three.history_text) << name;
+      EXPECT_EQ(one.summary["fragments"], three.summary["fragments"]);
+    }
+  }
+
   INSTANTIATE_TEST_SUITE_P(Table, RanksTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
 
