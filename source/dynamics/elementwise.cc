@@ -143,11 +143,42 @@ namespace nsfd
 
     /** With Newton systems in single precision, over lanes of bodies. */
     template <int dim, typename Base>
-    class ElementwiseDynamics final : public FaceBlocks<dim, Base>,
-                                      public InnerSolver
+    class LaneDynamics : public FaceBlocks<dim, Base>, public InnerSolver
     {
     public:
       using FaceBlocks<dim, Base>::FaceBlocks;
+
+      unsigned int solve_inner(const InnerSystem &system,
+                               const std::vector<double> &r,
+                               std::vector<double> &x) override
+      {
+        if (!lanes_)
+          set_lanes();
+        const auto before = lanes_->applications();
+        const unsigned int iterations =
+          system.jacobian ? lanes_->gmres(system, r, x)
+                          : lanes_->conjugate_gradients(system, r, x);
+        this->counters_.delassus += lanes_->applications() - before;
+        return iterations;
+      }
+
+    protected:
+      void set_lanes()
+      {
+        if (!lanes_)
+          lanes_ = std::make_unique<LaneSystem<dim>>(
+            this->communicator_, this->bodies_, this->points_);
+        lanes_->reinit(*this);
+      }
+
+      std::unique_ptr<LaneSystem<dim>> lanes_;
+    };
+
+    template <int dim, typename Base>
+    class ElementwiseDynamics final : public LaneDynamics<dim, Base>
+    {
+    public:
+      using LaneDynamics<dim, Base>::LaneDynamics;
 
       void reinit(const double time_step, const double theta) override
       {
@@ -159,61 +190,22 @@ namespace nsfd
         if (theta != 0. && std::is_base_of_v<BondedDynamics<dim>, Base>)
           throw std::logic_error("bodies with explicit bonds are explicit");
         const Charge charge(Cost::blocks);
-        if (!lanes_)
-          lanes_ = std::make_unique<LaneSystem<dim>>(
-            this->communicator_, this->bodies_, this->points_);
-        lanes_->reinit(*this);
+        this->set_lanes();
       }
-
-      unsigned int solve_inner(const InnerSystem &system,
-                               const std::vector<double> &r,
-                               std::vector<double> &x) override
-      {
-        const auto before = lanes_->applications();
-        const unsigned int iterations =
-          system.jacobian ? lanes_->gmres(system, r, x)
-                          : lanes_->conjugate_gradients(system, r, x);
-        this->counters_.delassus += lanes_->applications() - before;
-        return iterations;
-      }
-
-    private:
-      std::unique_ptr<LaneSystem<dim>> lanes_;
     };
 
-    /** The same where every step has bodies and points of its own. */
+    /** Every step has bodies and points of its own. */
     template <int dim>
-    class MovingDynamics final : public FaceBlocks<dim, Dynamics<dim>>,
-                                 public InnerSolver
+    class MovingDynamics final : public LaneDynamics<dim, Dynamics<dim>>
     {
     public:
-      using FaceBlocks<dim, Dynamics<dim>>::FaceBlocks;
+      using LaneDynamics<dim, Dynamics<dim>>::LaneDynamics;
 
       void reinit(const double time_step, const double theta) override
       {
         Dynamics<dim>::reinit(time_step, theta);
-        lanes_.reset();
+        this->lanes_.reset();
       }
-
-      unsigned int solve_inner(const InnerSystem &system,
-                               const std::vector<double> &r,
-                               std::vector<double> &x) override
-      {
-        if (!lanes_) {
-          lanes_ = std::make_unique<LaneSystem<dim>>(
-            this->communicator_, this->bodies_, this->points_);
-          lanes_->reinit(*this);
-        }
-        const auto before = lanes_->applications();
-        const unsigned int iterations =
-          system.jacobian ? lanes_->gmres(system, r, x)
-                          : lanes_->conjugate_gradients(system, r, x);
-        this->counters_.delassus += lanes_->applications() - before;
-        return iterations;
-      }
-
-    private:
-      std::unique_ptr<LaneSystem<dim>> lanes_;
     };
   } // namespace
 

@@ -195,7 +195,9 @@ namespace nsfd
       if (row.place == row.nowhere)
         continue;
       old_.slip[i] = old.surface_slip[row.place];
-      old_.penetration_bound[i] = old.surface_bound[row.place];
+      // lips of springs that were closed are born with their overlap
+      const double bound = old.surface_bound[row.place];
+      old_.penetration_bound[i] = bound > 0. ? bound : std::max(0., -row.gap);
       old_.contact[i] = old.surface_contact[row.place];
       if (!old_.worn.empty()) {
         old_.worn[i] = old.surface_worn[row.place];

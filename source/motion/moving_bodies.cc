@@ -44,12 +44,6 @@ namespace nsfd
       return first;
     }
 
-    template <int dim>
-    double cross_of(const Tensor<1, dim> &a, const Tensor<1, dim> &b)
-    {
-      return a[0] * b[1] - a[1] * b[0];
-    }
-
     /** Quaternion of a rotation matrix, w >= 0 or the largest part positive. */
     Quaternion quaternion_of(const Mat3 &R)
     {
@@ -809,7 +803,6 @@ namespace nsfd
   template <int dim>
   void MovingBodies<dim>::deformable_trace(const std::size_t b,
                                            const unsigned int slot,
-                                           const unsigned int,
                                            const Place &place)
   {
     Block &trace = bodies_.classes[b].trace;
@@ -949,7 +942,7 @@ namespace nsfd
       rigid_trace(row.body_2, slot_2, x - middle_centre(row.body_2));
     else
       deformable_trace(
-          row.body_2, slot_2, row.cell,
+          row.body_2, slot_2,
           discretization_.element().unit_support_point(
               unsigned(row.node - discretization_.first_node(row.cell))));
     if (row.body_1 < 0)
@@ -958,8 +951,7 @@ namespace nsfd
     if (is_rigid(other))
       rigid_trace(other, slot_1, x - middle_centre(other));
     else
-      deformable_trace(other, slot_1, row.facet_cell,
-                       in_reference_cell(row, x));
+      deformable_trace(other, slot_1, in_reference_cell(row, x));
   }
 
   // ------------------------------------------------------------- local motion

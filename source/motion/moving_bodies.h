@@ -135,9 +135,8 @@ namespace nsfd
     void set_step_end(std::size_t b);
     void set_frames();
     void set_body(std::size_t b);
-    void add_slot(std::size_t b, unsigned int slot, std::size_t point, int sign);
     void rigid_trace(std::size_t b, unsigned int slot, const Vector &arm);
-    void deformable_trace(std::size_t b, unsigned int slot, unsigned int cell,
+    void deformable_trace(std::size_t b, unsigned int slot,
                           const dealii::Point<dim> &place);
     void set_row(std::size_t k);
     Place at_nodes(const std::vector<double> &x, std::size_t node) const;

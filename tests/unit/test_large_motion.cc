@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -348,5 +349,110 @@ end
           << "step " << k;
     }
     EXPECT_LT(scene.state.penetration, 1e-9);
+  }
+
+  // --- no two bodies overlap, whoever they are
+
+  using Corners = std::array<dealii::Point<2>, 4>;
+
+  /** Corners of the cells as they are now, in a circle. */
+  std::vector<Corners> quads(const Scene<2> &scene)
+  {
+    std::vector<Corners> result;
+    const auto &d = *scene.discretization;
+    const auto nodal = d.to_nodal(scene.state.displacement);
+    for (unsigned int b = 0; b < d.bodies().size(); ++b) {
+      const auto at_rest = d.corners(b);
+      const auto u = d.at_corners(b, nodal);
+      Corners now;
+      const unsigned int circle[4] = {0, 1, 3, 2};
+      for (unsigned int k = 0; k < 4; ++k)
+        for (unsigned int c = 0; c < 2; ++c)
+          now[k][c] = at_rest[circle[k]][c] + u[circle[k] * 2 + c];
+      result.push_back(now);
+    }
+    return result;
+  }
+
+  /** How far one has to move for two convex quads to be apart; 0 if they are. */
+  double overlap(const Corners &a, const Corners &b)
+  {
+    double depth = 1e300;
+    for (const Corners *of : {&a, &b})
+      for (unsigned int k = 0; k < 4; ++k) {
+        const dealii::Tensor<1, 2> edge = (*of)[(k + 1) % 4] - (*of)[k];
+        dealii::Tensor<1, 2> n;
+        n[0] = edge[1] / edge.norm();
+        n[1] = -edge[0] / edge.norm();
+        double end_a = -1e300, begin_b = 1e300;
+        for (unsigned int l = 0; l < 4; ++l) {
+          const Corners &other = of == &a ? b : a;
+          end_a = std::max(end_a, n * ((*of)[l] - dealii::Point<2>()));
+          begin_b = std::min(begin_b, n * (other[l] - dealii::Point<2>()));
+        }
+        depth = std::min(depth, end_a - begin_b);
+      }
+    return std::max(0., depth);
+  }
+
+  const std::string heap = R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 4, 5
+  set cells        = 4, 5
+end
+subsection Material: blocks
+  set model   = rigid
+  set density = 1
+  set initial displacement x = 0.3 * floor(x) + 0.2 * sin(3 * floor(y))
+  set initial displacement y = 0.3 * floor(y)
+  set initial velocity x = sin(5 * floor(y) + 2 * floor(x)) + 2 * cos(x - floor(x)) * (y - floor(y))
+  set initial velocity y = -2
+end
+subsection Interface: loose
+  set law = contact
+end
+subsection Contact: any
+  set friction = 0.3
+end
+subsection Obstacle: ground
+  set point    = 0, -0.2
+  set normal   = 0, 1
+  set friction = 0.3
+end
+subsection Loads
+  set gravity = 0, -9.81
+end
+subsection Time
+  set end   = 1000
+  set step  = 0.002
+  set theta = 0.5
+end
+)";
+
+  TEST(LargeMotion, NothingOverlapsInAHeap)
+  {
+    Scene<2> scene(heap);
+    double deepest = 0.;
+    for (unsigned int k = 0; k < 700; ++k) {
+      scene.advance_halving();
+      if (k % 10 != 0)
+        continue;
+      const auto now = quads(scene);
+      for (std::size_t a = 0; a < now.size(); ++a)
+        for (std::size_t b = 0; b < a; ++b)
+          deepest = std::max(deepest, overlap(now[a], now[b]));
+    }
+    double bound = 0.;
+    for (const double value : scene.state.surface_bound)
+      bound = std::max(bound, value);
+    EXPECT_GT(bound, 0.);
+    // a corner that meets a corner is seen once it is inside: h v more
+    EXPECT_LE(deepest, 2. * bound);
+    EXPECT_LT(deepest, 0.02);
+    // it has come to rest on the ground
+    EXPECT_LT(scene.state.energy.kinetic, 1.);
   }
 } // namespace
