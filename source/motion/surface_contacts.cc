@@ -402,7 +402,7 @@ namespace nsfd
   bool SurfaceContacts<dim>::is_seen_from_there(const FacetPair<dim> &pair,
                                                 const Row &row)
   {
-    constexpr double at_corner = 0.99, opposed = -0.999;
+    constexpr double at_corner = 0.9, opposed = -0.99;
     for (unsigned int v = 0; v < row.n_facet; ++v) {
       if (row.weights[v] < at_corner)
         continue;
