@@ -111,10 +111,14 @@ namespace nsfd
     }
     if (case_.wants_opening())
       set_opening(state, view);
-    const auto rigid = of_first_rank(communicator_, state.rigid);
+    if (!has_rigid_bodies_)
+      has_rigid_bodies_ = communicator_.any(!state.rigid.empty());
     std::vector<RigidState> rigid_bodies;
-    for (std::size_t b = 0; b < rigid.size() / 13; ++b)
-      rigid_bodies.push_back(rigid_state(&rigid[13 * b]));
+    if (*has_rigid_bodies_) {
+      const auto rigid = of_first_rank(communicator_, state.rigid);
+      for (std::size_t b = 0; b < rigid.size() / 13; ++b)
+        rigid_bodies.push_back(rigid_state(&rigid[13 * b]));
+    }
     view.rigid_bodies = &rigid_bodies;
     case_.observe(view);
   }

@@ -7,6 +7,7 @@
 #include "nsfd/time/state.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,7 @@ namespace nsfd
     VerificationCase &case_;
     const TimeInput &time_;
     double time_step_ = 0.; ///< the last one
+    std::optional<bool> has_rigid_bodies_; ///< of large motions, on any rank
     std::vector<double> first_beta_; ///< at the start, if the case asks for it
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
