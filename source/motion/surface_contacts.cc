@@ -12,6 +12,31 @@ namespace nsfd
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Interfaces, obstacles, the support, contacts: see constant_data(). */
+    unsigned int interaction_of_contact(const SceneInput &input,
+                                        const unsigned int block)
+    {
+      return unsigned(input.interfaces.size() + input.obstacles.size()) + 1 +
+             block;
+    }
+
+    /** Of a body that is a ball; the places of balls begin at @p first. */
+    template <int dim>
+    MovingRow<dim> row_of_ball(const MovingBodies<dim> &bodies,
+                               const std::size_t first,
+                               const unsigned int body)
+    {
+      MovingRow<dim> row;
+      const double radius = bodies.ball_radius(body);
+      row.body_2 = body;
+      row.place = first + body;
+      row.weight = dim == 2 ? radius : radius * radius;
+      return row;
+    }
+  } // namespace
+
   template <int dim>
   SurfaceContacts<dim>::SurfaceContacts(
       const SceneInput &input, const Discretization<dim> &discretization,
@@ -388,9 +413,7 @@ namespace nsfd
     for (unsigned int d = 0; d < dim; ++d)
       row.rate += pair.normal[d] * away[d];
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
-    // interfaces, obstacles, the support, contacts: see constant_data()
-    row.interaction = unsigned(input_.interfaces.size() +
-                               input_.obstacles.size() + 1 + row.block);
+    row.interaction = interaction_of_contact(input_, row.block);
   }
 
   /**
@@ -449,12 +472,8 @@ namespace nsfd
         rows.push_back(row);
     }
     const auto ball_row = [&](const unsigned int index) {
-      Row row;
-      const auto &ball = surfaces_.balls[index];
-      row.body_2 = ball.body;
-      row.place = first_place_.back() + ball.body;
-      row.weight = dim == 2 ? ball.radius : ball.radius * ball.radius;
-      return row;
+      return row_of_ball(bodies_, first_place_.back(),
+                         surfaces_.balls[index].body);
     };
     for (const auto &pair : pairs_.balls) {
       Row row = ball_row(pair.index);
@@ -471,8 +490,7 @@ namespace nsfd
       for (unsigned int d = 0; d < dim; ++d)
         row.rate += pair.normal[d] * away[d];
       row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
-      row.interaction = unsigned(input_.interfaces.size() +
-                                 input_.obstacles.size() + 1 + row.block);
+      row.interaction = interaction_of_contact(input_, row.block);
       rows.push_back(row);
     }
   }
@@ -514,13 +532,9 @@ namespace nsfd
     for (const auto &[c, f, o] : obstacle_faces_) {
       const unsigned int b = bodies_.body_of_cell(c);
       if (bodies_.ball_radius(b) > 0.) {
-        Row row;
-        row.body_2 = b;
+        Row row = row_of_ball(bodies_, first_place_.back(), b);
         row.gap = geometry(o).gap(at(bodies_.centre_node(b))) -
                   bodies_.ball_radius(b);
-        row.place = first_place_.back() + b;
-        row.weight = dim == 2 ? bodies_.ball_radius(b)
-                              : std::pow(bodies_.ball_radius(b), 2);
         if (row.gap <= reach &&
             known.emplace(std::pair(unsigned(bodies_.n_nodes()) + b, o), 0)
                 .second)
