@@ -619,10 +619,12 @@ namespace nsfd
       s.rigid_drift_max = state_.rigid_drift;
       s.fragments = fragments_->count();
       double bound = 0.;
-      for (const auto *bounds :
-           {&state_.penetration_bound, &state_.surface_bound})
-        for (const double value : *bounds)
-          bound = std::max(bound, value);
+      const auto widen = [&bound](const auto &overlap, const auto &approach) {
+        for (std::size_t i = 0; i < overlap.size(); ++i)
+          bound = std::max(bound, overlap[i] + approach[i]);
+      };
+      widen(state_.released_overlap, state_.approach);
+      widen(state_.surface_overlap, state_.surface_approach);
       s.penetration_bound = communicator_.max(bound);
       if (observer_)
         observer_->finish(state_, s.errors);

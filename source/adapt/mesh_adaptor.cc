@@ -27,7 +27,7 @@ namespace nsfd
       const auto &law =
           mesh.problem.interactions[mesh.problem.interaction[i]].law;
       return (state.beta[i] < 1. && law) || state.slip[i] > 0. ||
-             state.penetration_bound[i] > 0. ||
+             state.released_overlap[i] > 0. || state.approach[i] > 0. ||
              (law && law->extrinsic() && state.kind[i] == PointKind::cohesive);
     }
 

@@ -9,7 +9,8 @@ namespace nsfd
     visit(state.beta); // the first one, see the enumeration of columns
     visit(state.opening_max);
     visit(state.slip);
-    visit(state.penetration_bound);
+    visit(state.released_overlap);
+    visit(state.approach);
     if (slip_max_)
       visit(state.slip_max);
     if (lift_) {

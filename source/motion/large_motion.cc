@@ -147,7 +147,7 @@ namespace nsfd
          {&old_.jump, &old_.relative_velocity, &old_.impulse})
       array->resize((n + m) * dim, 0.);
     for (auto *array : {&old_.opening_max, &old_.beta, &old_.slip,
-                        &old_.penetration_bound})
+                        &old_.released_overlap, &old_.approach})
       array->resize(n + m, 0.);
     for (auto *array : {&old_.slip_max, &old_.dilated, &old_.worn,
                         &old_.dilation_speed, &old_.wear_speed,
@@ -195,9 +195,11 @@ namespace nsfd
       if (row.place == row.nowhere)
         continue;
       old_.slip[i] = old.surface_slip[row.place];
+      old_.approach[i] = old.surface_approach[row.place];
+      old_.released_overlap[i] = old.surface_overlap[row.place];
       // lips of springs that were closed are born with their overlap
-      const double bound = old.surface_bound[row.place];
-      old_.penetration_bound[i] = bound > 0. ? bound : std::max(0., -row.gap);
+      if (old_.approach[i] == 0. && old_.released_overlap[i] == 0.)
+        old_.released_overlap[i] = std::max(0., -row.gap);
       old_.contact[i] = old.surface_contact[row.place];
       if (!old_.worn.empty()) {
         old_.worn[i] = old.surface_worn[row.place];
@@ -551,7 +553,8 @@ namespace nsfd
     next.surface_slip = old.surface_slip;
     next.surface_worn = old.surface_worn;
     next.surface_wear_speed.assign(old.surface_wear_speed.size(), 0.);
-    next.surface_bound = old.surface_bound;
+    next.surface_overlap = old.surface_overlap;
+    next.surface_approach = old.surface_approach;
     next.surface_contact.assign(old.surface_contact.size(), 0);
     const std::size_t n = this->discretization_.points().n_points;
     const auto &rows = bodies_.rows();
@@ -565,8 +568,10 @@ namespace nsfd
               bodies_.points().frame[(i * dim + a) * dim + d] *
               next.impulse[i * dim + a];
       next.surface_slip[place] = next.slip[i];
-      next.surface_bound[place] =
-          std::max(next.surface_bound[place], next.penetration_bound[i]);
+      next.surface_overlap[place] =
+          std::max(next.surface_overlap[place], next.released_overlap[i]);
+      next.surface_approach[place] =
+          std::max(next.surface_approach[place], next.approach[i]);
       next.surface_contact[place] |= next.contact[i];
       if (!next.worn.empty()) {
         next.surface_worn[place] = next.worn[i];
@@ -582,7 +587,7 @@ namespace nsfd
     for (auto *array :
          {&next.opening_max, &next.slip_max, &next.beta, &next.slip,
           &next.dilated, &next.worn, &next.dilation_speed, &next.wear_speed,
-          &next.penetration_bound, &next.pressure})
+          &next.released_overlap, &next.approach, &next.pressure})
       cut(*array, 1);
     cut(next.kind, 1);
     cut(next.two_sided, 1);

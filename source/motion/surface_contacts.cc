@@ -151,7 +151,8 @@ namespace nsfd
     const std::size_t n = first_place_.back() + bodies_.size();
     state.surface_impulse.assign(n * dim, 0.);
     state.surface_contact.assign(n, 0);
-    for (auto *array : {&state.surface_slip, &state.surface_bound})
+    for (auto *array : {&state.surface_slip, &state.surface_overlap,
+                        &state.surface_approach})
       array->assign(n, 0.);
     if (!state.worn.empty())
       for (auto *array : {&state.surface_worn, &state.surface_wear_speed})

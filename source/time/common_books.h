@@ -19,7 +19,8 @@ namespace nsfd
     next.kind = old.kind;
     next.two_sided = old.two_sided;
     next.slip = old.slip;
-    next.penetration_bound = old.penetration_bound;
+    next.released_overlap = old.released_overlap;
+    next.approach = old.approach;
     next.contact.assign(old.kind.size(), 0);
   }
 

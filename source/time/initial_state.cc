@@ -194,7 +194,8 @@ namespace nsfd
       for (auto *array : {&state.dilated, &state.worn, &state.dilation_speed,
                           &state.wear_speed})
         array->assign(n, 0.);
-    state.penetration_bound.assign(n, 0.);
+    state.released_overlap.assign(n, 0.);
+    state.approach.assign(n, 0.);
     state.kind.assign(n, PointKind::prescribed);
     state.two_sided.assign(n, 0);
     state.contact.assign(n, 0);

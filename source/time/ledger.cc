@@ -279,8 +279,8 @@ namespace nsfd
     }
 
     /**
-     * Penetration against its bound: approach speed at activation, and the
-     * overlap of the spring where it turns into a contact.
+     * Penetration against its bound: the overlap of the spring where it turned
+     * into a contact, and h times the largest approach speed at activation.
      */
     template <int dim>
     void PointBook<dim>::book_penetration(const std::size_t i)
@@ -291,15 +291,17 @@ namespace nsfd
       const double depth =
           (next_.dilated.empty() ? 0. : next_.dilated[i] - next_.worn[i]) -
           next_.jump[i * dim];
-      double &bound = next_.penetration_bound[i];
+      double &released = next_.released_overlap[i],
+             &approach = next_.approach[i];
       if (old_.two_sided[i])
-        bound = std::max(bound, depth);
-      if (problem_.contact[i])
-        bound = std::max(bound, -h * old_.relative_velocity[i * dim]);
-      else // approach that the forecast did not see
-        bound = std::max(bound, -moved(i * dim));
+        released = std::max(released, depth);
+      approach = std::max(approach,
+                          problem_.contact[i]
+                              ? -h * old_.relative_velocity[i * dim]
+                              // what the forecast did not see
+                              : -moved(i * dim));
       penetration = std::max(penetration, depth);
-      excess = std::max(excess, depth - bound);
+      excess = std::max(excess, depth - (released + approach));
     }
   } // namespace
 

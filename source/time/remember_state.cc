@@ -23,7 +23,8 @@ namespace nsfd
     archive.points("worn", s.worn);
     archive.points("dilation_speed", s.dilation_speed);
     archive.points("wear_speed", s.wear_speed);
-    archive.points("penetration_bound", s.penetration_bound);
+    archive.points("released_overlap", s.released_overlap);
+    archive.points("approach", s.approach);
     std::vector<std::uint8_t> kind(s.kind.size());
     for (std::size_t i = 0; i < kind.size(); ++i)
       kind[i] = std::uint8_t(s.kind[i]);
@@ -42,7 +43,8 @@ namespace nsfd
     archive.common("surface_slip", s.surface_slip);
     archive.common("surface_worn", s.surface_worn);
     archive.common("surface_wear_speed", s.surface_wear_speed);
-    archive.common("surface_bound", s.surface_bound);
+    archive.common("surface_overlap", s.surface_overlap);
+    archive.common("surface_approach", s.surface_approach);
     std::vector<double> touches(s.surface_contact.begin(),
                                 s.surface_contact.end());
     archive.common("surface_contact", touches);

@@ -174,8 +174,8 @@ namespace nsfd
       if (!next_.two_sided[i]) {
         const double depth = -next_.jump[i * dim];
         if (old_.two_sided[i])
-          next_.penetration_bound[i] =
-              std::max(next_.penetration_bound[i], depth);
+          next_.released_overlap[i] =
+              std::max(next_.released_overlap[i], depth);
         penetration = std::max(penetration, depth);
       }
     }

@@ -446,8 +446,10 @@ end
           deepest = std::max(deepest, overlap(now[a], now[b]));
     }
     double bound = 0.;
-    for (const double value : scene.state.surface_bound)
-      bound = std::max(bound, value);
+    const State &state = scene.state;
+    for (std::size_t i = 0; i < state.surface_approach.size(); ++i)
+      bound = std::max(bound,
+                       state.surface_overlap[i] + state.surface_approach[i]);
     EXPECT_GT(bound, 0.);
     // a corner that meets a corner is seen once it is inside: h v more
     EXPECT_LE(deepest, 2. * bound);

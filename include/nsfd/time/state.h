@@ -29,7 +29,9 @@ namespace nsfd
     /// by sliding, m and m/s: contact is at u_N = dilated - worn; empty if the
     /// scene has neither dilatancy nor wear
     std::vector<double> dilated, worn, dilation_speed, wear_speed;
-    std::vector<double> penetration_bound; ///< what u_N >= -bound allows, m
+    /// u_N >= -(sum): overlap of springs as they turned into contacts, and h
+    /// times the largest speed at which the point has closed, m
+    std::vector<double> released_overlap, approach;
     std::vector<PointKind> kind;
     std::vector<std::uint8_t> two_sided; ///< intact spring, also in compression
     std::vector<std::uint8_t> contact;   ///< contact impulse in the last step
@@ -52,7 +54,7 @@ namespace nsfd
     /// per place of a surface, see motion/surface_contacts.h: dim components,
     /// and what a point remembers
     std::vector<double> surface_impulse, surface_slip, surface_worn,
-        surface_wear_speed, surface_bound;
+        surface_wear_speed, surface_overlap, surface_approach;
     std::vector<std::uint8_t> surface_contact;
   };
 } // namespace nsfd
