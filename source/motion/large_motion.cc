@@ -198,9 +198,11 @@ namespace nsfd
       old_.approach[i] = old.surface_approach[row.place];
       old_.released_overlap[i] = old.surface_overlap[row.place];
       // lips of springs that were closed are born with their overlap
-      if (old_.approach[i] == 0. && old_.released_overlap[i] == 0.)
-        old_.released_overlap[i] = std::max(0., -row.gap);
-      old_.contact[i] = old.surface_contact[row.place];
+      if (row.released)
+        old_.released_overlap[i] =
+            std::max(old_.released_overlap[i], -row.gap);
+      old_.contact[i] =
+          old.surface_contact[row.place] & SurfaceContacts<dim>::touches;
       if (!old_.worn.empty()) {
         old_.worn[i] = old.surface_worn[row.place];
         old_.wear_speed[i] = old.surface_wear_speed[row.place];

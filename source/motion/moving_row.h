@@ -43,6 +43,7 @@ namespace nsfd
     unsigned int interaction = 0; ///< index into OneStepProblem::interactions
     unsigned int block = 0;
     std::size_t place = nowhere; ///< of what it remembers
+    bool released = false; ///< a body has been let go of in the last step
     dealii::Tensor<1, dim> jump; ///< of a pin: how far it is off
   };
 } // namespace nsfd

@@ -22,6 +22,9 @@ namespace nsfd
              block;
     }
 
+    /// more than there are; keys of facets begin with the place of their face
+    constexpr std::uint64_t pieces_per_face = 64;
+
     /** Of a body that is a ball; the places of balls begin at @p first. */
     template <int dim>
     MovingRow<dim> row_of_ball(const MovingBodies<dim> &bodies,
@@ -181,11 +184,23 @@ namespace nsfd
         if (state.kind[i] != PointKind::free &&
             state.kind[i] != PointKind::parted)
           held.insert(bodies_of(f));
+    std::vector<char> lets_go(bodies_.size(), 0);
     for (std::size_t f = 0; f < n_faces; ++f)
-      if (is_between(f) && held.count(bodies_of(f)) == 0)
+      if (is_between(f) && held.count(bodies_of(f)) == 0) {
+        if (state.kind[faces[f].first] != PointKind::parted)
+          for (const int b : faces[f].bodies)
+            lets_go[std::size_t(b)] = 1;
         for (unsigned int i = faces[f].first;
              i < faces[f].first + faces[f].count; ++i)
           state.kind[i] = PointKind::parted;
+      }
+    for (unsigned int c = 0; c < mesh_face_.size(); ++c)
+      if (lets_go[bodies_.body_of_cell(c)])
+        for (std::size_t k = first_place_[c]; k < first_place_[c + 1]; ++k)
+          state.surface_contact[k] |= released;
+    for (unsigned int b = 0; b < lets_go.size(); ++b)
+      if (lets_go[b])
+        state.surface_contact[first_place_.back() + b] |= released;
   }
 
   // ---------------------------------------------------------------- surfaces
@@ -305,7 +320,7 @@ namespace nsfd
       for (unsigned int v = 0; v < facet.n_vertices; ++v)
         facet.vertex[v] = merged_[first + face.pieces[p][v]];
       facet.body = bodies_.body_of_cell(c);
-      facet.key = std::uint64_t(place_of(c, f, 0)) * 64 + p;
+      facet.key = std::uint64_t(place_of(c, f, 0)) * pieces_per_face + p;
       for (unsigned int v = 0; v < facet.n_vertices; ++v) {
         const unsigned int node = face.pieces[p][v];
         if (has_point[node])
@@ -415,6 +430,9 @@ namespace nsfd
       row.rate += pair.normal[d] * away[d];
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
     row.interaction = interaction_of_contact(input_, row.block);
+    row.released = ((old.surface_contact[row.place] |
+                     old.surface_contact[facet.key / pieces_per_face]) &
+                    released) != 0;
   }
 
   /**

@@ -32,6 +32,13 @@ namespace nsfd
     /** Nothing remembered; broken faces are surfaces from the start. */
     void set_initial(State &state) const;
 
+    /** What State::surface_contact says of a place, added up. */
+    enum Mark : std::uint8_t
+    {
+      touches = 1,
+      released = 2 ///< something let go of its body in the last step
+    };
+
     /**
      * Points between two bodies that nothing holds together any more are left
      * to the search: `parted`.

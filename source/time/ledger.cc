@@ -295,11 +295,10 @@ namespace nsfd
              &approach = next_.approach[i];
       if (old_.two_sided[i])
         released = std::max(released, depth);
-      approach = std::max(approach,
-                          problem_.contact[i]
-                              ? -h * old_.relative_velocity[i * dim]
-                              // what the forecast did not see
-                              : -moved(i * dim));
+      if (problem_.contact[i])
+        approach = std::max(approach, -h * old_.relative_velocity[i * dim]);
+      else if (depth > 0.) // the forecast did not see it come
+        approach = std::max(approach, -h * next_.relative_velocity[i * dim]);
       penetration = std::max(penetration, depth);
       excess = std::max(excess, depth - (released + approach));
     }
