@@ -2,11 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -42,17 +37,17 @@ namespace nsfd
   HistoryFile::HistoryFile(const std::string &path,
                            const std::vector<std::string> &driven,
                            const unsigned int dimension)
-      : path_(path), n_reactions_(driven.size() * dimension), file_(path)
+      : n_reactions_(driven.size() * dimension),
+        file_(path, header(driven, dimension))
   {
-    write_line(header(driven, dimension));
   }
 
   void HistoryFile::write(const HistoryRow &row)
   {
     if (row.reactions.size() != n_reactions_)
       throw std::logic_error(
-          fmt::format("A row of '{}' has {} reaction columns, not {}.", path_,
-                      n_reactions_, row.reactions.size()));
+          fmt::format("A row of '{}' has {} reaction columns, not {}.",
+                      file_.path(), n_reactions_, row.reactions.size()));
 
     const EnergyLines &e = row.energy;
     std::string line = fmt::format(
@@ -63,72 +58,23 @@ namespace nsfd
         row.newton, row.krylov, row.residual);
     for (const double reaction : row.reactions)
       line += fmt::format(",{}", reaction);
-    write_line(line);
-  }
-
-  void HistoryFile::write_line(const std::string &line)
-  {
-    file_ << line << '\n' << std::flush;
-    if (!file_)
-      throw std::runtime_error("Cannot write '" + path_ + "'.");
+    file_.write(line);
   }
 
   HistoryFile::HistoryFile(const std::string &path,
                            const std::vector<std::string> &driven,
                            const unsigned int dimension,
                            const std::uintmax_t n_bytes)
-      : path_(path), n_reactions_(driven.size() * dimension)
+      : n_reactions_(driven.size() * dimension), file_(path, n_bytes)
   {
-    std::filesystem::resize_file(path, n_bytes);
-    file_.open(path, std::ios::app);
-    if (!file_)
-      throw std::runtime_error("Cannot write '" + path_ + "'.");
   }
-
-  std::uintmax_t HistoryFile::n_bytes()
-  {
-    file_.flush();
-    const int file = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file >= 0) {
-      fsync(file);
-      close(file);
-    }
-    std::error_code error; // a file that is gone has none
-    const std::uintmax_t size = std::filesystem::file_size(path_, error);
-    return error ? 0 : size;
-  }
-
-  namespace
-  {
-    /** A line of numbers. @throws std::runtime_error */
-    std::vector<double> numbers_of(const std::string &line, const std::size_t n)
-    {
-      std::vector<double> numbers;
-      const char *next = line.c_str();
-      while (numbers.size() < n) {
-        char *end = nullptr;
-        numbers.push_back(std::strtod(next, &end));
-        if (end == next || (*end != ',' && *end != '\0'))
-          break;
-        if (*end == '\0')
-          return numbers.size() == n ? numbers : std::vector<double>();
-        next = end + 1;
-      }
-      return {};
-    }
-  } // namespace
 
   std::vector<HistoryRow> HistoryFile::read(const std::string &path,
                                             const std::size_t n_reactions,
                                             const std::uintmax_t n_bytes)
   {
     constexpr std::size_t n_fixed = 20;
-    std::ifstream file(path, std::ios::binary);
-    std::string text(n_bytes, '\0');
-    file.read(text.data(), std::streamsize(n_bytes));
-    if (!file)
-      throw std::runtime_error(
-          fmt::format("'{}' is shorter than it was at the checkpoint", path));
+    const std::string text = read_rows(path, n_bytes);
     std::istringstream lines(text);
     std::string line;
     std::getline(lines, line); // the header

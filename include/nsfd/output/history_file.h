@@ -1,9 +1,9 @@
 #pragma once
 
+#include "nsfd/output/row_file.h"
 #include "nsfd/output/run_record.h"
 
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -31,7 +31,7 @@ namespace nsfd
     void write(const HistoryRow &row);
 
     /** Of all rows so far, on the disk for good when this returns. */
-    std::uintmax_t n_bytes();
+    std::uintmax_t n_bytes() { return file_.n_bytes(); }
 
     /**
      * The rows in the first @p n_bytes of a file with so many reactions.
@@ -45,10 +45,7 @@ namespace nsfd
                               unsigned int dimension);
 
   private:
-    void write_line(const std::string &line);
-
-    std::string path_;
     std::size_t n_reactions_;
-    std::ofstream file_;
+    RowFile file_;
   };
 } // namespace nsfd
