@@ -4,6 +4,7 @@
 #include "checkpoint/checkpoints.h"
 #include "model.h"
 #include "run_costs.h"
+#include "run_facts.h"
 #include "run_info.h"
 #include "run_totals.h"
 #include "static_run.h"
@@ -11,6 +12,7 @@
 #include "nsfd/base/cost.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/command_line.h"
+#include "nsfd/output/fragment_output.h"
 #include "nsfd/output/fragments.h"
 #include "nsfd/output/run_output.h"
 #include "nsfd/scene/case_observer.h"
@@ -67,7 +69,7 @@ namespace nsfd
       void finish(const std::string &failure);
       RunTotals totals() const;
       void fill_counters(std::map<std::string, double> &counters) const;
-      void print_end() const;
+      void print_end(const Certificate &certificate) const;
 
       const SceneInput &input_;
       const RunOptions &options_;
@@ -86,6 +88,7 @@ namespace nsfd
       State state_;
       Summary summary_;
       RunCosts<dim> costs_;
+      SolvedSteps solved_steps_;
       double start_wall_, last_step_ = 0.;
       unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
       unsigned long long released_ = 0; ///< bonds, in accepted steps
@@ -250,6 +253,7 @@ namespace nsfd
         adaptive_->remember(archive);
       archive.numbers("largest", summary_.ledger_defect_max,
                       summary_.residual_max);
+      solved_steps_.remember(archive);
       costs_.remember(archive);
       earlier_.remember(archive, totals());
     }
@@ -374,10 +378,11 @@ namespace nsfd
       fragments_ = std::make_unique<Fragments<dim>>(*model_.discretization,
                                                     communicator_);
       fragments_->update(state_);
-      output_->mesh_changed();
+      const State at_start = model_.stepper->initial_state();
+      output_->mesh_changed(at_start);
       checkpoints_->mesh_changed();
       if (observer_)
-        observer_->mesh_changed(model_.stepper->initial_state());
+        observer_->mesh_changed(at_start);
       return true;
     }
 
@@ -389,6 +394,14 @@ namespace nsfd
       output_ = std::make_unique<RunOutput<dim>>(
           input_, info, options_.quiet, *model_.discretization, communicator_,
           options_.resume);
+      if (has_fragments(input_, *model_.discretization, *fragments_,
+                        communicator_))
+        output_->set_fragments(std::make_unique<FragmentOutput<dim>>(
+            input_.output.directory,
+            FragmentMotion<dim>(*model_.discretization, communicator_,
+                                model_.moving.get(),
+                                model_.stepper->initial_state()),
+            communicator_, options_.resume));
       checkpoints_ = std::make_unique<Checkpoints<dim>>(
           input_, options_, *model_.discretization, communicator_);
       if (communicator_.is_root() && !options_.quiet)
@@ -576,6 +589,10 @@ namespace nsfd
       beyond_unique_ += report.beyond_unique;
       released_ += report.released;
       costs_.record(report.solver, model_.dynamics->counters().delassus);
+      solved_steps_.add(is_static_ ? SolvedSteps::Kind::quasi_static
+                        : smooth_  ? SolvedSteps::Kind::smooth
+                                   : SolvedSteps::Kind::dynamic,
+                        report.solver.residual);
       for (const auto &name : report.solver.switches)
         ++switches_[name];
       HistoryRow row;
@@ -639,9 +656,11 @@ namespace nsfd
       s.peak_memory_mb = peak_memory_mb();
       charge_memory("fields and curves");
       s.cost = costs_.finish(*model_.dynamics);
-      output_->write_summary(s);
+      const Certificate certificate = certify(run_facts(
+          input_, model_, solved_steps_, state_, s, communicator_));
+      output_->write_summary(s, certificate);
       if (communicator_.is_root() && !options_.quiet)
-        print_end();
+        print_end(certificate);
     }
 
     /** Of this process. */
@@ -719,7 +738,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void Simulation<dim>::print_end() const
+    void Simulation<dim>::print_end(const Certificate &certificate) const
     {
       const auto &s = summary_;
       auto c = s.counters;
@@ -750,7 +769,8 @@ namespace nsfd
         std::cout << fmt::format("  {:<28} {:.6g}\n", name, value);
       std::cout << cost_text(s.cost, s.peak_memory_mb);
       std::cout << "  " << input_.output.directory
-                << (input_.output.report ? "/report.html\n" : "/\n");
+                << (input_.output.report ? "/report.html\n" : "/\n")
+                << certificate_text(certificate);
     }
   } // namespace
 

@@ -67,7 +67,7 @@ namespace nsfd
          "preconditioner, set-up", "preconditioner, applied",
          "sums over points", "Gauss-Seidel sweeps", "update of bodies",
          "energy ledger", "output", "W, single precision",
-         "waiting for other ranks"}};
+         "waiting for other ranks", "motion of fragments"}};
     return names[std::size_t(line)];
   }
 

@@ -81,7 +81,8 @@ namespace nsfd
     {
       shape.modes = rigid_modes(shape, size);
       const unsigned int n = shape.modes.cols;
-      const Block nodal_mass = body.mass;
+      shape.nodal_mass = body.mass;
+      const Block &nodal_mass = shape.nodal_mass;
       const Block RT = shape.modes.transposed();
       body.mass = product(RT, product(nodal_mass, shape.modes));
       for (unsigned int i = 0; i < n; ++i)

@@ -44,6 +44,7 @@ namespace nsfd
     double height = 0.; ///< way of a wave through the cell
     Block modes;        ///< rigid: nodal values = modes * unknowns
     Block projection;   ///< rigid: unknowns = projection * nodal values
+    Block nodal_mass;   ///< rigid: of the nodal values
   };
 
   /**

@@ -48,6 +48,15 @@ namespace nsfd
     {
       return mover_of_[cell];
     }
+    /** Of a rigid body, in its own frame, and what State::rigid says of it. */
+    const RigidInertia &inertia(const std::size_t b) const
+    {
+      return movers_[b].inertia;
+    }
+    RigidState rigid_state(const State &state, const std::size_t b) const
+    {
+      return rigid_state(state, movers_[b]);
+    }
     /** Radius of a body that is a ball, else 0. */
     double ball_radius(const std::size_t b) const { return movers_[b].radius; }
 

@@ -27,9 +27,10 @@ namespace nsfd
         : energy(dimension == 3 ? "J" : "J/m"),
           force(dimension == 3 ? "N" : "N/m"),
           area(dimension == 3 ? "m²" : "m"),
+          mass(dimension == 3 ? "g" : "g/m"),
           broken(dimension == 3 ? "broken area" : "broken length")
     {
     }
-    std::string energy, force, area, broken;
+    std::string energy, force, area, mass, broken;
   };
 } // namespace nsfd

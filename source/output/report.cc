@@ -143,6 +143,48 @@ namespace nsfd
       return section("The body over time", note + row_of(strip));
     }
 
+    void add_certificate(const Certificate &certificate, Table &table)
+    {
+      table.add_text("certificate", certificate.verdict());
+      for (const CertificateLine &line : certificate.lines) {
+        using Of = CertificateLine::Verdict;
+        const bool judged = line.verdict == Of::ok || line.verdict == Of::bad;
+        std::string remark = judged ? line.bound : text_of(line.verdict);
+        if (!line.remark.empty())
+          remark += (remark.empty() ? "" : "; ") + line.remark;
+        table.add(line.name, line.value, remark,
+                  line.verdict == Of::ok    ? Verdict::good
+                  : line.verdict == Of::bad ? Verdict::bad
+                                            : Verdict::none);
+      }
+    }
+
+    void add_sizes(const FragmentSizes &sizes, const Units &units, Table &table)
+    {
+      const auto mass = [&](const double value) {
+        return engineering(value * 1e3, units.mass, 4);
+      };
+      const auto length = [](const double value) {
+        return engineering(value, "m");
+      };
+      table.add("mean size", length(sizes.mean_size),
+                "diameter of the same volume; weighted by mass: " +
+                    length(sizes.mean_size_by_mass));
+      table.add("median size", length(sizes.median_size),
+                length(sizes.sizes.back()) + " to " +
+                    length(sizes.sizes.front()));
+      table.add("mean mass", mass(sizes.mean_mass),
+                mass(sizes.smallest_mass) + " to " + mass(sizes.largest_mass));
+      table.add("largest fragment",
+                percent(sizes.largest_mass / sizes.total_mass),
+                "of the mass " + mass(sizes.total_mass));
+      if (sizes.mass_exponent)
+        table.add("exponent", fmt::format("{:.3g}", *sizes.mass_exponent),
+                  "b of N(m) ~ m^-b, most likely one");
+      table.add("new surface", engineering(sizes.surface, units.area),
+                "both sides of all cracks");
+    }
+
     std::string key_numbers(const Report &report, const Units &units)
     {
       const Summary &s = report.summary;
@@ -177,25 +219,8 @@ namespace nsfd
       }
 
       Table certificate;
-      const auto within = [](const bool holds) {
-        return holds ? Verdict::good : Verdict::bad;
-      };
-      certificate.add("worst ledger defect", relative(s.ledger_defect_max),
-                      std::abs(s.ledger_defect_max) <= 1e-9
-                          ? "below 10⁻⁹ of the largest energy"
-                          : "not below 10⁻⁹ of the largest energy",
-                      within(std::abs(s.ledger_defect_max) <= 1e-9));
-      certificate.add("worst residual", relative(s.residual_max),
-                      "relative, over all accepted steps");
-      if (s.penetration_bound > 0.)
-        certificate.add(
-            "penetration", engineering(s.penetration_max, "m"),
-            fmt::format("{:.2g} of the bound {}",
-                        s.penetration_max / s.penetration_bound,
-                        engineering(s.penetration_bound, "m")),
-            within(s.penetration_max <= s.penetration_bound * (1. + 1e-9)));
-      else
-        certificate.add("penetration", engineering(s.penetration_max, "m"));
+      if (report.findings.certificate)
+        add_certificate(*report.findings.certificate, certificate);
       if (s.viscous_traction_max)
         certificate.add("largest viscous traction",
                         engineering(*s.viscous_traction_max, "Pa", 4),
@@ -222,9 +247,13 @@ namespace nsfd
       Table errors;
       for (const auto &[name, value] : s.errors)
         errors.add(readable(name), engineering(value, "", 4));
+      Table fragments;
+      if (report.findings.fragment_sizes && s.fragments > 1)
+        add_sizes(*report.findings.fragment_sizes, units, fragments);
       return section("Key numbers",
                      row_of(physics.card("What happened") +
                             certificate.card("How far to trust it") +
+                            fragments.card("Fragments") +
                             errors.card("Errors against exact values")));
     }
 
@@ -327,6 +356,9 @@ namespace nsfd
       curves += figures.figure(charts.reactions());
     if (report.summary.fragments > 1)
       curves += figures.figure(charts.fragments());
+    if (report.summary.fragments > 1 && report.findings.fragment_sizes)
+      curves +=
+          figures.figure(fragments_by_size(*report.findings.fragment_sizes));
     curves += figures.figure(charts.active());
     html += section("Over time", row_of(curves));
 

@@ -210,4 +210,19 @@ namespace nsfd
                    Colour::orange);
     return {"accuracy", chart};
   }
+
+  NamedChart fragments_by_size(const FragmentSizes &sizes)
+  {
+    LineChart chart("Fragments by size",
+                    {"diameter of the same volume", "m", true},
+                    {"fragments of this size or larger", "", true});
+    // stairs: N jumps at each size
+    std::vector<double> x, y;
+    for (std::size_t k = 0; k < sizes.sizes.size(); ++k) {
+      x.insert(x.end(), {sizes.sizes[k], sizes.sizes[k]});
+      y.insert(y.end(), {std::max(1., double(k)), double(k + 1)});
+    }
+    chart.add_line("number", x, y, Colour::blue);
+    return {"fragments_by_size", chart};
+  }
 } // namespace nsfd

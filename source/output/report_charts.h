@@ -2,6 +2,8 @@
 
 #include "energy_lines.h"
 
+#include "nsfd/output/fragment_sizes.h"
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -56,4 +58,7 @@ namespace nsfd
     std::vector<double> time_, step_;
     double largest_energy_ = 0., initial_energy_ = 0.;
   };
+
+  /** How many fragments have a size or a larger one. */
+  NamedChart fragments_by_size(const FragmentSizes &sizes);
 } // namespace nsfd

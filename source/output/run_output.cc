@@ -7,6 +7,7 @@
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/output/field_output.h"
+#include "nsfd/output/fragment_output.h"
 #include "nsfd/output/history_file.h"
 #include "nsfd/output/progress.h"
 #include "nsfd/output/report.h"
@@ -89,6 +90,13 @@ namespace nsfd
   RunOutput<dim>::~RunOutput() = default;
 
   template <int dim>
+  void RunOutput<dim>::set_fragments(
+      std::unique_ptr<FragmentOutput<dim>> fragments)
+  {
+    fragments_ = std::move(fragments);
+  }
+
+  template <int dim>
   void RunOutput<dim>::write_descriptions() const
   {
     const std::string &directory = input_.output.directory;
@@ -155,6 +163,8 @@ namespace nsfd
             output.fields_every;
       if (output.fields)
         fields_->write(state, time_step, fragments);
+      if (fragments_)
+        fragments_->write(state, fragments);
       if (output.report) {
         snapshots_.push_back(fields_->snapshot(state, fragments));
         if (snapshots_.size() > 24) // keep every second one
@@ -163,14 +173,18 @@ namespace nsfd
       }
       charge_memory("fields and curves");
     }
+    if (last && fragments_) // the rows may be those of a run before this one
+      fragments_->measure(state, fragments);
     fields_current_ = due;
   }
 
   template <int dim>
-  void RunOutput<dim>::mesh_changed()
+  void RunOutput<dim>::mesh_changed(const State &start)
   {
     if (fields_)
       fields_->mesh_changed();
+    if (fragments_)
+      fragments_->mesh_changed(start);
   }
 
   template <int dim>
@@ -195,6 +209,8 @@ namespace nsfd
     archive.numbers("due", next_fields_, fields_current_);
     if (fields_)
       fields_->remember(archive);
+    if (fragments_)
+      fragments_->remember(archive);
     nsfd::remember(snapshots_, archive);
     if (archive.reads() && communicator_.is_root())
       write_descriptions();
@@ -230,12 +246,17 @@ namespace nsfd
   }
 
   template <int dim>
-  void RunOutput<dim>::write_summary(const Summary &summary) const
+  void RunOutput<dim>::write_summary(const Summary &summary,
+                                     const Certificate &certificate) const
   {
     if (!communicator_.is_root())
       return;
     const std::string &directory = input_.output.directory;
-    nsfd::write_summary(directory + "/summary.json", summary);
+    RunFindings findings;
+    findings.certificate = certificate;
+    if (fragments_)
+      findings.fragment_sizes = fragment_sizes(fragments_->records(), dim);
+    nsfd::write_summary(directory + "/summary.json", summary, findings);
     if (!input_.output.report)
       return;
     Report report;
@@ -243,6 +264,7 @@ namespace nsfd
     report.description = input_.description;
     report.info = info_;
     report.summary = summary;
+    report.findings = findings;
     report.history = history_;
     report.reaction_names = driven_;
     report.snapshots = snapshots_;

@@ -68,6 +68,48 @@ namespace nsfd
       return json;
     }
 
+    Json optional_number(const std::optional<double> &value)
+    {
+      return value ? number(*value) : Json(nullptr);
+    }
+
+    Json judged(const Certificate &certificate)
+    {
+      Json json = Json::object();
+      json["ok"] = certificate.is_ok();
+      json["verdict"] = certificate.verdict();
+      for (const CertificateLine &line : certificate.lines) {
+        Json entry = Json::object();
+        entry["verdict"] = text_of(line.verdict);
+        if (line.number)
+          entry["value"] = number(*line.number);
+        if (line.limit)
+          entry["bound"] = number(*line.limit);
+        if (!line.remark.empty())
+          entry["remark"] = line.remark;
+        json["lines"][line.name] = entry;
+      }
+      return json;
+    }
+
+    Json sizes(const FragmentSizes &all)
+    {
+      return {{"mean_size", number(all.mean_size)},
+              {"median_size", number(all.median_size)},
+              {"smallest_size", number(all.sizes.back())},
+              {"largest_size", number(all.sizes.front())},
+              {"mean_size_by_mass", number(all.mean_size_by_mass)},
+              {"total_mass", number(all.total_mass)},
+              {"mean_mass", number(all.mean_mass)},
+              {"median_mass", number(all.median_mass)},
+              {"smallest_mass", number(all.smallest_mass)},
+              {"largest_mass", number(all.largest_mass)},
+              {"largest_mass_share", number(all.largest_mass / all.total_mass)},
+              {"mass_exponent", optional_number(all.mass_exponent)},
+              {"surface", number(all.surface)},
+              {"histogram", {{"edges", all.edges}, {"numbers", all.numbers}}}};
+    }
+
     void write_json(const std::string &path, const Json &json)
     {
       // host names and paths may hold bytes that are no UTF-8
@@ -94,7 +136,8 @@ namespace nsfd
       fail();
   }
 
-  void write_summary(const std::string &path, const Summary &summary)
+  void write_summary(const std::string &path, const Summary &summary,
+                     const RunFindings &findings)
   {
     const EnergyLines &e = summary.energy;
 
@@ -131,6 +174,10 @@ namespace nsfd
     json["positive_friction_work"] = number(summary.positive_friction_work);
     json["rigid_drift_max"] = number(summary.rigid_drift_max);
     json["fragments"] = summary.fragments;
+    if (findings.fragment_sizes)
+      json["fragment_sizes"] = sizes(*findings.fragment_sizes);
+    if (findings.certificate)
+      json["certificate"] = judged(*findings.certificate);
     json["counters"] = numbers(summary.counters);
     json["errors"] = numbers(summary.errors);
     json["timings"] = numbers(summary.timings);

@@ -6,6 +6,7 @@
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
+#include "nsfd/output/certificate.h"
 #include "nsfd/scene/advice.h"
 #include "nsfd/time/moreau_jean.h"
 
@@ -88,7 +89,7 @@ namespace nsfd
       return problems;
     }
 
-    constexpr double points_wanted = 2.5; // per cohesive length, (49)
+    constexpr double points_wanted = points_per_cohesive_length;
     constexpr double share_wanted = 0.9;  // of the modulus, while intact
     constexpr unsigned int most_points = 10;
 

@@ -163,7 +163,8 @@ namespace end_to_end
                   b.summary["counters"].value(name, 0.))
             << name;
       for (const char *name :
-           {"fields.pvd", "interfaces.pvd", "fields.xdmf", "interfaces.xdmf"})
+           {"fields.pvd", "interfaces.pvd", "fields.xdmf", "interfaces.xdmf",
+            "fragments.csv"})
         EXPECT_EQ(read_text(a.directory / name), read_text(b.directory / name));
       EXPECT_TRUE(snapshots(a.directory, "fields") ==
                   snapshots(b.directory, "fields"));

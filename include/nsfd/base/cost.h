@@ -25,6 +25,7 @@ namespace nsfd
     output,          ///< files, pictures, comparison with exact values
     delassus_single, ///< applications of W in single precision
     messages,        ///< waiting for other ranks
+    fragments,       ///< their masses, motions and sizes
     count
   };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/output/run_record.h"
+#include "nsfd/output/summary_file.h"
 
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@ namespace nsfd
     std::string title, description;
     RunInfo info;
     Summary summary;
+    RunFindings findings;
     std::vector<HistoryRow> history;
     /// driven boundaries, as in the columns of history.csv
     std::vector<std::string> reaction_names;

@@ -14,9 +14,12 @@ namespace nsfd
   template <int dim>
   class FieldOutput;
   template <int dim>
+  class FragmentOutput;
+  template <int dim>
   class Fragments;
   class HistoryFile;
   class Progress;
+  struct Certificate;
 
   /**
    * Make an output directory ours: what an earlier run has written is removed,
@@ -39,6 +42,9 @@ namespace nsfd
               const Communicator &communicator, bool resumes = false);
     ~RunOutput();
 
+    /** Of a scene that has fragments. */
+    void set_fragments(std::unique_ptr<FragmentOutput<dim>> fragments);
+
     /** The initial state, for the report only. */
     void start(const HistoryRow &row);
 
@@ -49,8 +55,8 @@ namespace nsfd
     void write_if_due(const State &state, double time_step,
                       const Fragments<dim> &fragments, bool last = false);
 
-    /** Bodies and points are others now. */
-    void mesh_changed();
+    /** Bodies and points are others now; @p start is their state at t = 0. */
+    void mesh_changed(const State &start);
 
     /** The progress line ends here. */
     void end_progress();
@@ -66,7 +72,8 @@ namespace nsfd
     void remember(Archive &archive);
 
     /** summary.json and the report; nothing except on rank 0. */
-    void write_summary(const Summary &summary) const;
+    void write_summary(const Summary &summary,
+                       const Certificate &certificate) const;
 
     /** CPU seconds spent on fields and pictures. */
     double cpu() const { return cpu_; }
@@ -84,6 +91,7 @@ namespace nsfd
     std::unique_ptr<HistoryFile> history_file_;
     std::unique_ptr<Progress> progress_;
     std::unique_ptr<FieldOutput<dim>> fields_;
+    std::unique_ptr<FragmentOutput<dim>> fragments_; ///< or null
     std::vector<HistoryRow> history_;
     unsigned int history_stride_ = 1;
     std::vector<Snapshot> snapshots_;

@@ -1,13 +1,24 @@
 #pragma once
 
+#include "nsfd/output/certificate.h"
+#include "nsfd/output/fragment_sizes.h"
 #include "nsfd/output/run_record.h"
 
+#include <optional>
 #include <string>
 
 namespace nsfd
 {
+  /** What is judged and gathered at the end of a run, as far as there is. */
+  struct RunFindings
+  {
+    std::optional<Certificate> certificate;
+    std::optional<FragmentSizes> fragment_sizes;
+  };
+
   /** Writes summary.json; NaN and infinity become null. */
-  void write_summary(const std::string &path, const Summary &summary);
+  void write_summary(const std::string &path, const Summary &summary,
+                     const RunFindings &findings = {});
 
   /** Writes run.json. */
   void write_run_info(const std::string &path, const RunInfo &info);

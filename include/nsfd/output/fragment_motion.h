@@ -1,0 +1,85 @@
+#pragma once
+
+#include "nsfd/mesh/discretization.h"
+#include "nsfd/motion/space.h"
+#include "nsfd/output/fragments.h"
+#include "nsfd/time/state.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  template <int dim>
+  class MovingBodies;
+
+  /**
+   * One fragment as a whole, in its present place. In the plane masses,
+   * energies and areas are per metre of depth, and only spin[2] and
+   * inertia[2][2] are not zero.
+   */
+  struct FragmentRecord
+  {
+    unsigned int number = 0;
+    unsigned long long cells = 0;
+    double mass = 0.;   ///< kg, kg/m
+    double volume = 0.; ///< of its cells at rest, m^3, m^2
+    Vec3 centre{};      ///< of mass, m
+    Vec3 velocity{};    ///< momentum over mass, m/s
+    Vec3 spin{};        ///< J^{-1} L about the centre, rad/s
+    Mat3 inertia{};     ///< J about the centre, axes of space, kg m^2, kg m
+    /// of the centre, of the spin, and of all cells (the rest is vibration), J
+    double kinetic_translation = 0., kinetic_spin = 0., kinetic = 0.;
+    double surface = 0.; ///< of its cells, broken since t = 0, m^2, m
+
+    /** Diameter of the disc or ball of the same volume, m. */
+    double size(unsigned int dimension) const;
+  };
+
+  /**
+   * Mass, place, momentum, spin and energy of every fragment, with the mass
+   * matrices of the bodies, so that the momenta of the fragments add up to that
+   * of the scene and their kinetic energies to that of the ledger. Sums do not
+   * depend on the ranks.
+   */
+  template <int dim>
+  class FragmentMotion
+  {
+  public:
+    /**
+     * @p start is the state at t = 0: what is broken there is no new surface.
+     * @p moving are the bodies of large motions, or null.
+     */
+    FragmentMotion(const Discretization<dim> &discretization,
+                   const Communicator &communicator,
+                   const MovingBodies<dim> *moving, const State &start);
+
+    /** Bodies and points are others now. */
+    void mesh_changed(const State &start);
+
+    /** By number; empty except on the first rank. Collective. */
+    std::vector<FragmentRecord> measure(const State &state,
+                                        const Fragments<dim> &fragments) const;
+
+  private:
+    struct Body;
+    struct Place;
+    struct Amounts;
+    struct Motions;
+    class Pieces;
+
+    Body cell_body(unsigned int cell, const std::vector<double> &displacement,
+                   const std::vector<double> &velocity) const;
+    Body rigid_body(std::size_t body, const State &state) const;
+    std::vector<Body> bodies(const State &state) const;
+    std::vector<Amounts> amounts(const State &state,
+                                 const std::vector<Body> &bodies,
+                                 const Pieces &pieces) const;
+
+    const Discretization<dim> &discretization_;
+    const Communicator &communicator_;
+    const MovingBodies<dim> *moving_;
+    std::vector<std::vector<double>> masses_; ///< by class, node x node
+    std::vector<double> first_beta_;
+  };
+} // namespace nsfd

@@ -1,0 +1,233 @@
+#include "breaking_plate.h"
+#include "make_scene.h"
+
+#include "nsfd/output/certificate.h"
+#include "nsfd/scene/advice.h"
+#include "nsfd/scene/zone_resolution.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <sstream>
+
+// What a run may say of itself.
+
+namespace nsfd
+{
+  namespace
+  {
+    using Verdict = CertificateLine::Verdict;
+
+    /** Of a run with contact and fracture in which all went well. */
+    RunFacts good_facts()
+    {
+      RunFacts facts;
+      facts.completed = true;
+      facts.time = 1e-3;
+      facts.steps = 100;
+      facts.residual = 3e-9;
+      facts.tolerance = 1e-8;
+      facts.ledger_defect = 2e-13;
+      facts.penetration = 1e-7;
+      facts.penetration_bound = 3e-7;
+      facts.displacement = 1e-3;
+      facts.softens = true;
+      facts.zone = ZoneResolution{4e-3, 1e-3, "all"};
+      facts.rejected = 2;
+      facts.redone = 1;
+      return facts;
+    }
+
+    const CertificateLine &line(const Certificate &certificate,
+                                const std::string &name)
+    {
+      for (const CertificateLine &line : certificate.lines)
+        if (line.name == name)
+          return line;
+      throw std::out_of_range(name);
+    }
+
+    struct Fault {
+      const char *name, *line;
+      void (*make)(RunFacts &);
+      Verdict verdict;
+      const char *words;
+    };
+    constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+    const std::vector<Fault> faults = {
+        {"Stopped", "end",
+         [](RunFacts &f) {
+           f.completed = false;
+           f.failure = "stopped on request at t = 0.5\n  and so on";
+         },
+         Verdict::bad, "stopped on request at t = 0.5"},
+        {"Residual", "residual", [](RunFacts &f) { f.residual = 1.1e-8; },
+         Verdict::bad, "Solver/tolerance"},
+        {"ResidualUnknown", "residual",
+         [](RunFacts &f) { f.residual = nan_value; }, Verdict::bad, ""},
+        {"Imbalance", "imbalance",
+         [](RunFacts &f) {
+           f.static_steps = 3;
+           f.static_tolerance = 1e-11;
+           f.imbalance = 1e-8;
+         },
+         Verdict::bad, ""},
+        {"Penetration", "penetration",
+         // below the largest bound, but above that of its point
+         [](RunFacts &f) { f.penetration_excess = 1e-8; }, Verdict::bad,
+         "1e-08 m deeper"},
+        {"Equilibria", "penetration",
+         [](RunFacts &f) {
+           f.static_steps = f.steps;
+           f.steps = 0;
+         },
+         Verdict::not_measured, "equilibria"},
+        {"Ledger", "ledger defect", [](RunFacts &f) { f.ledger_defect = 1e-8; },
+         Verdict::bad, "do not add up"},
+        {"LedgerUnknown", "ledger defect",
+         [](RunFacts &f) { f.ledger_defect = nan_value; }, Verdict::bad, ""},
+        {"Uniqueness", "uniqueness", [](RunFacts &f) { f.beyond_unique = 7; },
+         Verdict::bad, "in 7 of 100 steps"},
+        {"UniquenessOfJumps", "uniqueness",
+         [](RunFacts &f) {
+           f.beyond_unique = 7;
+           f.brittle = true;
+         },
+         Verdict::bad, "no step is short enough"},
+        {"Jumps", "solution jumps",
+         [](RunFacts &f) {
+           f.static_steps = 3;
+           f.solution_jumps = 1;
+         },
+         Verdict::bad, "at solution jump = dynamic"},
+        {"Zone", "cohesive zone",
+         [](RunFacts &f) { f.zone = ZoneResolution{1e-3, 1e-3, "all"}; },
+         // a strength of sqrt(1 / 2.5)
+         Verdict::bad, "points every 0.0004 m, or a strength 0.63 times"},
+        {"Attempts", "taken again", [](RunFacts &f) { f.rejected = 99; },
+         Verdict::bad, "shorten Time/step"},
+    };
+
+    void PrintTo(const Fault &fault, std::ostream *stream)
+    {
+      *stream << fault.name;
+    }
+
+    class CertificateTest : public testing::TestWithParam<Fault>
+    {
+    };
+  } // namespace
+
+  TEST(Certificate, OfAGoodRunIsOk)
+  {
+    const Certificate certificate = certify(good_facts());
+    EXPECT_TRUE(certificate.is_ok());
+    EXPECT_EQ(certificate.verdict(), "ok");
+    for (const CertificateLine &one : certificate.lines)
+      EXPECT_EQ(one.verdict, Verdict::ok) << one.name;
+    EXPECT_EQ(line(certificate, "cohesive zone").number, 4.);
+    EXPECT_EQ(line(certificate, "taken again").number, 3.);
+  }
+
+  TEST_P(CertificateTest, NamesWhatIsNot)
+  {
+    const Fault &fault = GetParam();
+    RunFacts facts = good_facts();
+    fault.make(facts);
+    const Certificate certificate = certify(facts);
+    EXPECT_FALSE(certificate.is_ok());
+    const CertificateLine &found = line(certificate, fault.line);
+    EXPECT_EQ(found.verdict, fault.verdict);
+    EXPECT_NE(found.remark.find(fault.words), std::string::npos)
+        << found.remark;
+    EXPECT_EQ(found.remark.find('\n'), std::string::npos);
+    for (const CertificateLine &other : certificate.lines)
+      EXPECT_TRUE(other.name == found.name || other.verdict == Verdict::ok)
+          << other.name;
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Faults, CertificateTest,
+                           testing::ValuesIn(faults), [](const auto &info) {
+                             return std::string(info.param.name);
+                           });
+
+  TEST(Certificate, SaysOkToNothingThatWasNotMeasured)
+  {
+    const Certificate nothing = certify(RunFacts());
+    EXPECT_FALSE(nothing.is_ok());
+    for (const CertificateLine &one : nothing.lines)
+      EXPECT_NE(one.verdict, Verdict::ok) << one.name;
+
+    RunFacts smooth;
+    smooth.completed = true;
+    smooth.smooth_steps = 10;
+    const Certificate integrated = certify(smooth);
+    EXPECT_EQ(line(integrated, "residual").verdict, Verdict::not_measured);
+    EXPECT_EQ(line(integrated, "penetration").verdict, Verdict::none);
+    EXPECT_EQ(integrated.verdict(),
+              "ok as far as measured, 1 of 7 lines are not");
+  }
+
+  TEST(Certificate, OfARunWithoutCohesionIsOk)
+  {
+    RunFacts facts = good_facts();
+    facts.softens = false;
+    facts.zone.reset();
+    const Certificate certificate = certify(facts);
+    EXPECT_EQ(line(certificate, "cohesive zone").verdict, Verdict::none);
+    EXPECT_TRUE(certificate.is_ok());
+  }
+
+  TEST(Certificate, IsALinePerNumberAndAligned)
+  {
+    std::istringstream text(certificate_text(certify(good_facts())));
+    std::string first, row;
+    std::getline(text, first);
+    EXPECT_EQ(first, "certificate: ok");
+    std::size_t n = 0, place = 0;
+    for (; std::getline(text, row); ++n) {
+      const std::size_t ok = row.find("  ok");
+      ASSERT_NE(ok, std::string::npos) << row;
+      EXPECT_TRUE(n == 0 || ok == place) << row;
+      place = ok;
+      EXPECT_NE(row.back(), ' ');
+    }
+    EXPECT_EQ(n, 7u);
+  }
+
+  // ------------------------------------------------------------ cohesive zone
+
+  // L_czm is that of (50) times toughness / strength^2 of the point
+  TEST(ZoneResolution, IsThatOfTheWorstPointThatSoftens)
+  {
+    test::Scene<2> scene(test::breaking_plate,
+                         {"Mesh/distortion=0",
+                          "Interface: all/strength scatter=0",
+                          "Interface: all/strength factor=x > 1.2 ? 1.5 : 1"});
+    const auto &points = scene.discretization->points();
+    const auto worst = [&] {
+      return zone_resolution(*scene.input, *scene.discretization,
+                             scene.stepper->problem(), scene.state,
+                             scene.communicator);
+    };
+    const auto soften = [&](const bool right) {
+      for (std::size_t i = 0; i < points.n_points; ++i)
+        if (points.position[2 * i] < 1.1 || right)
+          scene.state.beta[i] = 0.9;
+    };
+    const double length =
+        cohesive_length(100., 0.3, *scene.input->interfaces[0].law);
+    EXPECT_FALSE(worst()) << "nothing has softened";
+    soften(false);
+    const auto left = worst();
+    ASSERT_TRUE(left);
+    EXPECT_NEAR(left->length, length, 1e-12 * length);
+    EXPECT_NEAR(left->spacing, 1. / 6., 1e-12) << "two points on 1/3 m";
+    EXPECT_EQ(left->interface, "all");
+    soften(true);
+    const auto both = worst();
+    ASSERT_TRUE(both);
+    EXPECT_NEAR(both->length, length / (1.5 * 1.5), 1e-12 * length);
+  }
+} // namespace nsfd
