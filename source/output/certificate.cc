@@ -114,9 +114,11 @@ namespace nsfd
                           within(facts.penetration_excess <= noise), "{:.3g} m");
       if (line.verdict == Verdict::bad)
         line.remark = fmt::format(
-            "a point is {:.3g} m deeper than its own bound: it closes again "
-            "and again, or bodies overlap at the start; shorten Time/step",
-            facts.penetration_excess);
+            "a point is {:.3g} m deeper than its own bound ({:.2g} % of the "
+            "largest): it closes again and again, or bodies overlap at the "
+            "start; shorten Time/step",
+            facts.penetration_excess,
+            100. * facts.penetration_excess / facts.penetration_bound);
       else if (facts.penetration == 0.)
         line.remark = "none";
       return line;

@@ -113,7 +113,7 @@ namespace end_to_end
   {
     const Workspace workspace;
     const Launch what = {quickstart(),
-                         {"Mesh/cells=8, 6", "Time/step=0.8 us",
+                         {"Mesh/cells=12, 9", "Time/step=0.8 us",
                           "Time/end=40 us"}};
     const Result whole = good_run(workspace, "whole", what);
     const Launch stored = storing(what, 20);
