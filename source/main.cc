@@ -1,3 +1,4 @@
+#include "nsfd/compare/compare_command.h"
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/read_law.h"
 #include "nsfd/input/read_scene.h"
@@ -50,6 +51,21 @@ namespace
     }
   }
 
+  /** Without MPI: reads files. */
+  int compare(const int argc, char **argv)
+  {
+    CompareCommand command;
+    if (const auto code = parse_compare_command_line(
+            argc - 1, argv + 1, command, std::cout, std::cerr))
+      return *code;
+    try {
+      return run_compare(command, std::cout, std::cerr);
+    } catch (const std::exception &error) {
+      std::cerr << "nsfd compare: " << error.what() << "\n";
+      return exit_code::internal_error;
+    }
+  }
+
   /** One process is enough; all end with its exit code. */
   template <typename Work>
   int run_on_root(const bool root, const Work &work)
@@ -64,6 +80,8 @@ int main(int argc, char **argv)
 {
   if (asks_for_study(argc, argv))
     return study(argc, argv);
+  if (argc > 1 && argv[1] == std::string("compare"))
+    return compare(argc, argv);
   // Vectors come and go in every step: their pages stay with the process.
   mallopt(M_MMAP_THRESHOLD, 1 << 28);
   mallopt(M_TRIM_THRESHOLD, 1 << 28);

@@ -28,6 +28,7 @@ namespace nsfd
         "  nsfd study FILE.prm       vary its parameters: errors, orders, cost\n"
         "  nsfd law NAME             drive one point of a cohesive law\n"
         "  nsfd solve PROBLEM.hdf5   solve stored contact problems\n"
+        "  nsfd compare RUN RUN      what differs between runs\n"
         "  nsfd --help               all options\n";
 
     /** Options without a value, and what they switch on. */
@@ -115,7 +116,9 @@ namespace nsfd
                "    nsfd law NAME, drive one interface point along a path; "
                "nsfd law --help says more.\n"
                "    nsfd solve PROBLEM.hdf5, stored contact problems; "
-               "nsfd solve --help says more.");
+               "nsfd solve --help says more.\n"
+               "    nsfd compare RUN RUN, folders of results side by side; "
+               "nsfd compare --help says more.");
     bool help = false, list = false, version = false;
     app.add_option("FILE.prm", command_line.file, "the scene to run");
     // one value per --set: further words are not its own

@@ -84,7 +84,7 @@ namespace nsfd
     std::vector<std::string> set;
     for (int i = 1; i < argc; ++i) {
       const std::string word = argv[i];
-      if (i == 1 && (word == "law" || word == "solve"))
+      if (i == 1 && (word == "law" || word == "solve" || word == "compare"))
         return false;
       if (word == "--set" && i + 1 < argc)
         set.emplace_back(argv[++i]);

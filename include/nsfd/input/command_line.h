@@ -11,7 +11,8 @@ namespace nsfd
   namespace exit_code
   {
     constexpr int done = 0, bad_input = 1, wrong_usage = 2, step_failed = 3,
-                  stopped = 4, internal_error = 5;
+                  stopped = 4, internal_error = 5,
+                  differs = 6; ///< of `nsfd compare --tolerance`
   }
 
   /** What was asked for: `nsfd FILE.prm` or `nsfd law NAME`, and options. */

@@ -1,0 +1,54 @@
+#include "nsfd/compare/compare_command.h"
+#include "nsfd/compare/comparison.h"
+
+#include "nsfd/input/command_line.h"
+#include "nsfd/output/run_output.h"
+#include "nsfd/output/summary_file.h"
+
+#include <fmt/format.h>
+
+#include <ostream>
+#include <stdexcept>
+
+namespace nsfd
+{
+  int run_compare(const CompareCommand &command, std::ostream &out,
+                  std::ostream &err)
+  {
+    std::vector<RunFolder> runs;
+    bool all_read = true;
+    for (const std::string &name : command.runs)
+      try {
+        runs.push_back(read_run(name));
+      } catch (const std::runtime_error &error) {
+        err << "nsfd compare: " << error.what() << "\n";
+        all_read = false;
+      }
+    if (!all_read)
+      return exit_code::bad_input;
+    if (!command.output.empty() &&
+        !claim_directory(command.output, command.force))
+      return exit_code::bad_input;
+
+    const Comparison comparison = compare_runs(std::move(runs));
+    out << comparison_text(comparison);
+    const auto largest = comparison.largest();
+    out << fmt::format("largest difference of results: {:.2e}",
+                       largest.difference);
+    if (!largest.name.empty())
+      out << ", " << largest.name;
+    const bool within =
+        !command.tolerance || largest.difference <= *command.tolerance;
+    if (command.tolerance)
+      out << fmt::format("; {} {:g}", within ? "within" : "beyond",
+                         *command.tolerance);
+    out << "\n";
+    if (!command.output.empty()) {
+      write_file_atomically(command.output + "/compare.json",
+                            comparison_json(comparison, command.tolerance));
+      write_comparison_page(comparison, command.output);
+      out << command.output << "/compare.html\n";
+    }
+    return within ? exit_code::done : exit_code::differs;
+  }
+} // namespace nsfd
