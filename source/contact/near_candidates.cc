@@ -1,5 +1,6 @@
 #include "near_candidates.h"
 
+#include "edge_pairs.h"
 #include "touching_rules.h"
 
 #include <boost/geometry/geometries/box.hpp>
@@ -317,6 +318,62 @@ namespace nsfd
       }
       return result;
     }
+    Box<3> box_of(const Segment &segment, const double margin)
+    {
+      Place<3> low = segment.from, high = sum(segment.from, 1., segment.way);
+      for (int d = 0; d < 3; ++d)
+        if (low[d] > high[d])
+          std::swap(low[d], high[d]);
+      return box_around<3>(low, high, margin);
+    }
+
+    /**
+     * Where the edges of two bodies are as near to each other as they may be
+     * deep in each other, with the skin.
+     */
+    IndexLists edges_of_edges(const Surfaces<3> &surfaces, const double *x,
+                              const std::vector<Plane<3>> &planes,
+                              const double reach, const double skin,
+                              const JoinedBodies &joined)
+    {
+      const auto &edges = surfaces.edges;
+      std::vector<Segment> segments(edges.size());
+      std::vector<double> margins(edges.size());
+      std::vector<BoxTree<3>::Entry> entries;
+      entries.reserve(edges.size());
+      for (unsigned int e = 0; e < edges.size(); ++e) {
+        segments[e] = segment_of(edges[e], x);
+        double size = norm(segments[e].way) + skin;
+        for (const unsigned int f : edges[e].facet)
+          size = std::min(
+              size,
+              change_of<3>(surfaces.facets[f], planes[f], x, skin).size);
+        // a tenth more than the skin for round-off
+        margins[e] = std::max(reach, deepest * size) + 1.1 * skin;
+        entries.emplace_back(box_of(segments[e], 0.), e);
+      }
+      const BoxTree<3> tree(entries);
+      IndexLists result;
+      result.first.reserve(edges.size() + 1);
+      result.first.push_back(0);
+      for (unsigned int e = 0; e < edges.size(); ++e) {
+        const unsigned int body = surfaces.facets[edges[e].facet[0]].body;
+        tree.near(box_of(segments[e], margins[e]), [&](const auto &entry) {
+          const unsigned int o = entry.second;
+          const unsigned int other = surfaces.facets[edges[o].facet[0]].body;
+          if (other <= body)
+            return;
+          const double margin = std::min(margins[e], margins[o]);
+          if (square_distance(segments[e], segments[o]) <= margin * margin &&
+              !joined(body, other))
+            result.entries.push_back(o);
+        });
+        std::sort(result.entries.begin() + long(result.first.back()),
+                  result.entries.end());
+        result.first.push_back(result.entries.size());
+      }
+      return result;
+    }
   } // namespace
 
   template <int dim>
@@ -351,6 +408,10 @@ namespace nsfd
     result.facets_of_balls =
         facets_of_balls<dim>(surfaces, x, tree, margin, joined);
     result.balls_of_balls = balls_of_balls<dim>(surfaces, x, margin, joined);
+    if constexpr (dim == 3)
+      if (!surfaces.edges.empty())
+        result.edges_of_edges =
+            edges_of_edges(surfaces, x, planes, reach, skin, joined);
     return result;
   }
 

@@ -1,6 +1,7 @@
 #include "nsfd/contact/surface_search.h"
 
 #include "ball_pairs.h"
+#include "edge_pairs.h"
 #include "near_candidates.h"
 #include "point_pairs.h"
 
@@ -11,10 +12,10 @@ namespace nsfd
   namespace
   {
     template <int dim>
-    std::array<std::size_t, 3> sizes_of(const Surfaces<dim> &surfaces)
+    std::array<std::size_t, 4> sizes_of(const Surfaces<dim> &surfaces)
     {
       return {surfaces.facets.size(), surfaces.points.size(),
-              surfaces.balls.size()};
+              surfaces.balls.size(), surfaces.edges.size()};
     }
 
     template <int dim>
@@ -67,6 +68,8 @@ namespace nsfd
     find_ball_pairs<dim>(surfaces, x, planes_, reach, candidates_, pairs.balls);
     find_ball_ball_pairs<dim>(surfaces, x, reach, candidates_,
                               pairs.ball_balls);
+    find_edge_pairs<dim>(surfaces, x, planes_, reach, candidates_, pairs.points,
+                         pairs.edges);
   }
 
   template class SurfaceSearch<2>;

@@ -19,4 +19,31 @@ namespace nsfd
    * corner only, do not catch each other's sides.
    */
   constexpr double inset = 0.02;
+
+  /**
+   * Two edges that cross next to an end of each, in parts of their lengths, are
+   * two corners that meet: as far as the inset goes, corners do not touch.
+   */
+  constexpr double edge_end = 0.5 * inset;
+
+  /** Sine between two edges that are not parallel. */
+  constexpr double least_crossing = 0.03;
+
+  /** Cosine between the normals of two facets that have no edge (2.6 degrees).
+   */
+  constexpr double flat = 0.999;
+
+  /**
+   * A normal may be as far outside of the normals around an edge, as a sine:
+   * less than half of the least edge, so that there is one direction only.
+   * Bodies that lie flat on each other touch at crossing edges, too.
+   */
+  constexpr double cone_room = 0.02;
+
+  /**
+   * Two touches of the same bodies are one if their normals are as parallel and
+   * their places as near to each other, in sizes of a facet: rows that almost
+   * depend on each other make the contact problem almost singular.
+   */
+  constexpr double same_direction = 0.999, same_place = 0.1;
 } // namespace nsfd

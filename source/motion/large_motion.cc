@@ -359,6 +359,7 @@ namespace nsfd
            ++a)
         for (unsigned int d = 0; d < dim; ++d)
           impulse_[(n + k) * dim + a] +=
+              rows[k].share *
               bodies_.points().frame[((n + k) * dim + a) * dim + d] *
               old.surface_impulse[rows[k].place * dim + d];
     // what does not touch in this step has none

@@ -609,10 +609,13 @@ namespace nsfd
       face.first = unsigned(i);
       face.count = 1;
       // apart from those of the mesh, the same in every run
-      face.key = (std::uint64_t(row.node == row.nowhere ? n_nodes_ + row.body_2
-                                                        : row.node)
-                  << 20) +
-                 k;
+      face.key =
+          (std::uint64_t(row.partner == MovingRow<dim>::Partner::edge
+                             ? row.edge[0]
+                         : row.node == row.nowhere ? n_nodes_ + row.body_2
+                                                   : row.node)
+           << 20) +
+          k;
       face.boundary = row.body_1 < 0;
       face.bodies = {{row.body_1, int(row.body_2)}};
       face.cells = {{row.body_1 < 0 ? row.body_2 : std::size_t(row.body_1),
@@ -824,6 +827,13 @@ namespace nsfd
       n[0] = 1.;
       return n;
     }
+    if constexpr (dim == 3)
+      if (row.partner == Partner::edge) {
+        n = cross_product_3d(
+            Vector(middle(row.edge[1]) - middle(row.edge[0])),
+            Vector(middle(row.facet[1]) - middle(row.facet[0])));
+        return n / n.norm();
+      }
     const Place x = row.node == row.nowhere ? middle_centre(row.body_2)
                                             : middle(row.node);
     if (row.partner == Partner::obstacle)
@@ -886,24 +896,30 @@ namespace nsfd
     }
     if (row.node != row.nowhere)
       return middle(row.node);
+    if (row.partner == MovingRow<dim>::Partner::edge)
+      return middle(row.edge[0]) +
+             row.edge_weights[1] *
+                 (middle(row.edge[1]) - middle(row.edge[0]));
     return middle_centre(row.body_2) - movers_[row.body_2].radius * normal;
   }
 
   /**
-   * The place of body 1 that is at x at the middle of the step; a little
+   * The place of a body that is at x at the middle of the step; a little
    * outside of its cell too, so that both bodies feel the impulse there.
    */
   template <int dim>
-  Point<dim>
-  MovingBodies<dim>::in_reference_cell(const MovingRow<dim> &row,
-                                       const Place &x) const
+  Point<dim> MovingBodies<dim>::in_reference_cell(const unsigned int cell,
+                                                  const std::size_t *nodes,
+                                                  const double *weights,
+                                                  const unsigned int n_nodes,
+                                                  const Place &x) const
   {
     const auto &element = discretization_.element();
-    const std::size_t first = discretization_.first_node(row.facet_cell);
+    const std::size_t first = discretization_.first_node(cell);
     Place xi;
-    for (unsigned int v = 0; v < row.n_facet; ++v)
-      xi += row.weights[v] * Vector(element.unit_support_point(
-                                 unsigned(row.facet[v] - first)));
+    for (unsigned int v = 0; v < n_nodes; ++v)
+      xi += weights[v] *
+            Vector(element.unit_support_point(unsigned(nodes[v] - first)));
     for (unsigned int k = 0; k < 20; ++k) {
       Vector off = x - Place();
       Tensor<2, dim> J;
@@ -940,6 +956,10 @@ namespace nsfd
     const auto [slot_1, slot_2] = row_slots_[k];
     if (is_rigid(row.body_2))
       rigid_trace(row.body_2, slot_2, x - middle_centre(row.body_2));
+    else if (row.partner == MovingRow<dim>::Partner::edge)
+      deformable_trace(row.body_2, slot_2,
+                       in_reference_cell(row.cell, row.edge.data(),
+                                         row.edge_weights.data(), 2, x));
     else
       deformable_trace(
           row.body_2, slot_2,
@@ -951,7 +971,9 @@ namespace nsfd
     if (is_rigid(other))
       rigid_trace(other, slot_1, x - middle_centre(other));
     else
-      deformable_trace(other, slot_1, in_reference_cell(row, x));
+      deformable_trace(other, slot_1,
+                       in_reference_cell(row.facet_cell, row.facet.data(),
+                                         row.weights.data(), row.n_facet, x));
   }
 
   // ------------------------------------------------------------- local motion

@@ -153,7 +153,11 @@ namespace nsfd
     Place middle_centre(std::size_t body) const;
     Vector row_normal(const MovingRow<dim> &row) const;
     Place row_place(const MovingRow<dim> &row, const Vector &normal) const;
-    dealii::Point<dim> in_reference_cell(const MovingRow<dim> &row,
+    /** A place of a cell as shape functions have it. */
+    dealii::Point<dim> in_reference_cell(unsigned int cell,
+                                         const std::size_t *nodes,
+                                         const double *weights,
+                                         unsigned int n_nodes,
                                          const Place &x) const;
     Vec3 in_space(const Vector &v) const;
 

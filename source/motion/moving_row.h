@@ -11,8 +11,8 @@ namespace nsfd
   /**
    * A contact of one step between body 2, whose place it follows, and body 1
    * or an obstacle: a node or a ball of body 2 against a facet, a ball, an
-   * obstacle; or a pin that holds a place of body 2. The normal leads from
-   * body 1 to body 2.
+   * obstacle; an edge against an edge; or a pin that holds a place of body 2.
+   * The normal leads from body 1 to body 2.
    */
   template <int dim>
   struct MovingRow
@@ -22,6 +22,7 @@ namespace nsfd
       facet,
       ball,
       obstacle,
+      edge,
       pin
     };
     static constexpr std::size_t nowhere =
@@ -30,12 +31,17 @@ namespace nsfd
     Partner partner = Partner::facet;
     int body_1 = -1;
     unsigned int body_2 = 0;
-    std::size_t node = nowhere;  ///< of body 2; nowhere: it is a ball
-    unsigned int cell = 0;       ///< with this node
+    std::size_t node = nowhere;  ///< of body 2; nowhere: a ball or an edge
+    unsigned int cell = 0;       ///< with this node or edge
     unsigned int facet_cell = 0; ///< of body 1
-    std::array<std::size_t, 4> facet{}; ///< nodes, the outside as in Surfaces
+    std::array<std::size_t, 4> facet{}; ///< nodes, the outside as in Surfaces;
+                                        ///< 2 of an edge
     unsigned int n_facet = 0;
     std::array<double, 4> weights{}; ///< of these nodes at the start
+    /// nodes of the edge of body 2, so that it, turned towards the edge of
+    /// body 1 by a right-handed screw, moves to body 2
+    std::array<std::size_t, 2> edge{};
+    std::array<double, 2> edge_weights{};
     unsigned int obstacle = 0, pin = 0;
     double gap = 0.;  ///< at the start of the step, m
     double rate = 0.; ///< of the gap at the start of the step, m/s
@@ -44,6 +50,7 @@ namespace nsfd
     unsigned int block = 0;
     std::size_t place = nowhere; ///< of what it remembers
     bool released = false; ///< a body has been let go of in the last step
+    double share = 1.; ///< of the impulse that its place remembers
     dealii::Tensor<1, dim> jump; ///< of a pin: how far it is off
   };
 } // namespace nsfd

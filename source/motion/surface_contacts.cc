@@ -74,6 +74,8 @@ namespace nsfd
             block_by_materials_[a * n + b] = int(k);
         }
     merge_nodes();
+    if (dim == 3)
+      number_edges();
     set_boundary();
   }
 
@@ -103,6 +105,36 @@ namespace nsfd
             first.emplace(std::pair(b, at), unsigned(i)).first->second;
       }
     }
+  }
+
+  /** All edges of all cells: each has a place, whether it is a surface yet. */
+  template <int dim>
+  void SurfaceContacts<dim>::number_edges()
+  {
+    const auto &cells = discretization_.bodies();
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      for (const auto &face : faces_[cells.class_of[c]])
+        for (const auto &piece : face.pieces)
+          for (std::size_t v = 0; v < piece.size(); ++v) {
+            const std::size_t first = discretization_.first_node(c);
+            edges_.push_back(
+                pair_of(merged_[first + piece[v]],
+                        merged_[first + piece[(v + 1) % piece.size()]]));
+          }
+    std::sort(edges_.begin(), edges_.end());
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+  }
+
+  /** Behind those of nodes and balls. */
+  template <int dim>
+  std::size_t
+  SurfaceContacts<dim>::place_of_edge(const unsigned int node_1,
+                                      const unsigned int node_2) const
+  {
+    const auto edge = std::lower_bound(edges_.begin(), edges_.end(),
+                                       pair_of(node_1, node_2));
+    return first_place_.back() + bodies_.size() +
+           std::size_t(edge - edges_.begin());
   }
 
   template <int dim>
@@ -151,7 +183,8 @@ namespace nsfd
   template <int dim>
   void SurfaceContacts<dim>::set_initial(State &state) const
   {
-    const std::size_t n = first_place_.back() + bodies_.size();
+    const std::size_t n =
+        first_place_.back() + bodies_.size() + edges_.size();
     state.surface_impulse.assign(n * dim, 0.);
     state.surface_contact.assign(n, 0);
     for (auto *array : {&state.surface_slip, &state.surface_overlap,
@@ -274,7 +307,11 @@ namespace nsfd
         surfaces_.balls.push_back({b, bodies_.ball_radius(b),
                                    std::uint64_t(b),
                                    unsigned(bodies_.centre_node(b))});
-    surfaces_.n_vertices = bodies_.positions(state).size() / dim;
+    const auto x = bodies_.positions(state);
+    surfaces_.n_vertices = x.size() / dim;
+    set_edges<dim>(
+        surfaces_, x.data(),
+        [this](const unsigned int b) { return bodies_.is_rigid(b); });
     counters_.facets =
         std::max<unsigned long long>(counters_.facets, surfaces_.facets.size());
     add_obstacle_faces(state);
@@ -378,6 +415,15 @@ namespace nsfd
                                            1e-9 * discretization_.extent();
                                   }),
                    result.end());
+    std::unordered_map<std::size_t, unsigned int> rows_of_edges;
+    for (const Row &row : result)
+      if (row.partner == Row::Partner::edge)
+        ++rows_of_edges[row.place];
+    for (Row &row : result)
+      if (row.partner == Row::Partner::edge) {
+        row.share = 1. / rows_of_edges[row.place];
+        ++counters_.edge_rows;
+      }
     counters_.rows += result.size();
     counters_.searches = search_.n_searches();
     for (const Row &row : result)
@@ -433,6 +479,53 @@ namespace nsfd
     row.released = ((old.surface_contact[row.place] |
                      old.surface_contact[facet.key / pieces_per_face]) &
                     released) != 0;
+  }
+
+  /** A point of an edge of body 2 on the edge of body 1 that it crosses. */
+  template <int dim>
+  MovingRow<dim>
+  SurfaceContacts<dim>::edge_row(const EdgePair<dim> &pair, const State &old,
+                                 const std::vector<double> &x) const
+  {
+    const auto &edge = surfaces_.edges[pair.edge],
+               &other = surfaces_.edges[pair.other];
+    Row row;
+    row.partner = Row::Partner::edge;
+    row.body_1 = int(surfaces_.facets[other.facet[0]].body);
+    row.body_2 = surfaces_.facets[edge.facet[0]].body;
+    row.cell = facet_cells_[edge.facet[0]];
+    row.facet_cell = facet_cells_[other.facet[0]];
+    row.n_facet = 2;
+    row.edge_weights = {1. - pair.place, pair.place};
+    row.weights = {1. - pair.other_place, pair.other_place};
+    std::array<Vector, 2> way;
+    Vector normal, away;
+    for (unsigned int v = 0; v < 2; ++v) {
+      row.edge[v] = edge.vertex[v];
+      row.facet[v] = other.vertex[v];
+      away += row.edge_weights[v] * velocity(old, row.edge[v]) -
+              row.weights[v] * velocity(old, row.facet[v]);
+      const double sign = v == 0 ? -1. : 1.;
+      for (unsigned int d = 0; d < dim; ++d) {
+        way[0][d] += sign * x[row.edge[v] * dim + d];
+        way[1][d] += sign * x[row.facet[v] * dim + d];
+      }
+    }
+    for (unsigned int d = 0; d < dim; ++d)
+      normal[d] = pair.normal[d];
+    if constexpr (dim == 3)
+      if (cross_product_3d(way[0], way[1]) * normal < 0.) {
+        std::swap(row.edge[0], row.edge[1]);
+        std::swap(row.edge_weights[0], row.edge_weights[1]);
+      }
+    row.gap = pair.gap;
+    row.rate = normal * away;
+    // as of a corner of a facet with these sides
+    row.weight = way[0].norm() * way[1].norm() / 4.;
+    row.place = place_of_edge(edge.vertex[0], edge.vertex[1]);
+    row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+    row.interaction = interaction_of_contact(input_, row.block);
+    return row;
   }
 
   /**
@@ -512,6 +605,8 @@ namespace nsfd
       row.interaction = interaction_of_contact(input_, row.block);
       rows.push_back(row);
     }
+    for (const auto &pair : pairs_.edges)
+      rows.push_back(edge_row(pair, old, x));
   }
 
   /** One row per node and obstacle: that of its largest face. */

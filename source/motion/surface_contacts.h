@@ -17,9 +17,11 @@ namespace nsfd
    * have broken between two bodies, balls. It says which of their places touch
    * another surface or an obstacle in a step.
    *
-   * A place of a surface is a node on a face of a cell, or a ball; what it
-   * remembers (slip, wear, the last impulse) stays with it whatever it
-   * touches, in the arrays `surface_...` of the state.
+   * A place of a surface is a node on a face of a cell, a ball or, in space, an
+   * edge; what it remembers (slip, wear, the last impulse) stays with it
+   * whatever it touches, in the arrays `surface_...` of the state. Contacts of
+   * two edges belong to that of body 2; those of one edge share what it
+   * remembers.
    */
   template <int dim>
   class SurfaceContacts
@@ -51,6 +53,7 @@ namespace nsfd
     struct Counters
     {
       unsigned long long searches = 0, facets = 0, rows = 0;
+      unsigned long long edge_rows = 0; ///< of these rows
       double largest_overlap = 0.; ///< of all pairs at starts of steps, m
     };
     const Counters &counters() const { return counters_; }
@@ -66,8 +69,10 @@ namespace nsfd
     }
     std::size_t place_of(unsigned int cell, unsigned int face,
                          unsigned int node) const;
+    std::size_t place_of_edge(unsigned int node_1, unsigned int node_2) const;
     int block_of(unsigned int body_1, unsigned int body_2) const;
     void merge_nodes();
+    void number_edges();
     void set_boundary();
     bool is_surface(unsigned int cell, unsigned int face,
                     const State &state) const;
@@ -84,6 +89,8 @@ namespace nsfd
     void set_partner(const FacetPair<dim> &pair, const State &old,
                      Row &row) const;
     bool is_seen_from_there(const FacetPair<dim> &pair, const Row &row);
+    Row edge_row(const EdgePair<dim> &pair, const State &old,
+                 const std::vector<double> &x) const;
     Vector velocity(const State &old, std::size_t node) const;
     Vector centre_velocity(const State &old, unsigned int body) const;
 
@@ -96,6 +103,7 @@ namespace nsfd
     std::vector<std::vector<int>> mesh_face_; ///< per cell and face: that of
                                               ///< the points, or one of these
     std::vector<unsigned int> merged_; ///< node of the body at the same place
+    std::vector<Pair> edges_; ///< in space: pairs of these nodes, sorted
     std::vector<int> block_by_materials_;
 
     // of the surfaces at hand

@@ -73,7 +73,6 @@ namespace
   struct Cost
   {
     double search = 0., kept = 0.; ///< us per facet
-    std::size_t pairs = 0;
   };
 
   template <int dim>
@@ -96,21 +95,33 @@ namespace
       return 1e6 * best / n_facets;
     };
     const double fresh = seconds(true);
-    return {fresh, seconds(false), pairs.points.size()};
+    return {fresh, seconds(false)};
+  }
+
+  void print(const Cost &cost)
+  {
+    fmt::print(" {:8.3f} {:7.3f}", cost.search, cost.kept);
   }
 
   template <int dim>
   void table(const std::vector<unsigned int> &cells_along)
   {
-    fmt::print("{}D  facets    pairs  search    kept  shuffled: search  kept\n",
-               dim);
+    fmt::print("{}D  facets   search    kept  shuffled: search  kept\n", dim);
     for (const unsigned int n : cells_along) {
-      const auto heap = cells<dim>(n, false);
-      const Cost rows = measure<dim>(heap);
-      const Cost shuffled = measure<dim>(cells<dim>(n, true));
-      fmt::print("{:10} {:8} {:7.3f} {:7.3f} {:17.3f} {:5.3f}\n",
-                 heap.surfaces.facets.size(), rows.pairs, rows.search,
-                 rows.kept, shuffled.search, shuffled.kept);
+      fmt::print("{:10}", 2 * dim * std::lround(std::pow(n, dim)));
+      for (const bool shuffled : {false, true}) {
+        auto heap = cells<dim>(n, shuffled);
+        set_edges<dim>(heap.surfaces, heap.x.data(),
+                       [](unsigned int) { return false; });
+        print(measure<dim>(heap));
+        if (heap.surfaces.edges.empty())
+          continue;
+        heap.surfaces.edges.clear();
+        fmt::print(" (");
+        print(measure<dim>(heap));
+        fmt::print(")");
+      }
+      fmt::print("\n");
     }
   }
 } // namespace

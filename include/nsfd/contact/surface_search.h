@@ -39,12 +39,30 @@ namespace nsfd
       std::uint64_t key = 0;
       unsigned int vertex = 0; ///< the centre
     };
+    /**
+     * In space: where two facets of a body meet. The way from vertex 0 to
+     * vertex 1 has facet 0 on its left, seen from outside.
+     */
+    struct Edge
+    {
+      std::array<unsigned int, 2> vertex{}, facet{};
+    };
 
     std::vector<Facet> facets;
     std::vector<Point> points;
     std::vector<Ball> balls;
+    std::vector<Edge> edges; ///< see set_edges(); of all bodies or of none
     std::size_t n_vertices = 0;
   };
+
+  /**
+   * The edges at which exactly two facets of a body meet, each once. Those of
+   * bodies that keep their shape only if they stick out, at positions x. In the
+   * plane there are none.
+   */
+  template <int dim>
+  void set_edges(Surfaces<dim> &surfaces, const double *x,
+                 const std::function<bool(unsigned int)> &keeps_shape);
 
   /**
    * The flat shape of a facet. A warped quadrilateral has the normal of its two
@@ -81,12 +99,26 @@ namespace nsfd
     std::array<double, dim> normal{}, closest{}; ///< closest: on the other
   };
 
+  /**
+   * Two edges that cross, `edge` of the earlier body. The normal leads from the
+   * other edge to this one; places are parts of the way along the edges.
+   */
+  template <int dim>
+  struct EdgePair
+  {
+    unsigned int edge = 0, other = 0;
+    double gap = 0.;
+    std::array<double, dim> normal{}, closest{}; ///< closest: on the other
+    double place = 0., other_place = 0.;
+  };
+
   template <int dim>
   struct NearPairs
   {
     std::vector<FacetPair<dim>> points; ///< at most one per point
     std::vector<FacetPair<dim>> balls;  ///< one per place that a ball is near
     std::vector<BallPair<dim>> ball_balls;
+    std::vector<EdgePair<dim>> edges; ///< by edge, then by the other one
   };
 
   /** Bodies that are still glued; asked for two different bodies only. */
@@ -106,11 +138,12 @@ namespace nsfd
     IndexLists facets_of_points;     ///< one list per place in `order`
     IndexLists facets_of_balls;
     IndexLists balls_of_balls; ///< later balls only
+    IndexLists edges_of_edges; ///< of later bodies only
   };
 
   /**
    * Finds which points and balls are near which facets and balls of other
-   * bodies. Candidates are searched in a tree of boxes with a skin around them
+   * bodies, and which edges cross. Candidates are searched in a tree of boxes with a skin around them
    * and kept while nothing has moved by more than half the skin. Pairs depend
    * on positions and keys only, not on the order of facets or the history.
    */
@@ -126,7 +159,8 @@ namespace nsfd
 
     /**
      * x: dim coordinates per vertex. Gaps up to `reach` are of interest. The
-     * pairs are those of points by vertex, those of balls by ball. Vertices
+     * pairs are those of points by vertex, those of balls by ball. Points leave
+     * to a pair of edges what that describes better. Vertices
      * should be numbered by where they are: a million facets numbered at random
      * take 1.5 to 3.5 times as long.
      */
@@ -143,7 +177,7 @@ namespace nsfd
     NearCandidates candidates_;
     std::vector<Plane<dim>> planes_;
     std::vector<double> searched_at_; ///< x of the last search
-    std::array<std::size_t, 3> searched_sizes_{};
+    std::array<std::size_t, 4> searched_sizes_{};
     double searched_reach_ = 0., skin_ = 0.;
     std::size_t n_searches_ = 0;
   };

@@ -1,0 +1,462 @@
+#include "edge_pairs.h"
+
+#include "touching_rules.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Edge = Surfaces<3>::Edge;
+    using Planes = std::vector<Plane<3>>;
+
+    /**
+     * Into facet 0 and facet 1, across the edge; longer than a unit vector by
+     * the length of the edge.
+     */
+    std::array<Place<3>, 2> inward(const Edge &edge, const Planes &planes,
+                                   const Place<3> &way)
+    {
+      return {cross(planes[edge.facet[0]].normal, way),
+              cross(way, planes[edge.facet[1]].normal)};
+    }
+
+    /** A roof, neither a valley nor flat. */
+    bool sticks_out(const Edge &edge, const Planes &planes, const Place<3> &way)
+    {
+      const Place<3> &n_0 = planes[edge.facet[0]].normal,
+                     &n_1 = planes[edge.facet[1]].normal;
+      return dot(n_0, n_1) < flat && dot(cross(n_0, n_1), way) > 0.;
+    }
+
+    /** Lengths within which a touch belongs to this edge: a plate is thin. */
+    double size_of(const Edge &edge, const Planes &planes, const double length)
+    {
+      double size = length;
+      for (const unsigned int f : edge.facet)
+        size = std::min({size, planes[f].size,
+                         planes[f].size * planes[f].size / length});
+      return size;
+    }
+
+    class Crossings
+    {
+    public:
+      Crossings(const Surfaces<3> &surfaces, const double *x,
+                const Planes &planes, const double reach)
+          : surfaces_(surfaces), x_(x), planes_(planes), reach_(reach)
+      {
+      }
+
+      /**
+       * The common perpendicular, with a signed length: below zero the edges
+       * have passed through each other. Which way is out is said by the facets,
+       * not by the sign: two convex bodies are parted by a plane along both
+       * edges exactly if its normal is one of the normals around each of them.
+       */
+      bool find(EdgePair<3> &pair) const
+      {
+        const Edge &edge = surfaces_.edges[pair.edge],
+                   &other = surfaces_.edges[pair.other];
+        const Segment a = segment_of(edge, x_), b = segment_of(other, x_);
+        const Place<3> c = cross(a.way, b.way),
+                       between = difference(b.from, a.from);
+        const double square = dot(c, c);
+        if (square < least_crossing * least_crossing * dot(a.way, a.way) *
+                         dot(b.way, b.way))
+          return false;
+        pair.place = dot(cross(between, b.way), c) / square;
+        pair.other_place = dot(cross(between, a.way), c) / square;
+        const double rest = to_end(pair.place),
+                     other_rest = to_end(pair.other_place);
+        if (std::min(rest, other_rest) <= same_length ||
+            std::max(rest, other_rest) <= edge_end)
+          return false;
+        const double length = norm(c);
+        pair.normal = sum({}, 1. / length, c);
+        pair.gap = -dot(between, pair.normal);
+        const double a_length = norm(a.way), b_length = norm(b.way);
+        if (std::abs(pair.gap) > reach_ &&
+            std::abs(pair.gap) > deepest * std::min(a_length, b_length))
+          return false;
+        if (!sticks_out(edge, planes_, a.way) ||
+            !sticks_out(other, planes_, b.way))
+          return false;
+        const int side = outside(inward(edge, planes_, a.way), a_length,
+                                 inward(other, planes_, b.way), b_length,
+                                 pair.normal);
+        if (side == 0)
+          return false;
+        if (side < 0) {
+          pair.normal = sum({}, -1., pair.normal);
+          pair.gap = -pair.gap;
+        }
+        pair.closest = sum(b.from, pair.other_place, b.way);
+        return pair.gap <= reach_ &&
+               pair.gap >=
+                   -deepest * std::min(size_of(edge, planes_, a_length),
+                                       size_of(other, planes_, b_length));
+      }
+
+    private:
+      static double to_end(const double place)
+      {
+        return std::min(place, 1. - place);
+      }
+
+      /** 1 if n leads from the other body to this one, -1 if it leads back, 0
+       * if it does not lead out of both. */
+      static int outside(const std::array<Place<3>, 2> &into,
+                         const double length,
+                         const std::array<Place<3>, 2> &into_other,
+                         const double other_length, const Place<3> &n)
+      {
+        bool forth = true, back = true;
+        for (unsigned int i = 0; i < 2; ++i) {
+          const double own = dot(n, into[i]) / length,
+                       opposite = -dot(n, into_other[i]) / other_length;
+          forth = forth && std::min(own, opposite) >= -cone_room;
+          back = back && std::max(own, opposite) <= cone_room;
+        }
+        return forth ? 1 : back ? -1 : 0;
+      }
+
+      const Surfaces<3> &surfaces_;
+      const double *x_;
+      const Planes &planes_;
+      double reach_;
+    };
+
+    /**
+     * Takes away what does not touch: a corner under a facet that is outside of
+     * the body, in front of the next facet of a sharp edge.
+     *
+     * Touches of the same two bodies compete. Two that are near to each other
+     * with the same normal say the same: corners stay, then keys decide. Two
+     * that belong to neighbouring corners and edges, both inside, with
+     * different normals: the bodies have come through the one that is less deep
+     * (as the shortest way out parts two convex bodies), the other one would be
+     * a wall inside of them.
+     */
+    class Competition
+    {
+    public:
+      Competition(const Surfaces<3> &surfaces, const double *x,
+                  const Planes &planes, std::vector<FacetPair<3>> &points,
+                  std::vector<EdgePair<3>> &pairs)
+          : surfaces_(surfaces), x_(x), planes_(planes), points_(points),
+            pairs_(pairs), point_lost_(points.size(), 0),
+            pair_lost_(pairs.size(), 0)
+      {
+      }
+
+      void run()
+      {
+        for (std::size_t i = 0; i < points_.size(); ++i)
+          point_lost_[i] = is_outside(points_[i]);
+        remove(points_, point_lost_);
+        for (std::size_t k = 0; k < pairs_.size(); ++k)
+          compare_with_points(k);
+        remove(pairs_, pair_lost_);
+        remove(points_, point_lost_);
+        compare_pairs();
+        remove(pairs_, pair_lost_);
+      }
+
+    private:
+      template <typename Touch>
+      static void remove(std::vector<Touch> &touches, std::vector<char> &lost)
+      {
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < touches.size(); ++k)
+          if (!lost[k])
+            touches[n++] = touches[k];
+        touches.resize(n);
+        lost.assign(n, 0);
+      }
+
+      const Edge &edge(const EdgePair<3> &pair) const
+      {
+        return surfaces_.edges[pair.edge];
+      }
+      const Edge &other(const EdgePair<3> &pair) const
+      {
+        return surfaces_.edges[pair.other];
+      }
+      double length(const Edge &edge) const
+      {
+        return norm(segment_of(edge, x_).way);
+      }
+      double facet_size(const Edge &edge) const
+      {
+        return std::min(planes_[edge.facet[0]].size,
+                        planes_[edge.facet[1]].size);
+      }
+      double size(const EdgePair<3> &pair) const
+      {
+        return std::min(facet_size(edge(pair)), facet_size(other(pair)));
+      }
+
+      bool is_outside(const FacetPair<3> &touch) const
+      {
+        const auto &point = surfaces_.points[touch.index];
+        const auto &facet = surfaces_.facets[touch.facet];
+        const Plane<3> &own = planes_[point.facet];
+        const double rounding = same_length * own.size;
+        if (touch.gap > -rounding)
+          return false;
+        const Place<3> y = place<3>(x_, point.vertex),
+                       inside = sum(y, inset, difference(own.centre, y));
+        for (unsigned int i = 0; i < facet.n_vertices; ++i) {
+          const Edge *edge = find_edge(
+              facet.vertex[i], facet.vertex[(i + 1) % facet.n_vertices]);
+          if (!edge || !sticks_out(*edge, planes_, segment_of(*edge, x_).way))
+            continue;
+          const Plane<3> &next = planes_[edge->facet[0] == touch.facet
+                                             ? edge->facet[1]
+                                             : edge->facet[0]];
+          if (dot(next.normal, difference(inside, next.centre)) > rounding)
+            return true;
+        }
+        return false;
+      }
+
+      /** They are in order, see set_edges(). */
+      const Edge *find_edge(const unsigned int a, const unsigned int b) const
+      {
+        const auto ends = [](const Edge &edge) {
+          return std::minmax(edge.vertex[0], edge.vertex[1]);
+        };
+        const auto wanted = std::minmax(a, b);
+        const auto edge =
+            std::lower_bound(surfaces_.edges.begin(), surfaces_.edges.end(),
+                             wanted, [&](const Edge &e, const auto &value) {
+                               return ends(e) < value;
+                             });
+        return edge != surfaces_.edges.end() && ends(*edge) == wanted ? &*edge
+                                                                      : nullptr;
+      }
+
+      // ----------------------------------------------- an edge and corners
+
+      void compare_with_points(const std::size_t k)
+      {
+        const auto &pair = pairs_[k];
+        for (const unsigned int end : {0u, 1u}) {
+          compare_with_vertex(k, edge(pair), end, pair.place, other(pair), 1.);
+          compare_with_vertex(k, other(pair), end, pair.other_place, edge(pair),
+                              -1.);
+        }
+      }
+
+      /** @p sign: +1 if a point here looks along the normal of the pair. */
+      void compare_with_vertex(const std::size_t k, const Edge &own,
+                               const unsigned int end, const double place,
+                               const Edge &opposite, const double sign)
+      {
+        const auto vertex_of = [this](const FacetPair<3> &point) {
+          return surfaces_.points[point.index].vertex;
+        };
+        const unsigned int vertex = own.vertex[end];
+        auto point = std::lower_bound(
+            points_.begin(), points_.end(), vertex,
+            [&](const auto &p, const unsigned int v) {
+              return vertex_of(p) < v;
+            });
+        for (; point != points_.end() && vertex_of(*point) == vertex; ++point) {
+          if (surfaces_.facets[point->facet].body !=
+              surfaces_.facets[opposite.facet[0]].body)
+            continue;
+          const auto &pair = pairs_[k];
+          if (sign * dot(point->normal, pair.normal) > same_direction) {
+            const double distance =
+                (end == 0 ? place : 1. - place) * length(own);
+            pair_lost_[k] |= distance < same_place * size(pair);
+          } else if (point->facet == opposite.facet[0] ||
+                     point->facet == opposite.facet[1]) {
+            const double rounding = same_length * size(pair);
+            if (std::max(point->gap, pair.gap) > -rounding)
+              continue;
+            if (pair.gap > point->gap + rounding)
+              point_lost_[std::size_t(point - points_.begin())] = 1;
+            else
+              pair_lost_[k] = 1;
+          }
+        }
+      }
+
+      // ------------------------------------------------- pairs of edges
+
+      void compare_pairs()
+      {
+        std::vector<std::pair<unsigned int, std::size_t>> at_vertex;
+        for (std::size_t k = 0; k < pairs_.size(); ++k)
+          for (const unsigned int v : edge(pairs_[k]).vertex)
+            at_vertex.emplace_back(v, k);
+        std::sort(at_vertex.begin(), at_vertex.end());
+        for (std::size_t i = 0; i < at_vertex.size(); ++i)
+          for (std::size_t j = i + 1; j < at_vertex.size() &&
+                                      at_vertex[j].first == at_vertex[i].first;
+               ++j)
+            if (are_neighbours(other(pairs_[at_vertex[i].second]),
+                               other(pairs_[at_vertex[j].second])))
+              compare(at_vertex[i].second, at_vertex[j].second);
+      }
+
+      static bool are_neighbours(const Edge &a, const Edge &b)
+      {
+        return std::any_of(a.vertex.begin(), a.vertex.end(), [&](auto v) {
+          return v == b.vertex[0] || v == b.vertex[1];
+        });
+      }
+
+      void compare(const std::size_t k, const std::size_t l)
+      {
+        const auto &a = pairs_[k], &b = pairs_[l];
+        const double length = std::min(size(a), size(b)),
+                     rounding = same_length * length;
+        if (dot(a.normal, b.normal) > same_direction) {
+          if (norm(difference(a.closest, b.closest)) < same_place * length)
+            pair_lost_[keys(a) < keys(b) ? l : k] = 1;
+        } else if (std::max(a.gap, b.gap) <= -rounding)
+          pair_lost_[a.gap > b.gap + rounding   ? l
+                     : b.gap > a.gap + rounding ? k
+                     : keys(a) < keys(b)        ? l
+                                                : k] = 1;
+      }
+
+      std::array<std::uint64_t, 4> keys(const EdgePair<3> &pair) const
+      {
+        const auto key = [this](const unsigned int f) {
+          return surfaces_.facets[f].key;
+        };
+        return {key(edge(pair).facet[0]), key(edge(pair).facet[1]),
+                key(other(pair).facet[0]), key(other(pair).facet[1])};
+      }
+
+      const Surfaces<3> &surfaces_;
+      const double *x_;
+      const Planes &planes_;
+      std::vector<FacetPair<3>> &points_;
+      std::vector<EdgePair<3>> &pairs_;
+      std::vector<char> point_lost_, pair_lost_;
+    };
+
+    /** A side of a facet, its vertices in order. */
+    struct Side
+    {
+      unsigned int low, high;
+      std::uint64_t key; ///< of the facet
+      unsigned int facet;
+      bool upward; ///< from low to high around the facet
+    };
+
+    std::vector<Side> sides_of(const Surfaces<3> &surfaces)
+    {
+      std::vector<Side> sides;
+      for (unsigned int f = 0; f < surfaces.facets.size(); ++f) {
+        const auto &facet = surfaces.facets[f];
+        for (unsigned int i = 0; i < facet.n_vertices; ++i) {
+          const unsigned int a = facet.vertex[i],
+                             b = facet.vertex[(i + 1) % facet.n_vertices];
+          sides.push_back(
+              {std::min(a, b), std::max(a, b), facet.key, f, a < b});
+        }
+      }
+      std::sort(sides.begin(), sides.end(), [](const auto &l, const auto &r) {
+        return std::tie(l.low, l.high, l.key) < std::tie(r.low, r.high, r.key);
+      });
+      return sides;
+    }
+  } // namespace
+
+  Segment segment_of(const Edge &edge, const double *x)
+  {
+    const Place<3> from = place<3>(x, edge.vertex[0]);
+    return {from, difference(place<3>(x, edge.vertex[1]), from)};
+  }
+
+  double square_distance(const Segment &a, const Segment &b)
+  {
+    const Place<3> between = difference(b.from, a.from);
+    const double aa = dot(a.way, a.way), bb = dot(b.way, b.way),
+                 ab = dot(a.way, b.way), ra = dot(between, a.way),
+                 rb = dot(between, b.way), square = aa * bb - ab * ab;
+    // on the lines, then as near as the ends allow; any s for parallel ones
+    double s =
+        square > 0. ? std::clamp((ra * bb - rb * ab) / square, 0., 1.) : 0.;
+    const double t = (ab * s - rb) / bb;
+    if (t < 0.)
+      s = std::clamp(ra / aa, 0., 1.);
+    else if (t > 1.)
+      s = std::clamp((ra + ab) / aa, 0., 1.);
+    const Place<3> way = difference(sum(between, std::clamp(t, 0., 1.), b.way),
+                                    sum({}, s, a.way));
+    return dot(way, way);
+  }
+
+  template <>
+  void set_edges<2>(Surfaces<2> &, const double *,
+                    const std::function<bool(unsigned int)> &)
+  {
+  }
+
+  template <>
+  void set_edges<3>(Surfaces<3> &surfaces, const double *x,
+                    const std::function<bool(unsigned int)> &keeps_shape)
+  {
+    Planes planes;
+    set_planes<3>(surfaces, x, planes);
+    surfaces.edges.clear();
+    const auto sides = sides_of(surfaces);
+    for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+      for (; end < sides.size() && sides[end].low == sides[i].low &&
+             sides[end].high == sides[i].high;
+           ++end)
+        ;
+      if (end != i + 2 || sides[i].upward == sides[i + 1].upward)
+        continue;
+      Edge edge{{sides[i].low, sides[i].high},
+                {sides[i].facet, sides[i + 1].facet}};
+      if (!sides[i].upward)
+        std::swap(edge.vertex[0], edge.vertex[1]);
+      if (!keeps_shape(surfaces.facets[edge.facet[0]].body) ||
+          sticks_out(edge, planes, segment_of(edge, x).way))
+        surfaces.edges.push_back(edge);
+    }
+  }
+
+  template <>
+  void find_edge_pairs<2>(const Surfaces<2> &, const double *,
+                          const std::vector<Plane<2>> &, double,
+                          const NearCandidates &, std::vector<FacetPair<2>> &,
+                          std::vector<EdgePair<2>> &pairs)
+  {
+    pairs.clear();
+  }
+
+  template <>
+  void find_edge_pairs<3>(const Surfaces<3> &surfaces, const double *x,
+                          const Planes &planes, const double reach,
+                          const NearCandidates &candidates,
+                          std::vector<FacetPair<3>> &points,
+                          std::vector<EdgePair<3>> &pairs)
+  {
+    pairs.clear();
+    const Crossings crossings(surfaces, x, planes, reach);
+    const auto &lists = candidates.edges_of_edges;
+    if (surfaces.edges.empty())
+      return;
+    EdgePair<3> pair;
+    for (pair.edge = 0; pair.edge < surfaces.edges.size(); ++pair.edge)
+      for (std::size_t i = lists.first[pair.edge];
+           i < lists.first[pair.edge + 1]; ++i) {
+        pair.other = lists.entries[i];
+        if (crossings.find(pair))
+          pairs.push_back(pair);
+      }
+    Competition(surfaces, x, planes, points, pairs).run();
+  }
+} // namespace nsfd

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "facet_geometry.h"
+
+namespace nsfd
+{
+  /** from + s way, s from 0 to 1 */
+  struct Segment
+  {
+    Place<3> from{}, way{};
+  };
+
+  Segment segment_of(const Surfaces<3>::Edge &edge, const double *x);
+
+  /** Between their closest places, ends included. */
+  double square_distance(const Segment &a, const Segment &b);
+
+  /**
+   * The places where edges cross, between their ends and with a normal that
+   * leads out of both bodies there. Of touches that compete with each other,
+   * of edges and of @p points (by vertex), one is left: see edge_pairs.cc.
+   */
+  template <int dim>
+  void find_edge_pairs(const Surfaces<dim> &surfaces, const double *x,
+                       const std::vector<Plane<dim>> &planes, double reach,
+                       const NearCandidates &candidates,
+                       std::vector<FacetPair<dim>> &points,
+                       std::vector<EdgePair<dim>> &pairs);
+} // namespace nsfd
