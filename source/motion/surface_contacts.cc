@@ -454,6 +454,14 @@ namespace nsfd
     return v;
   }
 
+  /** Of the face that a facet belongs to. */
+  template <int dim>
+  std::uint8_t SurfaceContacts<dim>::mark_of(const State &old,
+                                             const unsigned int facet) const
+  {
+    return old.surface_contact[surfaces_.facets[facet].key / pieces_per_face];
+  }
+
   /** Facet and gap, and its rate with the velocities at the start. */
   template <int dim>
   void SurfaceContacts<dim>::set_partner(const FacetPair<dim> &pair,
@@ -476,9 +484,9 @@ namespace nsfd
       row.rate += pair.normal[d] * away[d];
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
     row.interaction = interaction_of_contact(input_, row.block);
-    row.released = ((old.surface_contact[row.place] |
-                     old.surface_contact[facet.key / pieces_per_face]) &
-                    released) != 0;
+    row.released =
+        ((old.surface_contact[row.place] | mark_of(old, pair.facet)) &
+         released) != 0;
   }
 
   /** A point of an edge of body 2 on the edge of body 1 that it crosses. */
@@ -523,6 +531,9 @@ namespace nsfd
     // as of a corner of a facet with these sides
     row.weight = way[0].norm() * way[1].norm() / 4.;
     row.place = place_of_edge(edge.vertex[0], edge.vertex[1]);
+    row.released = ((mark_of(old, edge.facet[0]) |
+                     mark_of(old, other.facet[0])) &
+                    released) != 0;
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
     row.interaction = interaction_of_contact(input_, row.block);
     return row;

@@ -91,6 +91,7 @@ namespace nsfd
     bool is_seen_from_there(const FacetPair<dim> &pair, const Row &row);
     Row edge_row(const EdgePair<dim> &pair, const State &old,
                  const std::vector<double> &x) const;
+    std::uint8_t mark_of(const State &old, unsigned int facet) const;
     Vector velocity(const State &old, std::size_t node) const;
     Vector centre_velocity(const State &old, unsigned int body) const;
 
