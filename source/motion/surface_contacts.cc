@@ -405,14 +405,16 @@ namespace nsfd
     if (!input_.contacts.empty())
       add_surface_rows(old, reach, result);
     add_obstacle_rows(old, reach, result);
-    // an explicit forecast is known already
+    // an explicit forecast is known already; the overlap of springs that let
+    // go has to be remembered even if it is about to open
     const auto &time = input_.time;
     if (time.forecast_gamma2 == 0. && old.worn.empty())
       result.erase(std::remove_if(result.begin(), result.end(),
                                   [&](const Row &row) {
-                                    return row.gap + h * time.forecast_gamma1 *
+                                    return !(row.released && row.gap < 0.) &&
+                                           row.gap + h * time.forecast_gamma1 *
                                                          row.rate >
-                                           1e-9 * discretization_.extent();
+                                               1e-9 * discretization_.extent();
                                   }),
                    result.end());
     std::unordered_map<std::size_t, unsigned int> rows_of_edges;
