@@ -71,7 +71,7 @@ namespace nsfd
         pair.other_place = dot(cross(between, a.way), c) / square;
         const double rest = to_end(pair.place),
                      other_rest = to_end(pair.other_place);
-        if (std::min(rest, other_rest) <= same_length ||
+        if (std::min(rest, other_rest) < -same_length ||
             std::max(rest, other_rest) <= edge_end)
           return false;
         const double length = norm(c);
@@ -134,7 +134,9 @@ namespace nsfd
      * the body, in front of the next facet of a sharp edge.
      *
      * Touches of the same two bodies compete. Two that are near to each other
-     * with the same normal say the same: corners stay, then keys decide. Two
+     * with the same normal say the same: corners stay, then keys decide. A
+     * corner over a facet next to the crossing, whose edge leads below that
+     * facet, is not where they meet: so are the nodes inside a long edge. Two
      * that belong to neighbouring corners and edges, both inside, with
      * different normals: the bodies have come through the one that is less deep
      * (as the shortest way out parts two convex bodies), the other one would be
@@ -277,6 +279,14 @@ namespace nsfd
           } else if (point->facet == opposite.facet[0] ||
                      point->facet == opposite.facet[1]) {
             const double rounding = same_length * size(pair);
+            const Segment segment = segment_of(own, x_);
+            const double climb = (end == 0 ? 1. : -1.) *
+                                 dot(point->normal, segment.way) /
+                                 norm(segment.way);
+            if (climb < -cone_room) {
+              point_lost_[std::size_t(point - points_.begin())] = 1;
+              continue;
+            }
             if (std::max(point->gap, pair.gap) > -rounding)
               continue;
             if (pair.gap > point->gap + rounding)
