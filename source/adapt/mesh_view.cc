@@ -29,14 +29,14 @@ namespace nsfd
       for (const int b : bodies) {
         if (b < 0)
           continue;
-        const auto &material =
-            input.materials[discretization.material_of(unsigned(b))];
-        if (!material.rigid)
+        const auto &softest =
+            discretization.extremes_of(unsigned(b)).softest;
+        if (softest.young > 0.) // not rigid
           modulus = std::min(modulus,
-                             material.young / (input.plane_stress
-                                                   ? 1.
-                                                   : 1. - material.poisson *
-                                                              material.poisson));
+                             softest.young / (input.plane_stress
+                                                  ? 1.
+                                                  : 1. - softest.poisson *
+                                                             softest.poisson));
       }
       return modulus;
     }
@@ -97,9 +97,9 @@ namespace nsfd
     std::vector<std::array<double, 6>> mean(discretization.bodies().size());
     discretization.visit_quadrature(
         discretization.to_nodal(displacement),
-        [&](const unsigned int body, const dealii::Point<dim> &,
+        [&](const unsigned int body, const dealii::Point<dim> &x,
             const double JxW, const double *, const double *gradient) {
-          const auto stress = discretization.stress(body, gradient);
+          const auto stress = discretization.stress(body, x, gradient);
           for (unsigned int c = 0; c < 6; ++c)
             mean[body][c] += JxW / discretization.volume(body) * stress[c];
         });

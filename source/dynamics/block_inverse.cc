@@ -9,18 +9,23 @@ namespace nsfd
     constexpr double digits_of_mass = 1e12; // of the 16 that a double has
   }
 
-  BlockInverse::BlockInverse(const BodyClass &body, const double f)
+  BlockInverse::BlockInverse(const BodyClass &body, const StepShares &shares)
   {
     const unsigned int n = body.n_dofs;
     Block A = body.mass;
     if (!body.rigid) {
+      const double f = shares.stiffness;
       for (std::size_t i = 0; i < A.values.size(); ++i)
         A.values[i] += f * body.stiffness.values[i];
+      for (std::size_t i = 0; i < body.damping.values.size(); ++i)
+        A.values[i] += shares.damping * body.damping.values[i];
       const Block &R = body.rigid_motions;
       const Block momenta = product(body.mass, R);
       double of_strains = 0., of_motions = 0.;
       for (unsigned int i = 0; i < n; ++i) {
         of_strains += f * body.stiffness(i, i);
+        if (body.damping.rows > 0)
+          of_strains += shares.damping * body.damping(i, i);
         for (unsigned int k = 0; k < R.cols; ++k)
           of_motions += momenta(i, k) * momenta(i, k);
       }

@@ -5,7 +5,8 @@
 namespace nsfd
 {
   /**
-   * The inverse of A = M + f K of a body, f = (theta h)^2, for any f.
+   * The inverse of A = M + f K of a body, f = (theta h)^2, for any f; of a
+   * viscous one f K stands for f K + g C, g = theta h.
    *
    * A rigid motion strains nothing, so A acts on it by the mass alone, which
    * the entries of f K swallow when a wave crosses the body many times in a
@@ -23,7 +24,7 @@ namespace nsfd
   {
   public:
     /** @throws std::runtime_error if A is not positive definite. */
-    BlockInverse(const BodyClass &body, double f);
+    BlockInverse(const BodyClass &body, const StepShares &shares);
 
     /** B^T A^{-1} B, symmetric to the last bit. */
     Block form(const Block &B) const;

@@ -117,10 +117,27 @@ namespace nsfd
     return &matrix_.value[std::size_t(matrix_.start[row]) + found->offset];
   }
 
+  /** A row of f t + g t_v of a side. */
+  template <int dim>
+  const double *BodyMatrix<dim>::step_traction(const PointTrace &trace,
+                                               const unsigned int component,
+                                               const StepShares &shares,
+                                               std::vector<double> &work) const
+  {
+    const unsigned int n = trace.n_dofs;
+    work.resize(n);
+    for (unsigned int j = 0; j < n; ++j)
+      work[j] = shares.stiffness * trace.traction[component * n + j];
+    if (!trace.viscous_traction.empty())
+      for (unsigned int j = 0; j < n; ++j)
+        work[j] += shares.damping * trace.viscous_traction[component * n + j];
+    return work.data();
+  }
+
   template <int dim>
   void BodyMatrix<dim>::add_face(
     const typename InterfacePoints<dim>::Face &face, const unsigned int s,
-    const unsigned int t, const double factor,
+    const unsigned int t, const StepShares &shares,
     const std::vector<std::uint8_t> &bonded, const double *stiffness)
   {
     if (face.bodies[s] < 0 || traces_[t][face.first].first < 0)
@@ -128,6 +145,7 @@ namespace nsfd
     std::size_t stride;
     double *out = block(unsigned(face.bodies[s]), traces_[t][face.first].first,
                         stride);
+    std::vector<double> row_traction, column_traction;
     for (unsigned int p = face.first; p < face.first + face.count; ++p) {
       const PointTrace &row = traces_[s][p], &column = traces_[t][p];
       const unsigned int n = row.n_dofs, m = column.n_dofs;
@@ -136,11 +154,12 @@ namespace nsfd
         double alpha = stiffness ? stiffness[p * dim + k] : 0.;
         double row_beta = 0., column_beta = 0.;
         if (bonded[p]) {
-          const double f = factor * points_.weight[p];
+          const double f = points_.weight[p];
           const auto omega = [&](const unsigned int side) {
             return side == 0 ? bonds_[p].weight_1 : bonds_[p].weight_2;
           };
-          alpha += f * bonds_[p].penalty;
+          alpha += f * (shares.stiffness * bonds_[p].penalty +
+                        shares.damping * bonds_[p].viscous_penalty);
           row_beta = f * omega(s);
           column_beta = f * omega(t);
         }
@@ -153,7 +172,8 @@ namespace nsfd
               out[i * stride + j] += alpha * a[i] * c[j];
           continue;
         }
-        const double *u = &row.traction[k * n], *v = &column.traction[k * m];
+        const double *u = step_traction(row, k, shares, row_traction),
+                     *v = step_traction(column, k, shares, column_traction);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < m; ++j)
             out[i * stride + j] +=
@@ -165,7 +185,7 @@ namespace nsfd
 
   template <int dim>
   const SparseRows &
-  BodyMatrix<dim>::assemble(const double factor,
+  BodyMatrix<dim>::assemble(const StepShares &shares,
                             const std::vector<std::uint8_t> &bonded,
                             const double *stiffness)
   {
@@ -179,14 +199,12 @@ namespace nsfd
               stride);
       for (unsigned int i = 0; i < body.n_dofs; ++i)
         for (unsigned int j = 0; j < body.n_dofs; ++j)
-          out[i * stride + j] =
-            body.mass(i, j) +
-            (body.rigid ? 0. : factor * body.stiffness(i, j));
+          out[i * stride + j] = step_entry(body, shares, i, j);
     }
     for (const auto &face : points_.faces)
       for (unsigned int s = 0; s < 2; ++s)
         for (unsigned int t = 0; t < 2; ++t)
-          add_face(face, s, t, factor, bonded, stiffness);
+          add_face(face, s, t, shares, bonded, stiffness);
     return matrix_;
   }
 

@@ -29,10 +29,10 @@ namespace nsfd
                std::vector<Bond> bonds, long long first_dof);
 
     /**
-     * @p factor is f = h^2 theta^2; @p bonded one per point; @p stiffness s
+     * @p shares of the step; @p bonded one per point; @p stiffness s
      * one per point and component, or null.
      */
-    const SparseRows &assemble(double factor,
+    const SparseRows &assemble(const StepShares &shares,
                                const std::vector<std::uint8_t> &bonded,
                                const double *stiffness);
 
@@ -50,8 +50,12 @@ namespace nsfd
     double *block(unsigned int body, long long first, std::size_t &stride);
     void add_face(const typename InterfacePoints<dim>::Face &face,
                   unsigned int row_side, unsigned int column_side,
-                  double factor, const std::vector<std::uint8_t> &bonded,
+                  const StepShares &shares,
+                  const std::vector<std::uint8_t> &bonded,
                   const double *stiffness);
+    const double *step_traction(const PointTrace &trace, unsigned int component,
+                                const StepShares &shares,
+                                std::vector<double> &work) const;
 
     const Bodies &bodies_;
     const InterfacePoints<dim> &points_;

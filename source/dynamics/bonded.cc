@@ -166,9 +166,9 @@ namespace nsfd
     {
       if (valid_)
         return;
-      const double f =
-        this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
-      prepare(*factor_, matrix_->assemble(f, this->bonded_, nullptr),
+      prepare(*factor_,
+              matrix_->assemble(this->shares(this->time_step_, this->theta_),
+                                this->bonded_, nullptr),
               factor_matrix_);
       valid_ = true;
       n_solves_ = 0;
@@ -324,9 +324,9 @@ namespace nsfd
     template <int dim>
     void Bonded<dim>::prepare_joined()
     {
-      const double f =
-        this->time_step_ * this->time_step_ * this->theta_ * this->theta_;
-      prepare(*joined_, matrix_->assemble(f, this->bonded_, inverse_D_.data()),
+      prepare(*joined_,
+              matrix_->assemble(this->shares(this->time_step_, this->theta_),
+                                this->bonded_, inverse_D_.data()),
               joined_matrix_);
       joined_valid_ = true;
       if (glued_ && coarse_version_ != glued_->space().version) {

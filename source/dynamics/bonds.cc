@@ -19,8 +19,10 @@ namespace nsfd
     , traction_(points.n_points * dim)
     , force_(bodies.n_dofs())
   {
-    for (const auto &body : bodies.classes)
+    for (const auto &body : bodies.classes) {
       traction_transposed_.push_back(body.traction.transposed());
+      viscous_transposed_.push_back(body.viscous_traction.transposed());
+    }
   }
 
   template <int dim>
@@ -54,24 +56,31 @@ namespace nsfd
                                   double *y) const
   {
     Dynamics<dim>::apply(op, x, y);
-    if (op == Operator::stiffness)
-      add_bonds(x, y);
+    if (op == Operator::stiffness || op == Operator::damping)
+      add_bonds(op == Operator::damping, x, y);
   }
 
-  /** y += K_bonds x. */
+  /** y += K_bonds x, or C_bonds x. */
   template <int dim>
-  void BondedDynamics<dim>::add_bonds(const double *x, double *y) const
+  void BondedDynamics<dim>::add_bonds(const bool viscous, const double *x,
+                                      double *y) const
   {
     const auto &points = this->points_;
     const auto &bonds = bulk_.bonds();
     const std::size_t n = points.n_points;
     this->relative_velocity(x, jump_.data());
-    bulk_.evaluate(x, traction_.data());
+    if (viscous)
+      bulk_.evaluate_viscous(x, traction_.data());
+    else
+      bulk_.evaluate(x, traction_.data());
+    const auto &transposed =
+      viscous ? viscous_transposed_ : traction_transposed_;
     for (std::size_t i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c) {
         double &u = jump_[i * dim + c], &t = traction_[i * dim + c];
         const double w = bonded_[i] ? points.weight[i] : 0.;
-        t = w * (t + bonds[i].penalty * u);
+        t = w * (t + (viscous ? bonds[i].viscous_penalty : bonds[i].penalty) *
+                       u);
         u *= w;
       }
     this->generalised_impulse(traction_.data(), force_.data());
@@ -95,8 +104,8 @@ namespace nsfd
       }
     };
     for_all_bodies(
-      bodies, [this](const std::size_t k) -> const Block & {
-        return traction_transposed_[k];
+      bodies, [&](const std::size_t k) -> const Block & {
+        return transposed[k];
       },
       gather, dof_scatter<true>(bodies, y));
   }

@@ -12,46 +12,76 @@ namespace nsfd
     : dynamics_(dynamics)
     , bonds_(dynamics.points().n_points)
   {
-    const auto &points = dynamics.points();
-    const auto &bodies = dynamics.bodies();
-    std::array<std::vector<double>, 2> bound;
-    for (auto &side : bound)
-      side.assign(points.n_points + 1, -1.); // no body
+    set_bonds();
+    side_1_.resize((bonds_.size() + 1) * dim);
+    side_2_.resize((bonds_.size() + 1) * dim);
+  }
+
+  template <int dim>
+  void BulkTraction<dim>::set_bonds()
+  {
+    const auto &points = dynamics_.points();
+    const auto &bodies = dynamics_.bodies();
+    std::array<std::vector<double>, 2> bounds; // elastic and viscous
+    for (auto &side : bounds)
+      side.assign(2 * (points.n_points + 1), -1.); // no body
     for (const auto &face : points.faces)
       for (unsigned int s = 0; s < 2; ++s)
-        if (face.bodies[s] >= 0)
-          std::fill_n(
-            bound[s].begin() + face.first, face.count,
-            bodies.classes[bodies.class_of[face.bodies[s]]].traction_bound);
-    dynamics.exchange({{bound[0].data(), bound[1].data()}}, 1);
-    for (std::size_t i = 0; i < points.n_points; ++i) {
-      const double a = bound[0][i], b = bound[1][i];
+        for (unsigned int p = face.first;
+             face.bodies[s] >= 0 && p < face.first + face.count; ++p) {
+          const auto &body = bodies.classes[bodies.class_of[face.bodies[s]]];
+          bounds[s][2 * std::size_t(p)] = body.traction_bound;
+          bounds[s][2 * std::size_t(p) + 1] = body.viscous_bound;
+        }
+    dynamics_.exchange({{bounds[0].data(), bounds[1].data()}}, 2);
+    for (std::size_t i = 0; i < bonds_.size(); ++i) {
+      const double a = bounds[0][2 * i], b = bounds[1][2 * i];
       if (a < 0. || b < 0.)
         continue; // at the boundary
-      if (a == 0. || b == 0.)
-        bonds_[i] = {a > 0. ? 1. : 0., b > 0. ? 1. : 0.,
-                     penalty_factor * (a + b)};
-      else
-        bonds_[i] = {b / (a + b), a / (a + b),
-                     penalty_factor * a * b / (a + b)};
+      Bond &bond = bonds_[i];
+      if (a == 0. || b == 0.) {
+        bond.weight_1 = a > 0. ? 1. : 0.;
+        bond.weight_2 = b > 0. ? 1. : 0.;
+        bond.penalty = penalty_factor * (a + b);
+      } else {
+        bond.weight_1 = b / (a + b);
+        bond.weight_2 = a / (a + b);
+        bond.penalty = penalty_factor * a * b / (a + b);
+      }
+      bond.viscous_penalty =
+        penalty_factor * (bond.weight_1 * bond.weight_1 * bounds[0][2 * i + 1] +
+                          bond.weight_2 * bond.weight_2 * bounds[1][2 * i + 1]);
     }
-    side_1_.resize((points.n_points + 1) * dim);
-    side_2_.resize((points.n_points + 1) * dim);
   }
 
   template <int dim>
   void BulkTraction<dim>::evaluate(const double *displacement,
                                    double *traction) const
   {
+    mean(&BodyClass::traction, displacement, traction);
+  }
+
+  template <int dim>
+  void BulkTraction<dim>::evaluate_viscous(const double *velocity,
+                                           double *traction) const
+  {
+    mean(&BodyClass::viscous_traction, velocity, traction);
+  }
+
+  /** Blocks times the motion of the bodies, weighted, in the local frames. */
+  template <int dim>
+  void BulkTraction<dim>::mean(const Block BodyClass::*block,
+                               const double *motion, double *traction) const
+  {
     const auto &points = dynamics_.points();
     const auto &bodies = dynamics_.bodies();
     std::fill(side_1_.begin(), side_1_.end(), 0.);
     std::fill(side_2_.begin(), side_2_.end(), 0.);
     values_of_both_sides(
-      dynamics_, [&bodies](const std::size_t k) -> const Block & {
-        return bodies.classes[k].traction;
+      dynamics_, [&](const std::size_t k) -> const Block & {
+        return bodies.classes[k].*block;
       },
-      dof_gather(bodies, displacement), side_1_, side_2_);
+      dof_gather(bodies, motion), side_1_, side_2_);
     for (std::size_t i = 0; i < points.n_points; ++i) {
       const double *Q = points.frame.data() + i * dim * dim;
       double t[dim];

@@ -56,7 +56,8 @@ namespace nsfd
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const BodyClass &body = bodies_.classes[k];
       const BlockInverse inverse(
-        body, stiffness_share_ * time_step * time_step * theta * theta);
+        body, {stiffness_share_ * time_step * time_step * theta * theta,
+               stiffness_share_ * time_step * viscous_theta_});
       ++counters_.factorisations;
       Block identity(body.n_dofs, body.n_dofs);
       for (unsigned int i = 0; i < body.n_dofs; ++i)
@@ -175,13 +176,14 @@ namespace nsfd
   void
   Dynamics<dim>::apply(const Operator op, const double *x, double *y) const
   {
-    if (op == Operator::stiffness)
+    if (op == Operator::stiffness || op == Operator::damping)
       std::fill(y, y + bodies_.n_dofs(), 0.);
     for_all_bodies(
       bodies_,
       [this, op](const std::size_t k) -> const Block & {
         return op == Operator::mass        ? bodies_.classes[k].mass
                : op == Operator::stiffness ? bodies_.classes[k].stiffness
+               : op == Operator::damping   ? bodies_.classes[k].damping
                                            : blocks_[k].inverse;
       },
       dof_gather(bodies_, x), dof_scatter<false>(bodies_, y));

@@ -12,7 +12,8 @@ namespace nsfd
     template <int dim>
     void write_trace(const BodyClass &body, const unsigned int slot,
                      const double sign, const double *Q, const double first,
-                     const unsigned int width, const bool with_traction,
+                     const unsigned int width,
+                     const std::vector<const Block BodyClass::*> &tractions,
                      double *out)
     {
       out[0] = first;
@@ -28,18 +29,19 @@ namespace nsfd
           }
       };
       rotate(body.trace, sign, out + 2);
-      if (!with_traction)
-        return;
-      double *rows = out + 2 + std::size_t(dim) * width;
-      if (body.traction.cols > 0)
-        rotate(body.traction, -sign, rows); // n leaves body 1, enters body 2
-      else
-        std::fill(rows, rows + std::size_t(dim) * width, 0.);
+      double *rows = out + 2;
+      for (const auto traction : tractions) {
+        rows += std::size_t(dim) * width;
+        if ((body.*traction).cols > 0)
+          rotate(body.*traction, -sign, rows); // n leaves body 1, enters body 2
+        else
+          std::fill(rows, rows + std::size_t(dim) * width, 0.);
+      }
     }
 
     template <int dim>
     PointTrace read_trace(const double *in, const unsigned int width,
-                          const bool with_traction)
+                          const std::size_t n_tractions)
     {
       PointTrace trace;
       if (in[0] < 0.)
@@ -53,8 +55,10 @@ namespace nsfd
                       out.data() + std::size_t(k) * trace.n_dofs);
       };
       take(in + 2, trace.jump);
-      if (with_traction)
+      if (n_tractions > 0)
         take(in + 2 + std::size_t(dim) * width, trace.traction);
+      if (n_tractions > 1)
+        take(in + 2 + 2 * std::size_t(dim) * width, trace.viscous_traction);
       return trace;
     }
   } // namespace
@@ -71,7 +75,16 @@ namespace nsfd
       largest = std::max(largest, double(body.n_dofs));
     const unsigned int width =
       unsigned(dynamics.communicator().max(largest)); // on every rank
-    const unsigned int stride = 2 + (with_traction ? 2 : 1) * dim * width;
+    std::vector<const Block BodyClass::*> tractions;
+    if (with_traction)
+      tractions.push_back(&BodyClass::traction);
+    if (with_traction &&
+        dynamics.communicator().any(std::any_of(
+          bodies.classes.begin(), bodies.classes.end(),
+          [](const BodyClass &body) { return body.viscous_bound > 0.; })))
+      tractions.push_back(&BodyClass::viscous_traction);
+    const unsigned int stride =
+      2 + (1 + unsigned(tractions.size())) * dim * width;
     std::array<std::vector<double>, 2> side;
     for (auto &s : side)
       s.assign((points.n_points + 1) * stride, -1.);
@@ -83,7 +96,7 @@ namespace nsfd
                          s == 1 ? 1. : -1.,
                          points.frame.data() + point * dim * dim,
                          double(first_dof) + double(bodies.first_dof[b]), width,
-                         with_traction, side[s].data() + point * stride);
+                         tractions, side[s].data() + point * stride);
       });
     dynamics.exchange({{side[0].data(), side[1].data()}}, stride);
 
@@ -91,7 +104,7 @@ namespace nsfd
     for (unsigned int s = 0; s < 2; ++s)
       for (std::size_t i = 0; i < points.n_points; ++i)
         traces[s].push_back(read_trace<dim>(side[s].data() + i * stride, width,
-                                            with_traction));
+                                            tractions.size()));
     return traces;
   }
 

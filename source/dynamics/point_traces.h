@@ -18,6 +18,7 @@ namespace nsfd
     unsigned int n_dofs = 0;
     std::vector<double> jump;     ///< dim x n_dofs, with the sign of the side
     std::vector<double> traction; ///< the same: sigma n, n from body 1 to 2
+    std::vector<double> viscous_traction; ///< of velocities; empty: none viscous
   };
 
   /** Per side and point. Collective. */

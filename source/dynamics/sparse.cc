@@ -49,10 +49,9 @@ namespace nsfd
       void remember(Archive &archive) override;
 
     private:
-      double share() const
+      StepShares share() const
       {
-        return this->time_step_ * this->time_step_ * this->theta_ *
-               this->theta_;
+        return this->shares(this->time_step_, this->theta_);
       }
       void set_body_stiffness();
       void set_springs(const std::vector<double> &D);
@@ -268,18 +267,24 @@ namespace nsfd
           return bodies.classes[k].mass;
         },
         dof_gather(bodies, x), dof_scatter<true>(bodies, y));
-      const double s = share();
-      for_all_bodies(
-        bodies, [&](const std::size_t k) -> const Block & {
-          return bodies.classes[k].stiffness;
-        },
-        dof_gather(bodies, x),
-        [&](const unsigned int b, const double *Kx, const unsigned int stride) {
-          const std::size_t first = bodies.first_dof[b],
-                            n = bodies.first_dof[b + 1] - first;
-          for (std::size_t i = 0; i < n; ++i)
-            y[first + i] += s * Kx[i * stride];
-        });
+      const StepShares shares = share();
+      const auto add = [&](const Block BodyClass::*block, const double s) {
+        for_all_bodies(
+          bodies, [&](const std::size_t k) -> const Block & {
+            return bodies.classes[k].*block;
+          },
+          dof_gather(bodies, x),
+          [&](const unsigned int b, const double *Kx,
+              const unsigned int stride) {
+            const std::size_t first = bodies.first_dof[b],
+                              n = bodies.first_dof[b + 1] - first;
+            for (std::size_t i = 0; i < n; ++i)
+              y[first + i] += s * Kx[i * stride];
+          });
+      };
+      add(&BodyClass::stiffness, shares.stiffness);
+      if (this->is_viscous())
+        add(&BodyClass::damping, shares.damping);
     }
 
     /** y += A x for x in the glued space. */

@@ -242,7 +242,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void SparseAssembly<dim>::assemble(const double s,
+  void SparseAssembly<dim>::assemble(const StepShares &s,
                                      const std::vector<double> &k,
                                      const std::vector<char> &left_out)
   {
@@ -254,7 +254,7 @@ namespace nsfd
       row.resize(n);
       for (unsigned int i = 0; i < n; ++i) {
         for (unsigned int j = 0; j < n; ++j)
-          row[j] = body.mass(i, j) + (body.rigid ? 0. : s * body.stiffness(i, j));
+          row[j] = step_entry(body, s, i, j);
         add(int(bodies_.first_dof[b] + i),
             matrix_.first_row + static_cast<long long>(bodies_.first_dof[b]),
             row.data(), n);
@@ -343,7 +343,7 @@ namespace nsfd
 
   template <int dim>
   std::vector<char>
-  SparseAssembly<dim>::carrying(const double s,
+  SparseAssembly<dim>::carrying(const StepShares &s,
                                 const std::vector<double> &k) const
   {
     std::vector<char> result(points_.faces.size(), 0);
@@ -370,8 +370,7 @@ namespace nsfd
           }
           for (unsigned int c = 0; c < dim; ++c) {
             const unsigned int i = own.support[j] + c;
-            diagonal = std::max(diagonal,
-                                body.mass(i, i) + s * body.stiffness(i, i));
+            diagonal = std::max(diagonal, step_entry(body, s, i, i));
           }
           carries = *std::min_element(springs, springs + dim) > diagonal;
         }
@@ -402,7 +401,7 @@ namespace nsfd
 
   template <int dim>
   std::array<std::vector<double>, 2>
-  SparseAssembly<dim>::own_stiffness(const double s) const
+  SparseAssembly<dim>::own_stiffness(const StepShares &s) const
   {
     std::array<std::vector<double>, 2> result;
     result.fill(std::vector<double>(points_.n_points + 1,
@@ -423,8 +422,7 @@ namespace nsfd
             const double N = trace(places_[t][p], i % dim, i);
             sum += N * N;
           }
-          largest = std::max(
-            largest, (body.mass(i, i) + s * body.stiffness(i, i)) / sum);
+          largest = std::max(largest, step_entry(body, s, i, i) / sum);
         }
         for (unsigned int p = face.first; p < face.first + face.count; ++p)
           result[t][p] = largest;

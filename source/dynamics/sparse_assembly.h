@@ -26,10 +26,10 @@ namespace nsfd
                    const std::vector<double> &coordinates);
 
     /**
-     * Values for K times @p s and springs @p k, one per local component,
+     * Values for M_hat of @p s and springs @p k, one per local component,
      * without those of faces that are marked in @p left_out.
      */
-    void assemble(double s, const std::vector<double> &k,
+    void assemble(const StepShares &s, const std::vector<double> &k,
                   const std::vector<char> &left_out = {});
     /** Add the springs of marked faces. */
     void add_springs(const std::vector<double> &k,
@@ -49,14 +49,16 @@ namespace nsfd
      * ranks of a shared face. In terms of a stiffness C that is about
      * C L/E > 2.
      */
-    std::vector<char> carrying(double s, const std::vector<double> &k) const;
+    std::vector<char> carrying(const StepShares &s,
+                               const std::vector<double> &k) const;
 
     /**
      * Per side and point, how stiff a spring there must be to contribute as
      * much to the diagonal of A as the body; infinite at rigid bodies and at
      * those of other ranks. Size n_points + 1.
      */
-    std::array<std::vector<double>, 2> own_stiffness(double s) const;
+    std::array<std::vector<double>, 2> 
+    own_stiffness(const StepShares &s) const;
 
     /** Nodes at the same place on both sides of a face. */
     NodePairs node_pairs() const;

@@ -75,6 +75,7 @@ namespace nsfd
         {units::pressure, "a pressure", "135 GPa"},
         {units::energy_per_area, "an energy per area", "0.5 J/m^2"},
         {units::stiffness_per_area, "a pressure per length", "10 GPa/um"},
+        {units::viscosity, "a viscosity", "10 kPa*s"},
         {units::viscosity_per_length, "a pressure per velocity", "1 MPa*s/m"},
         {units::damage_viscosity, "an energy per area times a time",
          "1 uJ/m^2*s"},

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <cmath>
+#include <limits>
+
 namespace nsfd
 {
   std::string component_name(const std::string &name,
@@ -30,6 +34,9 @@ namespace nsfd
     const KnownModel known_models[] = {
         {BulkModel::linear_elastic,
          {"linear elastic", "Hooke's law; motion = small"}},
+        {BulkModel::transversely_isotropic,
+         {"transversely isotropic",
+          "Hooke's law about an axis: fibres, layers, wood; motion = small"}},
         {BulkModel::rigid, {"rigid", "bodies do not deform"}},
         {BulkModel::saint_venant_kirchhoff,
          {"saint-venant kirchhoff",
@@ -44,7 +51,8 @@ namespace nsfd
                      const BulkModel model)
     {
       const char *const name = model_name(model);
-      if (scene.large_motion && model == BulkModel::linear_elastic)
+      if (scene.large_motion && (model == BulkModel::linear_elastic ||
+                                 model == BulkModel::transversely_isotropic))
         reader.error("model",
                      fmt::format("model = {} is for bodies that turn and "
                                  "strain little, and the scene has motion = "
@@ -88,18 +96,186 @@ namespace nsfd
       return true;
     }
 
-    void read_elasticity(SectionReader &reader, MaterialInput &material)
+    const std::vector<std::string> isotropic_names = {"Young modulus",
+                                                      "Poisson ratio"};
+    const std::vector<std::string> transverse_names = {
+        "axis",
+        "axial Young modulus",
+        "transverse Young modulus",
+        "axial Poisson ratio",
+        "transverse Poisson ratio",
+        "axial shear modulus"};
+
+    /** A coordinate occurs, or the time, which is refused. */
+    bool depends(const std::string &text)
     {
-      const std::vector<std::string> names = {"Young modulus", "Poisson ratio"};
-      if (material.rigid)
-        return reader.refuse(names, "the material is rigid");
-      material.young =
-          reader.number(names[0], "", units::pressure, Range::positive(), "Pa");
-      // the bulk modulus is infinite at 1/2, the shear modulus at -1
-      material.poisson =
-          reader.number(names[1], "", units::none, {-1., 0.5, true, true},
-                        "lateral over "
-                        "axial strain");
+      std::string word;
+      for (const char c : text + " ")
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+          word += c;
+        else {
+          if (word == "x" || word == "y" || word == "z" || word == "t")
+            return true;
+          word.clear();
+        }
+      return false;
+    }
+
+    /** A constant in @p range, or an expression checked in the cells. */
+    Expression read_constant(SectionReader &reader, const SceneInput &scene,
+                             const std::string &name, const Unit unit,
+                             const Range range, const std::string &text)
+    {
+      if (!reader.has(name) || !depends(reader.raw(name, "", text)->text()))
+        return reader.number(name, "", unit, range, text);
+      const unsigned int n_before = reader.errors().n_errors();
+      Expression value = read_initial_expression(reader, name, "", unit, text);
+      if (scene.large_motion && reader.errors().n_errors() == n_before)
+        reader.error(name,
+                     fmt::format("{} = {} depends on the place, and the scene "
+                                 "has motion = large",
+                                 name, value.text()),
+                     "write a number; blocks with their own `where` may differ");
+      return value;
+    }
+
+    double constant_of(const Expression &value)
+    {
+      return value.is_constant() ? value(0., 0., 0.)
+                                 : std::numeric_limits<double>::quiet_NaN();
+    }
+
+    /** Density, and the moduli of an isotropic material. */
+    void read_constants(SectionReader &reader, const SceneInput &scene,
+                        MaterialInput &material)
+    {
+      GradedInput constants;
+      const bool isotropic = !material.rigid && !material.transverse;
+      if (isotropic) {
+        constants.young =
+            read_constant(reader, scene, isotropic_names[0], units::pressure,
+                          Range::positive(), "Pa, may depend on x, y, z");
+        // the bulk modulus is infinite at 1/2, the shear modulus at -1
+        constants.poisson = read_constant(
+            reader, scene, isotropic_names[1], units::none,
+            {-1., 0.5, true, true},
+            "lateral over axial strain, may depend on x, y, z");
+      } else
+        reader.refuse(isotropic_names,
+                      material.rigid ? "the material is rigid"
+                                     : "the material is transversely isotropic "
+                                       "and has an axial and a transverse one");
+      constants.density =
+          read_constant(reader, scene, "density", units::density,
+                        Range::positive(), "kg/m^3, may depend on x, y, z");
+      material.young = constant_of(constants.young);
+      material.poisson = constant_of(constants.poisson);
+      material.density = constant_of(constants.density);
+      if (material.transverse)
+        material.young = material.poisson =
+            std::numeric_limits<double>::quiet_NaN();
+      if (!constants.young.is_constant() || !constants.poisson.is_constant() ||
+          !constants.density.is_constant())
+        material.graded = constants;
+    }
+
+    /** Of length 1; in plane problems in the plane or normal to it. */
+    std::array<double, 3> read_axis(SectionReader &reader,
+                                    const SceneInput &scene)
+    {
+      const unsigned int n_before = reader.errors().n_errors();
+      const auto given = reader.numbers(
+          transverse_names[0], "1, 0, 0", units::none, Range::any(), 3,
+          "direction of the axis of symmetry, of any length");
+      std::array<double, 3> axis{{given[0], given[1], given[2]}};
+      const double size = std::hypot(axis[0], axis[1], axis[2]);
+      const bool known = reader.errors().n_errors() == n_before;
+      if (known && size == 0.)
+        reader.error(transverse_names[0], "the axis has no direction",
+                     "write for example: set axis = 1, 0, 0");
+      for (double &component : axis)
+        component /= size > 0. ? size : 1.;
+      if (scene.dimension == 3 || axis[2] == 0.)
+        return axis;
+      if (known && size > 0. && (axis[0] != 0. || axis[1] != 0.))
+        reader.error(transverse_names[0],
+                     "an axis that is neither in the plane nor normal to it "
+                     "makes bodies move out of the plane",
+                     fmt::format("write set axis = {:g}, {:g}, 0 or set axis = "
+                                 "0, 0, 1, or take dimension = 3",
+                                 given[0], given[1]));
+      return {{0., 0., 1.}};
+    }
+
+    /** Hooke's matrix is positive definite. */
+    void check_transverse(SectionReader &reader, const TransverseInput &input)
+    {
+      const double ratio = input.axial_young / input.transverse_young,
+                   bound =
+                       std::sqrt((1. - input.transverse_poisson) * ratio / 2.);
+      if (std::abs(input.axial_poisson) < bound)
+        return;
+      reader.error(
+          transverse_names[3],
+          fmt::format("axial Poisson ratio = {:g} makes a state of strain with "
+                      "negative energy: its square must be below (1 - "
+                      "transverse Poisson ratio) (axial over transverse Young "
+                      "modulus) / 2",
+                      input.axial_poisson),
+          fmt::format("write a number above {:.4g} and below {:.4g}; it is the "
+                      "contraction across over the extension along the axis",
+                      -bound, bound));
+    }
+
+    void read_transverse(SectionReader &reader, const SceneInput &scene,
+                         MaterialInput &material)
+    {
+      if (material.model != BulkModel::transversely_isotropic)
+        return reader.refuse(transverse_names,
+                             "it needs model = transversely isotropic");
+      const unsigned int n_before = reader.errors().n_errors();
+      TransverseInput &input = material.transverse.emplace();
+      input.axis = read_axis(reader, scene);
+      const auto modulus = [&](const unsigned int k, const char *text) {
+        return reader.number(transverse_names[k], "", units::pressure,
+                             Range::positive(), text);
+      };
+      input.axial_young = modulus(1, "Pa, along the axis");
+      input.transverse_young = modulus(2, "Pa, across the axis");
+      input.axial_poisson = reader.number(
+          transverse_names[3], "", units::none, Range::any(),
+          "contraction across over extension along the axis");
+      input.transverse_poisson =
+          reader.number(transverse_names[4], "", units::none,
+                        {-1., 1., true, true},
+                        "contraction over extension, both across the axis");
+      input.axial_shear =
+          modulus(5, "Pa, of shear between the axis and any direction across");
+      if (reader.errors().n_errors() == n_before)
+        check_transverse(reader, input);
+    }
+
+    void read_viscosity(SectionReader &reader, const SceneInput &scene,
+                        MaterialInput &material)
+    {
+      const std::vector<std::string> names = {"shear viscosity",
+                                              "bulk viscosity"};
+      if (material.rigid || is_finite_strain(material.model))
+        return reader.refuse(names, material.rigid
+                                        ? "the material is rigid"
+                                        : "it needs motion = small");
+      material.shear_viscosity = reader.number(
+          names[0], "0", units::viscosity, Range::non_negative(),
+          "Pa s, eta of the Kelvin-Voigt stress 2 eta dev(rate) + zeta "
+          "tr(rate)");
+      material.bulk_viscosity =
+          reader.number(names[1], "0", units::viscosity, Range::non_negative(),
+                        "Pa s, zeta of it");
+      if (material.is_viscous() && scene.dimension == 2 && scene.plane_stress)
+        reader.error(material.shear_viscosity > 0. ? names[0] : names[1],
+                     "viscosity is not there for plane = stress, where the "
+                     "strain normal to the plane has a history of its own",
+                     "write plane = strain, or leave it out");
     }
 
     /** What bodies are, and where their surface is. */
@@ -230,9 +406,9 @@ namespace nsfd
       material.where = read_where(reader, "all", WhereUse::cells, scene,
                                   "all, a group or an expression of x, y, z");
       if (read_model(reader, scene, material)) {
-        read_elasticity(reader, material);
-        material.density = reader.number("density", "", units::density,
-                                         Range::positive(), "kg/m^3");
+        read_transverse(reader, scene, material);
+        read_constants(reader, scene, material);
+        read_viscosity(reader, scene, material);
         read_rigid_bodies(reader, scene, material);
         read_fields(reader, scene, material);
       }

@@ -307,6 +307,25 @@ namespace nsfd
       return true;
     }
 
+    /** Of bodies: rates enter implicit steps and blocks of single cells. */
+    void check_viscosity(SectionReader &reader, const SceneInput &scene,
+                         const std::string &scheme)
+    {
+      if (!scene.has_viscous_bodies())
+        return;
+      if (scheme == "arkode")
+        reader.error("scheme",
+                     "scheme = arkode knows no viscosity, and a material has "
+                     "one",
+                     "write scheme = moreau-jean");
+      if (scheme == "symplectic" && scene.has_bonded_faces())
+        reader.error("scheme",
+                     "scheme = symplectic takes bonded faces by explicit "
+                     "forces, and viscous materials need implicit ones",
+                     "write scheme = moreau-jean, or join the faces by the law "
+                     "`rigid`");
+    }
+
     template <typename T>
     T read_named(SectionReader &reader, const std::string &name,
                  const std::vector<std::pair<std::string, T>> &values,
@@ -335,6 +354,7 @@ namespace nsfd
         "moreau-jean, symplectic, arkode or quasi-static");
     if (refuse_scheme(reader, scene, scheme))
       return;
+    check_viscosity(reader, scene, scheme);
     const bool quasi_static = scheme == "quasi-static";
     if (read_start(reader, scene, quasi_static)) {
       scene.statics.emplace();

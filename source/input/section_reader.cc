@@ -57,7 +57,7 @@ namespace nsfd
         return "300 MPa";
       if (name.compare(0, 8, "traction") == 0 || name == "pressure")
         return "10 MPa";
-      if (name == "Poisson ratio")
+      if (name.find("Poisson ratio") != std::string::npos)
         return "0.32";
       return default_text.empty() ? example(unit) : default_text;
     }

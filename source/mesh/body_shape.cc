@@ -1,6 +1,5 @@
 #include "body_shape.h"
 
-#include "elasticity.h"
 #include "interface_quadrature.h"
 
 #include "nsfd/input/scene_input.h"
@@ -106,26 +105,82 @@ namespace nsfd
                                 const std::vector<Point<dim>> &corners,
                                 const double size, const unsigned int material,
                                 const unsigned int divided,
+                                const std::vector<LocalModuli> &moduli,
                                 BodyShape<dim> &shape, BodyClass &body) const
   {
+    const MaterialInput &input = input_.materials[material];
     shape.reference = reference;
     shape.divided = divided;
     shape.corners = corners;
+    shape.moduli = moduli;
     set_tables(shape);
+    set_elasticity(shape, material);
     body.material = material;
-    body.rigid = input_.materials[material].rigid && !input_.large_motion;
-    body.mass = mass(shape, material);
+    body.rigid = input.rigid && !input_.large_motion;
+    body.mass = mass(shape);
     body.trace = trace(shape);
     body.n_slots = unsigned(shape.slot_positions.size());
     body.n_dofs = shape.n_nodes * dim;
     if (body.rigid)
       make_rigid(size, shape, body);
-    else {
-      body.stiffness = stiffness(shape, material);
+    else if (input.rigid) { // nodes that a rigid body moves
+      body.stiffness = Block(body.n_dofs, body.n_dofs);
+      body.rigid_motions = of_unit_mass(rigid_modes(shape, size), body.mass);
+    } else {
+      body.stiffness = stiffness(shape, shape.elasticity);
       body.rigid_motions = of_unit_mass(rigid_modes(shape, size), body.mass);
       if (input_.has_bonded_faces())
-        set_traction(shape, body);
+        body.traction_bound =
+            set_traction(shape, body, shape.elasticity, body.stiffness,
+                         body.traction);
     }
+    if (input.is_viscous()) {
+      std::vector<LinearElasticity<dim>> viscosity = {
+          LinearElasticity<dim>::viscous(input)};
+      body.damping = stiffness(shape, viscosity);
+      if (input_.has_bonded_faces()) {
+        auto definite = viscosity; // for the bound: with a little shear
+        definite[0].mu = std::max(viscosity[0].mu, 0x1p-20 * input.bulk_viscosity);
+        body.viscous_bound =
+            set_traction(shape, body, viscosity, stiffness(shape, definite),
+                         body.viscous_traction);
+      }
+    }
+  }
+
+  template <int dim>
+  std::vector<Point<dim>>
+  ClassBuilder<dim>::moduli_places(const ReferenceCell &reference,
+                                   const std::vector<Point<dim>> &corners,
+                                   const unsigned int divided) const
+  {
+    BodyShape<dim> shape;
+    shape.reference = reference;
+    shape.divided = divided;
+    shape.corners = corners;
+    set_tables(shape);
+    auto places = shape.positions;
+    if (input_.has_bonded_faces()) {
+      trace(shape);
+      for (const auto &slot : shape.slot_positions)
+        places.push_back(a_little_inside(slot, shape.centre));
+    }
+    return places;
+  }
+
+  template <int dim>
+  void ClassBuilder<dim>::set_elasticity(BodyShape<dim> &shape,
+                                         const unsigned int material) const
+  {
+    const MaterialInput &input = input_.materials[material];
+    for (const LocalModuli &local : shape.moduli)
+      if (input.rigid)
+        shape.extremes.densest =
+            std::max(shape.extremes.densest, local.density);
+      else {
+        shape.elasticity.emplace_back(input, local, input_.plane_stress);
+        widen(shape.elasticity.back().extremes(), shape.extremes);
+      }
   }
 
   template <int dim>
@@ -166,8 +221,7 @@ namespace nsfd
   }
 
   template <int dim>
-  Block ClassBuilder<dim>::mass(const BodyShape<dim> &shape,
-                                const unsigned int material) const
+  Block ClassBuilder<dim>::mass(const BodyShape<dim> &shape) const
   {
     const unsigned int n = shape.n_nodes;
     Block scalar(n, n);
@@ -175,7 +229,7 @@ namespace nsfd
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
           scalar(i, input_.discretization.lumped_mass ? i : j) +=
-              input_.materials[material].density * shape.JxW[q] *
+              at_place(shape.moduli, q).density * shape.JxW[q] *
               shape.values[q * n + i] * shape.values[q * n + j];
     Block mass(n * dim, n * dim);
     for (unsigned int i = 0; i < n; ++i)
@@ -186,18 +240,14 @@ namespace nsfd
     return mass;
   }
 
-  /** lambda (div)(div) + mu (grad + grad^T) : grad */
+  /** grad : D : grad */
   template <int dim>
-  Block ClassBuilder<dim>::stiffness(const BodyShape<dim> &shape,
-                                     const unsigned int material) const
+  Block ClassBuilder<dim>::stiffness(
+      const BodyShape<dim> &shape,
+      const std::vector<LinearElasticity<dim>> &local) const
   {
-    const LinearElasticity<dim> elasticity(input_.materials[material],
-                                           input_.plane_stress);
-    const double lambda = elasticity.lambda, mu = elasticity.mu;
     const unsigned int n = shape.n_nodes;
     Block stiffness(n * dim, n * dim);
-    if (input_.materials[material].rigid)
-      return stiffness; // of nodes that a rigid body moves
     for (unsigned int q = 0; q < shape.JxW.size(); ++q)
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j) {
@@ -206,8 +256,7 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             for (unsigned int d = 0; d < dim; ++d)
               stiffness(i * dim + c, j * dim + d) +=
-                  shape.JxW[q] * (lambda * gi[c] * gj[d] + mu * gi[d] * gj[c] +
-                                  (c == d ? mu * (gi * gj) : 0.));
+                  shape.JxW[q] * at_place(local, q).coupling(c, d, gi, gj);
         }
     // symmetric to the last bit: the upper half is a copy of the lower one
     for (unsigned int i = 0; i < n * dim; ++i)
@@ -290,16 +339,17 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  void ClassBuilder<dim>::set_traction(const BodyShape<dim> &shape,
-                                       BodyClass &body) const
+  double ClassBuilder<dim>::set_traction(
+      const BodyShape<dim> &shape, const BodyClass &body,
+      const std::vector<LinearElasticity<dim>> &local, const Block &K,
+      Block &traction) const
   {
-    const LinearElasticity<dim> elasticity(input_.materials[body.material],
-                                           input_.plane_stress);
     const unsigned int n = shape.n_nodes;
-    body.traction = Block(body.n_slots * dim, n * dim);
+    traction = Block(body.n_slots * dim, n * dim);
     Block weighted(body.n_slots * dim, n * dim); // sqrt(w) times the traction
     for (unsigned int s = 0; s < body.n_slots; ++s) {
       const auto &place = shape.slot_places[s];
+      const auto &law = at_place(local, shape.JxW.size() + s);
       const auto inverse =
           invert(jacobian(shape.reference, shape.corners, place));
       const double w = shape.slot_normals[s].norm();
@@ -313,17 +363,13 @@ namespace nsfd
         // sigma n of a displacement N_i e_d
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int d = 0; d < dim; ++d) {
-            const double value =
-                elasticity.lambda * g[d] * normal[c] +
-                elasticity.mu *
-                    (g[c] * normal[d] + (c == d ? g * normal : 0.));
-            body.traction(s * dim + c, i * dim + d) = value;
+            const double value = law.coupling(c, d, normal, g);
+            traction(s * dim + c, i * dim + d) = value;
             weighted(s * dim + c, i * dim + d) = std::sqrt(w) * value;
           }
       }
     }
-    body.traction_bound =
-        largest_ratio(weighted, body.stiffness, body.rigid_motions);
+    return largest_ratio(weighted, K, body.rigid_motions);
   }
 
   template class ClassBuilder<2>;

@@ -4,6 +4,7 @@
 
 #include <deal.II/fe/fe.h>
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -21,6 +22,8 @@ namespace nsfd
     /**
      * @p materials by active_cell_index. Shapes are rounded to 2^-42 of their
      * size before they are compared and before anything is computed from them.
+     * Constants of a graded material that cannot be are replaced by others: see
+     * `graded`.
      */
     Cells(const dealii::Triangulation<dim, dim> &triangulation,
           const std::vector<unsigned int> &materials, const SceneInput &input);
@@ -32,6 +35,10 @@ namespace nsfd
     std::vector<std::size_t> first_node; ///< size n + 1
     std::vector<unsigned long long> global_cell;
     std::vector<std::array<unsigned int, 4>> cell_id; ///< CellId::to_binary()
+
+    /// of every graded material, the smallest and the largest constants on
+    /// this rank; -infinity: one is not a number somewhere
+    std::map<unsigned int, std::array<LocalModuli, 2>> graded;
 
     const BodyShape<dim> &shape(const std::size_t body) const
     {

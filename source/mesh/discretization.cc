@@ -10,8 +10,12 @@
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace nsfd
 {
@@ -39,6 +43,100 @@ namespace nsfd
         for (unsigned int j = 0; j < modes.cols; ++j)
           for (unsigned int i = 0; i < modes.rows; ++i)
             out[j] += modes(i, j) * in[i];
+    }
+    /**
+     * A graded constant of @p material lies in @p range, without its ends, over
+     * all its cells. @throws std::runtime_error on all ranks if not.
+     */
+    void check_range(const MaterialInput &material, const char *name,
+                     const Expression &field, double lowest, double highest,
+                     const std::array<double, 2> &range,
+                     const Communicator &communicator)
+    {
+      lowest = communicator.min(lowest);
+      highest = communicator.max(highest);
+      const bool no_cells = lowest > highest;
+      if (no_cells || (lowest > range[0] && highest < range[1]))
+        return;
+      std::string what;
+      if (std::isinf(lowest))
+        what = "it is not a number in a cell of the block";
+      else if (lowest <= range[0])
+        what = fmt::format("it falls to {:.4g} in its cells", lowest);
+      else
+        what = fmt::format("it rises to {:.4g} in its cells", highest);
+      throw std::runtime_error(fmt::format(
+          "Material: {}/{} = {} must be {}, but {}", material.name, name,
+          field.text(),
+          std::isinf(range[1])
+              ? "positive"
+              : fmt::format("above {:g} and below {:g}", range[0],
+                            range[1]),
+          what));
+    }
+
+    template <int dim>
+    void check_graded(const SceneInput &input, const Cells<dim> &cells,
+                      const Communicator &communicator)
+    {
+      const std::array<double, 2> positive = {
+          {0., std::numeric_limits<double>::infinity()}};
+      for (const auto &[m, range] : cells.graded) {
+        const MaterialInput &material = input.materials[m];
+        check_range(material, "density", material.graded->density,
+                    range[0].density, range[1].density, positive,
+                    communicator);
+        if (material.rigid || material.transverse)
+          continue;
+        check_range(material, "Young modulus", material.graded->young,
+                    range[0].young, range[1].young, positive,
+                    communicator);
+        check_range(material, "Poisson ratio", material.graded->poisson,
+                    range[0].poisson, range[1].poisson, {-1., 0.5},
+                    communicator);
+      }
+    }
+
+    /** Of all ranks. */
+    void share(const Communicator &communicator, MaterialExtremes &all)
+    {
+      const bool none = all.fastest == 0.;
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      const auto share_moduli = [&](MaterialExtremes::Moduli &mine,
+                                    const double sign) {
+        const double young =
+            sign * communicator.max(none ? -infinity : sign * mine.young);
+        mine.poisson =
+            communicator.max(none || mine.young != young ? -1. : mine.poisson);
+        mine.young = young;
+      };
+      share_moduli(all.stiffest, 1.);
+      share_moduli(all.softest, -1.);
+      all.slowest = communicator.min(none ? infinity : all.slowest);
+      all.fastest = communicator.max(all.fastest);
+      all.densest = communicator.max(all.densest);
+    }
+
+    /** Rigid ones, and graded ones of no cell, have none. */
+    template <int dim>
+    std::vector<MaterialExtremes>
+    material_extremes(const SceneInput &input, const Cells<dim> &cells,
+                      const Communicator &communicator)
+    {
+      std::vector<MaterialExtremes> result(input.materials.size());
+      for (unsigned int m = 0; m < result.size(); ++m) {
+        const MaterialInput &material = input.materials[m];
+        if (!material.rigid && !material.graded)
+          result[m] =
+              LinearElasticity<dim>(material, input.plane_stress).extremes();
+        if (material.rigid || !material.graded)
+          continue;
+        for (std::size_t k = 0; k < cells.shapes.size(); ++k)
+          if (cells.bodies.classes[k].material == m)
+            widen(cells.shapes[k].extremes, result[m]);
+        share(communicator, result[m]);
+      }
+      return result;
     }
   } // namespace
 
@@ -74,6 +172,8 @@ namespace nsfd
     inner_faces_ = std::move(faces.inner_faces);
     fill_slots(points_, *cells);
     cells_ = std::move(cells);
+    check_graded(input, *cells_, communicator);
+    extremes_ = material_extremes(input, *cells_, communicator);
 
     double size = std::numeric_limits<double>::max(), crossing = size;
     for (std::size_t k = 0; k < cells_->shapes.size(); ++k) {
@@ -82,7 +182,7 @@ namespace nsfd
       size = std::min(size, height);
       if (!input.materials[body.material].rigid)
         crossing =
-            std::min(crossing, height / pressure_wave_speed(body.material));
+            std::min(crossing, height / cells_->shapes[k].extremes.fastest);
     }
     cell_size_ = communicator.min(size);
     crossing_time_ = communicator.min(crossing);
@@ -176,26 +276,15 @@ namespace nsfd
   }
 
   template <int dim>
-  double
-  Discretization<dim>::pressure_wave_speed(const unsigned int material) const
+  const MaterialExtremes &
+  Discretization<dim>::extremes_of(const unsigned int body) const
   {
-    return LinearElasticity<dim>(input_->materials[material],
-                                 input_->plane_stress)
-        .pressure_wave_speed();
-  }
-
-  template <int dim>
-  double
-  Discretization<dim>::shear_wave_speed(const unsigned int material) const
-  {
-    return LinearElasticity<dim>(input_->materials[material],
-                                 input_->plane_stress)
-        .shear_wave_speed();
+    return cells_->shape(body).extremes;
   }
 
   template <int dim>
   std::array<double, 6>
-  Discretization<dim>::stress(const unsigned int body,
+  Discretization<dim>::stress(const unsigned int body, const Point<dim> &x,
                               const double *gradient) const
   {
     const auto &material = input_->materials[material_of(body)];
@@ -203,8 +292,55 @@ namespace nsfd
       return {};
     if (is_finite_strain(material.model))
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
-    return LinearElasticity<dim>(material, input_->plane_stress)
+    const auto &of_cell = cells_->shape(body).elasticity;
+    if (of_cell.size() == 1)
+      return of_cell[0].stress(gradient);
+    return LinearElasticity<dim>(
+               material,
+               local_moduli<dim>(material, a_little_inside(x, centre(body))),
+               input_->plane_stress)
         .stress(gradient);
+  }
+
+  template <int dim>
+  std::array<double, 6>
+  Discretization<dim>::viscous_stress(const unsigned int body,
+                                      const double *rate) const
+  {
+    return LinearElasticity<dim>::viscous(input_->materials[material_of(body)])
+        .stress(rate);
+  }
+
+  template <int dim>
+  void Discretization<dim>::visit_stress(const std::vector<double> &displacement,
+                                         const std::vector<double> &velocity,
+                                         const StressVisitor &visit) const
+  {
+    std::vector<std::array<double, 6>> viscous; // in the order of the visits
+    if (is_viscous())
+      visit_quadrature(velocity, [&](const unsigned int body,
+                                     const Point<dim> &, double, const double *,
+                                     const double *rate) {
+        viscous.push_back(viscous_stress(body, rate));
+      });
+    std::size_t k = 0;
+    visit_quadrature(
+        displacement, [&](const unsigned int body, const Point<dim> &x,
+                          const double JxW, const double *,
+                          const double *gradient) {
+          auto sigma = stress(body, x, gradient);
+          if (!viscous.empty())
+            for (unsigned int c = 0; c < 6; ++c)
+              sigma[c] += viscous[k][c];
+          ++k;
+          visit(body, x, JxW, sigma);
+        });
+  }
+
+  template <int dim>
+  bool Discretization<dim>::is_viscous() const
+  {
+    return input_->has_viscous_bodies();
   }
 
   template <int dim>

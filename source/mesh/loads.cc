@@ -88,7 +88,7 @@ namespace nsfd
       for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
         const Point<dim> x = cells.place(b, shape.positions[q]);
         for (unsigned int c = 0; c < dim; ++c) {
-          double f = material.density * input_.gravity[c];
+          double f = at_place(shape.moduli, q).density * input_.gravity[c];
           if (!material.body_force[c].is_zero())
             f += material.body_force[c].at(x, t);
           if (f != 0.)

@@ -269,6 +269,7 @@ namespace nsfd
     const auto velocity = discretization.to_nodal(state.velocity);
     const Lattice<dim> lattice(discretization.element());
     const Sampler<dim> sampler(discretization.element(), lattice.points);
+    const bool is_viscous = discretization.is_viscous();
 
     VtuGrid grid;
     grid.time = state.time;
@@ -291,8 +292,15 @@ namespace nsfd
         grid.points.push_back(in_space<dim>(sampler.position(q, corners)));
         append(grid.point_data[0], in_space<dim>(sampler.value(q, u)));
         append(grid.point_data[1], in_space<dim>(sampler.value(q, v)));
-        const auto stress =
-            discretization.stress(b, sampler.gradient(q, corners, u).data());
+        auto stress =
+            discretization.stress(b, sampler.position(q, corners),
+                                  sampler.gradient(q, corners, u).data());
+        if (is_viscous) {
+          const auto viscous = discretization.viscous_stress(
+              b, sampler.gradient(q, corners, v).data());
+          for (unsigned int c = 0; c < 6; ++c)
+            stress[c] += viscous[c];
+        }
         append(grid.point_data[2],
                std::array<double, 6>{{stress[0], stress[1], stress[2],
                                       stress[3], stress[5], stress[4]}});

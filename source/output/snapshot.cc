@@ -77,12 +77,11 @@ namespace nsfd
           stress_(n_bodies_, 0.)
     {
       std::vector<double> volume(n_bodies_, 0.);
-      discretization.visit_quadrature(
-          displacement_,
+      discretization.visit_stress(
+          displacement_, velocity_,
           [&](const unsigned int body, const Point<dim> &, const double JxW,
-              const double *, const double *gradient) {
-            stress_[body] +=
-                JxW * von_mises(discretization.stress(body, gradient));
+              const std::array<double, 6> &stress) {
+            stress_[body] += JxW * von_mises(stress);
             volume[body] += JxW;
           });
       for (std::size_t b = 0; b < n_bodies_; ++b)

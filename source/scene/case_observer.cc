@@ -175,24 +175,28 @@ namespace nsfd
         mine[b * width + c] = discretization_.centre(unsigned(b))[c];
       mine[b * width + 15] = discretization_.volume(unsigned(b));
     }
-    const auto average = [&](const std::vector<double> &unknowns,
-                             const unsigned int at, const bool stress) {
+    const auto displacement = discretization_.to_nodal(state.displacement),
+               velocity = discretization_.to_nodal(state.velocity);
+    const auto average = [&](const std::vector<double> &nodal,
+                             const unsigned int at) {
       discretization_.visit_quadrature(
-          discretization_.to_nodal(unknowns),
-          [&](const unsigned int b, const dealii::Point<dim> &,
-              const double JxW, const double *value, const double *gradient) {
+          nodal, [&](const unsigned int b, const dealii::Point<dim> &,
+                     const double JxW, const double *value, const double *) {
             const double share = JxW / discretization_.volume(b);
             for (unsigned int c = 0; c < dim; ++c)
               mine[b * width + at + c] += share * value[c];
-            if (stress) {
-              const auto sigma = discretization_.stress(b, gradient);
-              for (unsigned int c = 0; c < 6; ++c)
-                mine[b * width + 9 + c] += share * sigma[c];
-            }
           });
     };
-    average(state.displacement, 3, true);
-    average(state.velocity, 6, false);
+    average(displacement, 3);
+    average(velocity, 6);
+    discretization_.visit_stress(
+        displacement, velocity,
+        [&](const unsigned int b, const dealii::Point<dim> &, const double JxW,
+            const std::array<double, 6> &sigma) {
+          const double share = JxW / discretization_.volume(b);
+          for (unsigned int c = 0; c < 6; ++c)
+            mine[b * width + 9 + c] += share * sigma[c];
+        });
     const std::vector<double> all = gather_all(communicator_, mine);
     std::vector<CellState> cells(all.size() / width);
     for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -275,7 +279,7 @@ namespace nsfd
               }
             }
             if (!velocity && case_.has_stress()) {
-              const auto sigma = discretization_.stress(b, gradient);
+              const auto sigma = discretization_.stress(b, x, gradient);
               const auto known = case_.stress(position, state.time);
               for (unsigned int c = 0; c < 6; ++c) {
                 terms[6 * n + b] +=

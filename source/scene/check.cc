@@ -99,6 +99,34 @@ namespace nsfd
     }
     void change(const std::string &text) { line("", "change: " + text); }
 
+    template <int dim>
+    std::vector<MaterialExtremes>
+    all_extremes(const SceneInput &input,
+                 const Discretization<dim> &discretization)
+    {
+      std::vector<MaterialExtremes> result;
+      for (unsigned int m = 0; m < input.materials.size(); ++m)
+        result.push_back(discretization.extremes(m));
+      return result;
+    }
+
+    /** Waves, and moduli where there is more than one. */
+    std::string describe(const MaterialInput &material,
+                         const MaterialExtremes &extremes)
+    {
+      if (!material.graded && !material.transverse)
+        return fmt::format("c_p {:.6g}, c_s {:.6g} m/s", extremes.fastest,
+                           extremes.slowest);
+      return fmt::format("{}, waves {:.6g} to {:.6g} m/s, E {:.4g} to {:.4g}",
+                         material.transverse ? material.graded
+                                                   ? "transversely isotropic, "
+                                                     "graded"
+                                                   : "transversely isotropic"
+                                             : "graded",
+                         extremes.slowest, extremes.fastest,
+                         extremes.softest.young, extremes.stiffest.young);
+    }
+
     /** What the advice on all interfaces is computed from. */
     template <int dim>
     struct Advisor {
@@ -106,6 +134,7 @@ namespace nsfd
       const MeshReport mesh;
       const std::vector<FaceFamily> families;
       const double step, crossing, diagonal;
+      const std::vector<MaterialExtremes> extremes; ///< by material
       /// steps with one solution, per block: 0 if there is none
       std::vector<double> unique_steps = {};
       double contraction = 0., contraction_step = 0.;
@@ -116,7 +145,7 @@ namespace nsfd
       void choose_material(const std::vector<unsigned int> &among);
       void print_interface(unsigned int b);
       void print_resolution(const CohesiveLaw &law,
-                            const MaterialInput &softest) const;
+                            const MaterialExtremes::Moduli &softest) const;
       void print_bounds(const CohesiveLaw &law, double Z) const;
       void print_jumps(const CohesiveLaw &law) const;
       void print_step(const CohesiveLaw &law, double unique) const;
@@ -130,13 +159,11 @@ namespace nsfd
     Advisor<dim>::choose_material(const std::vector<unsigned int> &among)
     {
       young = 0.;
-      for (const unsigned int m : among) {
-        const auto &material = input.materials[m];
-        if (!material.rigid && material.young > young) {
-          young = material.young;
-          poisson = material.poisson;
+      for (const unsigned int m : among)
+        if (extremes[m].stiffest.young > young) {
+          young = extremes[m].stiffest.young;
+          poisson = extremes[m].stiffest.poisson;
         }
-      }
       plane_young = dim == 2 && !input.plane_stress
                         ? young / (1. - poisson * poisson)
                         : young;
@@ -166,12 +193,13 @@ namespace nsfd
       if (young > 0.) {
         // a front runs through the softer side where it is shorter
         print_resolution(
-            law, input.materials[*std::min_element(
-                     materials.begin(), materials.end(),
-                     [&](const unsigned int m, const unsigned int n) {
-                       return input.materials[m].young <
-                              input.materials[n].young;
-                     })]);
+            law, extremes[*std::min_element(
+                              materials.begin(), materials.end(),
+                              [&](const unsigned int m, const unsigned int n) {
+                                return extremes[m].softest.young <
+                                       extremes[n].softest.young;
+                              })]
+                     .softest);
         // the compliance of some named faces belongs to the scene
         if (!law.extrinsic() &&
             families[b].density > 0.5 * mesh.interface_density)
@@ -185,7 +213,8 @@ namespace nsfd
     /** (49)-(52). */
     template <int dim>
     void Advisor<dim>::print_resolution(const CohesiveLaw &law,
-                                        const MaterialInput &softest) const
+                                        const MaterialExtremes::Moduli &softest)
+        const
     {
       const double length =
           cohesive_length(softest.young, softest.poisson, law);
@@ -388,10 +417,8 @@ namespace nsfd
         if (material.rigid)
           out << fmt::format("  material   {}: rigid\n", material.name);
         else
-          out << fmt::format("  material   {}: c_p {:.6g}, c_s {:.6g} m/s\n",
-                             material.name,
-                             discretization.pressure_wave_speed(m),
-                             discretization.shear_wave_speed(m));
+          out << fmt::format("  material   {}: {}\n", material.name,
+                             describe(material, discretization.extremes(m)));
       }
       for (const auto &[keyword, sentence] : motion_report(input))
         out << fmt::format("  large      {}: {}\n", keyword, sentence);
@@ -454,7 +481,8 @@ namespace nsfd
         face_families(input, discretization, mesh.volume, communicator),
         step,
         discretization.crossing_time(),
-        discretization.extent()};
+        discretization.extent(),
+        all_extremes(input, discretization)};
     std::vector<unsigned int> all(input.materials.size());
     std::iota(all.begin(), all.end(), 0u);
     advisor.choose_material(all);

@@ -73,6 +73,12 @@ namespace nsfd
   {
     state.bond_traction.resize(state.jump.size());
     bulk.evaluate(state.displacement.data(), state.bond_traction.data());
+    if (bulk.dynamics().is_viscous()) {
+      std::vector<double> viscous(state.jump.size());
+      bulk.evaluate_viscous(state.velocity.data(), viscous.data());
+      for (std::size_t k = 0; k < viscous.size(); ++k)
+        state.bond_traction[k] += viscous[k];
+    }
     for (std::size_t i = 0; i < state.kind.size(); ++i)
       if (state.kind[i] != PointKind::bonded)
         std::fill_n(&state.bond_traction[i * dim], dim, 0.);
@@ -85,6 +91,10 @@ namespace nsfd
   {
     const auto &communicator = bulk.dynamics().communicator();
     set_bond_tractions(bulk, next);
+    // what bonds store is the work of the elastic part
+    std::vector<double> elastic = next.bond_traction;
+    if (bulk.dynamics().is_viscous())
+      bulk.evaluate(next.displacement.data(), elastic.data());
     BondReport report;
     std::vector<double> in_bonds(problem.n_owned, 0.), in_laws(in_bonds);
     unsigned int released = 0;
@@ -103,7 +113,8 @@ namespace nsfd
         report.share =
           std::min(report.share, std::max(0., 1. - before) / (now - before));
       if (i < problem.n_owned) {
-        in_bonds[i] = bulk.bond_energy(i, &next.jump[i * dim], traction);
+        in_bonds[i] = bulk.bond_energy(i, &next.jump[i * dim],
+                                       &elastic[i * dim]);
         ++released;
       }
       const double stored = start_law(problem, i, now, traction, next);

@@ -17,7 +17,10 @@ namespace nsfd
   /** Points of @p state that are bonded, for BondedDynamics::set_bonds(). */
   std::vector<std::uint8_t> bonded_points(const State &state);
 
-  /** {sigma n} at the bonded points of @p state, zero elsewhere. Collective. */
+  /**
+   * {sigma n} at the bonded points of @p state, with the viscous stress, zero
+   * elsewhere. Collective.
+   */
   template <int dim>
   void set_bond_tractions(const BulkTraction<dim> &bulk, State &state);
 

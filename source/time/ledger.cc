@@ -316,7 +316,9 @@ namespace nsfd
   {
   }
 
-  /** Energies, what theta > 1/2 takes, and the work of the loads. */
+  /**
+   * Energies, what theta > 1/2 and viscosity take, and the work of the loads.
+   */
   template <int dim>
   BodyEnergies
   Ledger<dim>::book_bodies(const std::vector<double> &forces, const double h,
@@ -362,6 +364,13 @@ namespace nsfd
       result.of_strain =
           share * energy(Operator::stiffness,
                          change_of(next.displacement, old.displacement));
+    }
+    if (dynamics_.is_viscous()) {
+      change.resize(n);
+      for (std::size_t i = 0; i < n; ++i)
+        change[i] =
+            theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i];
+      result.viscous = h * energy(Operator::damping, change);
     }
     if (discretization_.has_loads()) {
       for (std::size_t i = 0; i < n; ++i)
@@ -435,6 +444,7 @@ namespace nsfd
     energy.impact += sums[impact];
     if (has_rates(problem))
       energy.viscous += sums[viscous];
+    energy.viscous += bodies.viscous;
     if (!problem.viscosity.empty()) {
       next.viscous_traction =
           std::max(old.viscous_traction.value_or(0.),

@@ -17,6 +17,7 @@ namespace nsfd
     double kinetic = 0., elastic = 0.; ///< after the step
     double of_mass = 0., of_strain = 0.; ///< what theta > 1/2 takes
     double work = 0.;                    ///< of the loads
+    double viscous = 0.;                 ///< dissipated in viscous bodies
   };
 
   /**

@@ -41,6 +41,8 @@ namespace nsfd
     , crack_pressure_(CrackPressure<dim>::make(input, discretization))
     , forces_(discretization.bodies().n_dofs(), 0.)
   {
+    if (input.has_viscous_bodies())
+      dynamics.set_viscous_theta(input.time.work_theta());
     for (const auto &block : input.interfaces)
       has_extrinsic_ |= block.intact == IntactFaces::rigid && block.law;
     if (input.has_bonded_faces())
@@ -210,8 +212,8 @@ namespace nsfd
   }
 
   /**
-   * v_free = v_k + M_hat^{-1} h (F - K (q_k + h theta v_k)), U_free; pressure
-   * in cracks is a part of F.
+   * v_free = v_k + M_hat^{-1} h (F - K (q_k + h theta v_k) - C v_k), U_free;
+   * pressure in cracks is a part of F.
    */
   template <int dim>
   void MoreauJean<dim>::move_freely(const State &old,
@@ -227,6 +229,12 @@ namespace nsfd
                     work_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)
       work_[i] = h * (forces_[i] - work_[i]);
+    if (dynamics_.is_viscous()) {
+      dynamics_.apply(Dynamics<dim>::Operator::damping, old.velocity.data(),
+                      v_free_.data());
+      for (std::size_t i = 0; i < n_dofs; ++i)
+        work_[i] -= h * v_free_[i];
+    }
     dynamics_.apply(Dynamics<dim>::Operator::inverse, work_.data(),
                     v_free_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)

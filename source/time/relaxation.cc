@@ -24,6 +24,8 @@ namespace nsfd
     scene.time.contact_target = ContactTarget::position;
     for (auto &block : scene.interfaces)
       block.opening_viscosity = 0.;
+    for (auto &material : scene.materials)
+      material.shear_viscosity = material.bulk_viscosity = 0.;
     return scene;
   }
 
@@ -141,9 +143,9 @@ namespace nsfd
   {
     const auto &problem = this->problem_;
     double stiffness = 0.;
-    for (const auto &material : this->input_.materials)
-      if (!material.rigid)
-        stiffness = std::max(stiffness, material.young);
+    for (unsigned int m = 0; m < this->input_.materials.size(); ++m)
+      stiffness = std::max(stiffness,
+                           this->discretization_.extremes(m).stiffest.young);
     stiffness /= this->discretization_.cell_size();
     support_.resize(problem.n_points);
     for (std::size_t i = 0; i < problem.n_points; ++i) {

@@ -143,7 +143,7 @@ namespace nsfd
     const auto &bodies = discretization_.bodies();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const unsigned int m = discretization_.material_of(unsigned(b));
-      mass += input_.materials[m].density *
+      mass += discretization_.extremes_of(unsigned(b)).densest *
               discretization_.volume(unsigned(b));
       if (!input_.materials[m].rigid)
         speed = std::max(speed, discretization_.pressure_wave_speed(m));

@@ -51,6 +51,7 @@ namespace nsfd
     bool rigid = false;
     unsigned int material = 0;
     Block mass, stiffness, trace; ///< stiffness is empty for rigid bodies
+    Block damping;                ///< of viscous materials, else empty
     /// of deformable bodies: the rigid motions R as columns, R^T mass R = 1
     Block rigid_motions;
     /// of deformable bodies in scenes with bonded faces: the traction on the
@@ -58,8 +59,31 @@ namespace nsfd
     Block traction;
     /// the largest ratio of sum over slots w |traction|^2 to u.K u, in Pa/m
     double traction_bound = 0.;
+    /// the same of the viscous stress of velocities: Pa s/m, against v.C v
+    Block viscous_traction;
+    double viscous_bound = 0.;
     std::vector<unsigned int> bodies; ///< members on this rank
   };
+
+  /** Of stiffness and damping in M_hat = M + f K + g C of a step. */
+  struct StepShares
+  {
+    StepShares(const double f, const double g = 0.) : stiffness(f), damping(g)
+    {}
+    double stiffness, damping; ///< f in s^2, g in s
+  };
+
+  /** Entry of M_hat of a body. */
+  inline double step_entry(const BodyClass &body, const StepShares &shares,
+                           const unsigned int i, const unsigned int j)
+  {
+    const double elastic =
+        body.mass(i, j) +
+        (body.rigid ? 0. : shares.stiffness * body.stiffness(i, j));
+    return body.damping.rows == 0
+               ? elastic
+               : elastic + shares.damping * body.damping(i, j);
+  }
 
   /** The bodies of this rank as flat lists. */
   struct Bodies

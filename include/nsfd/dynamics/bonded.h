@@ -18,7 +18,8 @@ namespace nsfd
    *
    * [u] the jump, t and eta those of BulkTraction. K is at least 31/32 of the
    * sum of body stiffnesses on every mesh, at every degree and contrast,
-   * whichever points are bonded (theory.md).
+   * whichever points are bonded (theory.md). The damping of viscous bodies is
+   * joined in the same way by their viscous stress.
    */
   template <int dim>
   class BondedDynamics : public Dynamics<dim>
@@ -48,9 +49,10 @@ namespace nsfd
     std::vector<std::uint8_t> bonded_; ///< per point
 
   private:
-    void add_bonds(const double *x, double *y) const;
+    void add_bonds(bool viscous, const double *x, double *y) const;
 
     std::vector<Block> traction_transposed_; ///< per class
+    std::vector<Block> viscous_transposed_;  ///< the same of the viscous stress
     mutable std::vector<double> jump_, traction_, force_;
   };
 

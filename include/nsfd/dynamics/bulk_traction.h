@@ -36,6 +36,9 @@ namespace nsfd
       /// eta = factor Lambda_1 Lambda_2 / (Lambda_1 + Lambda_2) in Pa/m; 0 at
       /// the boundary and between rigid bodies
       double penalty = 0.;
+      /// of rates, with the same weights: factor times the sum of omega^2
+      /// Lambda of the viscous tractions, in Pa s/m
+      double viscous_penalty = 0.;
     };
     const std::vector<Bond> &bonds() const { return bonds_; }
     const Dynamics<dim> &dynamics() const { return dynamics_; }
@@ -45,6 +48,9 @@ namespace nsfd
      * the bodies. Collective.
      */
     void evaluate(const double *displacement, double *traction) const;
+
+    /** Viscous stress in the same mean, from velocities. Collective. */
+    void evaluate_viscous(const double *velocity, double *traction) const;
 
     /** w (t.u + eta u.u / 2): share of an interior penalty bond in the energy. */
     double bond_energy(const std::size_t point, const double *jump,
@@ -58,6 +64,10 @@ namespace nsfd
     }
 
   private:
+    void set_bonds();
+    void mean(const Block BodyClass::*traction, const double *motion,
+              double *result) const;
+
     const Dynamics<dim> &dynamics_;
     std::vector<Bond> bonds_; ///< per point
     mutable std::vector<double> side_1_, side_2_;

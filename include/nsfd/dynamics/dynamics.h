@@ -13,7 +13,8 @@ namespace nsfd
 
   /**
    * The bodies seen from the faces: H, M_hat^{-1} and W = H M_hat^{-1} H^T,
-   * with M_hat = M + h^2 theta^2 K block diagonal by body. Vectors over points
+   * with M_hat = M + h^2 theta^2 K, and + h theta C where bodies are viscous,
+   * block diagonal by body. Vectors over points
    * are in the local frames, dim entries per point; vectors over bodies have
    * Bodies::n_dofs() entries.
    *
@@ -64,7 +65,8 @@ namespace nsfd
     {
       mass,
       stiffness,
-      inverse ///< M_hat^{-1}
+      inverse, ///< M_hat^{-1}
+      damping  ///< of viscous bodies
     };
     /** y = A x. */
     virtual void apply(Operator op, const double *x, double *y) const;
@@ -147,6 +149,26 @@ namespace nsfd
     /** theta of M_hat = M + h^2 theta^2 K; that of the positions may differ. */
     double bulk_theta() const { return theta_; }
 
+    /**
+     * Bodies are viscous, and h @p theta C is a part of M_hat from the next
+     * reinit() on: theta is that of the velocity whose power is dissipated.
+     */
+    void set_viscous_theta(const double theta)
+    {
+      if (theta != viscous_theta_)
+        time_step_ = 0.; // another M_hat
+      viscous_theta_ = theta;
+    }
+    double viscous_theta() const { return viscous_theta_; }
+    bool is_viscous() const { return viscous_theta_ > 0.; }
+
+    /** What M_hat of a step consists of. */
+    StepShares shares(const double time_step, const double theta) const
+    {
+      return {time_step * time_step * theta * theta,
+              time_step * viscous_theta_};
+    }
+
     const InterfacePoints<dim> &points() const { return points_; }
     const Bodies &bodies() const { return bodies_; }
     const Communicator &communicator() const { return communicator_; }
@@ -209,7 +231,8 @@ namespace nsfd
     const InterfacePoints<dim> &points_;
     BodyOrder order_;
     double time_step_ = 0., theta_ = 0.;
-    /// of the stiffness of the bodies that the blocks below are built with
+    /// of stiffness and damping of the bodies that the blocks below are built
+    /// with
     double stiffness_share_ = 1.;
     std::vector<ClassBlocks> blocks_;
     std::vector<double> face_blocks_;
@@ -227,6 +250,7 @@ namespace nsfd
 
   private:
     mutable NeighborMessages<double> messages_;
+    double viscous_theta_ = 0.; ///< 0: nothing is viscous
   };
 
   /**

@@ -85,7 +85,8 @@ namespace nsfd
     linear_elastic,
     rigid,
     saint_venant_kirchhoff, ///< finite strain
-    neo_hookean             ///< finite strain, compressible
+    neo_hookean,            ///< finite strain, compressible
+    transversely_isotropic  ///< small strain
   };
 
   /** As a parameter file writes it: "neo-hookean". */
@@ -112,6 +113,22 @@ namespace nsfd
     std::optional<std::array<double, 3>> inertia;
   };
 
+  /** Small strain, the same in all directions across an axis. */
+  struct TransverseInput
+  {
+    std::array<double, 3> axis{{1., 0., 0.}}; ///< of length 1
+    double axial_young = 0., transverse_young = 0.;
+    double axial_poisson = 0.; ///< contraction across over extension along
+    double transverse_poisson = 0.; ///< both across the axis
+    double axial_shear = 0.;
+  };
+
+  /** Constants that differ from place to place, of x, y, z. */
+  struct GradedInput
+  {
+    Expression young, poisson, density;
+  };
+
   struct MaterialInput
   {
     std::string name;
@@ -119,7 +136,17 @@ namespace nsfd
     BulkModel model = BulkModel::linear_elastic;
     bool rigid = false; ///< model = rigid
     RigidInput rigid_bodies;
+    /// not a number where there is no such constant: of what is graded, and E
+    /// and nu of transversely isotropic materials
     double young = 0., poisson = 0., density = 0.;
+    std::optional<GradedInput> graded; ///< if one of them depends on the place
+    std::optional<TransverseInput> transverse;
+    /// eta, zeta in Pa s of the stress 2 eta dev(rate) + zeta tr(rate) 1
+    double shear_viscosity = 0., bulk_viscosity = 0.;
+    bool is_viscous() const
+    {
+      return shear_viscosity > 0. || bulk_viscosity > 0.;
+    }
     /// per component, expressions of x, y, z (t = 0); default 0
     std::array<Expression, 3> initial_displacement, initial_velocity;
     std::array<Expression, 3> body_force; ///< N/m^3, of x, y, z, t
@@ -383,6 +410,14 @@ namespace nsfd
     std::optional<StaticInput> statics;
     /// only if the mesh follows the motion
     std::optional<AdaptivityInput> adaptivity;
+    bool has_viscous_bodies() const
+    {
+      for (const auto &material : materials)
+        if (material.is_viscous())
+          return true;
+      return false;
+    }
+
     bool has_bonded_faces() const
     {
       for (const auto &block : interfaces)

@@ -58,6 +58,18 @@ namespace nsfd
     std::array<unsigned int, 2> bodies, faces;
   };
 
+  /** Over all places of a material, in the units of the scene. */
+  struct MaterialExtremes
+  {
+    struct Moduli
+    {
+      double young = 0., poisson = 0.;
+    };
+    Moduli stiffest, softest; ///< places or directions
+    double fastest = 0., slowest = 0.; ///< speeds of plane waves
+    double densest = 0.;
+  };
+
   /**
    * The cells of this rank as bodies, and the points on their faces: matrices,
    * traces, frames, weights. Straight-sided cells; cells of the same shape and
@@ -153,9 +165,23 @@ namespace nsfd
     void visit_quadrature(const std::vector<double> &nodal,
                           const Visitor &visit) const;
 
-    /** Stress xx, yy, zz, xy, xz, yz from a displacement gradient. */
+    /** Stress xx, yy, zz, xy, xz, yz from a displacement gradient at @p x. */
     std::array<double, 6> stress(unsigned int body,
+                                 const dealii::Point<dim> &x,
                                  const double *gradient) const;
+
+    /** What a velocity gradient adds to it in a viscous material. */
+    std::array<double, 6> viscous_stress(unsigned int body,
+                                         const double *rate) const;
+    bool is_viscous() const;
+
+    /** The sum of both at every quadrature point of every cell of this rank. */
+    using StressVisitor = std::function<void(
+        unsigned int body, const dealii::Point<dim> &position, double JxW,
+        const std::array<double, 6> &stress)>;
+    void visit_stress(const std::vector<double> &displacement,
+                      const std::vector<double> &velocity,
+                      const StressVisitor &visit) const;
 
     /** Corners of a cell in deal.II's order, and values of a nodal vector. */
     std::vector<dealii::Point<dim>> corners(unsigned int body) const;
@@ -169,9 +195,23 @@ namespace nsfd
     unsigned long long n_global_cells() const { return n_global_cells_; }
     bool simplices() const;
 
-    /** c_p of a material, and the shortest crossing time over all cells. */
-    double pressure_wave_speed(unsigned int material) const;
-    double shear_wave_speed(unsigned int material) const;
+    /** Of a material, and of the cell of a body alone. */
+    const MaterialExtremes &extremes(const unsigned int material) const
+    {
+      return extremes_[material];
+    }
+    const MaterialExtremes &extremes_of(unsigned int body) const;
+
+    /** Speeds of the fastest and the slowest plane waves in a material. */
+    double pressure_wave_speed(const unsigned int material) const
+    {
+      return extremes_[material].fastest;
+    }
+    double shear_wave_speed(const unsigned int material) const
+    {
+      return extremes_[material].slowest;
+    }
+    /** The shortest crossing time of the fastest wave over all cells. */
     double crossing_time() const { return crossing_time_; }
     double cell_size() const { return cell_size_; }
     /** Diagonal of the bounding box: a length that no mesh changes. */
@@ -195,5 +235,6 @@ namespace nsfd
     unsigned long long n_global_cells_ = 0;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;
     std::vector<unsigned int> driven_;
+    std::vector<MaterialExtremes> extremes_; ///< by material
   };
 } // namespace nsfd

@@ -42,7 +42,7 @@ namespace nsfd
   {
     time_step_ = time_step;
     theta_ = theta;
-    bulk_share_ = time_step * time_step * theta * theta;
+    shares_ = dynamics_.shares(time_step, theta);
     fill_bodies();
     find_impedance();
   }
@@ -349,7 +349,12 @@ namespace nsfd
     dynamics_.apply(Dynamics<dim>::Operator::stiffness, x.data(),
                     work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)
-      y[k] += bulk_share_ * work_[k];
+      y[k] += shares_.stiffness * work_[k];
+    if (!dynamics_.is_viscous())
+      return;
+    dynamics_.apply(Dynamics<dim>::Operator::damping, x.data(), work_.data());
+    for (std::size_t k = 0; k < x.size(); ++k)
+      y[k] += shares_.damping * work_[k];
   }
 
   template class BodySystem<2>;

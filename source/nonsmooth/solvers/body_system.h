@@ -83,8 +83,7 @@ namespace nsfd
     double matrix_entry(const BodyClass &body, unsigned int i,
                         unsigned int j) const
     {
-      return body.mass(i, j) +
-             (body.rigid ? 0. : bulk_share_ * body.stiffness(i, j));
+      return step_entry(body, shares_, i, j);
     }
     void assemble(const Vector &S);
     bool factorise_symmetric();
@@ -92,7 +91,8 @@ namespace nsfd
     bool iterates_in_vain(unsigned int iterations);
 
     const Dynamics<dim> &dynamics_;
-    double time_step_, theta_, bulk_share_;
+    double time_step_, theta_;
+    StepShares shares_ = {0.};
     const long long largest_factor_;
     std::vector<FaceRows> faces_;
     std::vector<std::vector<int>> entries_; // of a face, dofs x dofs, row-major

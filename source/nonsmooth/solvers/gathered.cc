@@ -78,6 +78,7 @@ namespace nsfd
         package.put(body.material);
         package.put(body.mass);
         package.put(body.stiffness);
+        package.put(body.damping);
         package.put(body.trace);
         package.put(body.rigid_motions);
       }
@@ -129,6 +130,7 @@ namespace nsfd
     : communicator_(dynamics.communicator())
     , n_points_(dynamics.points().n_points)
     , n_owned_(dynamics.points().n_owned)
+    , viscous_theta_(dynamics.viscous_theta())
     , alone_(MPI_COMM_SELF)
   {
     const auto mine = pack<dim>(dynamics.bodies(), dynamics.points());
@@ -145,6 +147,7 @@ namespace nsfd
                             all.begin() + bytes.first[r + 1]);
     build(packages);
     dynamics_ = make_elementwise_dynamics<dim>(alone_, bodies_, points_);
+    dynamics_->set_viscous_theta(viscous_theta_);
   }
 
   template <int dim>
@@ -165,6 +168,7 @@ namespace nsfd
         package.get(body.material);
         package.get(body.mass);
         package.get(body.stiffness);
+        package.get(body.damping);
         package.get(body.trace);
         package.get(body.rigid_motions);
       }

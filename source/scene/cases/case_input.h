@@ -111,6 +111,7 @@ namespace nsfd::cases
       demand(!material.rigid && material.young == first.young &&
                  material.density == first.density,
              "a bar is elastic, with one modulus and one density");
+      demand(!material.is_viscous(), "the bar must not be viscous");
       demand(material.poisson == 0.,
              "waves in a bar are exact for `Poisson ratio = 0` only");
     }
