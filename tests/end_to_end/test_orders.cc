@@ -107,6 +107,88 @@ namespace end_to_end
     }
   }
 
+  // Waves along the axis of a transversely isotropic body, across it and
+  // oblique, of both polarisations: speeds by hand, order p + 1 in space.
+  TEST(OrdersTest, WavesOfATransverselyIsotropicBody)
+  {
+    const Workspace workspace;
+    struct Row {
+      std::string name, axis, wave;
+      double speed; // m/s: roots of Christoffel's matrix over the density
+    };
+    for (const Row &row : {Row{"along", "1, 0, 0", "fast", 9465.43263},
+                           Row{"across", "0, 1, 0", "fast", 2823.64863},
+                           Row{"shear", "1, 0, 0", "slow", 1767.76695},
+                           Row{"oblique", "sqrt(3), 1, 0", "fast", 8252.62085},
+                           Row{"slow", "sqrt(3), 1, 0", "slow", 2051.41614}})
+      for (const unsigned int degree : {1u, 2u}) {
+        const auto error = [&](const unsigned int n) {
+          const Result result =
+              good_run(workspace,
+                       row.name + std::to_string(degree) + std::to_string(n),
+                       {scene("transverse_wave"),
+                        {"Material: laminate/axis=" + row.axis,
+                         "Verification/wave=" + row.wave,
+                         "Discretization/degree=" + std::to_string(degree),
+                         "Constants/n=" + std::to_string(n),
+                         "Time/end=" + std::to_string(1.125e6 / row.speed) + " us",
+                         "Time/step=" + std::to_string(1e6 / row.speed / 1600.) +
+                             " us",
+                         "Output/fields=false"}});
+          EXPECT_NEAR(result.error("exact_speed"), row.speed,
+                      1e-7 * row.speed);
+          return result.error("displacement_L2");
+        };
+        const double coarse = error(8), fine = error(16);
+        std::printf("  %s, p = %u: %.2e %.2e, order %.2f\n", row.name.c_str(),
+                    degree, coarse, fine, rate(coarse, fine));
+        EXPECT_GT(rate(coarse, fine), degree + 0.8);
+      }
+  }
+
+  TEST(OrdersTest, StepOfADampedWave)
+  {
+    const Workspace workspace;
+    for (const std::string law : {"rigid", "bonded"})
+      for (const auto &[theta, order] :
+           {std::pair("0.5", 2.), std::pair("1", 1.)}) {
+        const auto error = [&, theta = theta](const std::string &step) {
+          return good_run(workspace, law + theta + step,
+                          {scene("damped_wave"),
+                           {"Discretization/degree=4", "Constants/n=8",
+                            std::string("Time/theta=") + theta,
+                            "Time/step=" + step + " us",
+                            "Interface: all/law=" + law,
+                            "Output/fields=false"}})
+              .error("displacement_L2");
+        };
+        const double coarse = error("5"), fine = error("2.5");
+        std::printf("  %s, theta = %s: %.2e %.2e, order %.2f\n", law.c_str(),
+                    theta, coarse, fine, rate(coarse, fine));
+        EXPECT_NEAR(rate(coarse, fine), order, 0.15);
+      }
+  }
+
+  TEST(OrdersTest, GradedModulus)
+  {
+    const Workspace workspace;
+    for (const unsigned int degree : {1u, 2u, 3u}) {
+      const auto error = [&](const unsigned int n) {
+        return good_run(workspace,
+                        std::to_string(degree) + "_" + std::to_string(n),
+                        {scene("graded_bar"),
+                         {"Discretization/degree=" + std::to_string(degree),
+                          "Constants/n=" + std::to_string(n),
+                          "Output/fields=false"}})
+            .error("displacement_L2");
+      };
+      const double coarse = error(4), fine = error(8);
+      std::printf("  p = %u: %.2e %.2e, order %.2f\n", degree, coarse, fine,
+                  rate(coarse, fine));
+      EXPECT_NEAR(rate(coarse, fine), degree + 1., 0.15);
+    }
+  }
+
   TEST(OrdersTest, TimeStep)
   {
     const Workspace workspace;
