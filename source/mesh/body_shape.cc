@@ -135,15 +135,21 @@ namespace nsfd
                          body.traction);
     }
     if (input.is_viscous()) {
-      std::vector<LinearElasticity<dim>> viscosity = {
+      const std::vector<LinearElasticity<dim>> viscosity = {
           LinearElasticity<dim>::viscous(input)};
       body.damping = stiffness(shape, viscosity);
       if (input_.has_bonded_faces()) {
-        auto definite = viscosity; // for the bound: with a little shear
-        definite[0].mu = std::max(viscosity[0].mu, 0x1p-20 * input.bulk_viscosity);
+        // the bound needs a definite block: a little of what is not there
+        MaterialInput definite = input;
+        definite.shear_viscosity =
+            std::max(input.shear_viscosity, 0x1p-20 * input.bulk_viscosity);
+        definite.bulk_viscosity =
+            std::max(input.bulk_viscosity, 0x1p-20 * input.shear_viscosity);
         body.viscous_bound =
-            set_traction(shape, body, viscosity, stiffness(shape, definite),
-                         body.viscous_traction);
+            set_traction(
+                shape, body, viscosity,
+                stiffness(shape, {LinearElasticity<dim>::viscous(definite)}),
+                body.viscous_traction);
       }
     }
   }

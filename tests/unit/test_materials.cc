@@ -244,7 +244,7 @@ end
           });
       Vector C(rigid_motion.size()), work(C.size());
       scene.dynamics->apply(Operator::damping, rigid_motion.data(), C.data());
-      EXPECT_LT(largest(C), 1e-13);
+      const double of_rigid_motion = largest(C);
       Vector v(C.size()), sum(C.size());
       for (std::size_t i = 0; i < v.size(); ++i)
         v[i] = std::sin(1. + 12.9898 * double(i));
@@ -252,6 +252,7 @@ end
       scene.dynamics->apply(Operator::mass, v.data(), sum.data());
       scene.dynamics->apply(Operator::stiffness, v.data(), work.data());
       scene.dynamics->apply(Operator::damping, v.data(), C.data());
+      EXPECT_LT(of_rigid_motion, 1e-13 * largest(C)); // of a motion of size 1
       double power = 0., own = 0.;
       for (std::size_t i = 0; i < v.size(); ++i) {
         sum[i] += h * h * theta * theta * work[i] + h * theta * C[i];
@@ -400,7 +401,7 @@ subsection Material: block
   set transverse Poisson ratio = 0.4
   set axial shear modulus      = 0.4
   set density                  = 1 + x / 4
-  set shear viscosity          = 0.1
+  set VISCOSITY viscosity      = 0.1
   set initial velocity x       = y * z
 end
 subsection Interface: all
@@ -411,14 +412,17 @@ subsection Time
   set step = 0.5 crossings
 end
 )";
-    for (const std::string law : {"rigid", "bonded"}) {
+    for (const auto &[law, viscosity] :
+         {std::pair("rigid", "shear"), std::pair("bonded", "shear"),
+          std::pair("bonded", "bulk")}) {
       std::string all = block;
       all.replace(all.find("LAW"), 3, law);
+      all.replace(all.find("VISCOSITY"), 9, viscosity);
       Scene<3> scene(all);
       for (unsigned int k = 0; k < 10; ++k)
         scene.advance();
       EXPECT_LT(defect(scene), 1e-9);
-      EXPECT_GT(scene.state.energy.viscous, 1e-3 * scene.state.initial_energy);
+      EXPECT_GT(scene.state.energy.viscous, 1e-4 * scene.state.initial_energy);
       EXPECT_GT(scene.state.energy.elastic, 0.);
     }
   }
