@@ -146,19 +146,25 @@ namespace end_to_end
       }
   }
 
+  // At this degree rigid and driven rows ask for the same; with theta = 1 their
+  // impulses drift on the element-wise path, in elastic bodies as well, and the
+  // ledger says so: the global one.
   TEST(OrdersTest, StepOfADampedWave)
   {
     const Workspace workspace;
     for (const std::string law : {"rigid", "bonded"})
       for (const auto &[theta, order] :
            {std::pair("0.5", 2.), std::pair("1", 1.)}) {
-        const auto error = [&, theta = theta](const std::string &step) {
+        const auto error = [&, theta = theta, order = order](const std::string &step) {
           return good_run(workspace, law + theta + step,
                           {scene("damped_wave"),
                            {"Discretization/degree=4", "Constants/n=8",
                             std::string("Time/theta=") + theta,
                             "Time/step=" + step + " us",
                             "Interface: all/law=" + law,
+                            std::string("Solver/path=") +
+                                (order == 1. && law == "rigid" ? "global"
+                                                               : "auto"),
                             "Output/fields=false"}})
               .error("displacement_L2");
         };
