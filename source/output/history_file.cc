@@ -1,90 +1,81 @@
 #include "nsfd/output/history_file.h"
 
-#include <fmt/format.h>
-
-#include <sstream>
-#include <stdexcept>
-
 namespace nsfd
 {
   namespace
   {
-    /** A column name as CSV wants it: quoted only where it must be. */
-    std::string csv_name(const std::string &name)
+    const std::vector<std::string> fixed_columns = {
+        "step",    "time",      "time_step", "kinetic",       "elastic",
+        "cohesive", "damage",   "friction",  "viscous",       "plastic",
+        "impact",  "numerical", "work",      "ledger_defect", "broken_area",
+        "fragments", "active",  "newton",    "krylov",        "residual"};
+
+    std::vector<std::string> columns(const std::vector<std::string> &driven,
+                                     const unsigned int dimension)
     {
-      if (name.find_first_of(",\"\r\n") == std::string::npos)
-        return name;
-      std::string quoted = "\"";
-      for (const char c : name)
-        quoted += c == '"' ? "\"\"" : std::string(1, c);
-      return quoted + '"';
+      auto result = fixed_columns;
+      for (const auto &name : driven)
+        for (unsigned int d = 0; d < dimension; ++d)
+          result.push_back("reaction_" + name + '_' + "xyz"[d]);
+      return result;
     }
   } // namespace
 
   std::string HistoryFile::header(const std::vector<std::string> &driven,
                                   const unsigned int dimension)
   {
-    std::string line =
-        "step,time,time_step,kinetic,elastic,cohesive,damage,friction,viscous,"
-        "plastic,impact,numerical,work,ledger_defect,broken_area,fragments,"
-        "active,newton,krylov,residual";
-    for (const auto &name : driven)
-      for (unsigned int d = 0; d < dimension; ++d)
-        line += ',' + csv_name("reaction_" + name + '_' + "xyz"[d]);
-    return line;
+    return TableFile::header(columns(driven, dimension));
   }
 
   HistoryFile::HistoryFile(const std::string &path,
                            const std::vector<std::string> &driven,
                            const unsigned int dimension)
-      : n_reactions_(driven.size() * dimension),
-        file_(path, header(driven, dimension))
+      : file_(path, columns(driven, dimension))
   {
-  }
-
-  void HistoryFile::write(const HistoryRow &row)
-  {
-    if (row.reactions.size() != n_reactions_)
-      throw std::logic_error(
-          fmt::format("A row of '{}' has {} reaction columns, not {}.",
-                      file_.path(), n_reactions_, row.reactions.size()));
-
-    const EnergyLines &e = row.energy;
-    std::string line = fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", row.step,
-        row.time, row.time_step, e.kinetic, e.elastic, e.cohesive, e.damage,
-        e.friction, e.viscous, e.plastic, e.impact, e.numerical, e.work,
-        row.ledger_defect, row.broken_area, row.fragments, row.active,
-        row.newton, row.krylov, row.residual);
-    for (const double reaction : row.reactions)
-      line += fmt::format(",{}", reaction);
-    file_.write(line);
   }
 
   HistoryFile::HistoryFile(const std::string &path,
                            const std::vector<std::string> &driven,
                            const unsigned int dimension,
                            const std::uintmax_t n_bytes)
-      : n_reactions_(driven.size() * dimension), file_(path, n_bytes)
+      : file_(path, columns(driven, dimension), n_bytes)
   {
+  }
+
+  void HistoryFile::write(const HistoryRow &row)
+  {
+    const EnergyLines &e = row.energy;
+    std::vector<double> line = {double(row.step),
+                                row.time,
+                                row.time_step,
+                                e.kinetic,
+                                e.elastic,
+                                e.cohesive,
+                                e.damage,
+                                e.friction,
+                                e.viscous,
+                                e.plastic,
+                                e.impact,
+                                e.numerical,
+                                e.work,
+                                row.ledger_defect,
+                                row.broken_area,
+                                double(row.fragments),
+                                double(row.active),
+                                double(row.newton),
+                                double(row.krylov),
+                                row.residual};
+    line.insert(line.end(), row.reactions.begin(), row.reactions.end());
+    file_.write(line);
   }
 
   std::vector<HistoryRow> HistoryFile::read(const std::string &path,
                                             const std::size_t n_reactions,
                                             const std::uintmax_t n_bytes)
   {
-    constexpr std::size_t n_fixed = 20;
-    const std::string text = read_rows(path, n_bytes);
-    std::istringstream lines(text);
-    std::string line;
-    std::getline(lines, line); // the header
+    const std::size_t n_fixed = fixed_columns.size();
     std::vector<HistoryRow> rows;
-    while (std::getline(lines, line)) {
-      const auto x = numbers_of(line, n_fixed + n_reactions);
-      if (x.empty() || text.back() != '\n')
-        throw std::runtime_error(fmt::format(
-            "'{}', line {}, is not what it was at the checkpoint", path,
-            rows.size() + 2));
+    for (const auto &x : TableFile::read(path, n_fixed + n_reactions, n_bytes)) {
       HistoryRow &row = rows.emplace_back();
       row.step = unsigned(x[0]);
       row.time = x[1];
@@ -98,7 +89,7 @@ namespace nsfd
       row.newton = unsigned(x[17]);
       row.krylov = unsigned(x[18]);
       row.residual = x[19];
-      row.reactions.assign(x.begin() + n_fixed, x.end());
+      row.reactions.assign(x.begin() + long(n_fixed), x.end());
     }
     return rows;
   }

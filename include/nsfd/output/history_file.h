@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/output/row_file.h"
 #include "nsfd/output/run_record.h"
+#include "nsfd/output/table_file.h"
 
 #include <cstdint>
 #include <string>
@@ -9,11 +9,7 @@
 
 namespace nsfd
 {
-  /**
-   * history.csv: one row per accepted step, on disk as soon as it is written.
-   * Numbers are the shortest that read back to the same double. Throws
-   * std::runtime_error when the file cannot be written.
-   */
+  /** history.csv: one row per accepted step, a table of numbers. */
   class HistoryFile
   {
   public:
@@ -45,7 +41,6 @@ namespace nsfd
                               unsigned int dimension);
 
   private:
-    std::size_t n_reactions_;
-    RowFile file_;
+    TableFile file_;
   };
 } // namespace nsfd
