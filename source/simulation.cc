@@ -17,6 +17,7 @@
 #include "nsfd/output/run_output.h"
 #include "nsfd/scene/case_observer.h"
 #include "nsfd/scene/check.h"
+#include "nsfd/scene/observers.h"
 #include "nsfd/time/remember_state.h"
 #include "nsfd/time/smooth_motion.h"
 
@@ -64,8 +65,11 @@ namespace nsfd
       bool advance(State &next, std::string &failure);
       bool advance_load(State &next, std::string &failure);
       void accept(State &next, const StepReport &report, double time_step);
+      void observe(const State *previous, const HistoryRow &row);
+      void write_if_due(bool last = false);
+      bool find_observables();
       const std::vector<double> &reactions() const;
-      void record(const StepReport &report, double time_step);
+      HistoryRow record(const StepReport &report, double time_step);
       void finish(const std::string &failure);
       RunTotals totals() const;
       void fill_counters(std::map<std::string, double> &counters) const;
@@ -76,6 +80,7 @@ namespace nsfd
       const Communicator &communicator_;
       Model<dim> model_;
       std::unique_ptr<CaseObserver<dim>> observer_;
+      std::unique_ptr<Observers<dim>> observers_; ///< or null
       std::unique_ptr<Fragments<dim>> fragments_;
       std::unique_ptr<RunOutput<dim>> output_;
       std::unique_ptr<StaticRun<dim>> static_run_; ///< or null
@@ -143,6 +148,8 @@ namespace nsfd
         state_ = found ? adaptive_->restore(stored_cells(*found, communicator_))
                        : adaptive_->start();
         describe_mesh();
+        if (!find_observables())
+          return exit_code::bad_input;
       } else
         state_ = model_.stepper->initial_state();
       fragments_ = std::make_unique<Fragments<dim>>(*model_.discretization,
@@ -191,6 +198,8 @@ namespace nsfd
           if (!found.same_steps)
             renew_control();
           output_->remember(archive); // the first to touch a file
+          if (observers_)
+            observers_->remember(archive);
         });
       } catch (const BadCheckpoint &error) {
         if (communicator_.is_root())
@@ -268,6 +277,8 @@ namespace nsfd
         remember_state(archive);
         remember_parts(archive, true);
         output_->remember(archive);
+        if (observers_)
+          observers_->remember(archive);
       });
       if (!failure.empty())
         print_problems(communicator_, input_, "warning",
@@ -334,6 +345,12 @@ namespace nsfd
       if (!model_.build(input_, communicator_))
         return false;
       describe_mesh();
+      if (!input_.observables.empty()) {
+        observers_ = std::make_unique<Observers<dim>>(
+            input_, *model_.discretization, communicator_);
+        if (!find_observables())
+          return false;
+      }
       if (!input_.verification)
         return true;
       try {
@@ -345,6 +362,21 @@ namespace nsfd
       observer_ = std::make_unique<CaseObserver<dim>>(
           *input_.verification, input_.time, *model_.discretization,
           communicator_);
+      return true;
+    }
+
+    /** What the observables look at; false if it is not there. */
+    template <int dim>
+    bool Simulation<dim>::find_observables()
+    {
+      if (!observers_)
+        return true;
+      try {
+        observers_->find(*model_.triangulation, *model_.groups);
+      } catch (const std::runtime_error &error) {
+        print_problems(communicator_, input_, "error", {error.what()});
+        return false;
+      }
       return true;
     }
 
@@ -383,6 +415,8 @@ namespace nsfd
       checkpoints_->mesh_changed();
       if (observer_)
         observer_->mesh_changed(at_start);
+      if (observers_)
+        observers_->find(*model_.triangulation, *model_.groups);
       return true;
     }
 
@@ -402,6 +436,8 @@ namespace nsfd
                                 model_.moving.get(),
                                 model_.stepper->initial_state()),
             communicator_, options_.resume));
+      if (observers_ && !options_.resume)
+        observers_->start_files();
       checkpoints_ = std::make_unique<Checkpoints<dim>>(
           input_, options_, *model_.discretization, communicator_);
       if (communicator_.is_root() && !options_.quiet)
@@ -414,14 +450,32 @@ namespace nsfd
     void Simulation<dim>::start()
     {
       last_step_ = model_.control->step();
-      output_->write_if_due(state_, last_step_, *fragments_);
+      write_if_due();
       HistoryRow row;
       row.energy = state_.energy;
       row.fragments = fragments_->count();
       row.reactions = reactions();
       output_->start(row);
+      observe(nullptr, row);
+    }
+
+    /** Observables first: cases may look at them. */
+    template <int dim>
+    void Simulation<dim>::observe(const State *previous, const HistoryRow &row)
+    {
+      if (observers_)
+        observers_->observe(state_, previous, row);
       if (observer_)
-        observer_->observe(state_, row);
+        observer_->observe(state_, row,
+                           observers_ ? &observers_->records() : nullptr);
+    }
+
+    template <int dim>
+    void Simulation<dim>::write_if_due(const bool last)
+    {
+      if (output_->write_if_due(state_, last_step_, *fragments_, last) &&
+          observers_)
+        observers_->write_profiles(state_, last_step_);
     }
 
     template <int dim>
@@ -576,15 +630,16 @@ namespace nsfd
       last_step_ = h;
       const Charge charge(Cost::output);
       fragments_->update(state_);
-      record(report, h);
-      output_->write_if_due(state_, h, *fragments_);
+      const HistoryRow row = record(report, h);
+      observe(&next, row); // the state before the step
+      write_if_due();
       if (checkpoints_->is_due(state_.step))
         store();
     }
 
     template <int dim>
-    void Simulation<dim>::record(const StepReport &report,
-                                 const double time_step)
+    HistoryRow Simulation<dim>::record(const StepReport &report,
+                                       const double time_step)
     {
       beyond_unique_ += report.beyond_unique;
       released_ += report.released;
@@ -612,15 +667,14 @@ namespace nsfd
           std::max(summary_.ledger_defect_max, row.ledger_defect);
       summary_.residual_max = std::max(summary_.residual_max, row.residual);
       output_->record(row);
-      if (observer_)
-        observer_->observe(state_, row);
+      return row;
     }
 
     template <int dim>
     void Simulation<dim>::finish(const std::string &failure)
     {
       const Charge charge(Cost::output);
-      output_->write_if_due(state_, last_step_, *fragments_, true);
+      write_if_due(true);
       output_->end_progress();
       auto &s = summary_;
       s.completed = failure.empty();
@@ -645,6 +699,8 @@ namespace nsfd
       s.penetration_bound = communicator_.max(bound);
       if (observer_)
         observer_->finish(state_, s.errors);
+      if (observers_)
+        s.observables = observers_->records();
       RunTotals sums = totals();
       earlier_.add_to(sums);
       s.counters = sums.counters;

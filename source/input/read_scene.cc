@@ -3,6 +3,7 @@
 #include "nsfd/adapt/indicator.h"
 #include "nsfd/interface/cohesive_law.h"
 #include "nsfd/mesh/mesh_types.h"
+#include "nsfd/scene/observable.h"
 #include "nsfd/scene/verification_case.h"
 #include "nsfd/stored/contact_solver.h"
 #include "read_sections.h"
@@ -20,7 +21,8 @@ namespace nsfd
         "Output", "Verification",   "Adaptivity",   "Constants"};
     const std::vector<std::string> block_kinds = {
         "Body",     "Material", "Interface", "Boundary",
-        "Obstacle", "Contact",  "Pin",       "Indicator"};
+        "Obstacle", "Contact",  "Pin",       "Indicator",
+        "Observable"};
     /// of a study, which reads them itself, see study/study_input.h
     const std::vector<std::string> study_kinds = {"Study", "Vary"};
 
@@ -71,7 +73,7 @@ namespace nsfd
                   "Output, Verification, Adaptivity, Constants, and "
                   "Body: ..., Material: ..., Interface: ..., "
                   "Boundary: ..., Obstacle: ..., Contact: ..., Pin: ..., "
-                  "Indicator: ..."
+                  "Indicator: ..., Observable: ..."
                 : fmt::format("did you mean `{}{}`?", nearest,
                               contains(block_kinds, nearest)
                                   ? ": " + (section.block_name().empty()
@@ -155,6 +157,7 @@ namespace nsfd
       read_output(file, errors, *scene);
       read_verification(file, errors, *scene);
       read_adaptivity(file, errors, *scene);
+      read_observables(file, errors, *scene);
       file.report_stray(errors);
       if (errors.has_errors())
         return nullptr;
@@ -202,6 +205,7 @@ namespace nsfd
     append_registered("cohesive law", CohesiveLawRegistry::instance());
     append_registered("verification case", VerificationRegistry::instance());
     append_registered("indicator", IndicatorRegistry::instance());
+    append_registered("observable", ObservableRegistry::instance());
     append("mesh", mesh_types());
     append("solver", known_solvers());
     append_registered("solver of stored problems",

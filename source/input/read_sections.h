@@ -69,6 +69,10 @@ namespace nsfd
   void read_adaptivity(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene);
 
+  /** Observable blocks. */
+  void read_observables(ParameterFile &file, InputErrors &errors,
+                        SceneInput &scene);
+
   /** What a `where` picks. */
   enum class WhereUse { cells, interior_faces, boundary_faces };
 

@@ -295,6 +295,49 @@ namespace nsfd
                           engineering(report.summary.final_time, "s", 4));
     }
 
+    /** Columns of one unit share a chart. */
+    std::string charts_of(const ObservableRecord &record, Figures &figures)
+    {
+      std::string html;
+      std::vector<bool> drawn(record.columns.size(), false);
+      unsigned int number = 0;
+      for (std::size_t first = 0; first < drawn.size(); ++first) {
+        if (drawn[first])
+          continue;
+        const std::string &unit = record.columns[first].unit;
+        LineChart chart(record.name + ": " + record.type, {"time", "s"},
+                        {"", unit});
+        std::vector<double> time;
+        for (const auto &row : record.rows)
+          time.push_back(row[0]);
+        unsigned int n_lines = 0;
+        for (std::size_t k = first; k < drawn.size(); ++k) {
+          if (record.columns[k].unit != unit)
+            continue;
+          drawn[k] = true;
+          std::vector<double> values;
+          for (const auto &row : record.rows)
+            values.push_back(row[1 + k]);
+          chart.add_line(record.columns[k].name, time, values,
+                         LineChart::palette(n_lines), n_lines >= 8);
+          ++n_lines;
+        }
+        html += figures.figure({fmt::format("observable_{}_{}", record.name,
+                                            ++number),
+                                chart});
+      }
+      return html;
+    }
+
+    std::string observables(const Report &report, Figures &figures)
+    {
+      std::string html;
+      for (const ObservableRecord &record : report.summary.observables)
+        if (!record.rows.empty())
+          html += charts_of(record, figures);
+      return html.empty() ? "" : section("Observables", row_of(html));
+    }
+
     std::string how_it_was_run(const Report &report)
     {
       const RunInfo &info = report.info;
@@ -362,6 +405,7 @@ namespace nsfd
     curves += figures.figure(charts.active());
     html += section("Over time", row_of(curves));
 
+    html += observables(report, figures);
     html += section("Balance and solver",
                     columns_of(ledger(report, units, charts.initial_energy()) +
                                figures.figure(charts.accuracy()) +

@@ -48,6 +48,10 @@ namespace nsfd
             "fields.h5", "interfaces.h5"})
         fs::remove(fs::path(directory) / ours, error);
       for (const auto &entry :
+           fs::directory_iterator(fs::path(directory) / "observables", error))
+        if (entry.path().extension() == ".csv")
+          fs::remove(entry.path(), error);
+      for (const auto &entry :
            fs::directory_iterator(fs::path(directory) / "problems", error))
         if (entry.path().extension() == ".hdf5")
           fs::remove(entry.path(), error);
@@ -148,14 +152,15 @@ namespace nsfd
   }
 
   template <int dim>
-  void RunOutput<dim>::write_if_due(const State &state, const double time_step,
+  bool RunOutput<dim>::write_if_due(const State &state, const double time_step,
                                     const Fragments<dim> &fragments,
                                     const bool last)
   {
     const Stopwatch watch(cpu_);
     const auto &output = input_.output;
-    const bool due = last || is_due(state);
-    if (due && !(last && fields_current_)) {
+    const bool due = last || is_due(state),
+               writes = due && !(last && fields_current_);
+    if (writes) {
       charge_memory("vectors of a step and its solver");
       if (output.fields_every > 0.)
         next_fields_ =
@@ -176,6 +181,7 @@ namespace nsfd
     if (last && fragments_) // the rows may be those of a run before this one
       fragments_->measure(state, fragments);
     fields_current_ = due;
+    return writes;
   }
 
   template <int dim>

@@ -110,6 +110,22 @@ namespace nsfd
               {"histogram", {{"edges", all.edges}, {"numbers", all.numbers}}}};
     }
 
+    Json observed(const std::vector<ObservableRecord> &records)
+    {
+      Json json = Json::object();
+      for (const auto &record : records) {
+        Json last = Json::object(), peak = Json::object();
+        for (std::size_t k = 0; k < record.last.size(); ++k)
+          last[record.columns[k].name] = number(record.last[k]);
+        for (std::size_t k = 0; k < record.peak.size(); ++k)
+          peak[record.columns[k].name] = {{"value", number(record.peak[k])},
+                                          {"time", number(record.peak_time[k])}};
+        json[record.name] = {
+            {"type", record.type}, {"last", last}, {"peak", peak}};
+      }
+      return json;
+    }
+
     void write_json(const std::string &path, const Json &json)
     {
       // host names and paths may hold bytes that are no UTF-8
@@ -180,6 +196,8 @@ namespace nsfd
       json["certificate"] = judged(*findings.certificate);
     json["counters"] = numbers(summary.counters);
     json["errors"] = numbers(summary.errors);
+    if (!summary.observables.empty())
+      json["observables"] = observed(summary.observables);
     json["timings"] = numbers(summary.timings);
     json["cost"] = costs(summary.cost);
     write_json(path, json);

@@ -1,13 +1,13 @@
 #include "nsfd/scene/case_observer.h"
 
 #include "../output/gather.h"
+#include "face_pieces.h"
 
 #include "nsfd/base/archive.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <type_traits>
 
 namespace nsfd
@@ -30,51 +30,6 @@ namespace nsfd
         MPI_Bcast(values.data(), int(n), MPI_DOUBLE, 0, communicator.mpi());
       return values;
     }
-
-    /**
-     * The points of a face. In the plane a face is straight, and the pieces
-     * that its points stand for follow each other along it.
-     */
-    template <int dim>
-    std::vector<BrokenPoint>
-    pieces_of(const InterfacePoints<dim> &points,
-              const typename InterfacePoints<dim>::Face &face)
-    {
-      const double *Q = &points.frame[face.first * dim * dim];
-      std::vector<BrokenPoint> pieces(face.count);
-      std::vector<double> place(face.count, 0.); // along the first tangent
-      double length = 0., middle = 0.;
-      for (unsigned int k = 0; k < face.count; ++k) {
-        const std::size_t i = face.first + k;
-        pieces[k].area = points.weight[i];
-        for (unsigned int c = 0; c < dim; ++c) {
-          pieces[k].position[c] = points.position[i * dim + c];
-          pieces[k].normal[c] = Q[c];
-          place[k] += Q[dim + c] * points.position[i * dim + c];
-        }
-        pieces[k].ends = {pieces[k].position, pieces[k].position};
-        length += points.weight[i];
-        middle += points.weight[i] * place[k];
-      }
-      if (dim == 3)
-        return pieces;
-      std::vector<unsigned int> order(face.count);
-      std::iota(order.begin(), order.end(), 0);
-      std::sort(order.begin(), order.end(),
-                [&](const unsigned int a, const unsigned int b) {
-                  return place[a] < place[b];
-                });
-      double begin = middle / length - length / 2.;
-      for (const unsigned int k : order) {
-        const double end = begin + pieces[k].area;
-        for (unsigned int c = 0; c < dim; ++c) {
-          pieces[k].ends[0][c] += (begin - place[k]) * Q[dim + c];
-          pieces[k].ends[1][c] += (end - place[k]) * Q[dim + c];
-        }
-        begin = end;
-      }
-      return pieces;
-    }
   } // namespace
 
   template <int dim>
@@ -95,9 +50,12 @@ namespace nsfd
   }
 
   template <int dim>
-  void CaseObserver<dim>::observe(const State &state, const HistoryRow &row)
+  void
+  CaseObserver<dim>::observe(const State &state, const HistoryRow &row,
+                             const std::vector<ObservableRecord> *observables)
   {
     StepView view;
+    view.observables = observables;
     view.time = state.time;
     view.time_step = row.time_step;
     time_step_ = row.time_step;

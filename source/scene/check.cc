@@ -8,6 +8,7 @@
 #include "nsfd/mesh/mesh_builder.h"
 #include "nsfd/output/certificate.h"
 #include "nsfd/scene/advice.h"
+#include "nsfd/scene/observable.h"
 #include "nsfd/time/moreau_jean.h"
 
 #include <deal.II/fe/fe.h>
@@ -422,6 +423,9 @@ namespace nsfd
       }
       for (const auto &[keyword, sentence] : motion_report(input))
         out << fmt::format("  large      {}: {}\n", keyword, sentence);
+      for (const ObservableInput &block : input.observables)
+        out << fmt::format("  observe    {}: {} {}\n", block.name, block.type,
+                           block.observable->text());
       const double crossing = discretization.crossing_time();
       const StaticInput statics = input.statics.value_or(StaticInput());
       if (statics.steps)

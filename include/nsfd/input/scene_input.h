@@ -23,6 +23,7 @@ namespace nsfd
   struct NamedMesh; // see mesh/named_mesh.h
   class VerificationCase;
   class Indicator; // see adapt/indicator.h
+  class Observable; // see scene/observable.h
 
   /** `where`: all | boundary or material words | a group | a condition. */
   struct Where
@@ -381,6 +382,14 @@ namespace nsfd
     double checkpoint_seconds = 0.;    ///< of wall time; 0: not by time
   };
 
+  /** A block `Observable: name`. */
+  struct ObservableInput
+  {
+    std::string name, type;
+    unsigned int every = 1; ///< accepted steps from row to row
+    std::shared_ptr<Observable> observable;
+  };
+
   struct SceneInput
   {
     std::string file; ///< as given on the command line
@@ -410,6 +419,7 @@ namespace nsfd
     std::optional<StaticInput> statics;
     /// only if the mesh follows the motion
     std::optional<AdaptivityInput> adaptivity;
+    std::vector<ObservableInput> observables;
     bool has_viscous_bodies() const
     {
       for (const auto &material : materials)

@@ -51,8 +51,11 @@ namespace nsfd
     /** An accepted step: history.csv, progress, the curves of the report. */
     void record(const HistoryRow &row);
 
-    /** Fields and pictures if they are due; at the end always. Collective. */
-    void write_if_due(const State &state, double time_step,
+    /**
+     * Fields and pictures if they are due; at the end always. True if this was
+     * a time for them. Collective.
+     */
+    bool write_if_due(const State &state, double time_step,
                       const Fragments<dim> &fragments, bool last = false);
 
     /** Bodies and points are others now; @p start is their state at t = 0. */

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/output/cost_record.h"
+#include "nsfd/output/observable_record.h"
 
 #include <array>
 #include <map>
@@ -65,6 +66,7 @@ namespace nsfd
     /// seconds of CPU by part of the step, in the order to print
     std::vector<std::pair<std::string, double>> timings;
     CostRecord cost;
+    std::vector<ObservableRecord> observables;
   };
 
   /** What run.json says. */

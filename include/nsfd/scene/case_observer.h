@@ -26,8 +26,9 @@ namespace nsfd
                  const Discretization<dim> &discretization,
                  const Communicator &communicator);
 
-    /** Collective. */
-    void observe(const State &state, const HistoryRow &row);
+    /** @p observables: of this step, or null. Collective. */
+    void observe(const State &state, const HistoryRow &row,
+                 const std::vector<ObservableRecord> *observables = nullptr);
 
     /** Bodies and points are others now; @p start is their state at t = 0. */
     void mesh_changed(const State &start);

@@ -38,6 +38,14 @@ namespace nsfd
     /// mean u_N and U_N over the points of the obstacles, m and m/s; only for
     /// cases that ask for them
     double opening = 0., opening_rate = 0.;
+    /// of this step, as far as they are due
+    const std::vector<ObservableRecord> *observables = nullptr;
+
+    /**
+     * The last value of a column of an observable; NaN if there is none yet.
+     * @throws std::runtime_error if the scene has no such observable.
+     */
+    double observed(const std::string &name, const std::string &column) const;
   };
 
   /**
