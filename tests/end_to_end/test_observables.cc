@@ -69,9 +69,10 @@ end
   TEST(Observables, AreTheSameOnAnyNumberOfRanks)
   {
     const Workspace workspace;
-    Launch launch = strip(workspace);
+    Launch launch = with(strip(workspace), {"Mesh/cells=20, 4"});
+    launch.seconds = 240.;
     const Result one = good_run(workspace, "one", launch);
-    for (const unsigned int ranks : {2u, 3u}) {
+    for (const unsigned int ranks : {2u, 4u}) {
       launch.ranks = ranks;
       expect_same_files(one, good_run(workspace, std::to_string(ranks), launch));
     }
@@ -99,8 +100,10 @@ end
                   grip = observed(result, "grip");
     ASSERT_EQ(crack.size(), result.history.size() + 1); // with the start
     for (std::size_t k = 0; k < result.history.size(); ++k) {
-      EXPECT_NEAR(crack["length"][k + 1], result.history["broken_area"][k],
-                  2. + 1e-12) << k;
+      // the history counts what has broken since the start
+      EXPECT_NEAR(crack["length"][k + 1],
+                  2. + result.history["broken_area"][k], 1e-9)
+          << k;
       ASSERT_EQ(crack["step"][k + 1], result.history["step"][k]);
     }
     ASSERT_EQ(grip.size(), 1 + result.history.size() / 3);
