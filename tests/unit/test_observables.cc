@@ -135,13 +135,13 @@ end
     Scene<2> scene(plate);
     const MovingField field{speed};
     const auto &mesh = *scene.discretization;
-    const double h = 1e-6;
+    // by the way of the tip: slow fields are small differences of large ones
+    const double h = 1e-3 / speed, dt = 1e-4 / speed;
     const auto at = [&](const double t, const bool rate) {
       return mesh.interpolate([&](const dealii::Point<2> &x,
                                   const unsigned int body, double *values) {
         const double side = mesh.centre(body)[1];
         const bool inner = mesh.centre(body).norm() < 0.15;
-        const double dt = 1e-5;
         const auto now = field.displacement(x[0], x[1], side, t),
                    later = field.displacement(x[0], x[1], side, t + dt),
                    before = field.displacement(x[0], x[1], side, t - dt);
