@@ -318,6 +318,25 @@ namespace nsfd
       for (unsigned int c = 0; c < 6; ++c)
         terms[(7 + c) * n + k] = weight * stress[c];
     }
+
+    /** Place @p k of a sampler in cell @p b, before it moves. */
+    template <int dim>
+    dealii::Point<dim> rest_place(const Discretization<dim> &discretization,
+                                  const unsigned int b,
+                                  const Sampler<dim> &sampler,
+                                  const unsigned int k)
+    {
+      const auto corner = discretization.corners(b)[0];
+      std::vector<double> nodes;
+      for (const auto &node : discretization.shape(b).nodes)
+        for (unsigned int c = 0; c < dim; ++c)
+          nodes.push_back(corner[c] + node[c]);
+      const auto place = sampler.value(k, nodes.data());
+      dealii::Point<dim> result;
+      for (unsigned int c = 0; c < dim; ++c)
+        result[c] = place[c];
+      return result;
+    }
   } // namespace
 
   template <int dim>
@@ -340,7 +359,8 @@ namespace nsfd
           terms, n, k, weight, sampler.value(s, u),
           sampler.value(s, velocity().data() + node),
           discretization_.stress(
-              b, sampler.gradient(s, discretization_.corners(b), u).data()));
+              b, rest_place(discretization_, b, sampler, s),
+              sampler.gradient(s, discretization_.corners(b), u).data()));
     }
     return mean_of(terms);
   }
@@ -397,7 +417,8 @@ namespace nsfd
           terms, n, k, 1., sampler.value(0, u),
           sampler.value(0, velocity().data() + node),
           discretization_.stress(
-              b, sampler.gradient(0, discretization_.corners(b), u).data()));
+              b, x,
+              sampler.gradient(0, discretization_.corners(b), u).data()));
     }
     return mean_of(terms);
   }
@@ -449,7 +470,7 @@ namespace nsfd
         point.density = material.density;
         point.gradient = wide<dim>(gradient);
         point.velocity_gradient = wide<dim>(rates);
-        point.stress = discretization_.stress(b, gradient);
+        point.stress = discretization_.stress(b, x, gradient);
         for (unsigned int c = 0; c < dim; ++c) {
           point.force[c] = material.density * input_.gravity[c];
           if (!material.body_force[c].is_zero())
@@ -494,7 +515,9 @@ namespace nsfd
         side.gradient = wide<dim>(gradient.data());
         side.velocity = in_space<dim>(
             sampler.value(slot, now.velocity.data() + node));
-        side.stress = discretization_.stress(b, gradient.data());
+        side.stress = discretization_.stress(
+            b, rest_place(discretization_, b, sampler, slot),
+            gradient.data());
         side.traction = traction(i);
         // as the displacements: in the middle of the step
         const double bulk = input_.time.bulk_theta();
