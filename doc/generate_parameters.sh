@@ -20,8 +20,18 @@ subsection Mesh
   set cells        = 8, 1
 end
 subsection Material: block
+  set where   = x < 4
   set model   = rigid
   set density = 1
+end
+subsection Material: fibres
+  set model                    = transversely isotropic
+  set axial Young modulus      = 14
+  set transverse Young modulus = 1
+  set axial Poisson ratio      = 0.3
+  set transverse Poisson ratio = 0.4
+  set axial shear modulus      = 0.5
+  set density                  = 1
 end
 END
 ./nsfd --list | awk '
@@ -289,7 +299,7 @@ END
   sections "$scratch/parts.prm" 'Interface: .*'
   cat <<'END'
 
-## Obstacles, and a rigid material
+## Obstacles, rigid and transversely isotropic materials
 
 END
   sections "$scratch/parts.prm" '(Obstacle|Material): .*'

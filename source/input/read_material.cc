@@ -150,16 +150,18 @@ namespace nsfd
                         MaterialInput &material)
     {
       GradedInput constants;
+      const std::string graded =
+          scene.large_motion ? "" : ", may depend on x, y, z";
       const bool isotropic = !material.rigid && !material.transverse;
       if (isotropic) {
         constants.young =
             read_constant(reader, scene, isotropic_names[0], units::pressure,
-                          Range::positive(), "Pa, may depend on x, y, z");
+                          Range::positive(), "Pa" + graded);
         // the bulk modulus is infinite at 1/2, the shear modulus at -1
         constants.poisson = read_constant(
             reader, scene, isotropic_names[1], units::none,
             {-1., 0.5, true, true},
-            "lateral over axial strain, may depend on x, y, z");
+            "lateral over axial strain" + graded);
       } else
         reader.refuse(isotropic_names,
                       material.rigid ? "the material is rigid"
@@ -167,7 +169,7 @@ namespace nsfd
                                        "and has an axial and a transverse one");
       constants.density =
           read_constant(reader, scene, "density", units::density,
-                        Range::positive(), "kg/m^3, may depend on x, y, z");
+                        Range::positive(), "kg/m^3" + graded);
       material.young = constant_of(constants.young);
       material.poisson = constant_of(constants.poisson);
       material.density = constant_of(constants.density);
