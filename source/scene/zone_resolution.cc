@@ -25,11 +25,12 @@ namespace nsfd
       for (const int body : face.bodies) {
         if (body < 0)
           continue;
-        const auto &material =
-            input.materials[discretization.material_of(unsigned(body))];
-        if (!material.rigid && material.young > 0.)
-          length = std::min(
-              length, cohesive_length(material.young, material.poisson, law));
+        const unsigned int material =
+            discretization.material_of(unsigned(body));
+        const auto &soft = discretization.extremes(material).softest;
+        if (!input.materials[material].rigid)
+          length =
+              std::min(length, cohesive_length(soft.young, soft.poisson, law));
       }
       return length;
     }

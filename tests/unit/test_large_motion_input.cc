@@ -762,9 +762,9 @@ end
     for (const NamedPart &part : named_parts())
       if (part.kind == "material model")
         names.push_back(part.name);
-    EXPECT_EQ(names, (std::vector<std::string>{"linear elastic", "rigid",
-                                               "saint-venant kirchhoff",
-                                               "neo-hookean"}));
+    EXPECT_EQ(names, (std::vector<std::string>{
+                         "linear elastic", "transversely isotropic", "rigid",
+                         "saint-venant kirchhoff", "neo-hookean"}));
   }
 
   TEST(LargeMotionInput, PartsAreNamed)
