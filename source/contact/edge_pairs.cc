@@ -55,8 +55,9 @@ namespace nsfd
        * have passed through each other. Which way is out is said by the facets,
        * not by the sign: two convex bodies are parted by a plane along both
        * edges exactly if its normal is one of the normals around each of them.
+       * @p is_sure: it is, not only after a turn.
        */
-      bool find(EdgePair<3> &pair) const
+      bool find(EdgePair<3> &pair, bool &is_sure) const
       {
         const Edge &edge = surfaces_.edges[pair.edge],
                    &other = surfaces_.edges[pair.other];
@@ -84,20 +85,19 @@ namespace nsfd
         if (!sticks_out(edge, planes_, a.way) ||
             !sticks_out(other, planes_, b.way))
           return false;
-        const int side = outside(inward(edge, planes_, a.way), a_length,
-                                 inward(other, planes_, b.way), b_length,
-                                 pair.normal);
-        if (side == 0)
+        const double lack = lack_of_room(
+            inward(edge, planes_, a.way), a_length,
+            inward(other, planes_, b.way), b_length, pair);
+        const double size = std::min(size_of(edge, planes_, a_length),
+                                     size_of(other, planes_, b_length));
+        const double turn = std::abs(pair.gap) <= reach_
+                                ? std::min(reach_ / size, most_turn)
+                                : 0.;
+        if (lack > std::max(cone_room, turn))
           return false;
-        if (side < 0) {
-          pair.normal = sum({}, -1., pair.normal);
-          pair.gap = -pair.gap;
-        }
+        is_sure = lack <= cone_room;
         pair.closest = sum(b.from, pair.other_place, b.way);
-        return pair.gap <= reach_ &&
-               pair.gap >=
-                   -deepest * std::min(size_of(edge, planes_, a_length),
-                                       size_of(other, planes_, b_length));
+        return pair.gap <= reach_ && pair.gap >= -deepest * size;
       }
 
     private:
@@ -106,21 +106,29 @@ namespace nsfd
         return std::min(place, 1. - place);
       }
 
-      /** 1 if n leads from the other body to this one, -1 if it leads back, 0
-       * if it does not lead out of both. */
-      static int outside(const std::array<Place<3>, 2> &into,
-                         const double length,
-                         const std::array<Place<3>, 2> &into_other,
-                         const double other_length, const Place<3> &n)
+      /**
+       * Looks which way leads out of both bodies, from the other one to this
+       * one, and turns the normal there. By how much it leads into a facet, as
+       * a sine, below zero if into none.
+       */
+      static double lack_of_room(const std::array<Place<3>, 2> &into,
+                                 const double length,
+                                 const std::array<Place<3>, 2> &into_other,
+                                 const double other_length, EdgePair<3> &pair)
       {
-        bool forth = true, back = true;
+        double forth = -1., back = -1.;
         for (unsigned int i = 0; i < 2; ++i) {
-          const double own = dot(n, into[i]) / length,
-                       opposite = -dot(n, into_other[i]) / other_length;
-          forth = forth && std::min(own, opposite) >= -cone_room;
-          back = back && std::max(own, opposite) <= cone_room;
+          const double own = dot(pair.normal, into[i]) / length,
+                       opposite =
+                           -dot(pair.normal, into_other[i]) / other_length;
+          forth = std::max({forth, -own, -opposite});
+          back = std::max({back, own, opposite});
         }
-        return forth ? 1 : back ? -1 : 0;
+        if (forth <= back)
+          return forth;
+        pair.normal = sum({}, -1., pair.normal);
+        pair.gap = -pair.gap;
+        return back;
       }
 
       const Surfaces<3> &surfaces_;
@@ -147,9 +155,9 @@ namespace nsfd
     public:
       Competition(const Surfaces<3> &surfaces, const double *x,
                   const Planes &planes, std::vector<FacetPair<3>> &points,
-                  std::vector<EdgePair<3>> &pairs)
+                  std::vector<EdgePair<3>> &pairs, std::vector<char> &sure)
           : surfaces_(surfaces), x_(x), planes_(planes), points_(points),
-            pairs_(pairs), point_lost_(points.size(), 0),
+            pairs_(pairs), sure_(sure), point_lost_(points.size(), 0),
             pair_lost_(pairs.size(), 0)
       {
       }
@@ -159,24 +167,27 @@ namespace nsfd
         for (std::size_t i = 0; i < points_.size(); ++i)
           point_lost_[i] = is_outside(points_[i]);
         remove(points_, point_lost_);
+        point_lost_.assign(points_.size(), 0);
         for (std::size_t k = 0; k < pairs_.size(); ++k)
           compare_with_points(k);
+        remove(sure_, pair_lost_);
         remove(pairs_, pair_lost_);
         remove(points_, point_lost_);
+        pair_lost_.assign(pairs_.size(), 0);
         compare_pairs();
         remove(pairs_, pair_lost_);
       }
 
     private:
       template <typename Touch>
-      static void remove(std::vector<Touch> &touches, std::vector<char> &lost)
+      static void remove(std::vector<Touch> &touches,
+                         const std::vector<char> &lost)
       {
         std::size_t n = 0;
         for (std::size_t k = 0; k < touches.size(); ++k)
           if (!lost[k])
             touches[n++] = touches[k];
         touches.resize(n);
-        lost.assign(n, 0);
       }
 
       const Edge &edge(const EdgePair<3> &pair) const
@@ -276,8 +287,8 @@ namespace nsfd
             const double distance =
                 (end == 0 ? place : 1. - place) * length(own);
             pair_lost_[k] |= distance < same_place * size(pair);
-          } else if (point->facet == opposite.facet[0] ||
-                     point->facet == opposite.facet[1]) {
+          } else if (sure_[k] && (point->facet == opposite.facet[0] ||
+                                  point->facet == opposite.facet[1])) {
             const double rounding = same_length * size(pair);
             const Segment segment = segment_of(own, x_);
             const double climb = (end == 0 ? 1. : -1.) *
@@ -330,7 +341,8 @@ namespace nsfd
         if (dot(a.normal, b.normal) > same_direction) {
           if (norm(difference(a.closest, b.closest)) < same_place * length)
             pair_lost_[keys(a) < keys(b) ? l : k] = 1;
-        } else if (std::max(a.gap, b.gap) <= -rounding)
+        } else if (sure_[k] && sure_[l] &&
+                   std::max(a.gap, b.gap) <= -rounding)
           pair_lost_[a.gap > b.gap + rounding   ? l
                      : b.gap > a.gap + rounding ? k
                      : keys(a) < keys(b)        ? l
@@ -351,6 +363,7 @@ namespace nsfd
       const Planes &planes_;
       std::vector<FacetPair<3>> &points_;
       std::vector<EdgePair<3>> &pairs_;
+      std::vector<char> &sure_; ///< of the pairs
       std::vector<char> point_lost_, pair_lost_;
     };
 
@@ -460,13 +473,17 @@ namespace nsfd
     if (surfaces.edges.empty())
       return;
     EdgePair<3> pair;
+    std::vector<char> sure;
     for (pair.edge = 0; pair.edge < surfaces.edges.size(); ++pair.edge)
       for (std::size_t i = lists.first[pair.edge];
            i < lists.first[pair.edge + 1]; ++i) {
         pair.other = lists.entries[i];
-        if (crossings.find(pair))
-          pairs.push_back(pair);
+        bool is_sure = false;
+        if (!crossings.find(pair, is_sure))
+          continue;
+        pairs.push_back(pair);
+        sure.push_back(is_sure);
       }
-    Competition(surfaces, x, planes, points, pairs).run();
+    Competition(surfaces, x, planes, points, pairs, sure).run();
   }
 } // namespace nsfd

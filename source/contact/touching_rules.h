@@ -35,10 +35,11 @@ namespace nsfd
 
   /**
    * A normal may be as far outside of the normals around an edge, as a sine:
-   * less than half of the least edge, so that there is one direction only.
-   * Bodies that lie flat on each other touch at crossing edges, too.
+   * bodies that lie flat on each other touch at crossing edges, too. What turns
+   * by more in a step, up to the second number, while it is within reach, may
+   * come to lie so.
    */
-  constexpr double cone_room = 0.02;
+  constexpr double cone_room = 0.02, most_turn = 0.1;
 
   /**
    * Two touches of the same bodies are one if their normals are as parallel and
