@@ -46,8 +46,12 @@ namespace nsfd
     public:
       Crossings(const Surfaces<3> &surfaces, const double *x,
                 const Planes &planes, const double reach)
-          : surfaces_(surfaces), x_(x), planes_(planes), reach_(reach)
+          : surfaces_(surfaces), planes_(planes), reach_(reach)
       {
+        // in a row: those of other bodies are far away in x
+        segments_.reserve(surfaces.edges.size());
+        for (const auto &edge : surfaces.edges)
+          segments_.push_back(segment_of(edge, x));
       }
 
       /**
@@ -59,9 +63,7 @@ namespace nsfd
        */
       bool find(EdgePair<3> &pair, bool &is_sure) const
       {
-        const Edge &edge = surfaces_.edges[pair.edge],
-                   &other = surfaces_.edges[pair.other];
-        const Segment a = segment_of(edge, x_), b = segment_of(other, x_);
+        const Segment &a = segments_[pair.edge], &b = segments_[pair.other];
         const Place<3> c = cross(a.way, b.way),
                        between = difference(b.from, a.from);
         const double square = dot(c, c);
@@ -82,6 +84,8 @@ namespace nsfd
         if (std::abs(pair.gap) > reach_ &&
             std::abs(pair.gap) > deepest * std::min(a_length, b_length))
           return false;
+        const Edge &edge = surfaces_.edges[pair.edge],
+                   &other = surfaces_.edges[pair.other];
         if (!sticks_out(edge, planes_, a.way) ||
             !sticks_out(other, planes_, b.way))
           return false;
@@ -132,7 +136,7 @@ namespace nsfd
       }
 
       const Surfaces<3> &surfaces_;
-      const double *x_;
+      std::vector<Segment> segments_; ///< by edge
       const Planes &planes_;
       double reach_;
     };
