@@ -194,6 +194,57 @@ subsection Time
 end
 END
 
+# One observable of every kind.
+cat >"$scratch/observed.prm" <<'END'
+# observed - what a block that may break shows.
+set dimension = 2
+subsection Mesh
+  set lower corner = 0, 0
+  set upper corner = 2, 2
+  set cells        = 2, 2
+end
+subsection Material: rock
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+end
+subsection Interface: plane
+  set where     = abs(y - 1) < 0.1
+  set law       = camacho-ortiz
+  set strength  = 1
+  set toughness = 1
+end
+subsection Interface: others
+  set where = all
+  set law   = rigid
+end
+subsection Observable: crack
+  set type = crack
+end
+subsection Observable: release
+  set type = energy release rate
+end
+subsection Observable: probe
+  set type = probe
+  set at   = 0.5, 0.5
+end
+subsection Observable: support
+  set type = reaction
+  set on   = left
+end
+subsection Observable: pressure
+  set type = contact pressure
+  set on   = plane
+end
+subsection Boundary: left
+  set velocity x = 0
+end
+subsection Time
+  set end  = 1
+  set step = 1 s
+end
+END
+
 # Equilibria: every entry of their section Time.
 cat >"$scratch/static.prm" <<'END'
 # static - a bar pulled from equilibrium to equilibrium.
@@ -326,6 +377,15 @@ END
 
 END
   sections "$scratch/static.prm" 'Time'
+
+  cat <<'END'
+
+## Observables
+
+What they measure: [observables.md](observables.md).
+
+END
+  sections "$scratch/observed.prm" 'Observable: .*'
   cat <<'END'
 
 ## Several bodies, three dimensions
