@@ -2,11 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -24,23 +19,6 @@ namespace nsfd
         quoted += c == '"' ? "\"\"" : std::string(1, c);
       return quoted + '"';
     }
-
-    /** A line of numbers; empty if it is none. */
-    std::vector<double> numbers_of(const std::string &line, const std::size_t n)
-    {
-      std::vector<double> numbers;
-      const char *next = line.c_str();
-      while (numbers.size() < n) {
-        char *end = nullptr;
-        numbers.push_back(std::strtod(next, &end));
-        if (end == next || (*end != ',' && *end != '\0'))
-          break;
-        if (*end == '\0')
-          return numbers.size() == n ? numbers : std::vector<double>();
-        next = end + 1;
-      }
-      return {};
-    }
   } // namespace
 
   std::string TableFile::header(const std::vector<std::string> &columns)
@@ -53,61 +31,31 @@ namespace nsfd
 
   TableFile::TableFile(const std::string &path,
                        const std::vector<std::string> &columns)
-      : path_(path), n_columns_(columns.size()), file_(path)
+      : n_columns_(columns.size()), rows_(path, header(columns))
   {
-    write_line(header(columns));
   }
 
   TableFile::TableFile(const std::string &path,
                        const std::vector<std::string> &columns,
                        const std::uintmax_t n_bytes)
-      : path_(path), n_columns_(columns.size())
+      : n_columns_(columns.size()), rows_(path, n_bytes)
   {
-    std::filesystem::resize_file(path, n_bytes);
-    file_.open(path, std::ios::app);
-    if (!file_)
-      throw std::runtime_error("Cannot write '" + path + "'.");
   }
 
   void TableFile::write(const std::vector<double> &row)
   {
     if (row.size() != n_columns_)
       throw std::logic_error(
-          fmt::format("A row of '{}' has {} columns, not {}.", path_,
+          fmt::format("A row of '{}' has {} columns, not {}.", rows_.path(),
                       n_columns_, row.size()));
-    write_line(fmt::format("{}", fmt::join(row, ",")));
-  }
-
-  void TableFile::write_line(const std::string &line)
-  {
-    file_ << line << '\n' << std::flush;
-    if (!file_)
-      throw std::runtime_error("Cannot write '" + path_ + "'.");
-  }
-
-  std::uintmax_t TableFile::n_bytes()
-  {
-    file_.flush();
-    const int file = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file >= 0) {
-      fsync(file);
-      close(file);
-    }
-    std::error_code error; // a file that is gone has none
-    const std::uintmax_t size = std::filesystem::file_size(path_, error);
-    return error ? 0 : size;
+    rows_.write(fmt::format("{}", fmt::join(row, ",")));
   }
 
   std::vector<std::vector<double>>
   TableFile::read(const std::string &path, const std::size_t n_columns,
                   const std::uintmax_t n_bytes)
   {
-    std::ifstream file(path, std::ios::binary);
-    std::string text(n_bytes, '\0');
-    file.read(text.data(), std::streamsize(n_bytes));
-    if (!file)
-      throw std::runtime_error(
-          fmt::format("'{}' is shorter than it was at the checkpoint", path));
+    const std::string text = read_rows(path, n_bytes);
     std::istringstream lines(text);
     std::string line;
     std::getline(lines, line); // the header

@@ -1,16 +1,16 @@
 #pragma once
 
+#include "nsfd/output/row_file.h"
+
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
 
 namespace nsfd
 {
   /**
-   * A CSV file of numbers: each row is on the disk as soon as it is written.
-   * Numbers are the shortest that read back to the same double. Throws
-   * std::runtime_error when the file cannot be written.
+   * A growing table of numbers, the shortest that read back to the same
+   * double.
    */
   class TableFile
   {
@@ -28,7 +28,7 @@ namespace nsfd
     void write(const std::vector<double> &row);
 
     /** Of all rows so far, on the disk for good when this returns. */
-    std::uintmax_t n_bytes();
+    std::uintmax_t n_bytes() { return rows_.n_bytes(); }
 
     /**
      * The rows in the first @p n_bytes of a file with so many columns.
@@ -41,10 +41,7 @@ namespace nsfd
     static std::string header(const std::vector<std::string> &columns);
 
   private:
-    void write_line(const std::string &line);
-
-    std::string path_;
     std::size_t n_columns_;
-    std::ofstream file_;
+    RowFile rows_;
   };
 } // namespace nsfd
