@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -186,6 +187,22 @@ namespace nsfd::cases
   inline double mechanical_energy(const HistoryRow &row)
   {
     return row.energy.kinetic + row.energy.elastic + row.energy.cohesive;
+  }
+
+  /** Boundaries with `motion = exact` move as the solution does. */
+  inline void
+  set_exact_motion(SceneInput &scene,
+                   const std::shared_ptr<const VerificationCase> &exact)
+  {
+    for (BoundaryInput &boundary : scene.boundaries)
+      if (boundary.exact_motion)
+        for (unsigned int c = 0; c < scene.dimension; ++c)
+          boundary.velocity[c] = Expression(
+              [exact, c](const double x, const double y, const double z,
+                         const double t) {
+                return exact->velocity({x, y, z}, t)[c];
+              },
+              "exact", true);
   }
 
   /** A step function that is right-continuous. */

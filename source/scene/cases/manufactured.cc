@@ -103,15 +103,7 @@ namespace nsfd
           material.body_force[c] = part(&Manufactured::body_force, true);
         }
       }
-      for (BoundaryInput &boundary : scene.boundaries)
-        if (boundary.exact_motion)
-          for (unsigned int c = 0; c < scene.dimension; ++c)
-            boundary.velocity[c] = Expression(
-              [self, c](const double x, const double y, const double z,
-                        const double t) {
-                return self->velocity({x, y, z}, t)[c];
-              },
-              "exact", true);
+      set_exact_motion(scene, self);
     }
 
     void initialise(const SceneInput &input) override
