@@ -87,7 +87,9 @@ namespace nsfd
     rigid,
     saint_venant_kirchhoff, ///< finite strain
     neo_hookean,            ///< finite strain, compressible
-    transversely_isotropic  ///< small strain
+    transversely_isotropic, ///< small strain
+    j2_plastic,             ///< small or finite strain, with history
+    viscoplastic            ///< the same with an overstress
   };
 
   /** As a parameter file writes it: "neo-hookean". */
@@ -130,6 +132,22 @@ namespace nsfd
     Expression young, poisson, density;
   };
 
+  /**
+   * Flow on the surface of von Mises, of a plastic or viscoplastic material:
+   * |dev sigma - X|_eq <= yield + R(p), R = isotropic p + Q (1 - exp(-b p)),
+   * X = 2/3 kinematic times the plastic strain; beyond it by the overstress
+   * viscosity r (dp/dt / r)^(1/n).
+   */
+  struct PlasticInput
+  {
+    double yield_stress = 0., isotropic = 0., kinematic = 0.; ///< Pa
+    double saturation_stress = 0.; ///< Q, Pa
+    double saturation_exponent = 0.; ///< b
+    double viscosity = 0.; ///< Pa s, at the reference rate; 0: none
+    double rate_exponent = 1.; ///< n
+    double reference_rate = 1.; ///< r, 1/s; of no effect where n = 1
+  };
+
   struct MaterialInput
   {
     std::string name;
@@ -151,6 +169,7 @@ namespace nsfd
     /// per component, expressions of x, y, z (t = 0); default 0
     std::array<Expression, 3> initial_displacement, initial_velocity;
     std::array<Expression, 3> body_force; ///< N/m^3, of x, y, z, t
+    std::optional<PlasticInput> plastic; ///< of materials with history
   };
 
   /** What sliding does to the surfaces in contact. */
@@ -435,6 +454,16 @@ namespace nsfd
           return true;
       return false;
     }
+    /** Materials that remember how they were strained. */
+    bool has_history() const
+    {
+      for (const auto &material : materials)
+        if (material.plastic)
+          return true;
+      return false;
+    }
+    /** A step is solved by iterations around linear ones. */
+    bool iterates() const { return large_motion || has_history(); }
     /** Whether a step in time can come. */
     bool may_move() const
     {

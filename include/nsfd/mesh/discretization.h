@@ -93,6 +93,7 @@ namespace nsfd
     /** For a mesh that has changed; what refers to bodies() is void then. */
     Discretization &operator=(Discretization &&) noexcept;
 
+    const SceneInput &input() const { return *input_; }
     const Bodies &bodies() const;
     const InterfacePoints<dim> &points() const { return points_; }
     const std::vector<PointOrigin> &origins() const { return origins_; }
@@ -165,7 +166,10 @@ namespace nsfd
     void visit_quadrature(const std::vector<double> &nodal,
                           const Visitor &visit) const;
 
-    /** Stress xx, yy, zz, xy, xz, yz from a displacement gradient at @p x. */
+    /**
+     * Stress xx, yy, zz, xy, xz, yz from a displacement gradient at @p x, of a
+     * material that remembers nothing; see motion/cell_stresses.h for others.
+     */
     std::array<double, 6> stress(unsigned int body,
                                  const dealii::Point<dim> &x,
                                  const double *gradient) const;

@@ -56,5 +56,8 @@ namespace nsfd
     std::vector<double> surface_impulse, surface_slip, surface_worn,
         surface_wear_speed, surface_overlap, surface_approach;
     std::vector<std::uint8_t> surface_contact;
+    /// what materials with history remember, cell by cell and point by point
+    /// of the cell quadrature, see motion/history_cell.h; empty without such
+    std::vector<double> material_history;
   };
 } // namespace nsfd
