@@ -73,6 +73,11 @@ namespace nsfd
           input, *discretization, *moving, *dynamics, *solver);
       large_motion = large.get();
       stepper = std::move(large);
+    } else if (inelastic) {
+      auto flowing = std::make_unique<InelasticMotion<dim>>(
+          input, *discretization, *inelastic, *dynamics, *solver);
+      inelastic_motion = flowing.get();
+      stepper = std::move(flowing);
     } else
       stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
                                                   *dynamics, *solver, bonded);
@@ -243,7 +248,7 @@ namespace nsfd
   void Model<dim>::choose_path(const SceneInput &input)
   {
     const double crossing = discretization->crossing_time();
-    if (input.large_motion)
+    if (input.iterates())
       path = "element-wise";
     else if (input.has_bonded_faces())
       path = input.time.scheme == Scheme::symplectic ? "element-wise" : "global";
@@ -265,6 +270,12 @@ namespace nsfd
       moving = std::make_unique<MovingBodies<dim>>(input, *discretization);
       dynamics = make_moving_dynamics<dim>(communicator, moving->bodies(),
                                            moving->points());
+      return;
+    }
+    if (input.has_history()) {
+      inelastic = std::make_unique<InelasticBodies<dim>>(*discretization);
+      dynamics =
+          make_moving_dynamics<dim>(communicator, inelastic->bodies(), points);
       return;
     }
     if (input.has_bonded_faces() && input.time.scheme == Scheme::symplectic) {

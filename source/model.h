@@ -1,5 +1,6 @@
 #pragma once
 
+#include "motion/inelastic_motion.h"
 #include "motion/large_motion.h"
 
 #include "nsfd/dynamics/bonded.h"
@@ -31,10 +32,13 @@ namespace nsfd
     std::unique_ptr<Dynamics<dim>> dynamics;
     BondedDynamics<dim> *bonded = nullptr; ///< the same, if faces are bonded
     std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
+    /// of small motions with materials that remember, or null
+    std::unique_ptr<InelasticBodies<dim>> inelastic;
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
     LargeMotion<dim> *large_motion = nullptr; ///< the same, or null
+    InelasticMotion<dim> *inelastic_motion = nullptr; ///< the same, or null
     std::unique_ptr<QuasiStatic<dim>> quasi_static; ///< or null
 
     /** Steps in time from @p start on. */

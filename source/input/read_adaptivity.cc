@@ -22,6 +22,12 @@ namespace nsfd
         return refuse(true,
                       "the mesh of scenes with motion = large does not change",
                       "remove the section Adaptivity, or write motion = small");
+      if (scene.has_history())
+        return refuse(true,
+                      fmt::format("the mesh of scenes with {} does not change",
+                                  remembering_model(scene)),
+                      "remove the section Adaptivity, or write model = linear "
+                      "elastic");
       refuse(has_simplices(scene),
              "only meshes of quads and hexes can change: triangles and "
              "tetrahedra have no hanging faces",

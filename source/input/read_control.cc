@@ -74,6 +74,12 @@ namespace nsfd
                    "path = global has one matrix for all steps, and bodies of "
                    "motion = large turn",
                    "write auto or element-wise");
+    else if (solver.path == "global" && scene.has_history())
+      reader.error("path",
+                   fmt::format("path = global has one matrix for all steps, "
+                               "and bodies of {} get softer",
+                               remembering_model(scene)),
+                   "write auto or element-wise");
     if (solver.method == "gauss seidel" && scene.has_bonded_faces())
       reader.error("method",
                    "method = gauss seidel works body by body, and bonded faces "

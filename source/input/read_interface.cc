@@ -96,18 +96,23 @@ namespace nsfd
       input.has_broken = !input.broken.is_zero();
     }
 
-    /** Bonds act on the bulk of cells as small strains have it. */
-    void refuse_bonds(SectionReader &reader, const std::string &name)
+    /** Bonds act on the bulk of cells as Hooke's law of small strain has it. */
+    void refuse_bonds(SectionReader &reader, const SceneInput &scene,
+                      const std::string &name)
     {
-      reader.error(name,
-                   fmt::format("{} = bonded joins bodies that turn and strain "
-                               "little, and the scene has motion = large",
-                               name),
-                   "write rigid");
+      reader.error(
+          name,
+          fmt::format("{} = bonded joins bodies {}, and the scene has {}", name,
+                      scene.large_motion ? "that turn and strain little"
+                                         : "without memory",
+                      scene.large_motion ? "motion = large"
+                                         : remembering_model(scene)),
+          "write rigid");
     }
 
     void check_intact_faces(SectionReader &reader, const InterfaceInput &input,
-                            const std::string &name, const bool large_motion)
+                            const std::string &name,
+                            const SceneInput &scene)
     {
       const bool extrinsic = input.law && input.law->extrinsic();
       const bool joined = name == "rigid" || name == "bonded";
@@ -116,12 +121,12 @@ namespace nsfd
                      fmt::format("intact faces = {} needs a stiffness, and the "
                                  "extrinsic law {} has none",
                                  name, input.law_name),
-                     large_motion
+                     scene.iterates()
                          ? "write rigid, or take an intrinsic law"
                          : "write rigid or bonded, or take an intrinsic law");
-      else if (extrinsic && large_motion && name == "bonded")
-        refuse_bonds(reader, "intact faces");
-      else if (extrinsic && !large_motion && name == "rigid" &&
+      else if (extrinsic && scene.iterates() && name == "bonded")
+        refuse_bonds(reader, scene, "intact faces");
+      else if (extrinsic && !scene.iterates() && name == "rigid" &&
                input.where.kind == Where::Kind::all)
         reader.error("intact faces",
                      fmt::format("intact faces = rigid with where = all and "
@@ -140,24 +145,24 @@ namespace nsfd
 
     IntactFaces read_intact_faces(SectionReader &reader,
                                   const InterfaceInput &input,
-                                  const bool large_motion)
+                                  const SceneInput &scene)
     {
       const bool extrinsic = input.law && input.law->extrinsic();
       // rigid rows on all faces make W singular, and tractions ambiguous: but
-      // there are no bonds in large motions
-      const bool bonds = !large_motion && input.where.kind == Where::Kind::all;
+      // there are no bonds where steps are iterations
+      const bool bonds = !scene.iterates() && input.where.kind == Where::Kind::all;
       const std::string name = reader.choice(
           "intact faces",
           !extrinsic ? "spring"
           : bonds    ? "bonded"
                      : "rigid",
           {"spring", "unilateral", "rigid", "bonded"},
-          large_motion
+          scene.iterates()
               ? "while beta = 1: spring or unilateral (intrinsic laws), rigid "
                 "(extrinsic laws)"
               : "while beta = 1: spring or unilateral (intrinsic laws), rigid "
                 "or bonded (extrinsic laws; default: bonded if where = all)");
-      check_intact_faces(reader, input, name, large_motion);
+      check_intact_faces(reader, input, name, scene);
       if (name == "bonded")
         return IntactFaces::bonded;
       if (name == "unilateral")
@@ -268,8 +273,8 @@ namespace nsfd
       if (input.law_name == "rigid" || input.law_name == "bonded") {
         input.intact = input.law_name == "rigid" ? IntactFaces::rigid
                                                  : IntactFaces::bonded;
-        if (scene.large_motion && input.law_name == "bonded")
-          refuse_bonds(reader, "law");
+        if (scene.iterates() && input.law_name == "bonded")
+          refuse_bonds(reader, scene, "law");
         const std::string reason =
             fmt::format("faces of the law `{}` never open", input.law_name);
         reader.refuse({"friction", "restitution", "friction exponent", "broken",
@@ -295,7 +300,7 @@ namespace nsfd
         read_cohesive_block(reader, input);
       read_contact(reader, input);
       read_damage_start(reader, input);
-      input.intact = read_intact_faces(reader, input, scene.large_motion);
+      input.intact = read_intact_faces(reader, input, scene);
       read_crack_pressure(reader, input);
       return input;
     }

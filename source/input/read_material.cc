@@ -45,7 +45,19 @@ namespace nsfd
         {BulkModel::neo_hookean,
          {"neo-hookean",
           "compressible, resists being crushed; motion = large"}},
+        {BulkModel::j2_plastic,
+         {"j2 plastic", "flow on the surface of von Mises, which grows and "
+                        "moves; small or large motion"}},
+        {BulkModel::viscoplastic,
+         {"viscoplastic",
+          "the same, and beyond the surface by an overstress that grows with "
+          "the rate; small or large motion"}},
     };
+
+    bool flows(const BulkModel model)
+    {
+      return model == BulkModel::j2_plastic || model == BulkModel::viscoplastic;
+    }
 
     void check_model(SectionReader &reader, const SceneInput &scene,
                      const BulkModel model)
@@ -71,6 +83,12 @@ namespace nsfd
             fmt::format("model = {} is not there for plane = stress", name),
             "write plane = strain, or model = saint-venant "
             "kirchhoff");
+      if (scene.plane_stress && scene.large_motion && flows(model))
+        reader.error("model",
+                     fmt::format("model = {} is not there for plane = stress "
+                                 "with motion = large",
+                                 name),
+                     "write plane = strain, or motion = small");
     }
 
     /** False if it is none: what the other entries mean is unknown. */
@@ -121,8 +139,16 @@ namespace nsfd
       return false;
     }
 
-    /** A constant in @p range, or an expression checked in the cells. */
-    Expression read_constant(SectionReader &reader, const SceneInput &scene,
+    /** Why constants of the material are the same everywhere, or nothing. */
+    std::string why_uniform(const SceneInput &scene, const BulkModel model)
+    {
+      if (scene.large_motion)
+        return "the scene has motion = large";
+      return flows(model) ? "the material flows" : "";
+    }
+
+    /** In @p range; an expression, checked in the cells, unless @p uniform. */
+    Expression read_constant(SectionReader &reader, const std::string &uniform,
                              const std::string &name, const Unit unit,
                              const Range range, const std::string &text)
     {
@@ -130,11 +156,10 @@ namespace nsfd
         return reader.number(name, "", unit, range, text);
       const unsigned int n_before = reader.errors().n_errors();
       Expression value = read_initial_expression(reader, name, "", unit, text);
-      if (scene.large_motion && reader.errors().n_errors() == n_before)
+      if (!uniform.empty() && reader.errors().n_errors() == n_before)
         reader.error(name,
-                     fmt::format("{} = {} depends on the place, and the scene "
-                                 "has motion = large",
-                                 name, value.text()),
+                     fmt::format("{} = {} depends on the place, and {}", name,
+                                 value.text(), uniform),
                      "write a number; blocks with their own `where` may differ");
       return value;
     }
@@ -150,16 +175,17 @@ namespace nsfd
                         MaterialInput &material)
     {
       GradedInput constants;
-      const std::string graded =
-          scene.large_motion ? "" : ", may depend on x, y, z";
+      const std::string uniform = why_uniform(scene, material.model),
+                        graded =
+                            uniform.empty() ? ", may depend on x, y, z" : "";
       const bool isotropic = !material.rigid && !material.transverse;
       if (isotropic) {
         constants.young =
-            read_constant(reader, scene, isotropic_names[0], units::pressure,
+            read_constant(reader, uniform, isotropic_names[0], units::pressure,
                           Range::positive(), "Pa" + graded);
         // the bulk modulus is infinite at 1/2, the shear modulus at -1
         constants.poisson = read_constant(
-            reader, scene, isotropic_names[1], units::none,
+            reader, uniform, isotropic_names[1], units::none,
             {-1., 0.5, true, true},
             "lateral over axial strain" + graded);
       } else
@@ -168,7 +194,7 @@ namespace nsfd
                                      : "the material is transversely isotropic "
                                        "and has an axial and a transverse one");
       constants.density =
-          read_constant(reader, scene, "density", units::density,
+          read_constant(reader, uniform, "density", units::density,
                         Range::positive(), "kg/m^3" + graded);
       material.young = constant_of(constants.young);
       material.poisson = constant_of(constants.poisson);
@@ -262,9 +288,10 @@ namespace nsfd
     {
       const std::vector<std::string> names = {"shear viscosity",
                                               "bulk viscosity"};
-      if (material.rigid || is_finite_strain(material.model))
-        return reader.refuse(names, material.rigid
-                                        ? "the material is rigid"
+      if (material.rigid || flows(material.model) || scene.large_motion)
+        return reader.refuse(names, material.rigid ? "the material is rigid"
+                                    : flows(material.model)
+                                        ? "it belongs to elastic materials"
                                         : "it needs motion = small");
       material.shear_viscosity = reader.number(
           names[0], "0", units::viscosity, Range::non_negative(),
@@ -278,6 +305,73 @@ namespace nsfd
                      "viscosity is not there for plane = stress, where the "
                      "strain normal to the plane has a history of its own",
                      "write plane = strain, or leave it out");
+    }
+
+    /** R(p) = isotropic p + Q (1 - exp(-b p)), X = 2/3 kinematic eps_p. */
+    void read_hardening(SectionReader &reader, PlasticInput &plastic)
+    {
+      plastic.yield_stress =
+          reader.number("yield stress", "", units::pressure, Range::positive(),
+                        "Pa, in uniaxial stress, before any flow");
+      plastic.isotropic = reader.number(
+          "isotropic hardening modulus", "0", units::pressure,
+          Range::non_negative(), "Pa, growth of the yield stress with the flow");
+      plastic.kinematic = reader.number(
+          "kinematic hardening modulus", "0", units::pressure,
+          Range::non_negative(),
+          "Pa, of the back stress in uniaxial stress; the middle of the "
+          "surface follows the flow");
+      plastic.saturation_stress =
+          reader.number("saturation stress", "0", units::pressure,
+                        Range::non_negative(),
+                        "Pa, Q of Q (1 - exp(-b p)), which the yield stress "
+                        "grows by in the end");
+      const std::string exponent = "saturation exponent";
+      if (plastic.saturation_stress == 0.)
+        reader.refuse({exponent}, "there is no `saturation stress`");
+      else
+        plastic.saturation_exponent =
+            reader.number(exponent, "", units::none, Range::positive(), "b");
+    }
+
+    void read_overstress(SectionReader &reader, PlasticInput &plastic)
+    {
+      constexpr Unit viscosity{1, -1, -1}, per_time{0, 0, -1};
+      plastic.viscosity = reader.number(
+          "viscosity", "", viscosity, Range::positive(),
+          "Pa s, overstress over rate of flow (at the reference rate)");
+      plastic.rate_exponent =
+          reader.number("rate exponent", "1", units::none,
+                        {1., 1e3, false, false},
+                        "n: the rate grows like the overstress to the n");
+      const std::string rate = "reference rate";
+      if (plastic.rate_exponent == 1.)
+        reader.refuse({rate}, "it is of no effect where `rate exponent` is 1");
+      else
+        plastic.reference_rate =
+            reader.number(rate, "", per_time, Range::positive(),
+                          "1/s, r of overstress = viscosity r (rate / r)^(1/n)");
+    }
+
+    void read_flow(SectionReader &reader, MaterialInput &material)
+    {
+      const std::vector<std::string> of_surface = {
+          "yield stress", "isotropic hardening modulus",
+          "kinematic hardening modulus", "saturation stress",
+          "saturation exponent"},
+                                     of_rates = {"viscosity", "rate exponent",
+                                                 "reference rate"};
+      if (!flows(material.model)) {
+        reader.refuse(of_surface, "the material does not flow");
+        return reader.refuse(of_rates, "the material does not flow");
+      }
+      PlasticInput plastic;
+      read_hardening(reader, plastic);
+      if (material.model == BulkModel::viscoplastic)
+        read_overstress(reader, plastic);
+      else
+        reader.refuse(of_rates, "it belongs to model = viscoplastic");
+      material.plastic = plastic;
     }
 
     /** What bodies are, and where their surface is. */
@@ -382,6 +476,14 @@ namespace nsfd
     }
   } // namespace
 
+  std::string remembering_model(const SceneInput &scene)
+  {
+    for (const MaterialInput &material : scene.materials)
+      if (material.plastic)
+        return fmt::format("model = {}", model_name(material.model));
+    return "";
+  }
+
   const char *model_name(const BulkModel model)
   {
     for (const KnownModel &known : known_models)
@@ -411,6 +513,7 @@ namespace nsfd
         read_transverse(reader, scene, material);
         read_constants(reader, scene, material);
         read_viscosity(reader, scene, material);
+        read_flow(reader, material);
         read_rigid_bodies(reader, scene, material);
         read_fields(reader, scene, material);
       }

@@ -144,6 +144,14 @@ namespace nsfd
                      "write given, and let the scene come to rest");
         return true;
       }
+      if (scene.has_history()) {
+        reader.error("start",
+                     fmt::format("equilibria of scenes with {} are not there "
+                                 "yet",
+                                 remembering_model(scene)),
+                     "write given, and let the scene come to rest");
+        return true;
+      }
       refuse_rates(reader, scene);
       for (const MaterialInput &material : scene.materials)
         for (unsigned int c = 0; c < scene.dimension; ++c)
@@ -293,16 +301,17 @@ namespace nsfd
           "error of a step relative to the largest motion");
     }
 
-    /** Only one scheme follows large motions; true if it is not this one. */
+    /** Only one scheme iterates within a step; true if it is not this one. */
     bool refuse_scheme(SectionReader &reader, const SceneInput &scene,
                        const std::string &scheme)
     {
-      if (!scene.large_motion || scheme == "moreau-jean")
+      if (!scene.iterates() || scheme == "moreau-jean")
         return false;
-      reader.error(
-          "scheme",
-          fmt::format("scheme = {} is not there for motion = large", scheme),
-          "write scheme = moreau-jean");
+      reader.error("scheme",
+                   fmt::format("scheme = {} is not there for {}", scheme,
+                               scene.large_motion ? "motion = large"
+                                                  : remembering_model(scene)),
+                   "write scheme = moreau-jean");
       reader.accept_everything();
       return true;
     }

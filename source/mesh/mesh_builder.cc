@@ -338,11 +338,11 @@ namespace nsfd
 
     template <int dim>
     std::unique_ptr<Triangulation<dim>> make(CoarseMesh<dim> &mesh,
-                                             const bool large_motion,
+                                             const bool iterates,
                                              const MPI_Comm communicator)
     {
       std::unique_ptr<Triangulation<dim>> result;
-      if (large_motion)
+      if (iterates)
         result = on_first_rank<dim>(communicator);
       else if (mesh.cells[0].vertices.size() == dim + 1)
         result = std::make_unique<parallel::shared::Triangulation<dim>>(
@@ -385,7 +385,7 @@ namespace nsfd
     std::unique_ptr<Triangulation<dim>> result;
     if (found.empty())
       try {
-        result = make(mesh, input.large_motion, communicator);
+        result = make(mesh, input.iterates(), communicator);
         if (by_p4est)
           result->refine_global(mesh_input.refinements);
       } catch (const std::exception &exception) {

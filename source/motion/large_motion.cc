@@ -23,17 +23,6 @@ namespace nsfd
   {
     constexpr unsigned int most_iterations = 40;
 
-    BodyEnergies sum(const Communicator &all, const BodyEnergies &part)
-    {
-      BodyEnergies result;
-      result.kinetic = all.sum({part.kinetic});
-      result.elastic = all.sum({part.elastic});
-      result.of_mass = all.sum({part.of_mass});
-      result.of_strain = all.sum({part.of_strain});
-      result.work = all.sum({part.work});
-      return result;
-    }
-
     /** Appends @p n values of @p value to an array that has any. */
     template <typename Array>
     void append(Array &array, const std::size_t n,

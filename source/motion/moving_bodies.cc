@@ -76,7 +76,7 @@ namespace nsfd
   MovingBodies<dim>::MovingBodies(const SceneInput &input,
                                   const Discretization<dim> &discretization)
       : input_(input), discretization_(discretization),
-        n_nodes_(discretization.n_nodal() / dim)
+        n_nodes_(discretization.n_nodal() / dim), cells_(discretization)
   {
     for (unsigned int c = 0; c < discretization.bodies().size(); ++c) {
       const auto &shape = discretization.shape(c);
@@ -84,27 +84,6 @@ namespace nsfd
       for (const Place &node : shape.nodes)
         for (unsigned int d = 0; d < dim; ++d)
           rest_.push_back(corner[d] + node[d]);
-    }
-    const auto &classes = discretization.bodies().classes;
-    masses_.resize(classes.size());
-    for (std::size_t k = 0; k < classes.size(); ++k) {
-      const auto &material = input.materials[classes[k].material];
-      cells_.push_back(nullptr);
-      if (material.rigid || classes[k].bodies.empty())
-        continue;
-      const auto &shape = discretization.shape(classes[k].bodies[0]);
-      std::vector<double> gradients;
-      for (const auto &g : shape.gradients)
-        for (unsigned int d = 0; d < dim; ++d)
-          gradients.push_back(g[d]);
-      cells_.back() = std::make_unique<const FiniteCell<dim>>(
-          make_hyperelastic<dim>(material.model, material.young,
-                                 material.poisson, input.plane_stress),
-          shape.JxW, gradients);
-      auto &mass = masses_[k];
-      for (unsigned int j = 0; j < classes[k].n_dofs; ++j)
-        for (unsigned int i = 0; i < classes[k].n_dofs; ++i)
-          mass.push_back(classes[k].mass(i, j));
     }
     make_movers();
     make_points();
@@ -349,6 +328,7 @@ namespace nsfd
                  movers_.begin(), movers_.end(),
                  [](const Mover &mover) { return mover.rigid >= 0; })),
         0.);
+    state.material_history = cells_.begin_history();
     for (const Mover &mover : movers_) {
       if (mover.rigid < 0)
         continue;
@@ -475,8 +455,9 @@ namespace nsfd
         for (unsigned int i = 0; i < M.rows; ++i)
           for (unsigned int j = 0; j < M.cols; ++j)
             result.kinetic += 0.5 * v[i] * M(i, j) * v[j];
-        result.elastic += cells_[k]->energy(state.displacement.data() +
-                                            cells.first_dof[c]);
+        result.elastic += cells_.of(c)->energy(
+            state.displacement.data() + cells.first_dof[c],
+            state.material_history.data() + cells_.first_history(c));
       }
     return result;
   }
@@ -541,6 +522,7 @@ namespace nsfd
     theta_ = theta;
     forces_ = forces;
     u_old_ = u_new_ = old.displacement;
+    history_ = old.material_history;
     shift_middle_.resize(shift_old.size());
     for (std::size_t k = 0; k < shift_old.size(); ++k)
       shift_middle_[k] = (shift_old[k] + shift_new[k]) / 2.;
@@ -569,6 +551,14 @@ namespace nsfd
     v_ = v_old_;
     for (std::size_t b = 0; b < movers_.size(); ++b)
       set_step_end(b);
+  }
+
+  template <int dim>
+  CellMotion MovingBodies<dim>::motion_of(const unsigned int c) const
+  {
+    const std::size_t first = discretization_.bodies().first_dof[c];
+    return {u_old_.data() + first, u_new_.data() + first, theta_, time_step_,
+            history_.data() + cells_.first_history(c)};
   }
 
   /** Displacements at the end of the step with the velocities at hand. */
@@ -764,11 +754,9 @@ namespace nsfd
     }
     const unsigned int c = mover.cells[0], k = cells.class_of[c];
     const BodyClass &cell = cells.classes[k];
-    const std::size_t first = cells.first_dof[c];
     const unsigned int n = body.n_dofs;
     std::vector<double> tangent(std::size_t(n) * n);
-    cells_[k]->symmetric_tangent(u_old_.data() + first, u_new_.data() + first,
-                                 theta_, tangent.data());
+    cells_.of(c)->symmetric_tangent(motion_of(c), tangent.data());
     body.stiffness = Block(n, n);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
@@ -1023,19 +1011,19 @@ namespace nsfd
       const Mover &mover = movers_[b];
       const double *impulse = r.data() + bodies_.first_dof[b];
       if (mover.rigid < 0) {
-        const unsigned int c = mover.cells[0],
-                           k = discretization_.bodies().class_of[c];
+        const unsigned int c = mover.cells[0];
         const std::size_t first = discretization_.bodies().first_dof[c];
         FiniteStep step;
         step.time_step = time_step_;
         step.theta = theta_;
-        step.mass = masses_[k].data();
+        step.mass = cells_.mass(c);
         step.displacement = u_old_.data() + first;
         step.velocity = v_old_.data() + bodies_.first_dof[b];
         step.load = forces_.data() + first;
         step.impulse = impulse;
-        if (!cells_[k]->solve(step, v_.data() + bodies_.first_dof[b],
-                              scratch_))
+        step.history = history_.data() + cells_.first_history(c);
+        if (!cells_.of(c)->solve(step, v_.data() + bodies_.first_dof[b],
+                                 scratch_))
           return false;
       } else {
         RigidLoad load = load_of(mover);
@@ -1065,15 +1053,21 @@ namespace nsfd
     next.displacement = u_new_;
     next.velocity.resize(u_new_.size());
     next.rigid.resize(13 * rigid_.size());
+    next.material_history.resize(history_.size());
     for (std::size_t b = 0; b < movers_.size(); ++b) {
       const Mover &mover = movers_[b];
       if (mover.rigid >= 0)
         put_rigid(rigid_[std::size_t(mover.rigid)].state(), mover, next);
-      else
+      else {
+        const unsigned int c = mover.cells[0];
         std::copy_n(v_.data() + bodies_.first_dof[b],
                     bodies_.classes[b].n_dofs,
                     next.velocity.data() +
-                        discretization_.bodies().first_dof[mover.cells[0]]);
+                        discretization_.bodies().first_dof[c]);
+        if (cells_.of(c)->n_history() > 0)
+          cells_.of(c)->book(motion_of(c), next.material_history.data() +
+                                               cells_.first_history(c));
+      }
     }
   }
 
@@ -1081,6 +1075,7 @@ namespace nsfd
   BodyEnergies MovingBodies<dim>::book() const
   {
     BodyEnergies result;
+    std::vector<double> history;
     const Bodies &cells = discretization_.bodies();
     for (std::size_t b = 0; b < movers_.size(); ++b) {
       const Mover &mover = movers_[b];
@@ -1108,9 +1103,13 @@ namespace nsfd
         result.work += time_step_ * forces_[first + i] *
                        (theta_ * v[i] + (1. - theta_) * v_old[i]);
       }
-      result.elastic += cells_[k]->energy(u_new_.data() + first);
-      result.of_strain += cells_[k]->dissipated(u_old_.data() + first,
-                                                u_new_.data() + first, theta_);
+      const CellMotion motion = motion_of(c);
+      history.resize(cells_.of(c)->n_history());
+      const CellLosses losses = cells_.of(c)->book(motion, history.data());
+      result.elastic += cells_.of(c)->energy(motion.end, history.data());
+      result.of_strain += losses.numerical;
+      result.plastic += losses.plastic;
+      result.viscous += losses.viscous;
     }
     return result;
   }

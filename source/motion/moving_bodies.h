@@ -1,9 +1,9 @@
 #pragma once
 
+#include "deformable_cells.h"
 #include "moving_row.h"
 
 #include "nsfd/mesh/discretization.h"
-#include "nsfd/motion/finite_cell.h"
 #include "nsfd/motion/rigid_step.h"
 #include "nsfd/time/state.h"
 
@@ -65,7 +65,8 @@ namespace nsfd
 
     // --- between steps ---
 
-    /** The rigid motions nearest to the nodal fields of @p state. */
+    /** The rigid motions nearest to the nodal fields of @p state; materials
+        have not been strained yet. */
     void set_initial(State &state) const;
     /** Nodes at x, dim per node of every cell, then the centres of all rigid
         bodies. */
@@ -160,6 +161,7 @@ namespace nsfd
                                          unsigned int n_nodes,
                                          const Place &x) const;
     Vec3 in_space(const Vector &v) const;
+    CellMotion motion_of(unsigned int cell) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
@@ -170,8 +172,7 @@ namespace nsfd
     std::vector<std::vector<Slot>> slots_; ///< by body
     /// per class of the cells: gradients at the slots, slot x node
     std::vector<std::vector<Vector>> slot_gradients_;
-    std::vector<std::unique_ptr<const FiniteCell<dim>>> cells_; ///< by class
-    std::vector<std::vector<double>> masses_; ///< by class, as FiniteStep has it
+    DeformableCells<dim> cells_;
     FiniteScratch scratch_;
     Bodies bodies_;
     InterfacePoints<dim> points_;
@@ -180,6 +181,7 @@ namespace nsfd
     // of the step
     double time_step_ = 0., theta_ = 0.5;
     std::vector<double> u_old_, u_new_, forces_, middle_; ///< by node
+    std::vector<double> history_; ///< of the materials, at the start
     std::vector<double> v_old_, v_;                       ///< by unknown
     std::vector<RigidStep> rigid_;
     std::vector<double> shift_middle_;

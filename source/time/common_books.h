@@ -58,7 +58,8 @@ namespace nsfd
     next.largest_energy =
         std::max({old.largest_energy, energy.kinetic, energy.elastic,
                   energy.cohesive, std::abs(energy.work), energy.damage,
-                  energy.impact, energy.friction, energy.viscous});
+                  energy.impact, energy.friction, energy.viscous,
+                  energy.plastic});
     const double defect = energy.kinetic + energy.elastic + energy.cohesive +
                           energy.damage + energy.friction + energy.viscous +
                           energy.plastic + energy.impact + energy.numerical -

@@ -304,6 +304,19 @@ namespace nsfd
     }
   } // namespace
 
+  BodyEnergies sum(const Communicator &all, const BodyEnergies &part)
+  {
+    BodyEnergies result;
+    result.kinetic = all.sum({part.kinetic});
+    result.elastic = all.sum({part.elastic});
+    result.of_mass = all.sum({part.of_mass});
+    result.of_strain = all.sum({part.of_strain});
+    result.work = all.sum({part.work});
+    result.plastic = all.sum({part.plastic});
+    result.viscous = all.sum({part.viscous});
+    return result;
+  }
+
   template <int dim>
   Ledger<dim>::Ledger(const SceneInput &input,
                       const Discretization<dim> &discretization,
@@ -444,6 +457,7 @@ namespace nsfd
     energy.impact += sums[impact];
     if (has_rates(problem))
       energy.viscous += sums[viscous];
+    energy.plastic += bodies.plastic;
     energy.viscous += bodies.viscous;
     if (!problem.viscosity.empty()) {
       next.viscous_traction =

@@ -17,8 +17,11 @@ namespace nsfd
     double kinetic = 0., elastic = 0.; ///< after the step
     double of_mass = 0., of_strain = 0.; ///< what theta > 1/2 takes
     double work = 0.;                    ///< of the loads
-    double viscous = 0.;                 ///< dissipated in viscous bodies
+    double plastic = 0., viscous = 0.; ///< what the bodies dissipate
   };
+
+  /** Over all ranks. Collective. */
+  BodyEnergies sum(const Communicator &all, const BodyEnergies &part);
 
   /**
    * The books of a step that has been solved: every energy line on its own

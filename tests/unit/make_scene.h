@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../../source/motion/inelastic_motion.h"
 #include "../../source/motion/large_motion.h"
 
 #include "nsfd/dynamics/bonded.h"
@@ -63,6 +64,10 @@ namespace nsfd
           moving = std::make_unique<MovingBodies<dim>>(*input, *discretization);
           dynamics = make_moving_dynamics<dim>(communicator, moving->bodies(),
                                                moving->points());
+        } else if (input->has_history()) {
+          inelastic = std::make_unique<InelasticBodies<dim>>(*discretization);
+          dynamics = make_moving_dynamics<dim>(
+              communicator, inelastic->bodies(), discretization->points());
         } else if (input->has_bonded_faces()) {
           const auto &bodies = discretization->bodies();
           const auto &points = discretization->points();
@@ -88,6 +93,9 @@ namespace nsfd
         if (moving)
           stepper = std::make_unique<LargeMotion<dim>>(
               *input, *discretization, *moving, *dynamics, *solver);
+        else if (inelastic)
+          stepper = std::make_unique<InelasticMotion<dim>>(
+              *input, *discretization, *inelastic, *dynamics, *solver);
         else
           stepper = std::make_unique<MoreauJean<dim>>(
               *input, *discretization, *dynamics, *solver, bonded);
@@ -140,6 +148,8 @@ namespace nsfd
       std::unique_ptr<Dynamics<dim>> dynamics;
       BondedDynamics<dim> *bonded = nullptr; ///< the same, or null
       std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
+      /// of small motions with materials that remember, or null
+      std::unique_ptr<InelasticBodies<dim>> inelastic;
       std::unique_ptr<NonsmoothSolver<dim>> solver;
       std::unique_ptr<MoreauJean<dim>> stepper;
       double time_step = 0.;
