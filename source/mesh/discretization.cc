@@ -312,32 +312,6 @@ namespace nsfd
   }
 
   template <int dim>
-  void Discretization<dim>::visit_stress(const std::vector<double> &displacement,
-                                         const std::vector<double> &velocity,
-                                         const StressVisitor &visit) const
-  {
-    std::vector<std::array<double, 6>> viscous; // in the order of the visits
-    if (is_viscous())
-      visit_quadrature(velocity, [&](const unsigned int body,
-                                     const Point<dim> &, double, const double *,
-                                     const double *rate) {
-        viscous.push_back(viscous_stress(body, rate));
-      });
-    std::size_t k = 0;
-    visit_quadrature(
-        displacement, [&](const unsigned int body, const Point<dim> &x,
-                          const double JxW, const double *,
-                          const double *gradient) {
-          auto sigma = stress(body, x, gradient);
-          if (!viscous.empty())
-            for (unsigned int c = 0; c < 6; ++c)
-              sigma[c] += viscous[k][c];
-          ++k;
-          visit(body, x, JxW, sigma);
-        });
-  }
-
-  template <int dim>
   bool Discretization<dim>::is_viscous() const
   {
     return input_->has_viscous_bodies();

@@ -1,5 +1,7 @@
 #include "field_grids.h"
 
+#include "../motion/cell_stresses.h"
+
 #include "cell_sampler.h"
 
 #include "nsfd/mesh/cell_geometry.h"
@@ -261,6 +263,32 @@ namespace nsfd
     return result;
   }
 
+  namespace
+  {
+    /** Stress and equivalent plastic strain from those at the nodes, 7 each. */
+    template <int dim>
+    std::pair<std::array<double, 6>, double>
+    sample_memory(const Sampler<dim> &sampler, const unsigned int q,
+                  const std::vector<double> &nodal)
+    {
+      constexpr unsigned int width = 7;
+      const std::size_t n = nodal.size() / width;
+      std::array<double, width> value{};
+      std::vector<double> part(n * dim);
+      for (unsigned int k = 0; k < width; k += dim) {
+        for (std::size_t i = 0; i < n; ++i)
+          for (unsigned int c = 0; c < dim && k + c < width; ++c)
+            part[i * dim + c] = nodal[i * width + k + c];
+        const auto x = sampler.value(q, part.data());
+        for (unsigned int c = 0; c < dim && k + c < width; ++c)
+          value[k + c] = x[c];
+      }
+      std::array<double, 6> stress;
+      std::copy_n(value.begin(), 6, stress.begin());
+      return {stress, std::max(0., value[6])};
+    }
+  } // namespace
+
   template <int dim>
   VtuGrid volume_grid(const Discretization<dim> &discretization,
                       const State &state, const Fragments<dim> &fragments)
@@ -281,8 +309,14 @@ namespace nsfd
     const auto append = [](VtuGrid::Array &array, const auto &values) {
       array.values.insert(array.values.end(), values.begin(), values.end());
     };
+    const CellStresses<dim> stresses(discretization, state);
+    if (stresses.any_memory())
+      grid.point_data.push_back({"equivalent_plastic_strain", 1, {}});
     const std::vector<unsigned int> fragment = fragments.number_bodies();
     for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
+      const std::vector<double> remembered =
+          stresses.remembers(b) ? stresses.at_nodes(b, displacement)
+                                : std::vector<double>();
       const auto corners = discretization.corners(b);
       const std::size_t node = discretization.first_node(b) * dim;
       const auto first = std::int64_t(grid.points.size());
@@ -292,9 +326,13 @@ namespace nsfd
         grid.points.push_back(in_space<dim>(sampler.position(q, corners)));
         append(grid.point_data[0], in_space<dim>(sampler.value(q, u)));
         append(grid.point_data[1], in_space<dim>(sampler.value(q, v)));
-        auto stress =
-            discretization.stress(b, sampler.position(q, corners),
-                                  sampler.gradient(q, corners, u).data());
+        auto [stress, flow] =
+            remembered.empty()
+                ? std::make_pair(discretization.stress(
+                                     b, sampler.position(q, corners),
+                                     sampler.gradient(q, corners, u).data()),
+                                 0.)
+                : sample_memory(sampler, q, remembered);
         if (is_viscous) {
           const auto viscous = discretization.viscous_stress(
               b, sampler.gradient(q, corners, v).data());
@@ -305,6 +343,8 @@ namespace nsfd
                std::array<double, 6>{{stress[0], stress[1], stress[2],
                                       stress[3], stress[5], stress[4]}});
         grid.point_data[3].values.push_back(von_mises(stress));
+        if (stresses.any_memory())
+          grid.point_data[4].values.push_back(flow);
       }
       for (auto cell : lattice.cells) {
         for (auto &corner : cell)

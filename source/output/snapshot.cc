@@ -1,5 +1,6 @@
 #include "snapshot.h"
 
+#include "../motion/cell_stresses.h"
 #include "cell_sampler.h"
 #include "gather.h"
 
@@ -77,10 +78,10 @@ namespace nsfd
           stress_(n_bodies_, 0.)
     {
       std::vector<double> volume(n_bodies_, 0.);
-      discretization.visit_stress(
-          displacement_, velocity_,
-          [&](const unsigned int body, const Point<dim> &, const double JxW,
-              const std::array<double, 6> &stress) {
+      CellStresses<dim>(discretization, state)
+          .visit_all(displacement_, velocity_,
+                     [&](const unsigned int body, const Point<dim> &,
+                         const double JxW, const std::array<double, 6> &stress) {
             stress_[body] += JxW * von_mises(stress);
             volume[body] += JxW;
           });

@@ -1,5 +1,6 @@
 #include "nsfd/scene/case_observer.h"
 
+#include "../motion/cell_stresses.h"
 #include "../output/gather.h"
 #include "face_pieces.h"
 
@@ -147,7 +148,7 @@ namespace nsfd
     };
     average(displacement, 3);
     average(velocity, 6);
-    discretization_.visit_stress(
+    CellStresses<dim>(discretization_, state).visit_all(
         displacement, velocity,
         [&](const unsigned int b, const dealii::Point<dim> &, const double JxW,
             const std::array<double, 6> &sigma) {
@@ -214,6 +215,7 @@ namespace nsfd
     const std::size_t n = discretization_.bodies().size();
     // per body: error and reference of u (L2), v (L2, L1), stress (L2)
     std::vector<double> terms(8 * n, 0.);
+    CellStresses<dim> stresses(discretization_, state);
     const auto visit = [&](const std::vector<double> &unknowns,
                            const bool velocity) {
       discretization_.visit_quadrature(
@@ -237,7 +239,7 @@ namespace nsfd
               }
             }
             if (!velocity && case_.has_stress()) {
-              const auto sigma = discretization_.stress(b, x, gradient);
+              const auto sigma = stresses.visit(b, x, gradient);
               const auto known = case_.stress(position, state.time);
               for (unsigned int c = 0; c < 6; ++c) {
                 terms[6 * n + b] +=

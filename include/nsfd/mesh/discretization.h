@@ -179,14 +179,6 @@ namespace nsfd
                                          const double *rate) const;
     bool is_viscous() const;
 
-    /** The sum of both at every quadrature point of every cell of this rank. */
-    using StressVisitor = std::function<void(
-        unsigned int body, const dealii::Point<dim> &position, double JxW,
-        const std::array<double, 6> &stress)>;
-    void visit_stress(const std::vector<double> &displacement,
-                      const std::vector<double> &velocity,
-                      const StressVisitor &visit) const;
-
     /** Corners of a cell in deal.II's order, and values of a nodal vector. */
     std::vector<dealii::Point<dim>> corners(unsigned int body) const;
     std::vector<double> at_corners(unsigned int body,
