@@ -16,13 +16,12 @@ namespace nsfd
     if (!input.has_history())
       return;
     for (const MaterialInput &material : input.materials)
-      materials_.push_back(
-          material.plastic
-              ? make_history_material<dim>(material.young, material.poisson,
-                                           *material.plastic,
-                                           input.large_motion,
-                                           input.plane_stress)
-              : nullptr);
+      materials_.push_back(material.plastic
+                               ? make_history_material<dim>(
+                                     material.young, material.poisson,
+                                     *material.plastic, input.large_motion,
+                                     input.plane_stress)
+                               : nullptr);
     first_ = first_histories(discretization);
   }
 

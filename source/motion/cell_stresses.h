@@ -53,7 +53,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const State &state_;
     std::vector<std::unique_ptr<const HistoryMaterial<dim>>> materials_;
-    std::vector<std::size_t> first_; ///< by cell; empty: nothing remembers
+    std::vector<std::size_t> first_;    ///< by cell; empty: nothing remembers
     unsigned int body_ = 0, point_ = 0; ///< visited next
   };
 } // namespace nsfd

@@ -95,8 +95,7 @@ namespace nsfd
 
     CellMotion motion_of(const FiniteStep &step, const double *end)
     {
-      return {step.displacement, end, step.theta, step.time_step,
-              step.history};
+      return {step.displacement, end, step.theta, step.time_step, step.history};
     }
 
     /** L U of rows in a new order, in place; column-major. */
@@ -171,7 +170,7 @@ namespace nsfd
 
   template <int dim>
   void DeformableCell<dim>::gradient(const unsigned int q, const double *u,
-                                 double *F, const double unit) const
+                                     double *F, const double unit) const
   {
     const double *g = &gradients_[std::size_t(q) * n_nodes_ * dim];
     for (unsigned int c = 0; c < dim; ++c)
@@ -211,11 +210,12 @@ namespace nsfd
   // Column (j, e): F1 changes by e_e (x) g_j, so that C1 changes by twice the
   // symmetric part of (F1^T e_e) (x) g_j and S by T times this.
   template <int dim>
-  void DeformableCell<dim>::add_tangent(const unsigned int q, const double *F_left,
-                                    const double *F_right,
-                                    const Voigt<dim> &geometric,
-                                    const VoigtBlock<dim> &tangent,
-                                    double *K) const
+  void DeformableCell<dim>::add_tangent(const unsigned int q,
+                                        const double *F_left,
+                                        const double *F_right,
+                                        const Voigt<dim> &geometric,
+                                        const VoigtBlock<dim> &tangent,
+                                        double *K) const
   {
     constexpr unsigned int n = dim * (dim + 1) / 2;
     const double *g = &gradients_[std::size_t(q) * n_nodes_ * dim];
@@ -290,7 +290,8 @@ namespace nsfd
   /** The residual at @p v, with the end of the step it leads to. */
   template <int dim>
   bool DeformableCell<dim>::balance(const FiniteStep &step, const double *v,
-                                FiniteScratch &scratch, Balance &result) const
+                                    FiniteScratch &scratch,
+                                    Balance &result) const
   {
     const unsigned int n = n_dofs();
     const double h = step.time_step;
@@ -328,7 +329,7 @@ namespace nsfd
   /** The derivative of balance() at the end of the step it was asked for. */
   template <int dim>
   bool DeformableCell<dim>::factorize_derivative(const FiniteStep &step,
-                                             FiniteScratch &scratch) const
+                                                 FiniteScratch &scratch) const
   {
     const unsigned int n = n_dofs();
     double *J = scratch.matrix.data();
@@ -343,7 +344,7 @@ namespace nsfd
   /** Moves @p v along a Newton step as far as the residual gets smaller. */
   template <int dim>
   bool DeformableCell<dim>::improve(const FiniteStep &step, double *v,
-                                FiniteScratch &scratch, Balance &now) const
+                                    FiniteScratch &scratch, Balance &now) const
   {
     constexpr unsigned int most_halvings = 20;
     const unsigned int n = n_dofs();
@@ -369,7 +370,7 @@ namespace nsfd
 
   template <int dim>
   bool DeformableCell<dim>::iterate(const FiniteStep &step, double *v,
-                                FiniteScratch &scratch) const
+                                    FiniteScratch &scratch) const
   {
     constexpr unsigned int most_steps = 50;
     constexpr double fast = 1e-3;
@@ -393,7 +394,7 @@ namespace nsfd
 
   template <int dim>
   bool DeformableCell<dim>::solve(const FiniteStep &step, double *v,
-                              FiniteScratch &scratch) const
+                                  FiniteScratch &scratch) const
   {
     const unsigned int n = n_dofs();
     scratch.matrix.resize(std::size_t(n) * n);

@@ -157,8 +157,8 @@ namespace nsfd
           for (unsigned int b = a; b < dim; ++b)
             C[voigt_place<dim>(a, b)] =
                 gradient[a * dim + b] + gradient[b * dim + a];
-        return this->flow_.stress(sum(in_space<dim>(C, 0.5, 0.), -1.,
-                                      read_memory(history).alpha));
+        return this->flow_.stress(
+            sum(in_space<dim>(C, 0.5, 0.), -1., read_memory(history).alpha));
       }
 
       double equivalent_strain(const double *history) const override
@@ -205,8 +205,7 @@ namespace nsfd
           return false;
         this->put_losses(step, result);
         const LogSecant secant(start, end);
-        result.S =
-            of_space<dim>(forward(G, secant.pulled_back(step.stress)));
+        result.S = of_space<dim>(forward(G, secant.pulled_back(step.stress)));
         if (with_tangent)
           for (unsigned int j = 0; j < n_entries<dim>; ++j) {
             Strain H{};

@@ -80,8 +80,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void
-  InelasticBodies<dim>::put_old_velocities(std::vector<double> &v) const
+  void InelasticBodies<dim>::put_old_velocities(std::vector<double> &v) const
   {
     for (const unsigned int b : remembering_)
       std::copy(old_->velocity.begin() + long(bodies_.first_dof[b]),

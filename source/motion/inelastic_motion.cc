@@ -93,9 +93,10 @@ namespace nsfd
   }
 
   template <int dim>
-  SolverReport InelasticMotion<dim>::iterate(
-      const State &old, const double h, const SolverControl &control,
-      State &next, std::unique_ptr<LawEvaluation<dim>> &evaluation)
+  SolverReport
+  InelasticMotion<dim>::iterate(const State &old, const double h,
+                                const SolverControl &control, State &next,
+                                std::unique_ptr<LawEvaluation<dim>> &evaluation)
   {
     auto &dynamics = this->dynamics_;
     const double rest = std::max(0.1 * control.tolerance, 1e-13);
@@ -128,9 +129,9 @@ namespace nsfd
       const auto solver = SolverRegistry<dim>::instance().create(
           this->input_.solver.method == "auto" ? "chain"
                                                : this->input_.solver.method);
-      const SolverReport part = this->solve(
-          *solver, this->problem_, this->discretization_.origins(), control,
-          energy_scale_, next.impulse, *evaluation);
+      const SolverReport part =
+          this->solve(*solver, this->problem_, this->discretization_.origins(),
+                      control, energy_scale_, next.impulse, *evaluation);
       total.newton += part.newton;
       total.krylov += part.krylov;
       total.sweeps += part.sweeps;
@@ -165,8 +166,7 @@ namespace nsfd
 
   /** That of the bodies, in place of that of their tangents. */
   template <int dim>
-  void InelasticMotion<dim>::correct_motion(const State &old,
-                                            State &next) const
+  void InelasticMotion<dim>::correct_motion(const State &old, State &next) const
   {
     const double h = this->problem_.time_step, theta = this->problem_.theta;
     std::vector<double> off(v_), U(next.relative_velocity.size());

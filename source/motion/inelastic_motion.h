@@ -28,8 +28,7 @@ namespace nsfd
     StepReport advance(const State &old, double time_step, State &next,
                        unsigned int idle_rounds) override;
 
-    struct MotionCounters
-    {
+    struct MotionCounters {
       unsigned long long iterations = 0, most_iterations = 0;
     };
     const MotionCounters &motion_counters() const { return motion_counters_; }

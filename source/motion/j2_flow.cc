@@ -25,18 +25,16 @@ namespace nsfd
   } // namespace
 
   /** Isotropic moduli act on each of the two by a number. */
-  struct J2Flow::Parts
-  {
+  struct J2Flow::Parts {
     std::array<Strain, 2> part; ///< the mean of the normal ones, the rest
   };
 
   /** Where the end of a step is on the surface. */
-  struct J2Flow::Surface
-  {
+  struct J2Flow::Surface {
     double ratio = 0.; ///< of the increase of p to q
     double q = 0., flow = 0.;
-    Parts eta;     ///< stress from the middle of the surface
-    Strain normal; ///< N, N:N = 3/2 in space
+    Parts eta;         ///< stress from the middle of the surface
+    Strain normal;     ///< N, N:N = 3/2 in space
     double slope = 0.; ///< of yield + R + overstress by the flow
   };
 
@@ -128,7 +126,8 @@ namespace nsfd
       return 0.;
     return rate_exponent_ == 1.
                ? viscosity_ * rate
-               : viscosity_ * rate_ * std::pow(rate / rate_, 1. / rate_exponent_);
+               : viscosity_ * rate_ *
+                     std::pow(rate / rate_, 1. / rate_exponent_);
   }
 
   double J2Flow::overstress_slope(const double rate) const
@@ -220,8 +219,8 @@ namespace nsfd
     surface.ratio = x;
     surface.slope = slope;
     for (unsigned int i = 0; i < 2; ++i)
-      surface.eta.part[i] = combine(1. / (1. + x * decay_[i]), trial.part[i],
-                                    0., trial.part[i]);
+      surface.eta.part[i] =
+          combine(1. / (1. + x * decay_[i]), trial.part[i], 0., trial.part[i]);
     surface.normal = combine(1.5 / surface.q * share_[0], surface.eta.part[0],
                              1.5 / surface.q * share_[1], surface.eta.part[1]);
     return std::isfinite(x);
@@ -265,16 +264,16 @@ namespace nsfd
       if (viscosity_ == 0.)
         missing += chord;
       else {
-        result.viscous = dp / 2. *
-                         (std::max(0., over) +
-                          std::max(0., surface.q - yield_ - R_1));
+        result.viscous =
+            dp / 2. *
+            (std::max(0., over) + std::max(0., surface.q - yield_ - R_1));
         result.numerical -= dp * chord;
       }
       const Strain direction = times_modulus(surface.normal);
       if (missing != 0.)
-        result.stress = combine(
-            1., result.stress,
-            dp * missing / contract<3>(direction, change), direction);
+        result.stress =
+            combine(1., result.stress,
+                    dp * missing / contract<3>(direction, change), direction);
     }
     if (with_tangent) {
       if (surface.flow > 0.)
@@ -302,8 +301,7 @@ namespace nsfd
     }
     const double R_0 = hardening(p), R_1 = hardening(p + dp),
                  mean = mean_hardening(p, dp), chord = mean - (R_0 + R_1) / 2.;
-    const double below =
-        std::max(0., yield_ + R_0 - contract<3>(N, eta_start));
+    const double below = std::max(0., yield_ + R_0 - contract<3>(N, eta_start));
     const bool with_chord = viscosity_ == 0.;
     const double missing = below / 2. + (with_chord ? chord : 0.);
     const double chord_slope =
@@ -328,16 +326,16 @@ namespace nsfd
       }
       dN = combine(1., dN, -d_q / q, N);
       const Strain d_direction = times_modulus(dN);
-      Strain d_stress = combine(theta, times_modulus(unit), -theta * d_flow,
-                                direction);
+      Strain d_stress =
+          combine(theta, times_modulus(unit), -theta * d_flow, direction);
       d_stress = combine(1., d_stress, -theta * dp, d_direction);
       if (missing != 0.) {
         const double d_below = below > 0. ? -contract<3>(dN, eta_start) : 0.;
-        const double d_work = d_flow * missing +
-                              dp * (d_below / 2. + chord_slope * d_flow);
+        const double d_work =
+            d_flow * missing + dp * (d_below / 2. + chord_slope * d_flow);
         const double d_way = contract<3>(d_direction, change) + direction[j];
-        d_stress = combine(1., d_stress, (d_work - share * d_way) / way,
-                           direction);
+        d_stress =
+            combine(1., d_stress, (d_work - share * d_way) / way, direction);
         d_stress = combine(1., d_stress, share, d_direction);
       }
       for (unsigned int i = 0; i < n_entries; ++i)

@@ -74,8 +74,7 @@ namespace nsfd
           const double off = A[p][q];
           const double t_half = (A[q][q] - A[p][p]) / (2. * off);
           const double t = (t_half < 0. ? -1. : 1.) /
-                           (std::abs(t_half) +
-                            std::sqrt(1. + t_half * t_half));
+                           (std::abs(t_half) + std::sqrt(1. + t_half * t_half));
           if (off == 0. || (A[p][p] - t * off == A[p][p] &&
                             A[q][q] + t * off == A[q][q] && sweep > 3)) {
             A[p][q] = A[q][p] = 0.;
@@ -132,8 +131,7 @@ namespace nsfd
   {
     for (unsigned int i = 0; i < 3; ++i)
       for (unsigned int j = 0; j < 3; ++j)
-        differences_[i][j] =
-            log_difference(start.values()[i], end.values()[j]);
+        differences_[i][j] = log_difference(start.values()[i], end.values()[j]);
   }
 
   /** The symmetric part of A W B^T. */

@@ -5,7 +5,8 @@
 
 namespace nsfd
 {
-  /** The symmetric matrix with these entries, and those of the symmetric part. */
+  /** The symmetric matrix with these entries, and those of the symmetric part.
+   */
   Mat3 matrix(const Voigt<3> &A);
   Voigt<3> entries(const Mat3 &A);
 

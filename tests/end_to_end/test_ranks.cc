@@ -241,6 +241,7 @@ namespace end_to_end
     const Workspace workspace;
     const std::vector<Launch> launches = {
         {scene("rocking"), {"Time/end=0.05 s"}},
+        {scene("plastic_bar"), {"Time/end=20 us"}},
         {quickstart().parent_path() / "benchmarks/falling_wall.prm",
          {"Time/end=20 ms", "Output/fields=false"}}};
     for (const Launch &launch : launches) {

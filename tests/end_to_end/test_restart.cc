@@ -40,6 +40,11 @@ namespace end_to_end
                               "Constants/turn=60 us", "Constants/pull=4 m/s",
                               "Time/end=120 us"}};
 
+    const std::vector<std::string> plastic = {
+        "Material: PMMA/model=j2 plastic", "Material: PMMA/yield stress=30 MPa",
+        "Material: PMMA/isotropic hardening modulus=100 MPa",
+        "Material: PMMA/kinematic hardening modulus=50 MPa"};
+
     const Launch midplane = {scene("midplane"), {"Mesh/cells=10, 10"}};
     const Launch bonded = with(midplane, {"Interface: elsewhere/law=bonded",
                                           "Interface: midline/intact faces="
@@ -93,6 +98,12 @@ namespace end_to_end
         {"impactor",
          {benchmark("impactor"),
           {"Body: beam/cells=20, 2", "Time/end=60 us"}}},
+        {"plastic_bar", {scene("plastic_bar"), {"Time/end=40 us"}}},
+        {"plastic_breaking", with(breaking, plastic)},
+        {"viscoplastic_large",
+         with(with(breaking, plastic),
+              {"motion=large", "Material: PMMA/model=viscoplastic",
+               "Material: PMMA/viscosity=100 Pa*s", "Time/end=60 us"})},
         {"automatic_steps",
          with(breaking, {"Time/step=auto", "Time/end=40 us"})},
         {"quasi_static", {scene("static_michel"), {}}},

@@ -239,6 +239,14 @@ namespace end_to_end
            1.6449747},
           {"stress", 1e-8, "uniform"},
           {"kinetic", 1e-12, "at rest"}}},
+        {"plastic_bar",
+         {{"displacement_L2", 1e-2, "0.0065, 0.0047, 0.0025 for 50 to 200 "
+                                    "cells"},
+          {"velocity_L1", 4e-2, "two fronts of a few cells: 0.041, 0.025, "
+                                "0.017"},
+          {"velocity_L2", 0.1, "order 0.3: 0.089, 0.068, 0.056"},
+          {"stress_L2", 0.1, "order 0.3: 0.091, 0.069, 0.057"},
+          {"plastic_work", 1e-2, "0.008 for 50 cells, below 0.001 beyond"}}},
         {"plate_impact",
          {{"stress", 1e-4, "Z V/2 away from the fronts"},
           {"tension_place", 2e-2, "half a cell of 1/80, or the next one"},

@@ -32,10 +32,7 @@ namespace
   class Random
   {
   public:
-    double number(const double scale = 1.)
-    {
-      return scale * normal_(engine_);
-    }
+    double number(const double scale = 1.) { return scale * normal_(engine_); }
 
   private:
     std::mt19937 engine_{99};
@@ -96,17 +93,16 @@ namespace
               [](const double e) { return std::exp(2. * e); });
         };
         for (unsigned int k = 0; k < 20; ++k) {
-          const Voigt<3> E0 = symmetric(random, start),
-                         C0 = positive(E0),
+          const Voigt<3> E0 = symmetric(random, start), C0 = positive(E0),
                          C1 = positive(plus(E0, 1., symmetric(random, way)));
           const Voigt<3> T = symmetric(random, 1.);
           const Spectrum a(C0), b(C1);
           const double work =
               contract<3>(T, plus(b.half_log(), -1., a.half_log()));
-          EXPECT_NEAR(contract<3>(LogSecant(a, b).pulled_back(T),
-                                  plus(C1, -1., C0)) /
-                          2.,
-                      work, 1e-14 * (condition(a) + condition(b)));
+          EXPECT_NEAR(
+              contract<3>(LogSecant(a, b).pulled_back(T), plus(C1, -1., C0)) /
+                  2.,
+              work, 1e-14 * (condition(a) + condition(b)));
         }
       }
   }
@@ -136,18 +132,17 @@ namespace
         const auto log_at = [&](const double s) {
           return Spectrum(plus(C1, s * d, H)).half_log();
         };
-        EXPECT_LT(size(plus(plus({}, 0.5 / d,
-                                 plus(log_at(1.), -1., log_at(-1.))),
-                            -1., half_log_change(Spectrum(C1), H))),
-                  1e-6);
+        EXPECT_LT(
+            size(plus(plus({}, 0.5 / d, plus(log_at(1.), -1., log_at(-1.))),
+                      -1., half_log_change(Spectrum(C1), H))),
+            1e-6);
       }
   }
 
   // ------------------------------------------------------------ finite strain
 
   /** A point of finite strain and its books. */
-  struct Point
-  {
+  struct Point {
     explicit Point(const PlasticInput &plastic)
         : law(make_history_material<3>(young, poisson, plastic, true, false)),
           history(law->n_history())
@@ -170,10 +165,10 @@ namespace
       const double after = law->energy(to, next.data());
       plastic += step.plastic;
       largest = std::max({largest, after, std::abs(work)});
-      defect = std::max(defect,
-                        std::abs(work - (after - before) - step.plastic -
-                                 step.viscous - step.numerical) /
-                            largest);
+      defect =
+          std::max(defect, std::abs(work - (after - before) - step.plastic -
+                                    step.viscous - step.numerical) /
+                               largest);
       C = to;
       history = next;
     }
@@ -235,11 +230,11 @@ namespace
     const double gradient[9] = {0., 4., 0., 0., 0., 0., 0., 0., 0.};
     const auto sigma = point.law->stress(gradient, point.history.data());
     EXPECT_NEAR(sigma[3], yield / std::sqrt(3.), 0.02 * yield);
-    const double J2 = (std::pow(sigma[0] - sigma[1], 2) +
-                       std::pow(sigma[1] - sigma[2], 2) +
-                       std::pow(sigma[2] - sigma[0], 2)) /
-                          6. +
-                      sigma[3] * sigma[3];
+    const double J2 =
+        (std::pow(sigma[0] - sigma[1], 2) + std::pow(sigma[1] - sigma[2], 2) +
+         std::pow(sigma[2] - sigma[0], 2)) /
+            6. +
+        sigma[3] * sigma[3];
     EXPECT_NEAR(std::sqrt(3. * J2), yield, 1e-10 * yield);
     EXPECT_LT(point.defect, 1e-12);
   }
@@ -295,10 +290,10 @@ namespace
     unsigned int flowing = 0;
     Point point(flow(2e9, 3e9));
     for (unsigned int k = 0; k < 200; ++k) {
-      const Voigt<3> to = Spectrum(symmetric(random, 0.1))
-                              .function([](const double e) {
-                                return std::exp(2. * e);
-                              });
+      const Voigt<3> to =
+          Spectrum(symmetric(random, 0.1)).function([](const double e) {
+            return std::exp(2. * e);
+          });
       HistoryMaterial<3>::Way way;
       way.C0 = point.C;
       way.C1 = to;
@@ -369,8 +364,7 @@ namespace
   }
 
   /** A point in the middle of its way: cell, its memory, where it is. */
-  struct UsedCell
-  {
+  struct UsedCell {
     std::unique_ptr<HistoryCell<2>> cell;
     Dofs history, u0, u1;
 

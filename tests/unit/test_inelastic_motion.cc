@@ -97,8 +97,8 @@ subsection Solver
 end
 )";
 
-  const std::vector<std::string> slowly = {
-      "Material: soft/model=viscoplastic", "Material: soft/viscosity=1"};
+  const std::vector<std::string> slowly = {"Material: soft/model=viscoplastic",
+                                           "Material: soft/viscosity=1"};
 
   std::vector<std::string> with(std::vector<std::string> overrides,
                                 const std::vector<std::string> &more)
@@ -124,8 +124,8 @@ end
 
   TEST(InelasticMotion, WithoutFlowItIsTheLinearStep)
   {
-    const std::vector<std::string> firm = {
-        "Material: soft/yield stress=1e9", "Time/theta=0.6"};
+    const std::vector<std::string> firm = {"Material: soft/yield stress=1e9",
+                                           "Time/theta=0.6"};
     const auto pick = [](const std::string &text, const std::string &name) {
       const std::size_t at = text.find("  set " + name);
       return text.substr(0, at) + text.substr(text.find('\n', at) + 1);
@@ -135,7 +135,8 @@ end
          {"yield stress", "isotropic hardening", "kinematic hardening"})
       linear = pick(linear, name);
     Scene<2> one(block, firm),
-        other(linear, {"Material: soft/model=linear elastic", "Time/theta=0.6"});
+        other(linear,
+              {"Material: soft/model=linear elastic", "Time/theta=0.6"});
     for (unsigned int k = 0; k < 100; ++k) {
       one.advance();
       other.advance();
@@ -188,7 +189,7 @@ end
   {
     for (const char *motion : {"motion=small", "motion=large"}) {
       Scene<2> scene(block, {motion});
-      for (unsigned int k = 0; k < 20; ++k)
+      for (unsigned int k = 0; k < 6; ++k)
         scene.advance();
       const State start = scene.state;
       scene.advance(0.02); // in vain
@@ -225,14 +226,13 @@ end
                       at = "Material: soft/initial ";
     Scene<2> one(block, {"motion=large", at + "velocity x=" + vx,
                          at + "velocity y=" + vy}),
-        other(block,
-              {"motion=large",
-               at + "displacement x=(" + c + " - 1) * x - " + s + " * y",
-               at + "displacement y=" + s + " * x + (" + c + " - 1) * y",
-               at + "velocity x=" + c + " * (" + vx + ") - " + s + " * (" + vy +
-                   ")",
-               at + "velocity y=" + s + " * (" + vx + ") + " + c + " * (" + vy +
-                   ")"});
+        other(block, {"motion=large",
+                      at + "displacement x=(" + c + " - 1) * x - " + s + " * y",
+                      at + "displacement y=" + s + " * x + (" + c + " - 1) * y",
+                      at + "velocity x=" + c + " * (" + vx + ") - " + s +
+                          " * (" + vy + ")",
+                      at + "velocity y=" + s + " * (" + vx + ") + " + c +
+                          " * (" + vy + ")"});
     for (unsigned int k = 0; k < 100; ++k) {
       one.advance();
       other.advance();
@@ -309,10 +309,10 @@ end
     for (unsigned int k = 0; k < 300; ++k) {
       scene.advance_halving();
       const EnergyLines &e = scene.state.energy;
-      worst = std::max(
-          worst, std::abs(e.kinetic + e.elastic + e.cohesive + e.damage +
-                          e.friction + e.viscous + e.plastic + e.impact +
-                          e.numerical - e.work - scene.state.initial_energy));
+      worst = std::max(worst, std::abs(e.kinetic + e.elastic + e.cohesive +
+                                       e.damage + e.friction + e.viscous +
+                                       e.plastic + e.impact + e.numerical -
+                                       e.work - scene.state.initial_energy));
     }
     EXPECT_LT(worst, 1e-9 * scene.state.largest_energy);
     EXPECT_GT(scene.state.energy.plastic, 0.);

@@ -64,8 +64,7 @@ namespace
   double size(const Strain &A) { return std::sqrt(contract<3>(A, A)); }
 
   /** A point and the books of its way. */
-  struct Driven
-  {
+  struct Driven {
     Driven(const PlasticInput &plastic, const bool plane_stress = false)
         : flow(young, poisson, plane_stress, plastic)
     {
@@ -79,20 +78,18 @@ namespace
       ASSERT_TRUE(flow.step(start, trial, memory, h, theta, false, step));
       memory.alpha = sum(memory.alpha, 1., step.plastic_strain);
       memory.equivalent += step.flow;
-      const double work =
-          contract<3>(step.stress, sum(to, -1., strain));
+      const double work = contract<3>(step.stress, sum(to, -1., strain));
       strain = to;
       stress = flow.stress(sum(strain, -1., memory.alpha));
-      const double stored =
-          flow.energy(sum(strain, -1., memory.alpha), memory);
+      const double stored = flow.energy(sum(strain, -1., memory.alpha), memory);
       plastic += step.plastic;
       viscous += step.viscous;
       numerical += step.numerical;
       largest = std::max({largest, stored, std::abs(work)});
-      defect = std::max(defect,
-                        std::abs(work - (stored - before) - step.plastic -
-                                 step.viscous - step.numerical) /
-                            largest);
+      defect =
+          std::max(defect, std::abs(work - (stored - before) - step.plastic -
+                                    step.viscous - step.numerical) /
+                               largest);
     }
 
     J2Flow flow;
@@ -134,8 +131,7 @@ namespace
       for (unsigned int k = 1; k <= n; ++k) {
         // of equal parts of the way that has first the elastic strain
         const double way = 0.02 * k / n, elastic = yield / young;
-        const double p =
-            std::max(0., (way - elastic) / (1. + H / young));
+        const double p = std::max(0., (way - elastic) / (1. + H / young));
         const double sigma = p > 0. ? yield + H * p : way * young;
         bar.go(uniaxial(sigma, p));
         expect_uniaxial(bar.stress, sigma);
@@ -253,10 +249,8 @@ namespace
       for (unsigned int k = 1; k <= 400; ++k)
         point.go({0., 0., 0., rate * h * k / 2., 0., 0.}, h);
       const double over =
-          2e6 * 3. *
-          std::pow(rate / std::sqrt(3.) / 3., 1. / exponent);
-      EXPECT_NEAR(point.stress[3] * std::sqrt(3.), yield + over,
-                  1e-10 * yield);
+          2e6 * 3. * std::pow(rate / std::sqrt(3.) / 3., 1. / exponent);
+      EXPECT_NEAR(point.stress[3] * std::sqrt(3.), yield + over, 1e-10 * yield);
       EXPECT_LT(point.defect, 1e-13);
     }
   }
@@ -301,8 +295,7 @@ namespace
 
   // --------------------------------------------------------------- by chance
 
-  struct Case
-  {
+  struct Case {
     std::string name;
     PlasticInput plastic;
     bool plane_stress;
@@ -317,8 +310,7 @@ namespace
       result.push_back({"isotropic" + where, hardens(5e9, 0.), plane});
       result.push_back({"kinematic" + where, hardens(0., 8e9), plane});
       result.push_back({"saturating" + where, saturates(), plane});
-      result.push_back(
-          {"viscous" + where, flows_slowly(1e6, 1.), plane});
+      result.push_back({"viscous" + where, flows_slowly(1e6, 1.), plane});
       result.push_back({"power" + where, flows_slowly(1e7, 4.), plane});
     }
     return result;
@@ -358,9 +350,10 @@ namespace
         Chance chance(c.plane_stress);
         Driven point(c.plastic, c.plane_stress);
         for (unsigned int k = 0; k < 5000; ++k) {
-          const Strain to =
-              sum(point.strain, 1., chance.strain(chance.log_uniform(1e-9, 0.03)));
-          point.go(k % 50 ? to : Strain{}, chance.log_uniform(1e-6, 1e3), theta);
+          const Strain to = sum(point.strain, 1.,
+                                chance.strain(chance.log_uniform(1e-9, 0.03)));
+          point.go(k % 50 ? to : Strain{}, chance.log_uniform(1e-6, 1e3),
+                   theta);
           ASSERT_GE(point.step.plastic, 0.);
           ASSERT_GE(point.step.viscous, 0.);
           if (c.plastic.viscosity == 0.) {

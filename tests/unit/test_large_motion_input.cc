@@ -764,7 +764,8 @@ end
         names.push_back(part.name);
     EXPECT_EQ(names, (std::vector<std::string>{
                          "linear elastic", "transversely isotropic", "rigid",
-                         "saint-venant kirchhoff", "neo-hookean"}));
+                         "saint-venant kirchhoff", "neo-hookean", "j2 plastic",
+                         "viscoplastic"}));
   }
 
   TEST(LargeMotionInput, PartsAreNamed)

@@ -109,7 +109,7 @@ namespace nsfd
       double F[dim * dim];     ///< of the force
       double F_end[dim * dim]; ///< F_end^T dF_end is half of what S depends on
       Voigt<dim> S;
-      Voigt<dim> turning; ///< S where F depends on the end, else 0
+      Voigt<dim> turning;      ///< S where F depends on the end, else 0
       VoigtBlock<dim> tangent; ///< dS/dC1, if asked for
     };
     virtual bool set_point(unsigned int q, const CellMotion &motion,

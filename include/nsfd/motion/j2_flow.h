@@ -36,16 +36,14 @@ namespace nsfd
            const PlasticInput &plastic);
 
     /** What the material remembers besides its elastic strain. */
-    struct Memory
-    {
+    struct Memory {
       Strain alpha{};         ///< sum of plastic strains
       double equivalent = 0.; ///< p
     };
 
-    struct Step
-    {
-      Strain stress;   ///< sigma*
-      Tangent tangent; ///< d sigma* / d trial, if asked for
+    struct Step {
+      Strain stress;           ///< sigma*
+      Tangent tangent;         ///< d sigma* / d trial, if asked for
       Strain plastic_strain{}; ///< of the step; its trace vanishes
       double flow = 0.;        ///< increase of p
       /// J per volume

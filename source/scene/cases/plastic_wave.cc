@@ -50,8 +50,8 @@ namespace nsfd
         }
       const double limit = yield_ * (1. - nu) / (1. - 2. * nu);
       fast_ = std::sqrt((bulk_ + 4. / 3. * shear_) / rho);
-      slow_ = std::sqrt(
-          (bulk_ + 4. * shear_ * H / (3. * (3. * shear_ + H))) / rho);
+      slow_ =
+          std::sqrt((bulk_ + 4. * shear_ * H / (3. * (3. * shear_ + H))) / rho);
       first_ = limit / (rho * fast_);
       demand(speed_ > first_,
              "the left end must be faster than the material bears without "
@@ -71,10 +71,7 @@ namespace nsfd
     Vector velocity(const Vector &x, const double t) const override
     {
       const double s = x[0] - start_;
-      return {s < slow_ * t   ? speed_
-              : s < fast_ * t ? first_
-                              : 0.,
-              0., 0.};
+      return {s < slow_ * t ? speed_ : s < fast_ * t ? first_ : 0., 0., 0.};
     }
     bool has_stress() const override { return true; }
     std::array<double, 6> stress(const Vector &x, const double t) const override
@@ -100,8 +97,7 @@ namespace nsfd
     }
     void finish(std::map<std::string, double> &errors) const override
     {
-      const double strain =
-          first_ / fast_ + (speed_ - first_) / slow_;
+      const double strain = first_ / fast_ + (speed_ - first_) / slow_;
       errors["plastic_work"] = relative_error(
           plastic_, yield_ * flow(strain) * slow_ * time_ * section_);
     }
