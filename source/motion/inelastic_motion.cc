@@ -70,7 +70,7 @@ namespace nsfd
   void InelasticMotion<dim>::linearise(const State &old, const double h)
   {
     const double theta = this->input_.time.theta;
-    if (bodies_.set_tangents(v_))
+    if (this->dynamics_.communicator().any(bodies_.set_tangents(v_)))
       this->dynamics_.renew(h, theta);
     else
       this->dynamics_.reinit(h, theta);
