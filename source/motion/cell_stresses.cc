@@ -1,9 +1,12 @@
 #include "cell_stresses.h"
 
 #include "../mesh/body_shape.h"
+#include "../output/cell_sampler.h"
 #include "deformable_cells.h"
 
 #include "nsfd/input/scene_input.h"
+
+#include <algorithm>
 
 namespace nsfd
 {
@@ -123,6 +126,57 @@ namespace nsfd
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int k = 0; k < width; ++k)
         result.push_back(values(i, k));
+    return result;
+  }
+
+  template <int dim>
+  typename CellStresses<dim>::Sample
+  CellStresses<dim>::from_nodes(const Sampler<dim> &sampler,
+                                const unsigned int q) const
+  {
+    constexpr unsigned int width = 7;
+    const std::size_t n = nodes_.size() / width;
+    std::array<double, width> value{};
+    std::vector<double> part(n * dim);
+    for (unsigned int k = 0; k < width; k += dim) { // it takes dim at a time
+      for (std::size_t i = 0; i < n; ++i)
+        for (unsigned int c = 0; c < dim && k + c < width; ++c)
+          part[i * dim + c] = nodes_[i * width + k + c];
+      const auto x = sampler.value(q, part.data());
+      for (unsigned int c = 0; c < dim && k + c < width; ++c)
+        value[k + c] = x[c];
+    }
+    Sample result;
+    std::copy_n(value.begin(), 6, result.stress.begin());
+    result.plastic_strain = std::max(0., value[6]);
+    return result;
+  }
+
+  template <int dim>
+  typename CellStresses<dim>::Sample
+  CellStresses<dim>::at(const unsigned int body, const Sampler<dim> &sampler,
+                        const unsigned int q,
+                        const std::vector<double> &displacement,
+                        const std::vector<double> &velocity)
+  {
+    if (remembers(body)) {
+      if (nodes_.empty() || body != sampled_)
+        nodes_ = at_nodes(body, displacement);
+      sampled_ = body;
+      return from_nodes(sampler, q);
+    }
+    const auto corners = discretization_.corners(body);
+    const std::size_t node = discretization_.first_node(body) * dim;
+    const auto gradient = sampler.gradient(q, corners, &displacement[node]);
+    Sample result;
+    result.stress = discretization_.stress(
+        body, sampler.position(q, corners), gradient.data());
+    if (discretization_.is_viscous()) {
+      const auto viscous = discretization_.viscous_stress(
+          body, sampler.gradient(q, corners, &velocity[node]).data());
+      for (unsigned int c = 0; c < 6; ++c)
+        result.stress[c] += viscous[c];
+    }
     return result;
   }
 

@@ -11,12 +11,15 @@
 
 namespace nsfd
 {
+  template <int dim>
+  class Sampler;
+
   /** Cauchy stresses of a state, also of materials that remember. */
   template <int dim>
   class CellStresses
   {
   public:
-    /** Both must stay. */
+    /** Both must stay as they are. */
     CellStresses(const Discretization<dim> &discretization, const State &state);
     ~CellStresses();
 
@@ -39,15 +42,26 @@ namespace nsfd
     void visit_all(const std::vector<double> &displacement,
                    const std::vector<double> &velocity, const Visitor &visitor);
 
+    struct Sample
+    {
+      Stress stress{};           ///< with that of viscosity
+      double plastic_strain = 0.; ///< equivalent
+    };
     /**
-     * Of a body that remembers, at its nodes: 6 stresses and the equivalent
-     * plastic strain, the nearest to those of the quadrature points in the
-     * mean square. @p nodal displacements of the whole mesh.
+     * At place @p q of a sampler in a cell, from nodal displacements and
+     * velocities of the mesh. Of a body that remembers: what is nearest to its
+     * quadrature points in the mean square.
      */
-    std::vector<double> at_nodes(unsigned int body,
-                                 const std::vector<double> &nodal) const;
+    Sample at(unsigned int body, const Sampler<dim> &sampler, unsigned int q,
+              const std::vector<double> &displacement,
+              const std::vector<double> &velocity);
 
   private:
+    /** Of a body that remembers, at its nodes: 6 stresses and the equivalent
+        plastic strain. */
+    std::vector<double> at_nodes(unsigned int body,
+                                 const std::vector<double> &nodal) const;
+    Sample from_nodes(const Sampler<dim> &sampler, unsigned int q) const;
     const double *history(unsigned int body, unsigned int q) const;
 
     const Discretization<dim> &discretization_;
@@ -55,5 +69,7 @@ namespace nsfd
     std::vector<std::unique_ptr<const HistoryMaterial<dim>>> materials_;
     std::vector<std::size_t> first_;    ///< by cell; empty: nothing remembers
     unsigned int body_ = 0, point_ = 0; ///< visited next
+    std::vector<double> nodes_; ///< those of the body sampled last
+    unsigned int sampled_ = 0;
   };
 } // namespace nsfd

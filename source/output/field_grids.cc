@@ -263,32 +263,6 @@ namespace nsfd
     return result;
   }
 
-  namespace
-  {
-    /** Stress and equivalent plastic strain from those at the nodes, 7 each. */
-    template <int dim>
-    std::pair<std::array<double, 6>, double>
-    sample_memory(const Sampler<dim> &sampler, const unsigned int q,
-                  const std::vector<double> &nodal)
-    {
-      constexpr unsigned int width = 7;
-      const std::size_t n = nodal.size() / width;
-      std::array<double, width> value{};
-      std::vector<double> part(n * dim);
-      for (unsigned int k = 0; k < width; k += dim) {
-        for (std::size_t i = 0; i < n; ++i)
-          for (unsigned int c = 0; c < dim && k + c < width; ++c)
-            part[i * dim + c] = nodal[i * width + k + c];
-        const auto x = sampler.value(q, part.data());
-        for (unsigned int c = 0; c < dim && k + c < width; ++c)
-          value[k + c] = x[c];
-      }
-      std::array<double, 6> stress;
-      std::copy_n(value.begin(), 6, stress.begin());
-      return {stress, std::max(0., value[6])};
-    }
-  } // namespace
-
   template <int dim>
   VtuGrid volume_grid(const Discretization<dim> &discretization,
                       const State &state, const Fragments<dim> &fragments)
@@ -297,7 +271,6 @@ namespace nsfd
     const auto velocity = discretization.to_nodal(state.velocity);
     const Lattice<dim> lattice(discretization.element());
     const Sampler<dim> sampler(discretization.element(), lattice.points);
-    const bool is_viscous = discretization.is_viscous();
 
     VtuGrid grid;
     grid.time = state.time;
@@ -309,14 +282,11 @@ namespace nsfd
     const auto append = [](VtuGrid::Array &array, const auto &values) {
       array.values.insert(array.values.end(), values.begin(), values.end());
     };
-    const CellStresses<dim> stresses(discretization, state);
+    CellStresses<dim> stresses(discretization, state);
     if (stresses.any_memory())
       grid.point_data.push_back({"equivalent_plastic_strain", 1, {}});
     const std::vector<unsigned int> fragment = fragments.number_bodies();
     for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
-      const std::vector<double> remembered =
-          stresses.remembers(b) ? stresses.at_nodes(b, displacement)
-                                : std::vector<double>();
       const auto corners = discretization.corners(b);
       const std::size_t node = discretization.first_node(b) * dim;
       const auto first = std::int64_t(grid.points.size());
@@ -326,19 +296,8 @@ namespace nsfd
         grid.points.push_back(in_space<dim>(sampler.position(q, corners)));
         append(grid.point_data[0], in_space<dim>(sampler.value(q, u)));
         append(grid.point_data[1], in_space<dim>(sampler.value(q, v)));
-        auto [stress, flow] =
-            remembered.empty()
-                ? std::make_pair(discretization.stress(
-                                     b, sampler.position(q, corners),
-                                     sampler.gradient(q, corners, u).data()),
-                                 0.)
-                : sample_memory(sampler, q, remembered);
-        if (is_viscous) {
-          const auto viscous = discretization.viscous_stress(
-              b, sampler.gradient(q, corners, v).data());
-          for (unsigned int c = 0; c < 6; ++c)
-            stress[c] += viscous[c];
-        }
+        const auto [stress, flow] =
+            stresses.at(b, sampler, q, displacement, velocity);
         append(grid.point_data[2],
                std::array<double, 6>{{stress[0], stress[1], stress[2],
                                       stress[3], stress[5], stress[4]}});

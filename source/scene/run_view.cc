@@ -102,6 +102,7 @@ namespace nsfd
     motion_.reset();
     displacement_.reset();
     velocity_.reset();
+    stresses_.reset();
   }
 
   template <int dim>
@@ -112,6 +113,7 @@ namespace nsfd
     motion_.reset();
     displacement_.reset();
     velocity_.reset();
+    stresses_.reset();
   }
 
   template <int dim>
@@ -128,6 +130,15 @@ namespace nsfd
     if (!velocity_)
       velocity_ = discretization_.to_nodal(state_->velocity);
     return *velocity_;
+  }
+
+  template <int dim>
+  CellStresses<dim> &RunViewOf<dim>::stresses() const
+  {
+    if (!stresses_)
+      stresses_ =
+          std::make_unique<CellStresses<dim>>(discretization_, *state_);
+    return *stresses_;
   }
 
   template <int dim>
@@ -318,25 +329,6 @@ namespace nsfd
       for (unsigned int c = 0; c < 6; ++c)
         terms[(7 + c) * n + k] = weight * stress[c];
     }
-
-    /** Place @p k of a sampler in cell @p b, before it moves. */
-    template <int dim>
-    dealii::Point<dim> rest_place(const Discretization<dim> &discretization,
-                                  const unsigned int b,
-                                  const Sampler<dim> &sampler,
-                                  const unsigned int k)
-    {
-      const auto corner = discretization.corners(b)[0];
-      std::vector<double> nodes;
-      for (const auto &node : discretization.shape(b).nodes)
-        for (unsigned int c = 0; c < dim; ++c)
-          nodes.push_back(corner[c] + node[c]);
-      const auto place = sampler.value(k, nodes.data());
-      dealii::Point<dim> result;
-      for (unsigned int c = 0; c < dim; ++c)
-        result[c] = place[c];
-      return result;
-    }
   } // namespace
 
   template <int dim>
@@ -358,9 +350,7 @@ namespace nsfd
       add_terms<dim>(
           terms, n, k, weight, sampler.value(s, u),
           sampler.value(s, velocity().data() + node),
-          discretization_.stress(
-              b, rest_place(discretization_, b, sampler, s),
-              sampler.gradient(s, discretization_.corners(b), u).data()));
+          stresses().at(b, sampler, s, displacement(), velocity()).stress);
     }
     return mean_of(terms);
   }
@@ -416,9 +406,7 @@ namespace nsfd
       add_terms<dim>(
           terms, n, k, 1., sampler.value(0, u),
           sampler.value(0, velocity().data() + node),
-          discretization_.stress(
-              b, x,
-              sampler.gradient(0, discretization_.corners(b), u).data()));
+          stresses().at(b, sampler, 0, displacement(), velocity()).stress);
     }
     return mean_of(terms);
   }
@@ -516,7 +504,7 @@ namespace nsfd
         side.velocity = in_space<dim>(
             sampler.value(slot, now.velocity.data() + node));
         side.stress = discretization_.stress(
-            b, rest_place(discretization_, b, sampler, slot),
+            b, sampler.position(slot, corners),
             gradient.data());
         side.traction = traction(i);
         // as the displacements: in the middle of the step

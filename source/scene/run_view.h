@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../mesh/body_shape.h"
+#include "../motion/cell_stresses.h"
 #include "../output/cell_sampler.h"
 
 #include "nsfd/mesh/mesh_builder.h"
@@ -81,6 +82,7 @@ namespace nsfd
     const Motion &motion() const;
     const std::vector<double> &displacement() const;
     const std::vector<double> &velocity() const;
+    CellStresses<dim> &stresses() const;
     const Sampler<dim> &slots_of(unsigned int body) const;
     std::vector<Slot> slots_on(const NamedSurface &surface) const;
     std::optional<dealii::Point<dim>>
@@ -103,5 +105,6 @@ namespace nsfd
     // of the present state, once somebody has asked
     mutable std::optional<Motion> motion_;
     mutable std::optional<std::vector<double>> displacement_, velocity_;
+    mutable std::unique_ptr<CellStresses<dim>> stresses_;
   };
 } // namespace nsfd

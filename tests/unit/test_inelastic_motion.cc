@@ -249,7 +249,8 @@ end
                   other.state.material_history[i], 1e-8);
   }
 
-  // Soft plastic, elastic and rigid cells fall on a wall; the seam breaks.
+  // Soft plastic, viscous (one modulus from place to place) and rigid cells fall
+  // on a wall; the seam breaks.
   const std::string mixed = R"(
 set dimension = 2
 subsection Mesh
@@ -269,7 +270,8 @@ subsection Material: soft
 end
 subsection Material: elastic
   set where              = x < 2
-  set Young modulus      = 100
+  set Young modulus      = 100 + 40 * (x - 1)
+  set shear viscosity    = 0.05
   set Poisson ratio      = 0.3
   set density            = 1
   set initial velocity x = -1
@@ -316,6 +318,7 @@ end
     }
     EXPECT_LT(worst, 1e-9 * scene.state.largest_energy);
     EXPECT_GT(scene.state.energy.plastic, 0.);
+    EXPECT_GT(scene.state.energy.viscous, 0.);
     EXPECT_GT(scene.state.energy.damage, 0.);
   }
 

@@ -223,11 +223,27 @@ end
   }
 
   /** The messages about a plate with one more block. */
-  std::string report_of(const std::string &block)
+  std::string report_of(const std::string &block,
+                        const std::vector<std::string> &overrides = {})
   {
     InputErrors errors;
-    read_scene_text(plate + block, "test.prm", {}, errors);
+    read_scene_text(plate + block, "test.prm", overrides, errors);
     return errors.report();
+  }
+
+  TEST(ObservableInput, EnergyIsReleasedInUniformElasticBodies)
+  {
+    for (const auto &[entry, words] :
+         std::vector<std::pair<std::string, std::string>>{
+             {"Young modulus=1 + x * x", "differs from place to place"},
+             {"shear viscosity=0.1", "is viscous"}})
+      EXPECT_NE(report_of("", {"Material: solid/" + entry}).find(words),
+                std::string::npos)
+          << entry;
+    const std::string flow = report_of(
+        "", {"Material: solid/model=j2 plastic",
+             "Material: solid/yield stress=1"});
+    EXPECT_NE(flow.find("`Material: solid` flows"), std::string::npos) << flow;
   }
 
   TEST(ObservableInput, RefusesWithWords)

@@ -175,6 +175,17 @@ namespace nsfd
     if (std::all_of(scene.materials.begin(), scene.materials.end(),
                     [](const auto &material) { return material.rigid; }))
       reader.error("type", "no material is elastic: no energy is released");
+    for (const MaterialInput &material : scene.materials)
+      if (material.graded || material.plastic || material.is_viscous())
+        reader.error(
+            "type",
+            fmt::format("contours of the energy release rate agree in uniform "
+                        "elastic bodies; `Material: {}` {}",
+                        material.name,
+                        material.graded      ? "differs from place to place"
+                        : material.plastic   ? "flows"
+                                             : "is viscous"),
+            "remove the block; `type = crack` gives length and speed");
   }
 
   /** 9 pi/32 E' G/R_max^2. */
