@@ -186,6 +186,12 @@ namespace nsfd
       old_.slip[i] = old.surface_slip[row.place];
       old_.approach[i] = old.surface_approach[row.place];
       old_.released_overlap[i] = old.surface_overlap[row.place];
+      if (row.twin != row.nowhere) {
+        old_.approach[i] =
+            std::max(old_.approach[i], old.surface_approach[row.twin]);
+        old_.released_overlap[i] =
+            std::max(old_.released_overlap[i], old.surface_overlap[row.twin]);
+      }
       // lips of springs that were closed are born with their overlap
       if (row.released)
         old_.released_overlap[i] =
@@ -499,6 +505,7 @@ namespace nsfd
     const double theta = step_problem_.theta;
     next.step = old_.step + 1;
     next.time = old_.time + h;
+    next.last_step = h;
     next.impulse = impulse_;
     next.relative_velocity.resize(impulse_.size());
     relative_velocity(bodies_.velocity(), next.time, next.relative_velocity);
@@ -564,6 +571,12 @@ namespace nsfd
           std::max(next.surface_overlap[place], next.released_overlap[i]);
       next.surface_approach[place] =
           std::max(next.surface_approach[place], next.approach[i]);
+      if (const std::size_t twin = rows[k].twin; twin != rows[k].nowhere) {
+        next.surface_overlap[twin] =
+            std::max(next.surface_overlap[twin], next.surface_overlap[place]);
+        next.surface_approach[twin] = std::max(next.surface_approach[twin],
+                                               next.surface_approach[place]);
+      }
       next.surface_contact[place] |= next.contact[i];
       if (!next.worn.empty()) {
         next.surface_worn[place] = next.worn[i];

@@ -549,8 +549,9 @@ namespace nsfd
    * than a hundredth of the side.
    */
   template <int dim>
-  bool SurfaceContacts<dim>::is_seen_from_there(const FacetPair<dim> &pair,
-                                                const Row &row)
+  std::size_t
+  SurfaceContacts<dim>::seen_from_there(const FacetPair<dim> &pair,
+                                        const Row &row, const std::size_t index)
   {
     constexpr double at_corner = 0.9, opposed = -0.99;
     for (unsigned int v = 0; v < row.n_facet; ++v) {
@@ -561,11 +562,11 @@ namespace nsfd
         normal[d] = pair.normal[d];
       const unsigned int own = merged_[row.node], other = row.facet[v];
       const auto known = seen_.find(Pair(other) << 32 | own);
-      if (known != seen_.end() && known->second * normal < opposed)
-        return true;
-      seen_.emplace(Pair(own) << 32 | other, normal);
+      if (known != seen_.end() && known->second.normal * normal < opposed)
+        return known->second.row;
+      seen_.emplace(Pair(own) << 32 | other, Seen{normal, index});
     }
-    return false;
+    return unseen;
   }
 
   template <int dim>
@@ -593,8 +594,11 @@ namespace nsfd
       row.weight = face.weights[origin.node];
       row.place = place_of(origin.cell, origin.face, origin.node);
       set_partner(pair, old, row);
-      if (!is_seen_from_there(pair, row))
+      const std::size_t other = seen_from_there(pair, row, rows.size());
+      if (other == unseen)
         rows.push_back(row);
+      else
+        rows[other].twin = row.place;
     }
     const auto ball_row = [&](const unsigned int index) {
       return row_of_ball(bodies_, first_place_.back(),

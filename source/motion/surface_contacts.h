@@ -88,7 +88,11 @@ namespace nsfd
                            std::vector<Row> &rows) const;
     void set_partner(const FacetPair<dim> &pair, const State &old,
                      Row &row) const;
-    bool is_seen_from_there(const FacetPair<dim> &pair, const Row &row);
+    static constexpr std::size_t unseen = Row::nowhere;
+    /** Which row sees it from the other side, or @p unseen; else it has that
+        @p index. */
+    std::size_t seen_from_there(const FacetPair<dim> &pair, const Row &row,
+                                std::size_t index);
     Row edge_row(const EdgePair<dim> &pair, const State &old,
                  const std::vector<double> &x) const;
     std::uint8_t mark_of(const State &old, unsigned int facet) const;
@@ -128,7 +132,12 @@ namespace nsfd
     SurfaceSearch<dim> search_;
     NearPairs<dim> pairs_;
     /// normals of contacts between two corners, by own node and other one
-    std::unordered_map<Pair, Vector> seen_;
+    struct Seen
+    {
+      Vector normal;
+      std::size_t row;
+    };
+    std::unordered_map<Pair, Seen> seen_;
     Counters counters_;
   };
 } // namespace nsfd

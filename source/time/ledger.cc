@@ -280,7 +280,9 @@ namespace nsfd
 
     /**
      * Penetration against its bound: the overlap of the spring where it turned
-     * into a contact, and h times the largest approach speed at activation.
+     * into a contact, and h times the largest approach speed at activation. A
+     * point that was forecast to stay open may have come in during the last
+     * step, with the speed of its end: then the longer of the two steps counts.
      */
     template <int dim>
     void PointBook<dim>::book_penetration(const std::size_t i)
@@ -295,8 +297,11 @@ namespace nsfd
              &approach = next_.approach[i];
       if (old_.two_sided[i])
         released = std::max(released, depth);
-      if (problem_.contact[i])
-        approach = std::max(approach, -h * old_.relative_velocity[i * dim]);
+      if (problem_.contact[i]) {
+        const bool came_in = !old_.contact[i] && old_.jump[i * dim] < 0.;
+        const double way = came_in ? std::max(h, old_.last_step) : h;
+        approach = std::max(approach, -way * old_.relative_velocity[i * dim]);
+      }
       else if (depth > 0.) // the forecast did not see it come
         approach = std::max(approach, -h * next_.relative_velocity[i * dim]);
       penetration = std::max(penetration, depth);

@@ -264,6 +264,7 @@ namespace nsfd
     ++counters_.equilibria;
     next.step = old.step + 1;
     next.time = time;
+    next.last_step = 0.;
     next.displacement = q;
     next.velocity.assign(q.size(), 0.);
     next.relative_velocity.assign(old.jump.size(), 0.);

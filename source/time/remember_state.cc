@@ -9,7 +9,7 @@ namespace nsfd
   {
     const Archive::Part part(archive, "state");
     archive.numbers("step", s.step);
-    archive.numbers("time", s.time);
+    archive.numbers("time", s.time, s.last_step);
     archive.bodies("displacement", s.displacement);
     archive.bodies("velocity", s.velocity);
     archive.points("jump", s.jump);

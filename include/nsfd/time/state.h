@@ -17,6 +17,7 @@ namespace nsfd
   {
     unsigned int step = 0;
     double time = 0.;
+    double last_step = 0.; ///< that led here, s; 0 at the start
     std::vector<double> displacement, velocity;
     std::vector<double> jump;              ///< u, m
     std::vector<double> relative_velocity; ///< U, m/s
@@ -29,8 +30,8 @@ namespace nsfd
     /// by sliding, m and m/s: contact is at u_N = dilated - worn; empty if the
     /// scene has neither dilatancy nor wear
     std::vector<double> dilated, worn, dilation_speed, wear_speed;
-    /// u_N >= -(sum): overlap of springs as they turned into contacts, and h
-    /// times the largest speed at which the point has closed, m
+    /// u_N >= -(sum): overlap of springs as they turned into contacts, and the
+    /// largest way of a step at the speed at which the point has closed, m
     std::vector<double> released_overlap, approach;
     std::vector<PointKind> kind;
     std::vector<std::uint8_t> two_sided; ///< intact spring, also in compression

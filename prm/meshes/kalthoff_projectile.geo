@@ -1,0 +1,3 @@
+// The plate of kalthoff.geo with the upper half of a projectile, 200 mm long.
+projectile = 200;
+Include "kalthoff.geo";
