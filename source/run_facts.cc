@@ -63,6 +63,10 @@ namespace nsfd
     const EnergyLines &e = summary.energy;
     if (!std::isfinite(e.kinetic + e.elastic + e.cohesive + e.numerical))
       facts.ledger_defect = std::numeric_limits<double>::quiet_NaN();
+    if (state.largest_energy > 0.)
+      facts.created = std::max(0., -e.numerical) / state.largest_energy;
+    if (std::isnan(facts.ledger_defect))
+      facts.created = facts.ledger_defect;
     facts.penetration = summary.penetration_max;
     facts.penetration_bound = summary.penetration_bound;
     facts.penetration_excess = state.penetration_excess;

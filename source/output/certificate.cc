@@ -12,7 +12,9 @@ namespace nsfd
     using Line = CertificateLine;
     using Verdict = Line::Verdict;
 
-    constexpr double largest_defect = 1e-9; // of the largest energy
+    // of the largest energy
+    constexpr double largest_defect = 1e-9;
+    constexpr double largest_creation = 1e-2; // as well as curves can be read
 
     Verdict within(const bool holds)
     {
@@ -138,6 +140,19 @@ namespace nsfd
       return line;
     }
 
+    /** The books of a scheme that makes energy close like all others. */
+    void add_created(const RunFacts &facts, std::vector<Line> &lines)
+    {
+      if (facts.steps + facts.smooth_steps == 0)
+        return;
+      Line line = line_of("created", facts.created, largest_creation,
+                          within(facts.created <= largest_creation));
+      if (line.verdict == Verdict::bad)
+        line.remark = "the scheme has made energy: shorten Time/step, or take "
+                      "scheme = moreau-jean";
+      lines.push_back(line);
+    }
+
     void add_uniqueness(const RunFacts &facts, std::vector<Line> &lines)
     {
       if (facts.steps > 0) {
@@ -252,6 +267,7 @@ namespace nsfd
     add_residuals(facts, lines);
     lines.push_back(penetration_of(facts));
     lines.push_back(defect_of(facts));
+    add_created(facts, lines);
     add_uniqueness(facts, lines);
     lines.push_back(zone_of(facts));
     lines.push_back(attempts_of(facts));

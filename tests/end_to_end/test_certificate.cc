@@ -41,7 +41,7 @@ namespace end_to_end
         good_run(workspace, "ball", {scene("ball"), {}, 1, true});
     EXPECT_TRUE(result.summary.at("certificate").at("ok").get<bool>());
     for (const char *line : {"end", "residual", "penetration", "ledger defect",
-                             "uniqueness", "taken again"})
+                             "created", "uniqueness", "taken again"})
       EXPECT_EQ(verdict(result, line), "ok") << line;
     EXPECT_EQ(verdict(result, "cohesive zone"), "none");
     const auto &residual =
@@ -50,7 +50,7 @@ namespace end_to_end
     EXPECT_EQ(residual.at("bound"), 1e-8);
     const std::string last = last_lines(workspace, scene("ball"));
     EXPECT_EQ(last.substr(0, last.find('\n')), "certificate: ok");
-    EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 8)
+    EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 9)
         << "nothing follows\n"
         << last;
     EXPECT_NE(read_text(result.directory / "report.html").find("certificate"),

@@ -87,6 +87,10 @@ namespace nsfd
          Verdict::bad, "do not add up"},
         {"LedgerUnknown", "ledger defect",
          [](RunFacts &f) { f.ledger_defect = nan_value; }, Verdict::bad, ""},
+        {"Created", "created", [](RunFacts &f) { f.created = 0.02; },
+         Verdict::bad, "the scheme has made energy"},
+        {"CreatedUnknown", "created",
+         [](RunFacts &f) { f.created = nan_value; }, Verdict::bad, ""},
         {"Uniqueness", "uniqueness", [](RunFacts &f) { f.beyond_unique = 7; },
          Verdict::bad, "in 7 of 100 steps"},
         {"UniquenessOfJumps", "uniqueness",
@@ -166,7 +170,7 @@ namespace nsfd
     EXPECT_EQ(line(integrated, "residual").verdict, Verdict::not_measured);
     EXPECT_EQ(line(integrated, "penetration").verdict, Verdict::none);
     EXPECT_EQ(integrated.verdict(),
-              "ok as far as measured, 1 of 7 lines are not");
+              "ok as far as measured, 1 of 8 lines are not");
   }
 
   TEST(Certificate, OfARunWithoutCohesionIsOk)
@@ -193,7 +197,7 @@ namespace nsfd
       place = ok;
       EXPECT_NE(row.back(), ' ');
     }
-    EXPECT_EQ(n, 7u);
+    EXPECT_EQ(n, 8u);
   }
 
   // ------------------------------------------------------------ cohesive zone

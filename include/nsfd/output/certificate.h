@@ -27,6 +27,8 @@ namespace nsfd
     double residual = 0., tolerance = 0.; ///< worst one, of the steps in time
     double imbalance = 0., static_tolerance = 0.; ///< the same of equilibria
     double ledger_defect = 0.;
+    /// energy that the scheme has made, over the largest energy
+    double created = 0.;
     double penetration = 0., penetration_bound = 0.; ///< largest ones, m
     double penetration_excess = 0.; ///< of a point above its own bound, m
     double displacement = 0.;       ///< largest, m
@@ -78,6 +80,8 @@ namespace nsfd
    *                   its activations and the overlap of its released spring;
    *                   beyond it, the tolerance times the displacement
    *     ledger defect 1e-9 of the largest energy
+   *     created       1 % of it: what a scheme makes out of nothing is in the
+   *                   books, so that they close all the same
    *     uniqueness    no step in which a softening face may have had several
    *                   solutions
    *     cohesive zone points_per_cohesive_length points
