@@ -42,9 +42,24 @@ Plane Surface(1) = {1};
 Plane Surface(2) = {2};
 Plane Surface(3) = {3};
 
+If (Exists(projectile)) // a block that lies against the edge, see kalthoff_projectile.geo
+  Point(21) = {-projectile, 0, 0, h};
+  Point(22) = {-projectile, 25, 0, h};
+  Line(21) = {21, 1};
+  Line(22) = {7, 22};
+  Line(23) = {22, 21};
+  Curve Loop(4) = {21, -8, 22, 23};
+  Plane Surface(4) = {4};
+  Physical Surface("projectile") = {4};
+EndIf
+
 Physical Surface("below the notch") = {1};
 Physical Surface("ahead of the notch") = {2};
 Physical Surface("above the notch") = {3};
 Physical Curve("notch") = {9};
-Physical Curve("symmetry") = {1, 2};
+If (Exists(projectile))
+  Physical Curve("symmetry") = {1, 2, 21};
+Else
+  Physical Curve("symmetry") = {1, 2};
+EndIf
 Physical Curve("impacted edge") = {8};
