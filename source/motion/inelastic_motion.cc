@@ -132,14 +132,7 @@ namespace nsfd
       const SolverReport part =
           this->solve(*solver, this->problem_, this->discretization_.origins(),
                       control, energy_scale_, next.impulse, *evaluation);
-      total.newton += part.newton;
-      total.krylov += part.krylov;
-      total.sweeps += part.sweeps;
-      total.line_searches += part.line_searches;
-      total.residual = part.residual;
-      total.converged = part.converged;
-      total.switches.insert(total.switches.end(), part.switches.begin(),
-                            part.switches.end());
+      total.go_on_with(part);
       if (!part.converged)
         return total;
       v_linear_ = this->v_free_;

@@ -421,14 +421,7 @@ namespace nsfd
       const SolverReport part =
           this->solve(*solver, step_problem_, origins_, control, energy_scale_,
                       impulse_, *evaluation);
-      total.newton += part.newton;
-      total.krylov += part.krylov;
-      total.sweeps += part.sweeps;
-      total.line_searches += part.line_searches;
-      total.residual = part.residual;
-      total.converged = part.converged;
-      total.switches.insert(total.switches.end(), part.switches.begin(),
-                            part.switches.end());
+      total.go_on_with(part);
       if (!part.converged)
         return total;
       std::vector<double> v = this->v_free_;

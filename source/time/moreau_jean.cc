@@ -259,14 +259,7 @@ namespace nsfd
     for (unsigned int round = 0;; ++round) {
       const SolverReport part = solver.solve(
         problem, dynamics_, energy_scale, control, impulse, evaluation);
-      report.newton += part.newton;
-      report.krylov += part.krylov;
-      report.sweeps += part.sweeps;
-      report.line_searches += part.line_searches;
-      report.residual = part.residual;
-      report.converged = part.converged;
-      report.switches.insert(report.switches.end(), part.switches.begin(),
-                             part.switches.end());
+      report.go_on_with(part);
       ++counters_.solves;
       if (!part.converged || !has_extrinsic_ || round > 30 ||
           !activate(dynamics_, origins, impulse, problem))

@@ -185,10 +185,7 @@ namespace nsfd
                                       1e-15 * ratio * ratio);
     ++counters_.rounds;
     const SolverReport solve = relaxation_->relax(q, h_, tolerance);
-    report.solver.newton += solve.newton;
-    report.solver.krylov += solve.krylov;
-    report.solver.sweeps += solve.sweeps;
-    report.solver.line_searches += solve.line_searches;
+    report.solver.add_work(solve);
     solved_ = solve.converged;
     report.solver.residual = relaxation_->imbalance();
     report.solver.converged =

@@ -107,5 +107,24 @@ namespace nsfd
     std::size_t worst_point = 0; ///< local index of the worst point
     double worst_error = 0.;     ///< its share, this rank
     std::vector<std::string> switches; ///< hand-overs between methods
+
+    /** The work of a further solve. */
+    void add_work(const SolverReport &next)
+    {
+      newton += next.newton;
+      krylov += next.krylov;
+      sweeps += next.sweeps;
+      line_searches += next.line_searches;
+      switches.insert(switches.end(), next.switches.begin(),
+                      next.switches.end());
+    }
+
+    /** Its work, and where it has come to. */
+    void go_on_with(const SolverReport &next)
+    {
+      add_work(next);
+      residual = next.residual;
+      converged = next.converged;
+    }
   };
 } // namespace nsfd

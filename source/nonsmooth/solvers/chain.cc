@@ -102,13 +102,8 @@ namespace nsfd
       static void add(const SolverReport &next, const char *name,
                       SolverReport &report)
       {
-        report.newton += next.newton;
-        report.krylov += next.krylov;
-        report.sweeps += next.sweeps;
-        report.line_searches += next.line_searches;
         report.switches.push_back(name);
-        report.switches.insert(report.switches.end(), next.switches.begin(),
-                               next.switches.end());
+        report.add_work(next);
       }
 
       static bool may_touch(const OneStepProblem<dim> &problem)

@@ -73,15 +73,8 @@ namespace nsfd
         const auto chain = SolverRegistry<dim>::instance().create("chain");
         const SolverReport next = chain->solve(
             problem, dynamics, energy_scale, control, impulse, evaluation);
-        report.newton += next.newton;
-        report.krylov += next.krylov;
-        report.sweeps += next.sweeps;
-        report.line_searches += next.line_searches;
-        report.residual = next.residual;
-        report.converged = next.converged;
         report.switches.push_back("chain");
-        report.switches.insert(report.switches.end(), next.switches.begin(),
-                               next.switches.end());
+        report.go_on_with(next);
         return report;
       }
 

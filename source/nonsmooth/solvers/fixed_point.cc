@@ -138,9 +138,7 @@ namespace nsfd
         }
         evaluation.freeze(nullptr);
         evaluation.update(impulse);
-        report.newton += round.newton;
-        report.krylov += round.krylov;
-        report.line_searches += round.line_searches;
+        report.add_work(round);
       }
 
       /** Points of other ranks follow their owners. */
