@@ -93,7 +93,7 @@ namespace end_to_end
     EXPECT_EQ(verdict(result, "residual"), "not measured");
     EXPECT_FALSE(result.summary.at("certificate").at("ok").get<bool>());
     EXPECT_EQ(result.summary.at("certificate").at("verdict"),
-              "ok as far as measured, 1 of 7 lines are not");
+              "ok as far as measured, 1 of 8 lines are not");
   }
 
   TEST(Certificates, OfAFailedRun)
