@@ -134,27 +134,30 @@ namespace nsfd
         mine[b * width + c] = discretization_.centre(unsigned(b))[c];
       mine[b * width + 15] = discretization_.volume(unsigned(b));
     }
-    const auto displacement = discretization_.to_nodal(state.displacement),
-               velocity = discretization_.to_nodal(state.velocity);
-    const auto average = [&](const std::vector<double> &nodal,
-                             const unsigned int at) {
-      discretization_.visit_quadrature(
-          nodal, [&](const unsigned int b, const dealii::Point<dim> &,
-                     const double JxW, const double *value, const double *) {
-            const double share = JxW / discretization_.volume(b);
-            for (unsigned int c = 0; c < dim; ++c)
-              mine[b * width + at + c] += share * value[c];
-          });
+    const auto add = [&](const unsigned int body, const unsigned int at,
+                         const double share, const double *values,
+                         const unsigned int count) {
+      for (unsigned int c = 0; c < count; ++c)
+        mine[body * width + at + c] += share * values[c];
     };
-    average(displacement, 3);
-    average(velocity, 6);
-    CellStresses<dim>(discretization_, state).visit_all(
-        displacement, velocity,
-        [&](const unsigned int b, const dealii::Point<dim> &, const double JxW,
-            const std::array<double, 6> &sigma) {
+    CellStresses<dim> stresses(discretization_, state);
+    discretization_.visit_quadrature(
+        discretization_.to_nodal(state.displacement),
+        [&](const unsigned int b, const dealii::Point<dim> &x, const double JxW,
+            const double *value, const double *gradient) {
           const double share = JxW / discretization_.volume(b);
-          for (unsigned int c = 0; c < 6; ++c)
-            mine[b * width + 9 + c] += share * sigma[c];
+          add(b, 3, share, value, dim);
+          add(b, 9, share, stresses.visit(b, x, gradient).data(), 6);
+        });
+    const bool is_viscous = discretization_.is_viscous();
+    discretization_.visit_quadrature(
+        discretization_.to_nodal(state.velocity),
+        [&](const unsigned int b, const dealii::Point<dim> &, const double JxW,
+            const double *value, const double *rate) {
+          const double share = JxW / discretization_.volume(b);
+          add(b, 6, share, value, dim);
+          if (is_viscous)
+            add(b, 9, share, discretization_.viscous_stress(b, rate).data(), 6);
         });
     const std::vector<double> all = gather_all(communicator_, mine);
     std::vector<CellState> cells(all.size() / width);
