@@ -54,6 +54,18 @@ namespace end_to_end
     return names;
   }
 
+  namespace
+  {
+    /**
+     * What MPI keeps of the processes in a directory. One per test: they remove
+     * what they share as they end, while others begin.
+     */
+    fs::path of_mpi(const fs::path &directory)
+    {
+      return directory.string() + "_mpi";
+    }
+  } // namespace
+
   Workspace::Workspace()
   {
     const auto *test = testing::UnitTest::GetInstance()->current_test_info();
@@ -64,11 +76,13 @@ namespace end_to_end
             ("nsfd_" + std::to_string(getpid()) + "_" + name);
     fs::remove_all(path_);
     fs::create_directories(path_);
+    fs::create_directories(of_mpi(path_));
   }
 
   Workspace::~Workspace()
   {
     std::error_code error;
+    fs::remove_all(of_mpi(path_), error);
     if (testing::Test::HasFailure())
       std::cout << "files of this test: " << path_ << "\n";
     else
@@ -91,7 +105,9 @@ namespace end_to_end
       return;
 
     setpgid(0, 0);
+    const std::string own = of_mpi(directory).string();
     const std::pair<const char *, const char *> settings[] = {
+        {"OMPI_MCA_orte_tmpdir_base", own.c_str()},
         {"OMPI_ALLOW_RUN_AS_ROOT", "1"},
         {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
         {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
