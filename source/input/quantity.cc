@@ -87,7 +87,6 @@ namespace nsfd
          "0.1 kg*m^2/m"},
         {{1, 1, -2}, "a force", ""},
         {{1, 2, -2}, "an energy", ""},
-        {{1, -1, -1}, "a viscosity", "1 MPa*s"},
         {{0, 0, -1}, "a frequency", "1 1/s"},
         {{0, 2, 0}, "an area", ""},
         {{0, 3, 0}, "a volume", ""},

@@ -336,9 +336,9 @@ namespace nsfd
 
     void read_overstress(SectionReader &reader, PlasticInput &plastic)
     {
-      constexpr Unit viscosity{1, -1, -1}, per_time{0, 0, -1};
+      constexpr Unit per_time{0, 0, -1};
       plastic.viscosity = reader.number(
-          "viscosity", "", viscosity, Range::positive(),
+          "viscosity", "", units::viscosity, Range::positive(),
           "Pa s, overstress over rate of flow (at the reference rate)");
       plastic.rate_exponent =
           reader.number("rate exponent", "1", units::none,

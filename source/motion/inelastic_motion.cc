@@ -201,11 +201,8 @@ namespace nsfd
     {
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
-      SolverControl control;
-      control.tolerance = this->input_.solver.tolerance;
-      control.maximum_iterations = this->input_.solver.maximum_iterations;
-      control.idle_rounds = idle_rounds;
-      report.solver = iterate(old, h, control, next, evaluation);
+      report.solver = iterate(old, h, this->solver_control(idle_rounds), next,
+                              evaluation);
     }
     save_problem<dim>(this->input_, this->problem_, this->dynamics_,
                       *evaluation, report.solver, old.step + 1, old.time);

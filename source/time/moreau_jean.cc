@@ -99,6 +99,17 @@ namespace nsfd
   }
 
   template <int dim>
+  SolverControl
+  MoreauJean<dim>::solver_control(const unsigned int idle_rounds) const
+  {
+    SolverControl control;
+    control.tolerance = input_.solver.tolerance;
+    control.maximum_iterations = input_.solver.maximum_iterations;
+    control.idle_rounds = idle_rounds;
+    return control;
+  }
+
+  template <int dim>
   StepReport
   MoreauJean<dim>::advance(const State &old, const double h, State &next,
                            const unsigned int idle_rounds)
@@ -130,13 +141,9 @@ namespace nsfd
     {
       const Stopwatch watch(timings_.solve);
       const Charge charge(Cost::solver);
-      SolverControl control;
-      control.tolerance = input_.solver.tolerance;
-      control.maximum_iterations = input_.solver.maximum_iterations;
-      control.idle_rounds = idle_rounds;
-      report.solver =
-          solve(solver_, problem_, discretization_.origins(), control,
-                energy_scale, next.impulse, evaluation);
+      report.solver = solve(solver_, problem_, discretization_.origins(),
+                            solver_control(idle_rounds), energy_scale,
+                            next.impulse, evaluation);
     }
     save_problem<dim>(input_, problem_, dynamics_, evaluation, report.solver,
                       old.step + 1, old.time);

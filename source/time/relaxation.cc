@@ -223,10 +223,8 @@ namespace nsfd
     std::vector<double> impulse = force_;
     for (double &P : impulse)
       P *= h;
-    SolverControl control;
+    SolverControl control = this->solver_control(1);
     control.tolerance = tolerance;
-    control.maximum_iterations = this->input_.solver.maximum_iterations;
-    control.idle_rounds = 1;
     SolverReport report;
     {
       const Stopwatch watch(this->timings_.solve);

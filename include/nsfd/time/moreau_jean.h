@@ -114,6 +114,8 @@ namespace nsfd
     }
 
   protected:
+    /** What the input asks of the solver of a step. */
+    SolverControl solver_control(unsigned int idle_rounds) const;
     void set_loads(double time);
     void move_freely(const State &old, const std::vector<double> &pressure);
     /** Again as long as extrinsic points reach their strength. */
