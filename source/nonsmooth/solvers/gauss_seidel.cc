@@ -8,6 +8,23 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Words of 64 bits for the colours of a body: a face never needs more than
+        its two bodies have faces. */
+    template <int dim>
+    unsigned int words_of_colours(const Dynamics<dim> &dynamics)
+    {
+      std::vector<unsigned int> n_faces(dynamics.bodies().size(), 0);
+      unsigned int most = 0;
+      for (const auto &face : dynamics.points().faces)
+        for (const int b : face.bodies)
+          if (b >= 0)
+            most = std::max(most, ++n_faces[b]);
+      return unsigned(dynamics.communicator().max(most)) * 2 / 64 + 1;
+    }
+  } // namespace
+
   /**
    * Jones-Plassmann: in each round a face without a colour whose key is the
    * largest among such faces of its two bodies takes the smallest colour that
@@ -21,11 +38,12 @@ namespace nsfd
     const auto &points = dynamics.points();
     const std::size_t n_bodies = dynamics.bodies().size();
     std::vector<int> colour(points.faces.size(), -1);
-    std::vector<std::uint64_t> used(n_bodies, 0);
+    const unsigned int n_words = words_of_colours(dynamics);
+    std::vector<std::uint64_t> used(n_bodies * n_words, 0);
     // A body's largest open key, and per point of shared faces what the other
     // rank knows: key halves (exact as doubles) and used colours.
     std::array<std::vector<double>, 2> side;
-    const unsigned int stride = 4;
+    const unsigned int stride = 2 + 2 * n_words;
     for (auto &s : side)
       s.assign((points.n_points + 1) * stride, 0.);
     bool open = true;
@@ -43,8 +61,11 @@ namespace nsfd
             double *out = side[s].data() + std::size_t(face.first) * stride;
             out[0] = double(top[b] >> 32);
             out[1] = double(top[b] & 0xffffffffu);
-            out[2] = double(used[b] >> 32);
-            out[3] = double(used[b] & 0xffffffffu);
+            for (unsigned int w = 0; w < n_words; ++w) {
+              const std::uint64_t word = used[std::size_t(b) * n_words + w];
+              out[2 + 2 * w] = double(word >> 32);
+              out[3 + 2 * w] = double(word & 0xffffffffu);
+            }
           }
       dynamics.exchange({{side[0].data(), side[1].data()}}, stride);
       const auto join = [](const double high, const double low) {
@@ -52,16 +73,19 @@ namespace nsfd
       };
       open = false;
       std::vector<std::pair<std::size_t, int>> chosen;
+      std::vector<std::uint64_t> taken(n_words);
       for (std::size_t f = 0; f < points.faces.size(); ++f) {
         const auto &face = points.faces[f];
         if (colour[f] >= 0)
           continue;
-        std::uint64_t limit = 0, taken = 0;
+        std::uint64_t limit = 0;
+        std::fill(taken.begin(), taken.end(), 0);
         for (unsigned int s = 0; s < 2; ++s) {
           const double *in = side[s].data() + std::size_t(face.first) * stride;
           if (face.bodies[s] >= 0 || face.neighbor_rank >= 0) {
             limit = std::max(limit, join(in[0], in[1]));
-            taken |= join(in[2], in[3]);
+            for (unsigned int w = 0; w < n_words; ++w)
+              taken[w] |= join(in[2 + 2 * w], in[3 + 2 * w]);
           }
         }
         if (face.key < limit) {
@@ -69,7 +93,7 @@ namespace nsfd
           continue;
         }
         int mine = 0;
-        while (taken & (std::uint64_t(1) << mine))
+        while (taken[mine / 64] >> mine % 64 & 1u)
           ++mine;
         chosen.emplace_back(f, mine);
       }
@@ -77,7 +101,8 @@ namespace nsfd
         colour[f] = mine;
         for (const int b : points.faces[f].bodies)
           if (b >= 0)
-            used[b] |= std::uint64_t(1) << mine;
+            used[std::size_t(b) * n_words + mine / 64] |= std::uint64_t(1)
+                                                          << mine % 64;
       }
     }
     const int n_colours = int(dynamics.communicator().max(
