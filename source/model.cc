@@ -267,7 +267,8 @@ namespace nsfd
     const auto &bodies = discretization->bodies();
     const auto &points = discretization->points();
     if (input.large_motion) {
-      moving = std::make_unique<MovingBodies<dim>>(input, *discretization);
+      moving = std::make_unique<MovingBodies<dim>>(input, *discretization,
+                                                   communicator);
       dynamics = make_moving_dynamics<dim>(communicator, moving->bodies(),
                                            moving->points());
       return;

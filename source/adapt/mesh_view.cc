@@ -1,10 +1,9 @@
 #include "mesh_view.h"
 
+#include "../base/gather.h"
 #include "../mesh/elasticity.h"
 
 #include "family.h"
-
-#include "../output/gather.h"
 
 #include "nsfd/dynamics/point_places.h"
 #include "nsfd/input/scene_input.h"

@@ -51,6 +51,13 @@ namespace nsfd
   }
 
   template <int dim>
+  void CheckpointWriter<dim>::histories(const std::string &name,
+                                        std::vector<double> &values)
+  {
+    write(orders_.histories(), name, values);
+  }
+
+  template <int dim>
   void CheckpointWriter<dim>::common(const std::string &name,
                                      std::vector<double> &values)
   {
@@ -132,6 +139,13 @@ namespace nsfd
                                      std::vector<std::uint8_t> &values)
   {
     read(orders_.points(), name, values);
+  }
+
+  template <int dim>
+  void CheckpointReader<dim>::histories(const std::string &name,
+                                        std::vector<double> &values)
+  {
+    read(orders_.histories(), name, values);
   }
 
   template <int dim>

@@ -25,6 +25,8 @@ namespace nsfd
     const Communicator &communicator() const { return communicator_; }
     const RankOrder &unknowns() const { return *unknowns_; }
     const RankOrder &points() const { return *points_; }
+    /** Of the numbers that materials remember. */
+    const RankOrder &histories() const { return *histories_; }
 
     /** CellId::to_binary() of all active cells, four numbers each; root. */
     std::vector<std::uint32_t> cells() const;
@@ -41,11 +43,13 @@ namespace nsfd
     }
 
   private:
+    std::unique_ptr<RankOrder>
+    order_of_cells(const std::vector<std::size_t> &first) const;
     void set_fingerprint();
 
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
-    std::unique_ptr<RankOrder> unknowns_, points_;
+    std::unique_ptr<RankOrder> unknowns_, points_, histories_;
     std::vector<std::uint64_t> fingerprint_;
   };
 
@@ -61,6 +65,8 @@ namespace nsfd
     void points(const std::string &name, std::vector<double> &values) override;
     void points(const std::string &name,
                 std::vector<std::uint8_t> &values) override;
+    void histories(const std::string &name,
+                   std::vector<double> &values) override;
     void common(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::string &text) override;
@@ -85,6 +91,8 @@ namespace nsfd
     void points(const std::string &name, std::vector<double> &values) override;
     void points(const std::string &name,
                 std::vector<std::uint8_t> &values) override;
+    void histories(const std::string &name,
+                   std::vector<double> &values) override;
     void common(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::vector<double> &values) override;
     void on_root(const std::string &name, std::string &text) override;

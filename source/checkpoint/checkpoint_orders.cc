@@ -1,7 +1,8 @@
 #include "checkpoint_archive.h"
 
+#include "../base/gather.h"
 #include "../mesh/mix_bits.h"
-#include "../output/gather.h"
+#include "../motion/deformable_cells.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,26 +15,33 @@ namespace nsfd
       const Communicator &communicator)
       : discretization_(discretization), communicator_(communicator)
   {
-    const auto &bodies = discretization.bodies();
     const auto &points = discretization.points();
+    unknowns_ = order_of_cells(discretization.bodies().first_dof);
+    histories_ = order_of_cells(first_histories(discretization));
     std::vector<RankOrder::Key> keys;
-    keys.reserve(bodies.n_dofs());
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const auto &id = discretization.cell_id(unsigned(b));
-      const auto word = [&](const unsigned int k) {
-        return (std::uint64_t(id[k]) << 32) | id[k + 1];
-      };
-      for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
-           ++i)
-        keys.push_back({{word(0), word(2), i - bodies.first_dof[b]}});
-    }
-    unknowns_ = std::make_unique<RankOrder>(communicator, keys, keys.size());
-    keys.clear();
     for (const auto &face : points.faces)
       for (unsigned int k = 0; k < face.count; ++k)
         keys.push_back({{face.key, k, 0}});
     points_ = std::make_unique<RankOrder>(communicator, keys, points.n_owned);
     set_fingerprint();
+  }
+
+  /** Of the items first[c] to first[c + 1] of the cells c. */
+  template <int dim>
+  std::unique_ptr<RankOrder> CheckpointOrders<dim>::order_of_cells(
+      const std::vector<std::size_t> &first) const
+  {
+    std::vector<RankOrder::Key> keys;
+    keys.reserve(first.back());
+    for (unsigned int c = 0; c + 1 < first.size(); ++c) {
+      const auto &id = discretization_.cell_id(c);
+      const auto word = [&](const unsigned int k) {
+        return (std::uint64_t(id[k]) << 32) | id[k + 1];
+      };
+      for (std::size_t i = first[c]; i < first[c + 1]; ++i)
+        keys.push_back({{word(0), word(2), i - first[c]}});
+    }
+    return std::make_unique<RankOrder>(communicator_, keys, keys.size());
   }
 
   template <int dim>

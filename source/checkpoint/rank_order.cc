@@ -1,6 +1,6 @@
 #include "rank_order.h"
 
-#include "../output/gather.h"
+#include "../base/gather.h"
 
 #include <stdexcept>
 

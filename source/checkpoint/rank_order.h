@@ -1,5 +1,7 @@
 #pragma once
 
+#include "../base/bytes_type.h"
+
 #include "nsfd/base/communicator.h"
 
 #include <mpi.h>
@@ -42,33 +44,11 @@ namespace nsfd
                            unsigned int components) const;
 
   private:
-    template <typename T>
-    class Type;
-
     const Communicator &communicator_;
     std::size_t n_items_, n_owned_, n_global_ = 0;
     /// on the first rank
     std::vector<int> counts_, offsets_, owned_counts_, owned_offsets_;
     std::vector<unsigned int> place_; ///< of the items of all ranks
-  };
-
-  /** So many values of a type at once, for MPI. */
-  template <typename T>
-  class RankOrder::Type
-  {
-  public:
-    explicit Type(const unsigned int components)
-    {
-      MPI_Type_contiguous(int(components * sizeof(T)), MPI_BYTE, &type_);
-      MPI_Type_commit(&type_);
-    }
-    ~Type() { MPI_Type_free(&type_); }
-    Type(const Type &) = delete;
-    Type &operator=(const Type &) = delete;
-    operator MPI_Datatype() const { return type_; }
-
-  private:
-    MPI_Datatype type_;
   };
 
   template <typename T>
@@ -78,7 +58,7 @@ namespace nsfd
     const bool root = communicator_.is_root();
     std::vector<T> received(root ? n_global_ * components : 0),
         all(received.size());
-    const Type<T> type(components);
+    const BytesType type(components * sizeof(T));
     MPI_Gatherv(values.data(), int(n_owned_), type, received.data(),
                 owned_counts_.data(), owned_offsets_.data(), type, 0,
                 communicator_.mpi());
@@ -99,7 +79,7 @@ namespace nsfd
     for (std::size_t i = 0; i < place_.size(); ++i)
       std::copy_n(&all[std::size_t(place_[i]) * components], components,
                   &sent[i * components]);
-    const Type<T> type(components);
+    const BytesType type(components * sizeof(T));
     MPI_Scatterv(sent.data(), counts_.data(), offsets_.data(), type,
                  values.data(), int(n_items_), type, 0, communicator_.mpi());
     return values;

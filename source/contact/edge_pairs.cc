@@ -59,9 +59,8 @@ namespace nsfd
        * have passed through each other. Which way is out is said by the facets,
        * not by the sign: two convex bodies are parted by a plane along both
        * edges exactly if its normal is one of the normals around each of them.
-       * @p is_sure: it is, not only after a turn.
        */
-      bool find(EdgePair<3> &pair, bool &is_sure) const
+      bool find(EdgePair<3> &pair) const
       {
         const Segment &a = segments_[pair.edge], &b = segments_[pair.other];
         const Place<3> c = cross(a.way, b.way),
@@ -99,7 +98,7 @@ namespace nsfd
                                 : 0.;
         if (lack > std::max(cone_room, turn))
           return false;
-        is_sure = lack <= cone_room;
+        pair.is_sure = lack <= cone_room;
         pair.closest = sum(b.from, pair.other_place, b.way);
         return pair.gap <= reach_ && pair.gap >= -deepest * size;
       }
@@ -159,9 +158,9 @@ namespace nsfd
     public:
       Competition(const Surfaces<3> &surfaces, const double *x,
                   const Planes &planes, std::vector<FacetPair<3>> &points,
-                  std::vector<EdgePair<3>> &pairs, std::vector<char> &sure)
+                  std::vector<EdgePair<3>> &pairs)
           : surfaces_(surfaces), x_(x), planes_(planes), points_(points),
-            pairs_(pairs), sure_(sure), point_lost_(points.size(), 0),
+            pairs_(pairs), point_lost_(points.size(), 0),
             pair_lost_(pairs.size(), 0)
       {
       }
@@ -174,7 +173,6 @@ namespace nsfd
         point_lost_.assign(points_.size(), 0);
         for (std::size_t k = 0; k < pairs_.size(); ++k)
           compare_with_points(k);
-        remove(sure_, pair_lost_);
         remove(pairs_, pair_lost_);
         remove(points_, point_lost_);
         pair_lost_.assign(pairs_.size(), 0);
@@ -291,7 +289,7 @@ namespace nsfd
             const double distance =
                 (end == 0 ? place : 1. - place) * length(own);
             pair_lost_[k] |= distance < same_place * size(pair);
-          } else if (sure_[k] && (point->facet == opposite.facet[0] ||
+          } else if (pair.is_sure && (point->facet == opposite.facet[0] ||
                                   point->facet == opposite.facet[1])) {
             const double rounding = same_length * size(pair);
             const Segment segment = segment_of(own, x_);
@@ -345,7 +343,7 @@ namespace nsfd
         if (dot(a.normal, b.normal) > same_direction) {
           if (norm(difference(a.closest, b.closest)) < same_place * length)
             pair_lost_[keys(a) < keys(b) ? l : k] = 1;
-        } else if (sure_[k] && sure_[l] &&
+        } else if (a.is_sure && b.is_sure &&
                    std::max(a.gap, b.gap) <= -rounding)
           pair_lost_[a.gap > b.gap + rounding   ? l
                      : b.gap > a.gap + rounding ? k
@@ -367,7 +365,6 @@ namespace nsfd
       const Planes &planes_;
       std::vector<FacetPair<3>> &points_;
       std::vector<EdgePair<3>> &pairs_;
-      std::vector<char> &sure_; ///< of the pairs
       std::vector<char> point_lost_, pair_lost_;
     };
 
@@ -456,20 +453,19 @@ namespace nsfd
   }
 
   template <>
-  void find_edge_pairs<2>(const Surfaces<2> &, const double *,
-                          const std::vector<Plane<2>> &, double,
-                          const NearCandidates &, std::vector<FacetPair<2>> &,
-                          std::vector<EdgePair<2>> &pairs)
+  void find_crossings<2>(const Surfaces<2> &, const double *,
+                         const std::vector<Plane<2>> &, double,
+                         const NearCandidates &,
+                         std::vector<EdgePair<2>> &pairs)
   {
     pairs.clear();
   }
 
   template <>
-  void find_edge_pairs<3>(const Surfaces<3> &surfaces, const double *x,
-                          const Planes &planes, const double reach,
-                          const NearCandidates &candidates,
-                          std::vector<FacetPair<3>> &points,
-                          std::vector<EdgePair<3>> &pairs)
+  void find_crossings<3>(const Surfaces<3> &surfaces, const double *x,
+                         const Planes &planes, const double reach,
+                         const NearCandidates &candidates,
+                         std::vector<EdgePair<3>> &pairs)
   {
     pairs.clear();
     const Crossings crossings(surfaces, x, planes, reach);
@@ -477,17 +473,30 @@ namespace nsfd
     if (surfaces.edges.empty())
       return;
     EdgePair<3> pair;
-    std::vector<char> sure;
     for (pair.edge = 0; pair.edge < surfaces.edges.size(); ++pair.edge)
       for (std::size_t i = lists.first[pair.edge];
            i < lists.first[pair.edge + 1]; ++i) {
         pair.other = lists.entries[i];
-        bool is_sure = false;
-        if (!crossings.find(pair, is_sure))
-          continue;
-        pairs.push_back(pair);
-        sure.push_back(is_sure);
+        if (crossings.find(pair))
+          pairs.push_back(pair);
       }
-    Competition(surfaces, x, planes, points, pairs, sure).run();
+  }
+
+  template <>
+  void settle_touches<2>(const Surfaces<2> &, const double *,
+                         const std::vector<Plane<2>> &,
+                         std::vector<FacetPair<2>> &,
+                         std::vector<EdgePair<2>> &)
+  {
+  }
+
+  template <>
+  void settle_touches<3>(const Surfaces<3> &surfaces, const double *x,
+                         const Planes &planes,
+                         std::vector<FacetPair<3>> &points,
+                         std::vector<EdgePair<3>> &pairs)
+  {
+    if (!surfaces.edges.empty())
+      Competition(surfaces, x, planes, points, pairs).run();
   }
 } // namespace nsfd

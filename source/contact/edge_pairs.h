@@ -17,13 +17,21 @@ namespace nsfd
 
   /**
    * The places where edges cross, between their ends and with a normal that
-   * leads out of both bodies there. Of touches that compete with each other,
-   * of edges and of @p points (by vertex), one is left: see edge_pairs.cc.
+   * leads out of both bodies there.
    */
   template <int dim>
-  void find_edge_pairs(const Surfaces<dim> &surfaces, const double *x,
-                       const std::vector<Plane<dim>> &planes, double reach,
-                       const NearCandidates &candidates,
-                       std::vector<FacetPair<dim>> &points,
-                       std::vector<EdgePair<dim>> &pairs);
+  void find_crossings(const Surfaces<dim> &surfaces, const double *x,
+                      const std::vector<Plane<dim>> &planes, double reach,
+                      const NearCandidates &candidates,
+                      std::vector<EdgePair<dim>> &pairs);
+
+  /**
+   * Of touches that compete with each other, of edges and of @p points (by
+   * vertex), one is left: see edge_pairs.cc.
+   */
+  template <int dim>
+  void settle_touches(const Surfaces<dim> &surfaces, const double *x,
+                      const std::vector<Plane<dim>> &planes,
+                      std::vector<FacetPair<dim>> &points,
+                      std::vector<EdgePair<dim>> &pairs);
 } // namespace nsfd

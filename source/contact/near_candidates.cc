@@ -28,6 +28,8 @@ namespace nsfd
     /** Entries of a node: 8 to 16 take the same time, 32 take longer. */
     constexpr std::size_t node_size = 16;
 
+    using OwnBodies = std::function<bool(unsigned int)>;
+
     template <int dim>
     using Corner =
         boost::geometry::model::point<double, dim,
@@ -236,6 +238,7 @@ namespace nsfd
                                 const std::vector<unsigned int> &order,
                                 const BoxTree<dim> &tree,
                                 const FacetFilter<dim> &filter,
+                                const OwnBodies &is_own,
                                 const JoinedBodies &joined)
     {
       IndexLists result;
@@ -250,6 +253,10 @@ namespace nsfd
                surfaces.points[order[end]].vertex == point.vertex;
              ++end)
           margin = std::max(margin, filter.margin(surfaces.points[order[end]]));
+        if (!is_own(body)) {
+          result.first.resize(end + 1, result.entries.size());
+          continue;
+        }
         const Place<dim> y = place<dim>(x, point.vertex);
         near.clear();
         tree.near(box_around<dim>(y, y, margin), [&](const auto &entry) {
@@ -278,16 +285,18 @@ namespace nsfd
     template <int dim>
     IndexLists facets_of_balls(const Surfaces<dim> &surfaces, const double *x,
                                const BoxTree<dim> &tree, const double margin,
+                               const OwnBodies &is_own,
                                const JoinedBodies &joined)
     {
       IndexLists result;
       result.first.push_back(0);
       for (const auto &ball : surfaces.balls) {
-        tree.near(box_of<dim>(ball, x, margin), [&](const auto &entry) {
-          const unsigned int other = surfaces.facets[entry.second].body;
-          if (other != ball.body && !joined(ball.body, other))
-            result.entries.push_back(entry.second);
-        });
+        if (is_own(ball.body))
+          tree.near(box_of<dim>(ball, x, margin), [&](const auto &entry) {
+            const unsigned int other = surfaces.facets[entry.second].body;
+            if (other != ball.body && !joined(ball.body, other))
+              result.entries.push_back(entry.second);
+          });
         result.first.push_back(result.entries.size());
       }
       return result;
@@ -295,7 +304,8 @@ namespace nsfd
 
     template <int dim>
     IndexLists balls_of_balls(const Surfaces<dim> &surfaces, const double *x,
-                              const double margin, const JoinedBodies &joined)
+                              const double margin, const OwnBodies &is_own,
+                              const JoinedBodies &joined)
     {
       const auto &balls = surfaces.balls;
       std::vector<typename BoxTree<dim>::Entry> entries;
@@ -305,12 +315,13 @@ namespace nsfd
       IndexLists result;
       result.first.push_back(0);
       for (unsigned int b = 0; b < balls.size(); ++b) {
-        tree.near(box_of<dim>(balls[b], x, margin), [&](const auto &entry) {
-          const unsigned int other = balls[entry.second].body;
-          if (entry.second > b && other != balls[b].body &&
-              !joined(balls[b].body, other))
-            result.entries.push_back(entry.second);
-        });
+        if (is_own(balls[b].body))
+          tree.near(box_of<dim>(balls[b], x, margin), [&](const auto &entry) {
+            const unsigned int other = balls[entry.second].body;
+            if (entry.second > b && other != balls[b].body &&
+                !joined(balls[b].body, other))
+              result.entries.push_back(entry.second);
+          });
         // the pairs of a ball come in the order of the others
         std::sort(result.entries.begin() + result.first.back(),
                   result.entries.end());
@@ -318,6 +329,7 @@ namespace nsfd
       }
       return result;
     }
+
     Box<3> box_of(const Segment &segment, const double margin)
     {
       Place<3> low = segment.from, high = sum(segment.from, 1., segment.way);
@@ -334,6 +346,7 @@ namespace nsfd
     IndexLists edges_of_edges(const Surfaces<3> &surfaces, const double *x,
                               const std::vector<Plane<3>> &planes,
                               const double reach, const double skin,
+                              const OwnBodies &is_own,
                               const JoinedBodies &joined)
     {
       const auto &edges = surfaces.edges;
@@ -358,6 +371,10 @@ namespace nsfd
       result.first.push_back(0);
       for (unsigned int e = 0; e < edges.size(); ++e) {
         const unsigned int body = surfaces.facets[edges[e].facet[0]].body;
+        if (!is_own(body)) {
+          result.first.push_back(result.entries.size());
+          continue;
+        }
         tree.near(box_of(segments[e], margins[e]), [&](const auto &entry) {
           const unsigned int o = entry.second;
           const unsigned int other = surfaces.facets[edges[o].facet[0]].body;
@@ -395,23 +412,25 @@ namespace nsfd
   NearCandidates
   search_candidates(const Surfaces<dim> &surfaces, const double *x,
                     const std::vector<Plane<dim>> &planes, const double reach,
-                    const double skin, const JoinedBodies &joined)
+                    const double skin, const OwnBodies &is_own,
+                    const JoinedBodies &joined)
   {
     NearCandidates result;
     const BoxTree<dim> tree = tree_of_facets<dim>(surfaces, x);
     result.order = points_by_vertex<dim>(surfaces);
     result.facets_of_points = facets_of_points<dim>(
         surfaces, x, result.order, tree,
-        FacetFilter<dim>(surfaces, x, planes, reach, skin), joined);
+        FacetFilter<dim>(surfaces, x, planes, reach, skin), is_own, joined);
     // a tenth more than the skin for round-off
     const double margin = reach + 1.1 * skin;
     result.facets_of_balls =
-        facets_of_balls<dim>(surfaces, x, tree, margin, joined);
-    result.balls_of_balls = balls_of_balls<dim>(surfaces, x, margin, joined);
+        facets_of_balls<dim>(surfaces, x, tree, margin, is_own, joined);
+    result.balls_of_balls =
+        balls_of_balls<dim>(surfaces, x, margin, is_own, joined);
     if constexpr (dim == 3)
       if (!surfaces.edges.empty())
         result.edges_of_edges =
-            edges_of_edges(surfaces, x, planes, reach, skin, joined);
+            edges_of_edges(surfaces, x, planes, reach, skin, is_own, joined);
     return result;
   }
 
@@ -420,7 +439,7 @@ namespace nsfd
                                const std::vector<Plane<dim>> &);               \
   template NearCandidates search_candidates<dim>(                              \
       const Surfaces<dim> &, const double *, const std::vector<Plane<dim>> &,  \
-      double, double, const JoinedBodies &)
+      double, double, const OwnBodies &, const JoinedBodies &)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

@@ -11,11 +11,13 @@ namespace nsfd
 
   /**
    * All that may be a pair at gaps up to `reach` when no vertex has moved by
-   * more than skin / 2.
+   * more than skin / 2: what points, balls and edges of the bodies that
+   * @p is_own says may be near.
    */
   template <int dim>
   NearCandidates
   search_candidates(const Surfaces<dim> &surfaces, const double *x,
                     const std::vector<Plane<dim>> &planes, double reach,
-                    double skin, const JoinedBodies &joined);
+                    double skin, const std::function<bool(unsigned int)> &is_own,
+                    const JoinedBodies &joined);
 } // namespace nsfd

@@ -1,16 +1,21 @@
 #include "nsfd/contact/surface_search.h"
 
+#include "../base/gather.h"
 #include "ball_pairs.h"
 #include "edge_pairs.h"
 #include "near_candidates.h"
 #include "point_pairs.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 namespace nsfd
 {
   namespace
   {
+    bool any_body(unsigned int) { return true; }
+
     template <int dim>
     std::array<std::size_t, 4> sizes_of(const Surfaces<dim> &surfaces)
     {
@@ -32,6 +37,44 @@ namespace nsfd
       return result;
     }
   } // namespace
+
+  template <int dim>
+  void SurfaceSearch<dim>::share(const Communicator &communicator,
+                                 std::function<bool(unsigned int)> is_own)
+  {
+    all_ = communicator.size() > 1 ? &communicator : nullptr;
+    is_own_ = std::move(is_own);
+    topology_changed();
+  }
+
+  /** Those of all ranks, in the order in which one rank alone finds them. */
+  template <int dim>
+  void SurfaceSearch<dim>::gather_pairs(NearPairs<dim> &pairs) const
+  {
+    const auto join = [this](auto &own, const auto &comes_before) {
+      own = gather_all(*all_, own);
+      // those of one body come from one rank, in order
+      std::stable_sort(own.begin(), own.end(), comes_before);
+    };
+    std::vector<std::size_t> turn(candidates_.order.size());
+    for (std::size_t k = 0; k < turn.size(); ++k)
+      turn[candidates_.order[k]] = k;
+    join(pairs.points, [&](const auto &a, const auto &b) {
+      return turn[a.index] < turn[b.index];
+    });
+    if (searched_sizes_[2] > 0) {
+      join(pairs.balls, [](const auto &a, const auto &b) {
+        return a.index < b.index;
+      });
+      join(pairs.ball_balls, [](const auto &a, const auto &b) {
+        return std::tie(a.ball, a.other) < std::tie(b.ball, b.other);
+      });
+    }
+    if (searched_sizes_[3] > 0)
+      join(pairs.edges, [](const auto &a, const auto &b) {
+        return std::tie(a.edge, a.other) < std::tie(b.edge, b.other);
+      });
+  }
 
   template <int dim>
   bool SurfaceSearch<dim>::candidates_hold(const Surfaces<dim> &surfaces,
@@ -57,7 +100,8 @@ namespace nsfd
     if (!candidates_hold(surfaces, x, reach)) {
       skin_ = skin_of<dim>(surfaces, planes_);
       candidates_ =
-          search_candidates<dim>(surfaces, x, planes_, reach, skin_, joined);
+          search_candidates<dim>(surfaces, x, planes_, reach, skin_,
+                                 all_ ? is_own_ : any_body, joined);
       searched_at_.assign(x, x + surfaces.n_vertices * dim);
       searched_sizes_ = sizes_of(surfaces);
       searched_reach_ = reach;
@@ -68,8 +112,10 @@ namespace nsfd
     find_ball_pairs<dim>(surfaces, x, planes_, reach, candidates_, pairs.balls);
     find_ball_ball_pairs<dim>(surfaces, x, reach, candidates_,
                               pairs.ball_balls);
-    find_edge_pairs<dim>(surfaces, x, planes_, reach, candidates_, pairs.points,
-                         pairs.edges);
+    find_crossings<dim>(surfaces, x, planes_, reach, candidates_, pairs.edges);
+    if (all_)
+      gather_pairs(pairs);
+    settle_touches<dim>(surfaces, x, planes_, pairs.points, pairs.edges);
   }
 
   template class SurfaceSearch<2>;

@@ -189,6 +189,9 @@ namespace nsfd
     if (crossing_time_ == std::numeric_limits<double>::max())
       crossing_time_ = 0.;
     n_global_cells_ = communicator.sum_integer(bodies().size());
+    if (input.large_motion)
+      body_table_ = std::make_unique<BodyTable>(
+          make_body_table(input, triangulation, materials));
   }
 
   template <int dim>

@@ -186,7 +186,7 @@ namespace nsfd
       }
     }
 
-    /** Both cells belong to one rigid body; all cells are on one rank then. */
+    /** Both cells belong to one rigid body, which is whole on its rank. */
     template <int dim>
     bool FaceCollector<dim>::is_inner(const Cell &cell,
                                       const Cell &neighbor) const

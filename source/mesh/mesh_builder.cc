@@ -3,6 +3,7 @@
 #include "deal_ii_message.h"
 #include "mesh_topology.h"
 #include "mix_bits.h"
+#include "nsfd/mesh/body_table.h"
 #include "nsfd/mesh/mesh_types.h"
 #include "nsfd/mesh/named_mesh.h"
 
@@ -322,28 +323,31 @@ namespace nsfd
       return ends[0] == hash && ends[1] == ~hash;
     }
 
-    /** All cells on the first rank: bodies of any shape touch anywhere. */
+    /** Every rank knows all cells; whole bodies belong to one. */
     template <int dim>
-    std::unique_ptr<Triangulation<dim>> on_first_rank(const MPI_Comm communicator)
+    std::unique_ptr<Triangulation<dim>> by_bodies(const SceneInput &input,
+                                                  const MPI_Comm communicator)
     {
       using Shared = parallel::shared::Triangulation<dim>;
-      auto result = std::make_unique<Shared>(communicator, Shared::none, true,
+      auto result = std::make_unique<Shared>(communicator, Shared::none, false,
                                              Shared::partition_custom_signal);
-      result->signals.post_refinement.connect([mesh = result.get()]() {
-        for (const auto &cell : mesh->active_cell_iterators())
-          cell->set_subdomain_id(0);
-      });
+      const auto partition = [&input, mesh = result.get(), communicator]() {
+        partition_by_bodies<dim>(
+            input, *mesh, int(Utilities::MPI::n_mpi_processes(communicator)));
+      };
+      result->signals.create.connect(partition);
+      result->signals.post_refinement.connect(partition);
       return result;
     }
 
     template <int dim>
     std::unique_ptr<Triangulation<dim>> make(CoarseMesh<dim> &mesh,
-                                             const bool iterates,
+                                             const SceneInput &input,
                                              const MPI_Comm communicator)
     {
       std::unique_ptr<Triangulation<dim>> result;
-      if (iterates)
-        result = on_first_rank<dim>(communicator);
+      if (input.large_motion)
+        result = by_bodies<dim>(input, communicator);
       else if (mesh.cells[0].vertices.size() == dim + 1)
         result = std::make_unique<parallel::shared::Triangulation<dim>>(
             communicator, Triangulation<dim>::none, true,
@@ -385,7 +389,7 @@ namespace nsfd
     std::unique_ptr<Triangulation<dim>> result;
     if (found.empty())
       try {
-        result = make(mesh, input.iterates(), communicator);
+        result = make(mesh, input, communicator);
         if (by_p4est)
           result->refine_global(mesh_input.refinements);
       } catch (const std::exception &exception) {

@@ -8,24 +8,43 @@
 
 namespace nsfd
 {
+  template <int dim>
+  using ActiveCells =
+      std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>;
+
   /**
-   * The cells of this rank in the order of their bodies. Where cells have been
-   * refined it is that of their ids: the order in which a mesh was made does
-   * not show.
+   * In the order of the bodies. Where cells have been refined it is that of
+   * their ids: the order in which a mesh was made does not show.
    */
   template <int dim>
-  std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
-  owned_cells(const dealii::Triangulation<dim> &triangulation)
+  void put_in_order(const bool refined, ActiveCells<dim> &cells)
   {
-    std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
-        cells;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        cells.push_back(cell);
-    if (triangulation.n_global_levels() > 1)
+    if (refined)
       std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) {
         return a->id() < b->id();
       });
+  }
+
+  /** The cells of this rank. */
+  template <int dim>
+  ActiveCells<dim> owned_cells(const dealii::Triangulation<dim> &triangulation)
+  {
+    ActiveCells<dim> cells;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        cells.push_back(cell);
+    put_in_order<dim>(triangulation.n_global_levels() > 1, cells);
+    return cells;
+  }
+
+  /** Those of all ranks, of a mesh that every rank knows as a whole. */
+  template <int dim>
+  ActiveCells<dim> all_cells(const dealii::Triangulation<dim> &triangulation)
+  {
+    ActiveCells<dim> cells;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      cells.push_back(cell);
+    put_in_order<dim>(triangulation.n_levels() > 1, cells);
     return cells;
   }
 

@@ -18,6 +18,13 @@ namespace nsfd
     /// Surfaces
     std::vector<std::vector<unsigned int>> pieces;
     dealii::Tensor<1, dim> normal; ///< outward at rest, of the first piece
+
+    /** To and from another rank. */
+    template <typename Archive>
+    void serialize(Archive &archive, const unsigned int)
+    {
+      archive &nodes &weights &pieces &normal;
+    }
   };
 
   /** Of all faces of a cell. */

@@ -110,12 +110,13 @@ namespace nsfd
   }
 
   template <int dim>
-  BodyEnergies InelasticBodies<dim>::book(State &next) const
+  std::vector<BodyEnergies> InelasticBodies<dim>::book(State &next) const
   {
-    BodyEnergies result;
+    std::vector<BodyEnergies> all;
     const Bodies &cells = discretization_.bodies(); // with their moduli
     next.material_history.resize(old_->material_history.size());
     for (unsigned int b = 0; b < cells.size(); ++b) {
+      BodyEnergies &result = all.emplace_back();
       const BodyClass &body = cells.classes[cells.class_of[b]];
       const std::size_t first = cells.first_dof[b];
       const auto *cell = cells_.of(b);
@@ -153,7 +154,7 @@ namespace nsfd
       result.plastic += losses.plastic;
       result.viscous += losses.viscous;
     }
-    return result;
+    return all;
   }
 
   template class InelasticBodies<2>;

@@ -36,9 +36,9 @@ namespace nsfd
     /** The cells that remember move under the generalised impulses @p r, from
         velocities near @p v; false if one of them has no solution. */
     bool move(const std::vector<double> &r, std::vector<double> &v);
-    /** Energies of the step to @p next, whose motion is known, losses, work of
-        the loads; what the materials remember goes into @p next. */
-    BodyEnergies book(State &next) const;
+    /** By body, energies of the step to @p next, whose motion is known, losses,
+        work of the loads; what the materials remember goes into @p next. */
+    std::vector<BodyEnergies> book(State &next) const;
 
   private:
     void set_end(const std::vector<double> &v, std::size_t body);

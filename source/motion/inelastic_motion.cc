@@ -74,8 +74,9 @@ namespace nsfd
       this->dynamics_.renew(h, theta);
     else
       this->dynamics_.reinit(h, theta);
-    set_step(this->input_, this->discretization_, this->dynamics_,
-             *this->motion_, old, h, this->problem_);
+    set_step(this->input_, this->discretization_,
+             this->discretization_.origins(), this->dynamics_, *this->motion_,
+             old, h, this->problem_);
   }
 
   /** Under the impulses of the last step. */

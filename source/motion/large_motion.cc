@@ -1,5 +1,6 @@
 #include "large_motion.h"
 
+#include "../base/gather.h"
 #include "../time/common_books.h"
 #include "../time/crack_pressure.h"
 #include "../time/driven_motion.h"
@@ -22,15 +23,6 @@ namespace nsfd
   namespace
   {
     constexpr unsigned int most_iterations = 40;
-
-    /** Appends @p n values of @p value to an array that has any. */
-    template <typename Array>
-    void append(Array &array, const std::size_t n,
-                const typename Array::value_type value)
-    {
-      if (!array.empty())
-        array.insert(array.end(), n, value);
-    }
   } // namespace
 
   template <int dim>
@@ -40,11 +32,12 @@ namespace nsfd
                                 Dynamics<dim> &dynamics,
                                 NonsmoothSolver<dim> &solver)
       : MoreauJean<dim>(input, discretization, dynamics, solver),
-        bodies_(bodies)
+        bodies_(bodies), lifts_(has_sliding_lift(input))
   {
     if (!input.contacts.empty() || !input.obstacles.empty())
       contacts_ = std::make_unique<SurfaceContacts<dim>>(input, discretization,
-                                                         bodies);
+                                                         bodies,
+                                                         dynamics.communicator());
   }
 
   template <int dim>
@@ -91,23 +84,32 @@ namespace nsfd
 
   // ------------------------------------------------------- data of one step
 
+  /** Those of all ranks. */
   template <int dim>
   std::vector<MovingRow<dim>> LargeMotion<dim>::pins(const State &old) const
   {
-    std::vector<MovingRow<dim>> result;
+    std::vector<MovingRow<dim>> own;
     for (unsigned int k = 0; k < this->input_.pins.size(); ++k) {
       MovingRow<dim> row;
       row.partner = MovingRow<dim>::Partner::pin;
       row.body_2 = bodies_.body_of_pin(k);
+      if (!bodies_.is_own(row.body_2))
+        continue;
       row.pin = row.block = k;
       row.weight = 1.;
       // as a support
       row.interaction = unsigned(this->input_.interfaces.size() +
                                  this->input_.obstacles.size());
       row.jump = bodies_.pin_drift(k, old);
-      result.push_back(row);
+      own.push_back(row);
     }
-    return result;
+    if (this->input_.pins.empty())
+      return own;
+    auto all = gather_all(this->dynamics_.communicator(), own);
+    std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
+      return a.pin < b.pin;
+    });
+    return all;
   }
 
   template <int dim>
@@ -124,84 +126,101 @@ namespace nsfd
                  (1. - theta) * velocity->at(dealii::Point<dim>(), old.time));
   }
 
-  /** State and problem with the contacts of the step behind the points. */
+  /** Values for the contacts of the step. */
+  template <int dim>
+  template <typename Array>
+  void
+  LargeMotion<dim>::insert_rows(Array &array, const unsigned int width,
+                                const typename Array::value_type value) const
+  {
+    array.insert(array.begin() + long(bodies_.row_point(0) * width),
+                 bodies_.rows().size() * width, value);
+  }
+
+  /** State and problem with the contacts of the step. */
   template <int dim>
   void LargeMotion<dim>::extend(const State &old)
   {
-    const auto &rows = bodies_.rows();
-    const std::size_t n = this->discretization_.points().n_points,
-                      m = rows.size();
+    const std::size_t n = bodies_.points().n_points;
     old_ = old;
-    for (auto *array :
-         {&old_.jump, &old_.relative_velocity, &old_.impulse})
-      array->resize((n + m) * dim, 0.);
+    for (auto *array : {&old_.jump, &old_.relative_velocity, &old_.impulse})
+      insert_rows(*array, dim, 0.);
     for (auto *array : {&old_.opening_max, &old_.beta, &old_.slip,
                         &old_.released_overlap, &old_.approach})
-      array->resize(n + m, 0.);
-    for (auto *array : {&old_.slip_max, &old_.dilated, &old_.worn,
-                        &old_.dilation_speed, &old_.wear_speed,
-                        &old_.pressure})
-      append(*array, m, 0.);
-    old_.kind.resize(n + m, PointKind::free);
-    old_.two_sided.resize(n + m, 0);
-    old_.contact.resize(n + m, 0);
+      insert_rows(*array, 1, 0.);
+    if (!old_.slip_max.empty())
+      insert_rows(old_.slip_max, 1, 0.);
+    if (lifts_)
+      for (auto *array : {&old_.dilated, &old_.worn, &old_.dilation_speed,
+                          &old_.wear_speed})
+        insert_rows(*array, 1, 0.);
+    if (this->crack_pressure_)
+      insert_rows(old_.pressure, 1, 0.);
+    insert_rows(old_.kind, 1, PointKind::free);
+    insert_rows(old_.two_sided, 1, 0);
+    insert_rows(old_.contact, 1, 0);
 
     OneStepProblem<dim> &problem = step_problem_;
-    problem.resize(n + m);
-    problem.n_owned = n + m;
+    problem.resize(n);
+    problem.n_owned = bodies_.points().n_owned;
     problem.theta = this->problem_.theta;
     problem.rule = this->problem_.rule;
     problem.interactions = this->problem_.interactions;
-    const auto take = [](const auto &from, auto &to) {
-      std::copy(from.begin(), from.end(), to.begin());
-    };
-    take(this->problem_.interaction, problem.interaction);
-    take(this->problem_.weight, problem.weight);
-    take(this->problem_.strength_factor, problem.strength_factor);
-    take(this->problem_.opening_factor, problem.opening_factor);
-    if (!this->problem_.viscosity.empty())
-      problem.viscosity.assign(n + m, 0.);
-    if (!this->problem_.dilatancy.empty()) {
-      problem.dilatancy.assign(n + m, 0.);
-      problem.lift_left.assign(n + m, 0.);
+    problem.interaction = this->problem_.interaction;
+    problem.strength_factor = this->problem_.strength_factor;
+    problem.opening_factor = this->problem_.opening_factor;
+    insert_rows(problem.interaction, 1, 0);
+    insert_rows(problem.strength_factor, 1, 1.);
+    insert_rows(problem.opening_factor, 1, 1.);
+    problem.weight = bodies_.points().weight;
+    if (has_opening_viscosity(this->input_))
+      problem.viscosity.assign(n, 0.);
+    if (lifts_) {
+      problem.dilatancy.assign(n, 0.);
+      problem.lift_left.assign(n, 0.);
     }
     origins_ = this->discretization_.origins();
-    for (std::size_t k = 0; k < m; ++k) {
-      const MovingRow<dim> &row = rows[k];
-      const std::size_t i = n + k;
+    insert_rows(origins_, 1, {});
+    for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
+      const MovingRow<dim> &row = bodies_.rows()[k];
+      const std::size_t i = bodies_.row_point(k);
       using Partner = typename MovingRow<dim>::Partner;
-      PointOrigin origin;
-      origin.block = row.block;
-      origin.kind = row.partner == Partner::pin ? PointOrigin::Kind::pin
-                    : row.partner == Partner::obstacle
-                        ? PointOrigin::Kind::obstacle
-                        : PointOrigin::Kind::surface;
-      origins_.push_back(origin);
+      origins_[i].block = row.block;
+      origins_[i].kind = row.partner == Partner::pin ? PointOrigin::Kind::pin
+                         : row.partner == Partner::obstacle
+                             ? PointOrigin::Kind::obstacle
+                             : PointOrigin::Kind::surface;
       problem.interaction[i] = row.interaction;
-      problem.weight[i] = row.weight;
       if (row.partner == Partner::pin)
         old_.kind[i] = PointKind::prescribed;
-      if (row.place == row.nowhere)
-        continue;
-      old_.slip[i] = old.surface_slip[row.place];
-      old_.approach[i] = old.surface_approach[row.place];
-      old_.released_overlap[i] = old.surface_overlap[row.place];
-      if (row.twin != row.nowhere) {
-        old_.approach[i] =
-            std::max(old_.approach[i], old.surface_approach[row.twin]);
-        old_.released_overlap[i] =
-            std::max(old_.released_overlap[i], old.surface_overlap[row.twin]);
-      }
-      // lips of springs that were closed are born with their overlap
-      if (row.released)
-        old_.released_overlap[i] =
-            std::max(old_.released_overlap[i], -row.gap);
-      old_.contact[i] =
-          old.surface_contact[row.place] & SurfaceContacts<dim>::touches;
-      if (!old_.worn.empty()) {
-        old_.worn[i] = old.surface_worn[row.place];
-        old_.wear_speed[i] = old.surface_wear_speed[row.place];
-      }
+      if (row.place != row.nowhere)
+        set_row_memory(k, old);
+    }
+  }
+
+  /** What its place remembers. */
+  template <int dim>
+  void LargeMotion<dim>::set_row_memory(const std::size_t k, const State &old)
+  {
+    const MovingRow<dim> &row = bodies_.rows()[k];
+    const std::size_t i = bodies_.row_point(k);
+    old_.slip[i] = old.surface_slip[row.place];
+    old_.approach[i] = old.surface_approach[row.place];
+    old_.released_overlap[i] = old.surface_overlap[row.place];
+    if (row.twin != row.nowhere) {
+      old_.approach[i] =
+          std::max(old_.approach[i], old.surface_approach[row.twin]);
+      old_.released_overlap[i] =
+          std::max(old_.released_overlap[i], old.surface_overlap[row.twin]);
+    }
+    // lips of springs that were closed are born with their overlap
+    if (row.released)
+      old_.released_overlap[i] = std::max(old_.released_overlap[i], -row.gap);
+    old_.contact[i] =
+        old.surface_contact[row.place] & SurfaceContacts<dim>::touches;
+    if (!old_.worn.empty()) {
+      old_.worn[i] = old.surface_worn[row.place];
+      old_.wear_speed[i] = old.surface_wear_speed[row.place];
     }
   }
 
@@ -220,16 +239,16 @@ namespace nsfd
     }
     const auto held = pins(old);
     rows.insert(rows.end(), held.begin(), held.end());
-    bodies_.set_rows(std::move(rows));
+    bodies_.set_rows(rows);
     extend(old);
     mesh_jumps_ = bodies_.jumps(old.displacement);
-    crack_impulse_.assign(old_.impulse.size(), 0.);
+    crack_impulse_.clear();
     if (this->crack_pressure_) {
       this->crack_pressure_->evaluate(old, old.time + theta * h,
                                       next.pressure);
-      const auto P = this->crack_pressure_->impulse(next.pressure, h);
-      std::copy(P.begin(), P.end(), crack_impulse_.begin());
-      append(next.pressure, bodies_.rows().size(), 0.);
+      crack_impulse_ = this->crack_pressure_->impulse(next.pressure, h);
+      insert_rows(crack_impulse_, dim, 0.);
+      insert_rows(next.pressure, 1, 0.);
     }
   }
 
@@ -244,7 +263,7 @@ namespace nsfd
     if (row.partner != MovingRow<dim>::Partner::obstacle)
       return result;
     const auto &obstacle = this->input_.obstacles[row.obstacle];
-    const std::size_t i = this->discretization_.points().n_points + k;
+    const std::size_t i = bodies_.row_point(k);
     for (unsigned int d = 0; d < dim; ++d)
       if (obstacle.velocity[d]) {
         const double v = obstacle.velocity[d]->at(dealii::Point<dim>(), time);
@@ -260,11 +279,10 @@ namespace nsfd
                                            std::vector<double> &U) const
   {
     this->dynamics_.relative_velocity(v.data(), U.data());
-    const std::size_t n = this->discretization_.points().n_points;
     for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
       const auto own = obstacle_velocity(k, time);
       for (unsigned int a = 0; a < dim; ++a)
-        U[(n + k) * dim + a] -= own[a];
+        U[bodies_.row_point(k) * dim + a] -= own[a];
     }
   }
 
@@ -275,23 +293,24 @@ namespace nsfd
     const auto &rows = bodies_.rows();
     const auto &frame = bodies_.points().frame;
     const std::size_t n = this->discretization_.points().n_points;
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
       for (unsigned int a = 0; a < dim; ++a) {
+        const std::size_t i = bodies_.mesh_point(j);
         double value = 0.;
         for (unsigned int d = 0; d < dim; ++d)
           value +=
-              frame[(i * dim + a) * dim + d] * mesh_jumps_[i * dim + d];
+              frame[(i * dim + a) * dim + d] * mesh_jumps_[j * dim + d];
         old_.jump[i * dim + a] = value;
       }
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim; ++a)
-        old_.jump[(n + k) * dim + a] =
+        old_.jump[bodies_.row_point(k) * dim + a] =
             rows[k].partner == MovingRow<dim>::Partner::pin ? rows[k].jump[a]
             : a == 0                                        ? rows[k].gap
                                                             : 0.;
     relative_velocity(bodies_.old_velocity(), old_.time,
                       old_.relative_velocity);
-    set_step(this->input_, this->discretization_, this->dynamics_,
+    set_step(this->input_, this->discretization_, origins_, this->dynamics_,
              *this->motion_, old_, h, step_problem_);
     // what is joined stays where it is: the mean velocity vanishes
     const double theta = step_problem_.theta;
@@ -314,7 +333,6 @@ namespace nsfd
   {
     const auto &time = this->input_.time;
     const auto &rows = bodies_.rows();
-    const std::size_t n = this->discretization_.points().n_points;
     if (first)
       active_.assign(rows.size(), 0);
     std::vector<double> U;
@@ -325,7 +343,7 @@ namespace nsfd
     for (std::size_t k = 0; k < rows.size(); ++k) {
       if (rows[k].partner == MovingRow<dim>::Partner::pin)
         continue;
-      const std::size_t i = n + k;
+      const std::size_t i = bodies_.row_point(k);
       double gap = rows[k].gap + h * time.forecast_gamma1 * rows[k].rate;
       if (!U.empty())
         gap += h * time.forecast_gamma2 * U[i * dim];
@@ -346,17 +364,16 @@ namespace nsfd
   template <int dim>
   void LargeMotion<dim>::warm_start(const State &old)
   {
-    const std::size_t n = this->discretization_.points().n_points;
     impulse_ = old_.impulse;
     const auto &rows = bodies_.rows();
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere;
            ++a)
-        for (unsigned int d = 0; d < dim; ++d)
-          impulse_[(n + k) * dim + a] +=
-              rows[k].share *
-              bodies_.points().frame[((n + k) * dim + a) * dim + d] *
-              old.surface_impulse[rows[k].place * dim + d];
+        for (unsigned int d = 0; d < dim; ++d) {
+          const std::size_t c = bodies_.row_point(k) * dim + a;
+          impulse_[c] += rows[k].share * bodies_.points().frame[c * dim + d] *
+                         old.surface_impulse[rows[k].place * dim + d];
+        }
     // what does not touch in this step has none
     for (std::size_t i = 0; i < step_problem_.n_points; ++i)
       if (step_problem_.kind[i] == PointKind::free && !step_problem_.contact[i])
@@ -369,10 +386,10 @@ namespace nsfd
   bool LargeMotion<dim>::move_bodies(const std::vector<double> &v)
   {
     std::vector<double> all(impulse_), r(v.size());
-    for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::size_t k = 0; k < crack_impulse_.size(); ++k)
       all[k] += crack_impulse_[k];
     this->dynamics_.generalised_impulse(all.data(), r.data());
-    return bodies_.move(r, v);
+    return !this->dynamics_.communicator().any(!bodies_.move(r, v));
   }
 
   template <int dim>
@@ -397,7 +414,7 @@ namespace nsfd
       forecast(h, round == 0);
       if (round == 0) {
         warm_start(old);
-        if (all.any(!move_bodies(v_middle)))
+        if (!move_bodies(v_middle))
           throw StepRejected(lost_body(h, old.time));
       }
       // linear in what further impulses do
@@ -411,8 +428,8 @@ namespace nsfd
       dynamics.set_free_velocity(&this->v_free_);
       if (round == 0)
         energy_scale_ = 2. * old.energy.kinetic +
-                        all.sum({bodies_.kinetic_product(this->v_free_,
-                                                         this->v_free_)});
+                        all.sum(bodies_.kinetic_products(this->v_free_,
+                                                         this->v_free_));
       evaluation = std::make_unique<LawEvaluation<dim>>(
           step_problem_, dynamics, energy_scale_, control.tolerance);
       const auto solver = SolverRegistry<dim>::instance().create(
@@ -426,12 +443,12 @@ namespace nsfd
         return total;
       std::vector<double> v = this->v_free_;
       dynamics.add_velocity_change(impulse_.data(), v.data());
-      if (all.any(!move_bodies(v)))
+      if (!move_bodies(v))
         throw StepRejected(lost_body(h, old.time));
       for (std::size_t k = 0; k < difference.size(); ++k)
         difference[k] = bodies_.velocity()[k] - v_middle[k];
       const double change =
-          all.sum({bodies_.kinetic_product(difference, difference)});
+          all.sum(bodies_.kinetic_products(difference, difference));
       ++motion_counters_.iterations;
       motion_counters_.most_iterations =
           std::max<unsigned long long>(motion_counters_.most_iterations, round + 1);
@@ -481,7 +498,9 @@ namespace nsfd
     finish(h, *evaluation, next, report);
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
-    remember_surfaces(old, next);
+    if (contacts_)
+      remember_surfaces(old, next);
+    forget_rows(next);
     if (contacts_)
       contacts_->part(next);
     return report;
@@ -507,34 +526,78 @@ namespace nsfd
     const Communicator &all = this->dynamics_.communicator();
     this->ledger_->book(step_problem_, evaluation, origins_,
                         sum(all, bodies_.book()), old_, next, report);
-    next.energy.work += all.sum({obstacle_work()});
+    next.energy.work += all.sum(obstacle_work());
     // springs of two stiffnesses store other energies as their frames turn
-    double stored = 0.;
+    std::vector<double> stored;
     for (std::size_t i = 0; i < this->problem_.n_owned; ++i)
-      stored += step_problem_.weight[i] *
-                stored_energy<dim>(step_problem_, i);
-    next.energy.numerical -= all.sum({stored}) - old_.energy.cohesive;
+      stored.push_back(step_problem_.weight[i] *
+                       stored_energy<dim>(step_problem_, i));
+    next.energy.numerical -= all.sum(stored) - old_.energy.cohesive;
     close_books(old_, next, report);
   }
 
+  /** By contact of this rank. */
   template <int dim>
-  double LargeMotion<dim>::obstacle_work() const
+  std::vector<double> LargeMotion<dim>::obstacle_work() const
   {
     const double theta = this->input_.time.theta;
-    const std::size_t n = this->discretization_.points().n_points;
-    double work = 0.;
-    for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
+    std::vector<double> result;
+    for (std::size_t k = 0; k < bodies_.n_own_rows(); ++k) {
+      double &work = result.emplace_back();
       const auto before = obstacle_velocity(k, old_.time),
                  after = obstacle_velocity(k, old_.time +
                                                   step_problem_.time_step);
       for (unsigned int a = 0; a < dim; ++a)
-        work += impulse_[(n + k) * dim + a] *
+        work += impulse_[bodies_.row_point(k) * dim + a] *
                 (theta * after[a] + (1. - theta) * before[a]);
     }
-    return work;
+    return result;
   }
 
-  /** Contacts live for one step; what their places remember stays. */
+  /** What a contact leaves to its place. */
+  template <int dim>
+  struct LargeMotion<dim>::SurfaceMemory
+  {
+    std::size_t index, place, twin; ///< index of the row
+    std::array<double, dim> impulse;
+    double slip, overlap, approach, worn, wear_speed;
+    std::uint8_t contact;
+  };
+
+  template <int dim>
+  std::vector<typename LargeMotion<dim>::SurfaceMemory>
+  LargeMotion<dim>::own_memory(const State &next) const
+  {
+    std::vector<SurfaceMemory> result;
+    for (std::size_t k = 0; k < bodies_.n_own_rows(); ++k) {
+      const MovingRow<dim> &row = bodies_.rows()[k];
+      const std::size_t i = bodies_.row_point(k);
+      if (row.place == row.nowhere)
+        continue;
+      SurfaceMemory memory{};
+      memory.index = row.index;
+      memory.place = row.place;
+      memory.twin = row.twin;
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int d = 0; d < dim; ++d)
+          memory.impulse[d] +=
+              bodies_.points().frame[(i * dim + a) * dim + d] *
+              next.impulse[i * dim + a];
+      memory.slip = next.slip[i];
+      memory.overlap = next.released_overlap[i];
+      memory.approach = next.approach[i];
+      memory.contact = next.contact[i];
+      if (!next.worn.empty()) {
+        memory.worn = next.worn[i];
+        memory.wear_speed = next.wear_speed[i];
+      }
+      result.push_back(memory);
+    }
+    return result;
+  }
+
+  /** Contacts live for one step; what their places remember stays, on all
+      ranks. Collective. */
   template <int dim>
   void LargeMotion<dim>::remember_surfaces(const State &old, State &next) const
   {
@@ -545,48 +608,54 @@ namespace nsfd
     next.surface_overlap = old.surface_overlap;
     next.surface_approach = old.surface_approach;
     next.surface_contact.assign(old.surface_contact.size(), 0);
-    const std::size_t n = this->discretization_.points().n_points;
-    const auto &rows = bodies_.rows();
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const std::size_t place = rows[k].place, i = n + k;
-      if (place == rows[k].nowhere)
-        continue;
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int d = 0; d < dim; ++d)
-          next.surface_impulse[place * dim + d] +=
-              bodies_.points().frame[(i * dim + a) * dim + d] *
-              next.impulse[i * dim + a];
-      next.surface_slip[place] = next.slip[i];
-      next.surface_overlap[place] =
-          std::max(next.surface_overlap[place], next.released_overlap[i]);
-      next.surface_approach[place] =
-          std::max(next.surface_approach[place], next.approach[i]);
-      if (const std::size_t twin = rows[k].twin; twin != rows[k].nowhere) {
-        next.surface_overlap[twin] =
-            std::max(next.surface_overlap[twin], next.surface_overlap[place]);
-        next.surface_approach[twin] = std::max(next.surface_approach[twin],
-                                               next.surface_approach[place]);
-      }
-      next.surface_contact[place] |= next.contact[i];
+    const auto raise = [](std::vector<double> &values, const std::size_t place,
+                          const double value) {
+      values[place] = std::max(values[place], value);
+    };
+    auto rows = gather_all(this->dynamics_.communicator(), own_memory(next));
+    std::sort(rows.begin(), rows.end(), [](const auto &a, const auto &b) {
+      return a.index < b.index;
+    });
+    for (const SurfaceMemory &row : rows) {
+      for (unsigned int d = 0; d < dim; ++d)
+        next.surface_impulse[row.place * dim + d] += row.impulse[d];
+      next.surface_slip[row.place] = row.slip;
+      for (const std::size_t place : {row.place, row.twin})
+        if (place != MovingRow<dim>::nowhere) {
+          raise(next.surface_overlap, place, row.overlap);
+          raise(next.surface_approach, place, row.approach);
+        }
+      next.surface_contact[row.place] |= row.contact;
       if (!next.worn.empty()) {
-        next.surface_worn[place] = next.worn[i];
-        next.surface_wear_speed[place] = next.wear_speed[i];
+        next.surface_worn[row.place] = row.worn;
+        next.surface_wear_speed[row.place] = row.wear_speed;
       }
     }
-    const auto cut = [n](auto &array, const std::size_t width) {
-      if (array.size() > n * width)
-        array.resize(n * width);
-    };
+  }
+
+  template <int dim>
+  template <typename Array>
+  void LargeMotion<dim>::erase_rows(Array &array,
+                                    const unsigned int width) const
+  {
+    const auto first = array.begin() + long(bodies_.row_point(0) * width);
+    if (!array.empty())
+      array.erase(first, first + long(bodies_.rows().size() * width));
+  }
+
+  template <int dim>
+  void LargeMotion<dim>::forget_rows(State &next) const
+  {
     for (auto *array : {&next.jump, &next.relative_velocity, &next.impulse})
-      cut(*array, dim);
+      erase_rows(*array, dim);
     for (auto *array :
          {&next.opening_max, &next.slip_max, &next.beta, &next.slip,
           &next.dilated, &next.worn, &next.dilation_speed, &next.wear_speed,
           &next.released_overlap, &next.approach, &next.pressure})
-      cut(*array, 1);
-    cut(next.kind, 1);
-    cut(next.two_sided, 1);
-    cut(next.contact, 1);
+      erase_rows(*array, 1);
+    erase_rows(next.kind, 1);
+    erase_rows(next.two_sided, 1);
+    erase_rows(next.contact, 1);
   }
 
   template <int dim>

@@ -53,7 +53,13 @@ namespace nsfd
   private:
     std::vector<MovingRow<dim>> pins(const State &old) const;
     void set_shifts(const State &old, double time_step, State &next) const;
+    template <typename Array>
+    void insert_rows(Array &array, unsigned int width,
+                     typename Array::value_type value) const;
+    template <typename Array>
+    void erase_rows(Array &array, unsigned int width) const;
     void extend(const State &old);
+    void set_row_memory(std::size_t row, const State &old);
     void start(const State &old, double time_step, State &next);
     std::array<double, dim> obstacle_velocity(std::size_t row,
                                               double time) const;
@@ -69,14 +75,18 @@ namespace nsfd
     std::string lost_body(double time_step, double time) const;
     void finish(double time_step, const LawEvaluation<dim> &evaluation,
                 State &next, StepReport &report);
-    double obstacle_work() const;
+    std::vector<double> obstacle_work() const;
+    struct SurfaceMemory;
+    std::vector<SurfaceMemory> own_memory(const State &next) const;
     void remember_surfaces(const State &old, State &next) const;
+    void forget_rows(State &next) const;
 
     MovingBodies<dim> &bodies_;
+    const bool lifts_; ///< by dilatancy or wear
     std::unique_ptr<SurfaceContacts<dim>> contacts_;
     MotionCounters motion_counters_;
 
-    // of the step: points of the mesh, then contacts and pins
+    // of the step: points as MovingBodies has them
     State old_;
     OneStepProblem<dim> step_problem_;
     std::vector<PointOrigin> origins_;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <deal.II/base/tensor.h>
-
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -12,7 +10,8 @@ namespace nsfd
    * A contact of one step between body 2, whose place it follows, and body 1
    * or an obstacle: a node or a ball of body 2 against a facet, a ball, an
    * obstacle; an edge against an edge; or a pin that holds a place of body 2.
-   * The normal leads from body 1 to body 2.
+   * The normal leads from body 1 to body 2. Bodies, cells and nodes of all
+   * ranks: SurfaceCells.
    */
   template <int dim>
   struct MovingRow
@@ -29,9 +28,11 @@ namespace nsfd
         std::numeric_limits<std::size_t>::max();
 
     Partner partner = Partner::facet;
+    std::size_t index = 0; ///< among the rows of the step, of all ranks
     int body_1 = -1;
     unsigned int body_2 = 0;
     std::size_t node = nowhere;  ///< of body 2; nowhere: a ball or an edge
+    double radius = 0.;          ///< of a ball, m
     unsigned int cell = 0;       ///< with this node or edge
     unsigned int facet_cell = 0; ///< of body 1
     std::array<std::size_t, 4> facet{}; ///< nodes, the outside as in Surfaces;
@@ -54,6 +55,6 @@ namespace nsfd
     std::size_t twin = nowhere;
     bool released = false; ///< a body has been let go of in the last step
     double share = 1.; ///< of the impulse that its place remembers
-    dealii::Tensor<1, dim> jump; ///< of a pin: how far it is off
+    std::array<double, dim> jump{}; ///< of a pin: how far it is off, m
   };
 } // namespace nsfd

@@ -1,5 +1,7 @@
 #include "surface_contacts.h"
 
+#include "../base/gather.h"
+#include "../time/step_data.h"
 #include "obstacle_shape.h"
 
 #include "nsfd/input/scene_input.h"
@@ -24,39 +26,20 @@ namespace nsfd
 
     /// more than there are; keys of facets begin with the place of their face
     constexpr std::uint64_t pieces_per_face = 64;
-
-    /** Of a body that is a ball; the places of balls begin at @p first. */
-    template <int dim>
-    MovingRow<dim> row_of_ball(const MovingBodies<dim> &bodies,
-                               const std::size_t first,
-                               const unsigned int body)
-    {
-      MovingRow<dim> row;
-      const double radius = bodies.ball_radius(body);
-      row.body_2 = body;
-      row.place = first + body;
-      row.weight = dim == 2 ? radius : radius * radius;
-      return row;
-    }
   } // namespace
 
   template <int dim>
   SurfaceContacts<dim>::SurfaceContacts(
       const SceneInput &input, const Discretization<dim> &discretization,
-      const MovingBodies<dim> &bodies)
-      : input_(input), discretization_(discretization), bodies_(bodies)
+      const MovingBodies<dim> &bodies, const Communicator &communicator)
+      : input_(input), discretization_(discretization),
+        table_(discretization.body_table()), bodies_(bodies),
+        all_(communicator), cells_(discretization, bodies, communicator)
   {
-    const auto &cells = discretization.bodies();
-    for (const auto &body : cells.classes)
-      faces_.push_back(
-          body.bodies.empty()
-              ? std::vector<FaceNodes<dim>>()
-              : face_nodes(discretization.element(),
-                           discretization.shape(body.bodies[0])));
     first_place_.push_back(0);
-    for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (unsigned int c = 0; c < cells_.size(); ++c) {
       std::size_t n = 0;
-      for (const auto &face : faces_[cells.class_of[c]])
+      for (const auto &face : cells_.faces(c))
         n += face.nodes.size();
       first_place_.push_back(first_place_.back() + n);
     }
@@ -73,53 +56,24 @@ namespace nsfd
           if (is(a, b) || is(b, a))
             block_by_materials_[a * n + b] = int(k);
         }
-    merge_nodes();
     if (dim == 3)
       number_edges();
-    set_boundary();
-  }
-
-  /** Cells of one rigid body have their own nodes at the same places. */
-  template <int dim>
-  void SurfaceContacts<dim>::merge_nodes()
-  {
-    State rest;
-    rest.displacement.assign(discretization_.n_nodal(), 0.);
-    const auto x = bodies_.positions(rest);
-    const double unit = 1e-9 * discretization_.extent();
-    std::map<std::pair<unsigned int, std::array<long long, dim>>, unsigned int>
-        first;
-    merged_.resize(bodies_.n_nodes());
-    for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
-      const std::size_t begin = discretization_.first_node(c);
-      const unsigned int b = bodies_.body_of_cell(c);
-      for (std::size_t i = begin; i < begin + discretization_.shape(c).n_nodes;
-           ++i) {
-        merged_[i] = unsigned(i);
-        if (!bodies_.is_rigid(b))
-          continue;
-        std::array<long long, dim> at;
-        for (unsigned int d = 0; d < dim; ++d)
-          at[d] = std::llround(x[i * dim + d] / unit);
-        merged_[i] =
-            first.emplace(std::pair(b, at), unsigned(i)).first->second;
-      }
-    }
+    search_.share(communicator,
+                  [this](const unsigned int b) { return bodies_.is_own(b); });
   }
 
   /** All edges of all cells: each has a place, whether it is a surface yet. */
   template <int dim>
   void SurfaceContacts<dim>::number_edges()
   {
-    const auto &cells = discretization_.bodies();
-    for (unsigned int c = 0; c < cells.size(); ++c)
-      for (const auto &face : faces_[cells.class_of[c]])
+    for (unsigned int c = 0; c < cells_.size(); ++c)
+      for (const auto &face : cells_.faces(c))
         for (const auto &piece : face.pieces)
           for (std::size_t v = 0; v < piece.size(); ++v) {
-            const std::size_t first = discretization_.first_node(c);
+            const std::size_t first = cells_.first_node(c);
             edges_.push_back(
-                pair_of(merged_[first + piece[v]],
-                        merged_[first + piece[(v + 1) % piece.size()]]));
+                pair_of(cells_.merged(first + piece[v]),
+                        cells_.merged(first + piece[(v + 1) % piece.size()])));
           }
     std::sort(edges_.begin(), edges_.end());
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
@@ -133,30 +87,8 @@ namespace nsfd
   {
     const auto edge = std::lower_bound(edges_.begin(), edges_.end(),
                                        pair_of(node_1, node_2));
-    return first_place_.back() + bodies_.size() +
+    return first_place_.back() + table_.bodies.size() +
            std::size_t(edge - edges_.begin());
-  }
-
-  template <int dim>
-  void SurfaceContacts<dim>::set_boundary()
-  {
-    const auto &cells = discretization_.bodies();
-    const auto &points = discretization_.points();
-    for (unsigned int c = 0; c < cells.size(); ++c) {
-      auto &face_of = mesh_face_.emplace_back(
-          faces_[cells.class_of[c]].size(), boundary);
-      for (std::size_t s = cells.first_slot[c]; s < cells.first_slot[c + 1];
-           ++s) {
-        const unsigned int i = cells.slot_point[s];
-        if (i < points.n_points && discretization_.origins()[i].kind ==
-                                       PointOrigin::Kind::interface)
-          face_of[discretization_.face_of_slot(
-              c, unsigned(s - cells.first_slot[c]))] = int(points.face_of[i]);
-      }
-    }
-    for (const InnerFace &face : discretization_.inner_faces())
-      for (unsigned int side = 0; side < 2; ++side)
-        mesh_face_[face.bodies[side]][face.faces[side]] = inside;
   }
 
   template <int dim>
@@ -164,7 +96,7 @@ namespace nsfd
                                              const unsigned int face,
                                              const unsigned int node) const
   {
-    const auto &faces = faces_[discretization_.bodies().class_of[cell]];
+    const auto &faces = cells_.faces(cell);
     std::size_t place = first_place_[cell] + node;
     for (unsigned int f = 0; f < face; ++f)
       place += faces[f].nodes.size();
@@ -175,60 +107,75 @@ namespace nsfd
   int SurfaceContacts<dim>::block_of(const unsigned int body_1,
                                      const unsigned int body_2) const
   {
-    return block_by_materials_[bodies_.material_of(body_1) *
+    return block_by_materials_[table_.bodies[body_1].material *
                                    input_.materials.size() +
-                               bodies_.material_of(body_2)];
+                               table_.bodies[body_2].material];
+  }
+
+  template <int dim>
+  bool SurfaceContacts<dim>::may_touch(const unsigned int body) const
+  {
+    const auto n = long(input_.materials.size());
+    const auto blocks = block_by_materials_.begin() +
+                        long(table_.bodies[body].material) * n;
+    return std::any_of(blocks, blocks + n, [](const int k) { return k >= 0; });
   }
 
   template <int dim>
   void SurfaceContacts<dim>::set_initial(State &state) const
   {
     const std::size_t n =
-        first_place_.back() + bodies_.size() + edges_.size();
+        first_place_.back() + table_.bodies.size() + edges_.size();
     state.surface_impulse.assign(n * dim, 0.);
     state.surface_contact.assign(n, 0);
     for (auto *array : {&state.surface_slip, &state.surface_overlap,
                         &state.surface_approach})
       array->assign(n, 0.);
-    if (!state.worn.empty())
+    if (has_sliding_lift(input_))
       for (auto *array : {&state.surface_worn, &state.surface_wear_speed})
         array->assign(n, 0.);
     part(state);
   }
 
+  /** Both ranks of two bodies know all faces between them. */
   template <int dim>
   void SurfaceContacts<dim>::part(State &state) const
   {
-    const auto &faces = bodies_.points().faces;
-    const std::size_t n_faces = discretization_.points().faces.size();
-    std::unordered_set<Pair> held;
-    const auto is_between = [&](const std::size_t f) {
-      return faces[f].bodies[0] >= 0 && faces[f].bodies[1] >= 0 &&
-             block_of(unsigned(faces[f].bodies[0]),
-                      unsigned(faces[f].bodies[1])) >= 0;
-    };
+    const auto &faces = discretization_.points().faces;
     const auto bodies_of = [&](const std::size_t f) {
-      return pair_of(unsigned(faces[f].bodies[0]),
-                     unsigned(faces[f].bodies[1]));
+      return cells_.mesh_faces()[std::size_t(cells_.mesh_face(f))];
     };
-    for (std::size_t f = 0; f < n_faces; ++f)
+    const auto is_between = [&](const std::size_t f) {
+      return !faces[f].boundary &&
+             block_of(bodies_of(f).body_1, bodies_of(f).body_2) >= 0;
+    };
+    const auto pair = [&](const std::size_t f) {
+      return pair_of(bodies_of(f).body_1, bodies_of(f).body_2);
+    };
+    std::unordered_set<Pair> held;
+    for (std::size_t f = 0; f < faces.size(); ++f)
       for (unsigned int i = faces[f].first;
            is_between(f) && i < faces[f].first + faces[f].count; ++i)
         if (state.kind[i] != PointKind::free &&
             state.kind[i] != PointKind::parted)
-          held.insert(bodies_of(f));
-    std::vector<char> lets_go(bodies_.size(), 0);
-    for (std::size_t f = 0; f < n_faces; ++f)
-      if (is_between(f) && held.count(bodies_of(f)) == 0) {
+          held.insert(pair(f));
+    std::vector<unsigned int> let_go;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      if (is_between(f) && held.count(pair(f)) == 0) {
         if (state.kind[faces[f].first] != PointKind::parted)
-          for (const int b : faces[f].bodies)
-            lets_go[std::size_t(b)] = 1;
+          let_go.insert(let_go.end(),
+                        {bodies_of(f).body_1, bodies_of(f).body_2});
         for (unsigned int i = faces[f].first;
              i < faces[f].first + faces[f].count; ++i)
           state.kind[i] = PointKind::parted;
       }
-    for (unsigned int c = 0; c < mesh_face_.size(); ++c)
-      if (lets_go[bodies_.body_of_cell(c)])
+    if (!all_.any(!let_go.empty()))
+      return;
+    std::vector<char> lets_go(table_.bodies.size(), 0);
+    for (const unsigned int b : gather_all(all_, let_go))
+      lets_go[b] = 1;
+    for (unsigned int c = 0; c < cells_.size(); ++c)
+      if (lets_go[table_.body_of_cell[c]])
         for (std::size_t k = first_place_[c]; k < first_place_[c + 1]; ++k)
           state.surface_contact[k] |= released;
     for (unsigned int b = 0; b < lets_go.size(); ++b)
@@ -240,82 +187,162 @@ namespace nsfd
 
   template <int dim>
   bool SurfaceContacts<dim>::is_surface(const unsigned int cell,
-                                        const unsigned int face,
-                                        const State &state) const
+                                        const unsigned int face) const
   {
-    const int f = mesh_face_[cell][face];
-    if (f < 0)
-      return f == boundary;
-    return state.kind[bodies_.points().faces[std::size_t(f)].first] ==
-           PointKind::parted;
+    const int f = cells_.kind_of(cell, face);
+    return f < 0 ? f == SurfaceCells<dim>::boundary
+                 : parted_[std::size_t(f)] != 0;
   }
 
   /** Normals at rest of the surfaces that meet at the nodes of rigid bodies. */
   template <int dim>
-  void SurfaceContacts<dim>::set_sides(const State &state)
+  void SurfaceContacts<dim>::set_sides()
   {
     sides_at_.clear();
-    for (unsigned int c = 0; c < mesh_face_.size(); ++c)
-      for (unsigned int f = 0; f < mesh_face_[c].size(); ++f) {
-        if (!bodies_.is_rigid(bodies_.body_of_cell(c)) ||
-            !is_surface(c, f, state))
+    for (unsigned int c = 0; c < cells_.size(); ++c)
+      for (unsigned int f = 0; f < cells_.faces(c).size(); ++f) {
+        if (!table_.is_rigid(table_.body_of_cell[c]) || !is_surface(c, f))
           continue;
-        const FaceNodes<dim> &face = faces_[discretization_.bodies().class_of[c]][f];
+        const FaceNodes<dim> &face = cells_.faces(c)[f];
         for (const unsigned int node : face.nodes)
-          sides_at_[merged_[discretization_.first_node(c) + node]].push_back(
+          sides_at_[cells_.merged(cells_.first_node(c) + node)].push_back(
               {c, f, face.normal});
       }
   }
 
-  /** True if the surfaces are others than in the last step. */
+  /** Surfaces and their motion; true if they are others than in the last
+      step. */
   template <int dim>
   bool SurfaceContacts<dim>::follow(const State &state)
   {
-    const auto &faces = bodies_.points().faces;
-    const std::size_t n_faces = discretization_.points().faces.size();
-    std::vector<char> parted(n_faces);
-    for (std::size_t f = 0; f < n_faces; ++f)
-      parted[f] = state.kind[faces[f].first] == PointKind::parted;
-    if (known_ && parted == parted_)
+    if (!share_parted(state) && known_) {
+      if (!input_.contacts.empty())
+        share_motion(state);
       return false;
-    known_ = true;
-    parted_ = std::move(parted);
-    joined_.clear();
-    for (std::size_t f = 0; f < n_faces; ++f)
-      if (!parted_[f] && faces[f].bodies[0] >= 0 && faces[f].bodies[1] >= 0)
-        joined_.insert(pair_of(unsigned(faces[f].bodies[0]),
-                               unsigned(faces[f].bodies[1])));
-    surfaces_ = Surfaces<dim>();
-    set_sides(state);
-    point_origins_.clear();
-    facet_cells_.clear();
-    for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
-      const unsigned int b = bodies_.body_of_cell(c);
-      const std::size_t n = input_.materials.size();
-      const auto blocks =
-          block_by_materials_.begin() + long(bodies_.material_of(b) * n);
-      if (bodies_.ball_radius(b) > 0. ||
-          std::all_of(blocks, blocks + long(n),
-                      [](const int k) { return k < 0; }))
-        continue;
-      for (unsigned int f = 0; f < mesh_face_[c].size(); ++f)
-        if (is_surface(c, f, state))
-          add_face(c, f);
     }
-    for (unsigned int b = 0; b < bodies_.size(); ++b)
-      if (bodies_.ball_radius(b) > 0.)
-        surfaces_.balls.push_back({b, bodies_.ball_radius(b),
-                                   std::uint64_t(b),
-                                   unsigned(bodies_.centre_node(b))});
-    const auto x = bodies_.positions(state);
-    surfaces_.n_vertices = x.size() / dim;
+    known_ = true;
+    joined_.clear();
+    for (std::size_t f = 0; f < parted_.size(); ++f)
+      if (!parted_[f]) {
+        const auto &face = cells_.mesh_faces()[f];
+        joined_.insert(pair_of(face.body_1, face.body_2));
+      }
+    set_sides();
+    add_obstacle_faces();
+    if (input_.contacts.empty())
+      return true;
+    set_surfaces();
+    set_moving_nodes();
+    share_motion(state);
     set_edges<dim>(
-        surfaces_, x.data(),
-        [this](const unsigned int b) { return bodies_.is_rigid(b); });
+        surfaces_, x_.data(),
+        [this](const unsigned int b) { return table_.is_rigid(b); });
     counters_.facets =
         std::max<unsigned long long>(counters_.facets, surfaces_.facets.size());
-    add_obstacle_faces(state);
     return true;
+  }
+
+  /** Which faces of all ranks are parted; true if others than before. */
+  template <int dim>
+  bool SurfaceContacts<dim>::share_parted(const State &state)
+  {
+    const auto &points = discretization_.points();
+    parted_.resize(cells_.mesh_faces().size(), 0);
+    std::vector<int> changed;
+    for (std::size_t f = 0; f < points.faces.size(); ++f) {
+      const int face = cells_.mesh_face(f);
+      if (face < 0 || points.faces[f].first >= points.n_owned)
+        continue;
+      const char now = state.kind[points.faces[f].first] == PointKind::parted;
+      if (now != parted_[std::size_t(face)])
+        changed.push_back(face);
+    }
+    if (!all_.any(!changed.empty()))
+      return false;
+    for (const int face : gather_all(all_, changed))
+      parted_[std::size_t(face)] ^= 1;
+    return true;
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::set_surfaces()
+  {
+    surfaces_ = Surfaces<dim>();
+    point_origins_.clear();
+    facet_cells_.clear();
+    for (unsigned int c = 0; c < cells_.size(); ++c) {
+      const unsigned int b = table_.body_of_cell[c];
+      if (cells_.ball_radius(b) > 0. || !may_touch(b))
+        continue;
+      for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
+        if (is_surface(c, f))
+          add_face(c, f);
+    }
+    for (unsigned int b = 0; b < table_.bodies.size(); ++b)
+      if (cells_.ball_radius(b) > 0.)
+        surfaces_.balls.push_back({b, cells_.ball_radius(b), std::uint64_t(b),
+                                   unsigned(cells_.centre_node(b))});
+    surfaces_.n_vertices = cells_.n_nodes() + table_.n_rigid;
+  }
+
+  /** Nodes whose motion all ranks need: vertices, and where contacts are. */
+  template <int dim>
+  void SurfaceContacts<dim>::set_moving_nodes()
+  {
+    moving_nodes_.clear();
+    for (const auto &facet : surfaces_.facets)
+      moving_nodes_.insert(moving_nodes_.end(), facet.vertex.begin(),
+                           facet.vertex.begin() + facet.n_vertices);
+    for (const Origin &origin : point_origins_)
+      moving_nodes_.push_back(
+          cells_.first_node(origin.cell) +
+          cells_.faces(origin.cell)[origin.face].nodes[origin.node]);
+    std::sort(moving_nodes_.begin(), moving_nodes_.end());
+    moving_nodes_.erase(
+        std::unique(moving_nodes_.begin(), moving_nodes_.end()),
+        moving_nodes_.end());
+    own_moving_nodes_.clear();
+    const auto rank_of = [this](const std::size_t node) {
+      return table_
+          .bodies[table_.body_of_cell[node / cells_.nodes_per_cell()]]
+          .rank;
+    };
+    for (const std::size_t node : moving_nodes_)
+      if (rank_of(node) == all_.rank())
+        own_moving_nodes_.push_back(node);
+    // as the ranks send them
+    std::stable_sort(moving_nodes_.begin(), moving_nodes_.end(),
+                     [&](const std::size_t a, const std::size_t b) {
+                       return rank_of(a) < rank_of(b);
+                     });
+    x_.assign(surfaces_.n_vertices * dim, 0.);
+    v_.assign(cells_.n_nodes() * dim, 0.);
+  }
+
+  /** Where the surfaces of all ranks are, and how fast. */
+  template <int dim>
+  void SurfaceContacts<dim>::share_motion(const State &old)
+  {
+    const auto own_x = bodies_.positions(old);
+    std::vector<double> own;
+    own.reserve(own_moving_nodes_.size() * 2 * dim);
+    for (const std::size_t node : own_moving_nodes_) {
+      const std::size_t k = bodies_.own_node(node) * dim;
+      own.insert(own.end(), own_x.begin() + long(k),
+                 own_x.begin() + long(k + dim));
+      own.insert(own.end(), old.velocity.begin() + long(k),
+                 old.velocity.begin() + long(k + dim));
+    }
+    const auto motion = gather_all(all_, own);
+    const double *from = motion.data();
+    for (const std::size_t node : moving_nodes_) {
+      std::copy_n(from, dim, x_.data() + node * dim);
+      std::copy_n(from + dim, dim, v_.data() + node * dim);
+      from += 2 * dim;
+    }
+    for (std::size_t r = 0; r < table_.n_rigid; ++r)
+      std::copy_n(old.rigid.data() + 13 * r, dim,
+                  x_.data() + (cells_.n_nodes() + r) * dim);
   }
 
   /**
@@ -327,10 +354,9 @@ namespace nsfd
                                        const unsigned int f,
                                        const unsigned int node) const
   {
-    if (!bodies_.is_rigid(bodies_.body_of_cell(c)))
+    if (!table_.is_rigid(table_.body_of_cell[c]))
       return true;
-    const auto &sides =
-        sides_at_.at(merged_[discretization_.first_node(c) + node]);
+    const auto &sides = sides_at_.at(cells_.merged(cells_.first_node(c) + node));
     const auto own = std::find_if(sides.begin(), sides.end(), [&](auto &side) {
       return side.cell == c && side.face == f;
     });
@@ -348,15 +374,15 @@ namespace nsfd
   void SurfaceContacts<dim>::add_face(const unsigned int c,
                                       const unsigned int f)
   {
-    const FaceNodes<dim> &face = faces_[discretization_.bodies().class_of[c]][f];
-    const std::size_t first = discretization_.first_node(c);
-    std::vector<char> has_point(discretization_.shape(c).n_nodes, 0);
+    const FaceNodes<dim> &face = cells_.faces(c)[f];
+    const std::size_t first = cells_.first_node(c);
+    std::vector<char> has_point(cells_.nodes_per_cell(), 0);
     for (std::size_t p = 0; p < face.pieces.size(); ++p) {
       typename Surfaces<dim>::Facet facet;
       facet.n_vertices = unsigned(face.pieces[p].size());
       for (unsigned int v = 0; v < facet.n_vertices; ++v)
-        facet.vertex[v] = merged_[first + face.pieces[p][v]];
-      facet.body = bodies_.body_of_cell(c);
+        facet.vertex[v] = cells_.merged(first + face.pieces[p][v]);
+      facet.body = table_.body_of_cell[c];
       facet.key = std::uint64_t(place_of(c, f, 0)) * pieces_per_face + p;
       for (unsigned int v = 0; v < facet.n_vertices; ++v) {
         const unsigned int node = face.pieces[p][v];
@@ -379,14 +405,14 @@ namespace nsfd
 
   /** Named faces, and new surfaces where the obstacle is for all. */
   template <int dim>
-  void SurfaceContacts<dim>::add_obstacle_faces(const State &state)
+  void SurfaceContacts<dim>::add_obstacle_faces()
   {
-    obstacle_faces_ = discretization_.obstacle_faces();
+    obstacle_faces_ = cells_.obstacle_faces();
     for (unsigned int o = 0; o < input_.obstacles.size(); ++o)
       if (input_.obstacles[o].where.kind == Where::Kind::all)
-        for (unsigned int c = 0; c < mesh_face_.size(); ++c)
-          for (unsigned int f = 0; f < mesh_face_[c].size(); ++f)
-            if (mesh_face_[c][f] >= 0 && is_surface(c, f, state))
+        for (unsigned int c = 0; c < cells_.size(); ++c)
+          for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
+            if (cells_.kind_of(c, f) >= 0 && is_surface(c, f))
               obstacle_faces_.push_back({c, f, o});
   }
 
@@ -404,11 +430,17 @@ namespace nsfd
     std::vector<Row> result;
     if (!input_.contacts.empty())
       add_surface_rows(old, reach, result);
-    add_obstacle_rows(old, reach, result);
+    if (!input_.obstacles.empty()) {
+      auto rows = gather_all(all_, own_obstacle_rows(old, reach));
+      std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) {
+        return a.index < b.index;
+      });
+      result.insert(result.end(), rows.begin(), rows.end());
+    }
     // an explicit forecast is known already; the overlap of springs that let
     // go has to be remembered even if it is about to open
     const auto &time = input_.time;
-    if (time.forecast_gamma2 == 0. && old.worn.empty())
+    if (time.forecast_gamma2 == 0. && old.surface_worn.empty())
       result.erase(std::remove_if(result.begin(), result.end(),
                                   [&](const Row &row) {
                                     return !(row.released && row.gap < 0.) &&
@@ -435,12 +467,12 @@ namespace nsfd
   }
 
   template <int dim>
-  Tensor<1, dim> SurfaceContacts<dim>::velocity(const State &old,
-                                                const std::size_t node) const
+  Tensor<1, dim>
+  SurfaceContacts<dim>::velocity(const std::size_t node) const
   {
     Vector v;
     for (unsigned int d = 0; d < dim; ++d)
-      v[d] = old.velocity[node * dim + d];
+      v[d] = v_[node * dim + d];
     return v;
   }
 
@@ -449,7 +481,7 @@ namespace nsfd
   SurfaceContacts<dim>::centre_velocity(const State &old,
                                         const unsigned int body) const
   {
-    const std::size_t r = bodies_.centre_node(body) - bodies_.n_nodes();
+    const auto r = std::size_t(table_.bodies[body].rigid);
     Vector v;
     for (unsigned int d = 0; d < dim; ++d)
       v[d] = old.rigid[13 * r + 3 + d];
@@ -479,9 +511,9 @@ namespace nsfd
     row.weights = pair.weights;
     row.gap = pair.gap;
     Vector away = row.node == Row::nowhere ? centre_velocity(old, row.body_2)
-                                           : velocity(old, row.node);
+                                           : velocity(row.node);
     for (unsigned int v = 0; v < row.n_facet; ++v)
-      away -= row.weights[v] * velocity(old, row.facet[v]);
+      away -= row.weights[v] * velocity(row.facet[v]);
     for (unsigned int d = 0; d < dim; ++d)
       row.rate += pair.normal[d] * away[d];
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
@@ -494,8 +526,8 @@ namespace nsfd
   /** A point of an edge of body 2 on the edge of body 1 that it crosses. */
   template <int dim>
   MovingRow<dim>
-  SurfaceContacts<dim>::edge_row(const EdgePair<dim> &pair, const State &old,
-                                 const std::vector<double> &x) const
+  SurfaceContacts<dim>::edge_row(const EdgePair<dim> &pair,
+                                 const State &old) const
   {
     const auto &edge = surfaces_.edges[pair.edge],
                &other = surfaces_.edges[pair.other];
@@ -513,12 +545,12 @@ namespace nsfd
     for (unsigned int v = 0; v < 2; ++v) {
       row.edge[v] = edge.vertex[v];
       row.facet[v] = other.vertex[v];
-      away += row.edge_weights[v] * velocity(old, row.edge[v]) -
-              row.weights[v] * velocity(old, row.facet[v]);
+      away += row.edge_weights[v] * velocity(row.edge[v]) -
+              row.weights[v] * velocity(row.facet[v]);
       const double sign = v == 0 ? -1. : 1.;
       for (unsigned int d = 0; d < dim; ++d) {
-        way[0][d] += sign * x[row.edge[v] * dim + d];
-        way[1][d] += sign * x[row.facet[v] * dim + d];
+        way[0][d] += sign * x_[row.edge[v] * dim + d];
+        way[1][d] += sign * x_[row.facet[v] * dim + d];
       }
     }
     for (unsigned int d = 0; d < dim; ++d)
@@ -560,7 +592,8 @@ namespace nsfd
       Vector normal;
       for (unsigned int d = 0; d < dim; ++d)
         normal[d] = pair.normal[d];
-      const unsigned int own = merged_[row.node], other = row.facet[v];
+      const unsigned int own = cells_.merged(row.node),
+                         other = unsigned(row.facet[v]);
       const auto known = seen_.find(Pair(other) << 32 | own);
       if (known != seen_.end() && known->second.normal * normal < opposed)
         return known->second.row;
@@ -574,9 +607,8 @@ namespace nsfd
                                               const double reach,
                                               std::vector<Row> &rows)
   {
-    const auto x = bodies_.positions(old);
     search_.find(
-        surfaces_, x.data(), reach,
+        surfaces_, x_.data(), reach,
         [this](const unsigned int a, const unsigned int b) {
           return block_of(a, b) < 0 || joined_.count(pair_of(a, b)) > 0;
         },
@@ -584,13 +616,11 @@ namespace nsfd
     seen_.clear();
     for (const auto &pair : pairs_.points) {
       const Origin &origin = point_origins_[pair.index];
-      const auto &face =
-          faces_[discretization_.bodies().class_of[origin.cell]][origin.face];
+      const auto &face = cells_.faces(origin.cell)[origin.face];
       Row row;
-      row.body_2 = bodies_.body_of_cell(origin.cell);
+      row.body_2 = table_.body_of_cell[origin.cell];
       row.cell = origin.cell;
-      row.node = discretization_.first_node(origin.cell) +
-                 face.nodes[origin.node];
+      row.node = cells_.first_node(origin.cell) + face.nodes[origin.node];
       row.weight = face.weights[origin.node];
       row.place = place_of(origin.cell, origin.face, origin.node);
       set_partner(pair, old, row);
@@ -600,17 +630,13 @@ namespace nsfd
       else
         rows[other].twin = row.place;
     }
-    const auto ball_row = [&](const unsigned int index) {
-      return row_of_ball(bodies_, first_place_.back(),
-                         surfaces_.balls[index].body);
-    };
     for (const auto &pair : pairs_.balls) {
-      Row row = ball_row(pair.index);
+      Row row = ball_row(surfaces_.balls[pair.index].body);
       set_partner(pair, old, row);
       rows.push_back(row);
     }
     for (const auto &pair : pairs_.ball_balls) {
-      Row row = ball_row(pair.ball);
+      Row row = ball_row(surfaces_.balls[pair.ball].body);
       row.partner = Row::Partner::ball;
       row.body_1 = int(surfaces_.balls[pair.other].body);
       row.gap = pair.gap;
@@ -623,63 +649,89 @@ namespace nsfd
       rows.push_back(row);
     }
     for (const auto &pair : pairs_.edges)
-      rows.push_back(edge_row(pair, old, x));
+      rows.push_back(edge_row(pair, old));
   }
 
-  /** One row per node and obstacle: that of its largest face. */
   template <int dim>
-  void SurfaceContacts<dim>::add_obstacle_rows(const State &old,
-                                               const double reach,
-                                               std::vector<Row> &rows) const
+  MovingRow<dim> SurfaceContacts<dim>::ball_row(const unsigned int body) const
   {
+    Row row;
+    row.body_2 = body;
+    row.radius = cells_.ball_radius(body);
+    row.place = first_place_.back() + body;
+    row.weight = dim == 2 ? row.radius : row.radius * row.radius;
+    return row;
+  }
+
+  /** One row per node and obstacle: that of its largest face. Their indices
+      are in the order of the faces of all ranks. */
+  template <int dim>
+  std::vector<MovingRow<dim>>
+  SurfaceContacts<dim>::own_obstacle_rows(const State &old,
+                                          const double reach) const
+  {
+    std::vector<Row> rows;
     const auto x = bodies_.positions(old);
-    const auto at = [&](const std::size_t node) {
+    const auto node_place = [&](const std::size_t node) {
       Point<dim> result;
       for (unsigned int d = 0; d < dim; ++d)
-        result[d] = x[node * dim + d];
+        result[d] = x[bodies_.own_node(node) * dim + d];
       return result;
+    };
+    const auto centre = [&](const unsigned int body) {
+      Point<dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = old.rigid[13 * std::size_t(table_.bodies[body].rigid) + d];
+      return result;
+    };
+    const auto node_velocity = [&](const std::size_t node) {
+      Vector v;
+      for (unsigned int d = 0; d < dim; ++d)
+        v[d] = old.velocity[bodies_.own_node(node) * dim + d];
+      return v;
     };
     const auto geometry = [&](const unsigned int o) {
       return ObstacleGeometry<dim>(
           input_.obstacles[o],
           old.obstacle_shift.empty() ? nullptr : &old.obstacle_shift[3 * o]);
     };
-    std::map<std::pair<unsigned int, unsigned int>, std::size_t> known;
+    std::map<std::pair<std::size_t, unsigned int>, std::size_t> known;
     const auto add = [&](Row row, const unsigned int o) {
       const bool is_ball = row.node == Row::nowhere;
       Vector away = is_ball ? centre_velocity(old, row.body_2)
-                            : velocity(old, row.node);
+                            : node_velocity(row.node);
       for (unsigned int d = 0; d < dim; ++d)
         if (const auto &own = input_.obstacles[o].velocity[d])
           away[d] -= own->at(Point<dim>(), old.time);
-      row.rate = away * geometry(o).normal(at(
-                            is_ball ? bodies_.centre_node(row.body_2)
-                                    : row.node));
+      row.rate = away * geometry(o).normal(is_ball ? centre(row.body_2)
+                                                   : node_place(row.node));
       row.partner = Row::Partner::obstacle;
       row.obstacle = row.block = o;
       row.interaction = unsigned(input_.interfaces.size()) + o;
       rows.push_back(row);
     };
-    for (const auto &[c, f, o] : obstacle_faces_) {
-      const unsigned int b = bodies_.body_of_cell(c);
-      if (bodies_.ball_radius(b) > 0.) {
-        Row row = row_of_ball(bodies_, first_place_.back(), b);
-        row.gap = geometry(o).gap(at(bodies_.centre_node(b))) -
-                  bodies_.ball_radius(b);
+    for (std::size_t k = 0; k < obstacle_faces_.size(); ++k) {
+      const auto &[c, f, o] = obstacle_faces_[k];
+      const unsigned int b = table_.body_of_cell[c];
+      if (!bodies_.is_own(b))
+        continue;
+      if (cells_.ball_radius(b) > 0.) {
+        Row row = ball_row(b);
+        row.index = k * cells_.nodes_per_cell();
+        row.gap = geometry(o).gap(centre(b)) - row.radius;
         if (row.gap <= reach &&
-            known.emplace(std::pair(unsigned(bodies_.n_nodes()) + b, o), 0)
-                .second)
+            known.emplace(std::pair(cells_.n_nodes() + b, o), 0).second)
           add(row, o);
         continue;
       }
-      const FaceNodes<dim> &face = faces_[discretization_.bodies().class_of[c]][f];
-      const std::size_t first = discretization_.first_node(c);
+      const FaceNodes<dim> &face = cells_.faces(c)[f];
       for (unsigned int j = 0; j < face.nodes.size(); ++j) {
         if (!is_corner(c, f, face.nodes[j]))
           continue;
         Row row;
-        row.node = first + face.nodes[j];
-        row.gap = geometry(o).gap(at(row.node));
+        row.index = k * cells_.nodes_per_cell() + j;
+        row.node = cells_.first_node(c) + face.nodes[j];
+        row.gap = geometry(o).gap(node_place(row.node));
         if (row.gap > reach)
           continue;
         row.body_2 = b;
@@ -687,7 +739,7 @@ namespace nsfd
         row.place = place_of(c, f, j);
         row.weight = face.weights[j];
         const auto [entry, is_new] = known.emplace(
-            std::pair(merged_[row.node], o), rows.size());
+            std::pair(std::size_t(cells_.merged(row.node)), o), rows.size());
         if (is_new)
           add(row, o);
         else if (row.weight > rows[entry->second].weight) {
@@ -698,6 +750,7 @@ namespace nsfd
         }
       }
     }
+    return rows;
   }
 
   template class SurfaceContacts<2>;

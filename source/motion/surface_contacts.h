@@ -1,11 +1,10 @@
 #pragma once
 
-#include "face_nodes.h"
 #include "moving_bodies.h"
+#include "surface_cells.h"
 
 #include "nsfd/contact/surface_search.h"
 
-#include <memory>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -22,16 +21,23 @@ namespace nsfd
    * whatever it touches, in the arrays `surface_...` of the state. Contacts of
    * two edges belong to that of body 2; those of one edge share what it
    * remembers.
+   *
+   * All ranks know all surfaces, where they are and what they remember, and get
+   * the same rows; each rank looks for what its own bodies touch. Bodies, cells
+   * and nodes are those of SurfaceCells.
    */
   template <int dim>
   class SurfaceContacts
   {
   public:
+    /** Collective. */
     SurfaceContacts(const SceneInput &input,
                     const Discretization<dim> &discretization,
-                    const MovingBodies<dim> &bodies);
+                    const MovingBodies<dim> &bodies,
+                    const Communicator &communicator);
 
-    /** Nothing remembered; broken faces are surfaces from the start. */
+    /** Nothing remembered; broken faces are surfaces from the start.
+        Collective. */
     void set_initial(State &state) const;
 
     /** What State::surface_contact says of a place, added up. */
@@ -43,11 +49,12 @@ namespace nsfd
 
     /**
      * Points between two bodies that nothing holds together any more are left
-     * to the search: `parted`.
+     * to the search: `parted`. Collective.
      */
     void part(State &state) const;
 
-    /** What may touch in a step of @p time_step from @p old. */
+    /** What may touch in a step of @p time_step from @p old, on all ranks the
+        same. Collective. */
     std::vector<MovingRow<dim>> rows(const State &old, double time_step);
 
     struct Counters
@@ -71,21 +78,23 @@ namespace nsfd
                          unsigned int node) const;
     std::size_t place_of_edge(unsigned int node_1, unsigned int node_2) const;
     int block_of(unsigned int body_1, unsigned int body_2) const;
-    void merge_nodes();
+    bool may_touch(unsigned int body) const;
     void number_edges();
-    void set_boundary();
-    bool is_surface(unsigned int cell, unsigned int face,
-                    const State &state) const;
+    bool is_surface(unsigned int cell, unsigned int face) const;
     bool follow(const State &state);
-    void set_sides(const State &state);
+    bool share_parted(const State &state);
+    void set_surfaces();
+    void set_sides();
+    void set_moving_nodes();
+    void share_motion(const State &old);
     bool is_corner(unsigned int cell, unsigned int face,
                    unsigned int node) const;
     void add_face(unsigned int cell, unsigned int face);
-    void add_obstacle_faces(const State &state);
+    void add_obstacle_faces();
     void add_surface_rows(const State &old, double reach,
                           std::vector<Row> &rows);
-    void add_obstacle_rows(const State &old, double reach,
-                           std::vector<Row> &rows) const;
+    std::vector<Row> own_obstacle_rows(const State &old, double reach) const;
+    Row ball_row(unsigned int body) const;
     void set_partner(const FacetPair<dim> &pair, const State &old,
                      Row &row) const;
     static constexpr std::size_t unseen = Row::nowhere;
@@ -93,22 +102,19 @@ namespace nsfd
         @p index. */
     std::size_t seen_from_there(const FacetPair<dim> &pair, const Row &row,
                                 std::size_t index);
-    Row edge_row(const EdgePair<dim> &pair, const State &old,
-                 const std::vector<double> &x) const;
+    Row edge_row(const EdgePair<dim> &pair, const State &old) const;
     std::uint8_t mark_of(const State &old, unsigned int facet) const;
-    Vector velocity(const State &old, std::size_t node) const;
+    Vector velocity(std::size_t node) const;
     Vector centre_velocity(const State &old, unsigned int body) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
+    const BodyTable &table_;
     const MovingBodies<dim> &bodies_;
-    std::vector<std::vector<FaceNodes<dim>>> faces_; ///< per class of cells
-    std::vector<std::size_t> first_place_;      ///< per cell, then of balls
-    static constexpr int boundary = -1, inside = -2;
-    std::vector<std::vector<int>> mesh_face_; ///< per cell and face: that of
-                                              ///< the points, or one of these
-    std::vector<unsigned int> merged_; ///< node of the body at the same place
-    std::vector<Pair> edges_; ///< in space: pairs of these nodes, sorted
+    const Communicator &all_;
+    const SurfaceCells<dim> cells_;
+    std::vector<std::size_t> first_place_; ///< per cell, then of balls
+    std::vector<Pair> edges_; ///< in space: pairs of merged nodes, sorted
     std::vector<int> block_by_materials_;
 
     // of the surfaces at hand
@@ -118,8 +124,10 @@ namespace nsfd
       Vector normal;
     };
     std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
-    std::vector<char> parted_; ///< per face of the mesh points
+    std::vector<char> parted_; ///< per mesh face
     bool known_ = false;
+    std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
+    std::vector<double> x_, v_; ///< of them by node, and centres
     std::unordered_set<Pair> joined_;
     Surfaces<dim> surfaces_;
     struct Origin

@@ -1,8 +1,8 @@
 #include "nsfd/output/fragment_motion.h"
 
+#include "../base/gather.h"
 #include "../mesh/body_shape.h"
 #include "../motion/moving_bodies.h"
-#include "gather.h"
 
 #include "nsfd/base/order_free_sum.h"
 

@@ -1,7 +1,7 @@
 #include "nsfd/output/fragments.h"
 
+#include "../base/gather.h"
 #include "cell_sampler.h"
-#include "gather.h"
 
 #include "nsfd/base/neighbor_messages.h"
 

@@ -1,4 +1,4 @@
-#include "gather.h"
+#include "../base/gather.h"
 #include "xdmf_series.h"
 
 namespace nsfd

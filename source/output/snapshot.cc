@@ -1,8 +1,8 @@
 #include "snapshot.h"
 
+#include "../base/gather.h"
 #include "../motion/cell_stresses.h"
 #include "cell_sampler.h"
-#include "gather.h"
 
 #include "nsfd/mesh/cell_geometry.h"
 

@@ -1,7 +1,7 @@
 #include "nsfd/scene/case_observer.h"
 
+#include "../base/gather.h"
 #include "../motion/cell_stresses.h"
-#include "../output/gather.h"
 #include "face_pieces.h"
 
 #include "nsfd/base/archive.h"
@@ -18,18 +18,6 @@ namespace nsfd
     double relative(const double error, const double reference)
     {
       return reference > 0. ? error / reference : error;
-    }
-
-    /** The values of the first rank, which moves all rigid bodies. */
-    std::vector<double> of_first_rank(const Communicator &communicator,
-                                      std::vector<double> values)
-    {
-      unsigned long long n = values.size();
-      MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, communicator.mpi());
-      values.resize(n);
-      if (n > 0)
-        MPI_Bcast(values.data(), int(n), MPI_DOUBLE, 0, communicator.mpi());
-      return values;
     }
   } // namespace
 
@@ -74,9 +62,8 @@ namespace nsfd
       has_rigid_bodies_ = communicator_.any(!state.rigid.empty());
     std::vector<RigidState> rigid_bodies;
     if (*has_rigid_bodies_) {
-      const auto rigid = of_first_rank(communicator_, state.rigid);
-      for (std::size_t b = 0; b < rigid.size() / 13; ++b)
-        rigid_bodies.push_back(rigid_state(&rigid[13 * b]));
+      for (std::size_t b = 0; b < state.rigid.size() / 13; ++b)
+        rigid_bodies.push_back(rigid_state(&state.rigid[13 * b]));
     }
     view.rigid_bodies = &rigid_bodies;
     case_.observe(view);

@@ -1,7 +1,7 @@
 #include "run_view.h"
 
+#include "../base/gather.h"
 #include "../mesh/owned_cells.h"
-#include "../output/gather.h"
 #include "face_pieces.h"
 
 #include "nsfd/input/scene_input.h"

@@ -1,11 +1,13 @@
 #include "ledger.h"
 
 #include "common_books.h"
+#include "step_data.h"
 
 #include "nsfd/input/scene_input.h"
 #include "nsfd/time/moreau_jean.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nsfd
@@ -82,9 +84,9 @@ namespace nsfd
 
     /** Something that a point does takes time. */
     template <int dim>
-    bool has_rates(const OneStepProblem<dim> &problem)
+    bool has_rates(const SceneInput &input, const OneStepProblem<dim> &problem)
     {
-      return !problem.viscosity.empty() ||
+      return has_opening_viscosity(input) ||
              std::any_of(problem.interactions.begin(),
                          problem.interactions.end(),
                          [](const Interaction &interaction) {
@@ -102,7 +104,8 @@ namespace nsfd
                               const double work_theta, const State &old,
                               State &next)
         : n_owned(problem.n_owned),
-          n_rows(has_rates(problem) ? viscous + 1 : viscous),
+          n_rows(has_rates(discretization.input(), problem) ? viscous + 1
+                                                            : viscous),
           terms(n_rows * n_owned, 0.),
           reactions(discretization.driven_boundaries().size() * dim * n_owned,
                     0.),
@@ -309,16 +312,21 @@ namespace nsfd
     }
   } // namespace
 
-  BodyEnergies sum(const Communicator &all, const BodyEnergies &part)
+  BodyEnergies sum(const Communicator &all,
+                   const std::vector<BodyEnergies> &bodies)
   {
+    constexpr std::array<double BodyEnergies::*, 7> lines = {
+        {&BodyEnergies::kinetic, &BodyEnergies::elastic,
+         &BodyEnergies::of_mass, &BodyEnergies::of_strain, &BodyEnergies::work,
+         &BodyEnergies::plastic, &BodyEnergies::viscous}};
+    std::vector<double> terms;
+    for (const auto line : lines)
+      for (const BodyEnergies &body : bodies)
+        terms.push_back(body.*line);
+    const auto sums = all.sums(terms.data(), lines.size(), bodies.size());
     BodyEnergies result;
-    result.kinetic = all.sum({part.kinetic});
-    result.elastic = all.sum({part.elastic});
-    result.of_mass = all.sum({part.of_mass});
-    result.of_strain = all.sum({part.of_strain});
-    result.work = all.sum({part.work});
-    result.plastic = all.sum({part.plastic});
-    result.viscous = all.sum({part.viscous});
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      result.*lines[k] = sums[k];
     return result;
   }
 
@@ -460,11 +468,11 @@ namespace nsfd
     energy.damage += sums[damage];
     energy.friction += sums[friction];
     energy.impact += sums[impact];
-    if (has_rates(problem))
+    if (has_rates(discretization_.input(), problem))
       energy.viscous += sums[viscous];
     energy.plastic += bodies.plastic;
     energy.viscous += bodies.viscous;
-    if (!problem.viscosity.empty()) {
+    if (has_opening_viscosity(discretization_.input())) {
       next.viscous_traction =
           std::max(old.viscous_traction.value_or(0.),
                    communicator.max(points.viscous_traction));
@@ -473,7 +481,7 @@ namespace nsfd
         sums[numerical] + bodies.of_mass + bodies.of_strain;
     energy.work += sums[motion] + bodies.work;
     next.pressure_work = old.pressure_work;
-    if (!next.pressure.empty()) {
+    if (has_crack_pressure(discretization_.input())) {
       const double work = pressure_work(problem, old, next);
       energy.work += work;
       next.pressure_work += work;

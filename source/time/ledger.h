@@ -20,8 +20,9 @@ namespace nsfd
     double plastic = 0., viscous = 0.; ///< what the bodies dissipate
   };
 
-  /** Over all ranks. Collective. */
-  BodyEnergies sum(const Communicator &all, const BodyEnergies &part);
+  /** Of the bodies of all ranks, whatever their order. Collective. */
+  BodyEnergies sum(const Communicator &all,
+                   const std::vector<BodyEnergies> &bodies);
 
   /**
    * The books of a step that has been solved: every energy line on its own

@@ -120,7 +120,8 @@ namespace nsfd
       if (bonded_)
         bonded_->set_bonds(bonded_points(old));
       dynamics_.reinit(h, input_.time.bulk_theta());
-      set_step(input_, discretization_, dynamics_, *motion_, old, h, problem_);
+      set_step(input_, discretization_, discretization_.origins(), dynamics_,
+               *motion_, old, h, problem_);
       set_loads(old.time + input_.time.bulk_theta() * h);
       if (crack_pressure_)
         crack_pressure_->evaluate(old, old.time + input_.time.theta * h,

@@ -206,8 +206,9 @@ namespace nsfd
       at_.displacement = q;
       at_.time = time_ - h;
       dynamics.reinit(h, 1.);
-      set_step(this->input_, this->discretization_, dynamics, *this->motion_,
-               at_, h, this->problem_);
+      set_step(this->input_, this->discretization_,
+               this->discretization_.origins(), dynamics, *this->motion_, at_, h,
+               this->problem_);
       constrain(h);
       soften(h);
       this->move_freely(at_, pressure_);
@@ -302,8 +303,9 @@ namespace nsfd
     start.time = time_ - h_;
     std::fill(start.relative_velocity.begin(), start.relative_velocity.end(),
               0.);
-    set_step(this->input_, this->discretization_, this->dynamics_,
-             *this->motion_, start, h_, problem);
+    set_step(this->input_, this->discretization_,
+             this->discretization_.origins(), this->dynamics_, *this->motion_,
+             start, h_, problem);
     for (std::size_t i = 0; i < let_go_.size(); ++i)
       if (let_go_[i]) {
         problem.kind[i] = PointKind::rigid;

@@ -39,7 +39,7 @@ namespace nsfd
     archive.points("point_force", s.point_force);
     archive.common("rigid", s.rigid);
     archive.common("obstacle_shift", s.obstacle_shift);
-    archive.common("material_history", s.material_history);
+    archive.histories("material_history", s.material_history);
     archive.common("surface_impulse", s.surface_impulse);
     archive.common("surface_slip", s.surface_slip);
     archive.common("surface_worn", s.surface_worn);

@@ -60,14 +60,6 @@ namespace nsfd
       return interaction;
     }
 
-    bool has_opening_viscosity(const SceneInput &input)
-    {
-      return std::any_of(input.interfaces.begin(), input.interfaces.end(),
-                         [](const InterfaceInput &block) {
-                           return block.opening_viscosity > 0.;
-                         });
-    }
-
     /**
      * U_N that contact allows, without the forecast; everything relative to
      * where sliding has lifted the contact.
@@ -152,10 +144,9 @@ namespace nsfd
     /** Of points that were not broken before the step. */
     template <int dim>
     void set_viscosity(const SceneInput &input,
-                       const Discretization<dim> &discretization,
+                       const std::vector<PointOrigin> &origins,
                        const State &old, OneStepProblem<dim> &problem)
     {
-      const auto &origins = discretization.origins();
       for (std::size_t i = 0; i < origins.size() && !problem.viscosity.empty();
            ++i) {
         const PointOrigin origin = origins[i];
@@ -183,10 +174,9 @@ namespace nsfd
     /** As much as friction is there already: kappa(beta). */
     template <int dim>
     void set_dilatancy(const SceneInput &input,
-                       const Discretization<dim> &discretization,
+                       const std::vector<PointOrigin> &origins,
                        const State &old, OneStepProblem<dim> &problem)
     {
-      const auto &origins = discretization.origins();
       for (std::size_t i = 0; i < origins.size() && !problem.dilatancy.empty();
            ++i) {
         const SlidingInput *sliding = sliding_of(input, origins[i]);
@@ -213,20 +203,23 @@ namespace nsfd
     {
       const double h = problem.time_step, t = old.time + h;
       const auto &origins = discretization.origins();
-      for (std::size_t i = 0; i < origins.size(); ++i) {
-        if (origins[i].kind != PointOrigin::Kind::motion)
+      const auto &points = discretization.points();
+      for (std::size_t j = 0; j < origins.size(); ++j) {
+        if (origins[j].kind != PointOrigin::Kind::motion)
           continue;
+        const std::size_t i = point_of_step(
+            j, points.n_owned, problem.n_points - points.n_points);
         problem.mask[i] = 0;
         for (unsigned int c = 0; c < dim; ++c) {
-          if (!motion.drives(i, c))
+          if (!motion.drives(j, c))
             continue;
           double &given = problem.given_velocity[i * dim + c];
-          if (const Expression *velocity = motion.velocity(i, c))
-            given = motion.at(*velocity, i, t);
-          else if (const Expression *displacement = motion.displacement(i, c))
+          if (const Expression *velocity = motion.velocity(j, c))
+            given = motion.at(*velocity, j, t);
+          else if (const Expression *displacement = motion.displacement(j, c))
             // back to the path: what the last step missed is made up for
             given =
-                (motion.at(*displacement, i, t) - old.jump[i * dim + c]) / h;
+                (motion.at(*displacement, j, t) - old.jump[i * dim + c]) / h;
           problem.mask[i] |= std::uint8_t(1u << c);
         }
       }
@@ -265,6 +258,22 @@ namespace nsfd
                        lifts) ||
            std::any_of(input.obstacles.begin(), input.obstacles.end(), lifts) ||
            std::any_of(input.contacts.begin(), input.contacts.end(), lifts);
+  }
+
+  bool has_opening_viscosity(const SceneInput &input)
+  {
+    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                       [](const InterfaceInput &block) {
+                         return block.opening_viscosity > 0.;
+                       });
+  }
+
+  bool has_crack_pressure(const SceneInput &input)
+  {
+    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                       [](const InterfaceInput &block) {
+                         return bool(block.crack_pressure);
+                       });
   }
 
   template <int dim>
@@ -347,6 +356,7 @@ namespace nsfd
   template <int dim>
   void set_step(const SceneInput &input,
                 const Discretization<dim> &discretization,
+                const std::vector<PointOrigin> &origins,
                 const Dynamics<dim> &dynamics, const DrivenMotion<dim> &motion,
                 const State &old, const double h, OneStepProblem<dim> &problem)
   {
@@ -360,8 +370,8 @@ namespace nsfd
           old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
     for (std::size_t i = 0; i < problem.n_points; ++i)
       set_point(input.time, discretization.extent(), old, i, problem);
-    set_viscosity(input, discretization, old, problem);
-    set_dilatancy(input, discretization, old, problem);
+    set_viscosity(input, origins, old, problem);
+    set_dilatancy(input, origins, old, problem);
     set_motion(motion, discretization, old, problem);
     set_majorants(dynamics, problem);
   }
@@ -373,10 +383,12 @@ namespace nsfd
   template OneStepProblem<3> constant_data(const SceneInput &,
                                            const Discretization<3> &);
   template void set_step(const SceneInput &, const Discretization<2> &,
+                         const std::vector<PointOrigin> &,
                          const Dynamics<2> &, const DrivenMotion<2> &,
                          const State &, double,
                          OneStepProblem<2> &);
   template void set_step(const SceneInput &, const Discretization<3> &,
+                         const std::vector<PointOrigin> &,
                          const Dynamics<3> &, const DrivenMotion<3> &,
                          const State &, double,
                          OneStepProblem<3> &);

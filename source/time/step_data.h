@@ -16,8 +16,22 @@ namespace nsfd
   double intact_stiffness(const OneStepProblem<dim> &problem,
                           std::size_t point);
 
-  /** Dilatancy or wear somewhere. */
+  /** Somewhere, on whatever rank: dilatancy or wear, and the like. */
   bool has_sliding_lift(const SceneInput &input);
+  bool has_opening_viscosity(const SceneInput &input);
+  bool has_crack_pressure(const SceneInput &input);
+
+  /**
+   * Where point @p i of a discretization is among @p n_points of a step: those
+   * of the step alone are behind the @p n_owned ones of the mesh, see
+   * MovingBodies.
+   */
+  inline std::size_t point_of_step(const std::size_t i,
+                                   const std::size_t n_owned,
+                                   const std::size_t n_of_step)
+  {
+    return i < n_owned ? i : i + n_of_step;
+  }
 
   /** The part of the data that no step changes. */
   template <int dim>
@@ -27,11 +41,13 @@ namespace nsfd
   /**
    * The data of the step from @p old over @p time_step, all but the free
    * velocity: kinds of points, forecast and targets of contact, prescribed
-   * motion, majorants of the diagonal blocks of W.
+   * motion, majorants of the diagonal blocks of W. @p origins are those of the
+   * points of @p problem.
    */
   template <int dim>
   void set_step(const SceneInput &input,
                 const Discretization<dim> &discretization,
+                const std::vector<PointOrigin> &origins,
                 const Dynamics<dim> &dynamics, const DrivenMotion<dim> &motion,
                 const State &old, double time_step, OneStepProblem<dim> &problem);
 } // namespace nsfd

@@ -27,6 +27,11 @@ namespace end_to_end
     return fs::path(NSFD_SOURCE_DIR) / "prm" / "verification" / (name + ".prm");
   }
 
+  fs::path benchmark(const std::string &name)
+  {
+    return fs::path(NSFD_SOURCE_DIR) / "prm" / "benchmarks" / (name + ".prm");
+  }
+
   fs::path quickstart()
   {
     return fs::path(NSFD_SOURCE_DIR) / "prm" / "quickstart.prm";

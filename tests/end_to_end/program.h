@@ -13,6 +13,8 @@ namespace end_to_end
 {
   /** A file of prm/verification, by its name without `.prm`. */
   std::filesystem::path scene(const std::string &name);
+  /** One of prm/benchmarks. */
+  std::filesystem::path benchmark(const std::string &name);
   /** The scene every user runs first. */
   std::filesystem::path quickstart();
 

@@ -18,11 +18,6 @@ namespace end_to_end
   {
     namespace fs = std::filesystem;
 
-    fs::path benchmark(const std::string &name)
-    {
-      return quickstart().parent_path() / "benchmarks" / (name + ".prm");
-    }
-
     struct Body {
       std::array<double, 3> momentum{};
       double volume = 0.;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -28,11 +30,6 @@ namespace end_to_end
     void PrintTo(const RestartRow &row, std::ostream *stream)
     {
       *stream << row.name;
-    }
-
-    fs::path benchmark(const std::string &name)
-    {
-      return quickstart().parent_path() / "benchmarks" / (name + ".prm");
     }
 
     const Launch breaking = {quickstart(),
@@ -239,6 +236,36 @@ namespace end_to_end
         expect_below("energies",
                      energy_difference(whole.history, resumed.history), 1e-9);
       }
+    }
+  }
+
+  // Large motions do not know how many ranks there are: rigid bodies, surfaces
+  // and what they remember go from two to three, plastic cells from one to two.
+  TEST(Restart, OnOtherRanksAfterLargeMotions)
+  {
+    const std::vector<std::tuple<Launch, unsigned int, unsigned int>> rows = {
+        {{benchmark("push_back"),
+          {"Mesh/cells=6, 6", "Time/end=17 ns"}},
+         2,
+         3},
+        {{benchmark("heap_of_bricks"), {"Time/end=0.1 s"}}, 3, 1},
+        {{scene("plastic_bar"), {"Time/end=10 us"}}, 1, 2}};
+    for (const auto &[launch, first, second] : rows) {
+      SCOPED_TRACE(launch.file.string());
+      const Workspace workspace;
+      Launch before = launch, after = launch;
+      before.ranks = first;
+      after.ranks = second;
+      const Result whole = good_run(workspace, "whole", launch);
+      const auto steps = unsigned(0.4 * whole.number("steps")) + 1;
+      const Result stored = run(workspace, "resumed", storing(before, steps));
+      ASSERT_TRUE(stored.completed()) << stored.description();
+      fs::rename(previous(stored.directory), newest(stored.directory));
+      const Result resumed =
+          resume(workspace, "resumed", storing(after, steps));
+      ASSERT_TRUE(resumed.completed()) << resumed.description();
+      EXPECT_TRUE(whole.history_text == resumed.history_text)
+          << energy_difference(whole.history, resumed.history);
     }
   }
 

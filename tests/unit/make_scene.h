@@ -61,7 +61,8 @@ namespace nsfd
           time_step *= discretization->crossing_time();
 
         if (input->large_motion) {
-          moving = std::make_unique<MovingBodies<dim>>(*input, *discretization);
+          moving = std::make_unique<MovingBodies<dim>>(*input, *discretization,
+                                                       communicator);
           dynamics = make_moving_dynamics<dim>(communicator, moving->bodies(),
                                                moving->points());
         } else if (input->has_history()) {

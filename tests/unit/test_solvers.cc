@@ -1,5 +1,6 @@
 #include "make_law.h"
 #include "make_scene.h"
+#include "rigid_in_rubber.h"
 
 #include "nsfd/input/scene_input.h"
 #include "nsfd/interface/friction_weight.h"
@@ -401,38 +402,6 @@ subsection Solver
 end
 )";
 
-  /** A rigid bar between two rows of 50 cells. */
-  const std::string long_bar = R"(
-set dimension = 2
-set motion    = large
-subsection Mesh
-  set type         = rectangle
-  set upper corner = 50, 3
-  set cells        = 50, 3
-end
-subsection Material: bar
-  set where   = y > 1 && y < 2
-  set model   = rigid
-  set bodies  = connected
-  set density = 1
-end
-subsection Material: rubber
-  set model         = neo-hookean
-  set Young modulus = 100
-  set Poisson ratio = 0.3
-  set density       = 1
-end
-subsection Interface: all
-  set law                  = elastic
-  set normal stiffness     = 1e4
-  set tangential stiffness = 1e4
-end
-subsection Time
-  set end  = 1
-  set step = 0.01
-end
-)";
-
   TEST(GaussSeidel, ColoursShareNoBody)
   {
     const auto check = [](const auto &scene) {
@@ -469,7 +438,10 @@ end
     check(Scene<3>(cube_pile));
     check(Scene<2>(pile, {"Mesh/type=crossed triangles"}));
     check(Scene<3>(cube_pile, {"Mesh/type=tetrahedra"}));
-    check(Scene<2>(long_bar)); // with more faces than a word has bits
+    // a bar with more faces than a word has bits
+    check(Scene<2>(rigid_in_rubber,
+                   {"Mesh/upper corner=50, 3", "Mesh/cells=50, 3",
+                    "Material: block/where=y > 1 && y < 2"}));
   }
 
   struct Expected {

@@ -256,8 +256,10 @@ namespace
                          pairs.balls);
     find_ball_ball_pairs<dim>(surfaces, scene.x.data(), reach, all,
                               pairs.ball_balls);
-    find_edge_pairs<dim>(surfaces, scene.x.data(), planes, reach, all,
-                         pairs.points, pairs.edges);
+    find_crossings<dim>(surfaces, scene.x.data(), planes, reach, all,
+                        pairs.edges);
+    settle_touches<dim>(surfaces, scene.x.data(), planes, pairs.points,
+                        pairs.edges);
     return pairs;
   }
 
@@ -394,6 +396,52 @@ namespace
     }
     EXPECT_GE(search.n_searches(), 5u);
     EXPECT_LE(search.n_searches(), 60u);
+  }
+
+  /** Every list of entries, each with the list that it is in. */
+  std::multiset<std::pair<std::size_t, unsigned int>>
+  entries(const IndexLists &lists)
+  {
+    std::multiset<std::pair<std::size_t, unsigned int>> result;
+    for (std::size_t i = 0; i + 1 < lists.first.size(); ++i)
+      for (std::size_t k = lists.first[i]; k < lists.first[i + 1]; ++k)
+        result.emplace(i, lists.entries[k]);
+    return result;
+  }
+
+  /** Ranks that own some of the bodies each find together what one finds. */
+  template <int dim>
+  void expect_shares_make_the_whole()
+  {
+    static constexpr unsigned int n_ranks = 3;
+    const auto scene = random_heap<dim>(60, 5);
+    std::vector<Plane<dim>> planes;
+    set_planes<dim>(scene.surfaces, scene.x.data(), planes);
+    const auto search = [&](const std::function<bool(unsigned int)> &is_own) {
+      return search_candidates<dim>(scene.surfaces, scene.x.data(), planes, 0.1,
+                                    0.05, is_own, apart);
+    };
+    const auto all = search([](unsigned int) { return true; });
+    const auto compare = [&](const IndexLists NearCandidates::*lists,
+                             const bool has_some) {
+      std::multiset<std::pair<std::size_t, unsigned int>> shares;
+      for (unsigned int rank = 0; rank < n_ranks; ++rank) {
+        const auto part = search([rank](const unsigned int body) {
+          return body * 7u % n_ranks == rank;
+        });
+        EXPECT_EQ(part.order, all.order);
+        EXPECT_EQ((part.*lists).first.size(), (all.*lists).first.size());
+        EXPECT_LT((part.*lists).entries.size(),
+                  std::max<std::size_t>(1, (all.*lists).entries.size()));
+        shares.merge(entries(part.*lists));
+      }
+      EXPECT_EQ(shares, entries(all.*lists));
+      EXPECT_EQ(shares.size() > 10, has_some);
+    };
+    compare(&NearCandidates::facets_of_points, true);
+    compare(&NearCandidates::facets_of_balls, true);
+    compare(&NearCandidates::balls_of_balls, true);
+    compare(&NearCandidates::edges_of_edges, dim == 3);
   }
 
   /** n^dim coincident cells of size one, numbered row by row. */
@@ -599,6 +647,12 @@ TEST(SurfaceSearch, KeptCandidatesFindWhatAllPairsFind)
 {
   expect_kept_candidates_find_all<2>();
   expect_kept_candidates_find_all<3>();
+}
+
+TEST(SurfaceSearch, SharesOfRanksMakeTheWhole)
+{
+  expect_shares_make_the_whole<2>();
+  expect_shares_make_the_whole<3>();
 }
 
 // Two more floors through the place of the point: a flat one, found by its key

@@ -45,6 +45,13 @@ namespace nsfd
     virtual void points(const std::string &name,
                         std::vector<std::uint8_t> &values) = 0;
 
+    /**
+     * What the materials of the cells remember, cell by cell as
+     * first_histories() has it, or none at all.
+     */
+    virtual void histories(const std::string &name,
+                           std::vector<double> &values) = 0;
+
     /** The same on all ranks; what goes in is that of the first one. */
     virtual void common(const std::string &name,
                         std::vector<double> &values) = 0;

@@ -8,6 +8,8 @@
 
 namespace nsfd
 {
+  class Communicator;
+
   /**
    * Surfaces of bodies without their positions. A vertex belongs to one body;
    * facets of one body share their vertices, those of two bodies never do.
@@ -110,6 +112,7 @@ namespace nsfd
     double gap = 0.;
     std::array<double, dim> normal{}, closest{}; ///< closest: on the other
     double place = 0., other_place = 0.;
+    bool is_sure = false; ///< which way is out, not only after a turn
   };
 
   template <int dim>
@@ -152,6 +155,14 @@ namespace nsfd
   {
   public:
     /**
+     * Shares the work among ranks, each for the bodies that it owns; a body has
+     * one owner. find() is collective then: surfaces and positions are the same
+     * on all ranks, and so are its pairs, which are those of one rank alone.
+     */
+    void share(const Communicator &communicator,
+               std::function<bool(unsigned int)> is_own);
+
+    /**
      * To be called when the surfaces or the glued bodies are no longer those of
      * the last call of `find`.
      */
@@ -171,9 +182,12 @@ namespace nsfd
     std::size_t n_searches() const { return n_searches_; }
 
   private:
+    void gather_pairs(NearPairs<dim> &pairs) const;
     bool candidates_hold(const Surfaces<dim> &surfaces, const double *x,
                          double reach) const;
 
+    const Communicator *all_ = nullptr; ///< null: not shared
+    std::function<bool(unsigned int)> is_own_;
     NearCandidates candidates_;
     std::vector<Plane<dim>> planes_;
     std::vector<double> searched_at_; ///< x of the last search

@@ -2,6 +2,7 @@
 
 #include "nsfd/base/communicator.h"
 #include "nsfd/dynamics/bodies.h"
+#include "nsfd/mesh/body_table.h"
 
 #include <deal.II/base/point.h>
 
@@ -12,8 +13,6 @@
 
 namespace dealii
 {
-  template <int dim, int spacedim>
-  class Triangulation;
   template <int dim, int spacedim>
   class FiniteElement;
 } // namespace dealii
@@ -130,6 +129,9 @@ namespace nsfd
     /** The same; such faces have no points. */
     const std::vector<InnerFace> &inner_faces() const { return inner_faces_; }
 
+    /** Of all ranks; of scenes with large motions only. */
+    const BodyTable &body_table() const { return *body_table_; }
+
     /** Which face of its cell a slot of a body is on. */
     unsigned int face_of_slot(unsigned int body, unsigned int slot) const;
 
@@ -227,6 +229,7 @@ namespace nsfd
     std::vector<int> springs_inside_; ///< by body; empty: none anywhere
     std::vector<ObstacleFace> obstacle_faces_;
     std::vector<InnerFace> inner_faces_;
+    std::unique_ptr<const BodyTable> body_table_; ///< of large motions
     std::unique_ptr<const Loads<dim>> loads_;
     unsigned long long n_global_cells_ = 0;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;

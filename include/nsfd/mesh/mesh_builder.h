@@ -18,7 +18,9 @@ namespace nsfd
   /**
    * Build the mesh that the input names, with straight cells and no manifolds.
    * Quads and hexes live on parallel::distributed, triangles and tetrahedra on
-   * parallel::shared with artificial cells. A plain rectangle or brick is
+   * parallel::shared with artificial cells. With large motions every rank knows
+   * all cells, and whole bodies belong to one rank; @p input outlives the mesh
+   * then. A plain rectangle or brick is
    * refined by p4est; every other mesh is refined first and handed over as one
    * level, so that a vertex never depends on what a rank has stored.
    *

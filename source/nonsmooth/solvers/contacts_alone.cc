@@ -1,20 +1,25 @@
+#include "../../base/gather.h"
+
 #include "nsfd/nonsmooth/solver.h"
 #include "nsfd/stored/contact_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <mpi.h>
+#include <tuple>
+#include <utility>
 
 namespace nsfd
 {
   namespace
   {
-    constexpr unsigned int none = ~0u;
-
     /**
      * Steps in which nothing but contact and friction acts, as between rigid
      * bodies: the Coulomb problem itself, its matrix assembled body by body,
      * for the chain of solvers that knows nothing of bodies. Rows of walls and
-     * heaps depend on each other; that chain is made for it.
+     * heaps depend on each other; that chain is made for it. It works on the
+     * first rank, with the bodies of all.
      */
     template <int dim>
     class ContactsAlone final : public NonsmoothSolver<dim>
@@ -37,7 +42,7 @@ namespace nsfd
              evaluation.error > control.tolerance && round < 3; ++round) {
           if (round == 0)
             assemble(problem, dynamics);
-          solve_contacts(goal, impulse, report);
+          solve_contacts(goal, all, impulse, report);
           evaluation.update(impulse);
           goal /= 30.; // the measures of the two differ
         }
@@ -54,8 +59,7 @@ namespace nsfd
       static bool applies(const OneStepProblem<dim> &problem,
                           const Dynamics<dim> &dynamics)
       {
-        if (!problem.dilatancy.empty() || !dynamics.bodies_are_apart() ||
-            !dynamics.points().neighbors.empty())
+        if (!problem.dilatancy.empty() || !dynamics.bodies_are_apart())
           return false;
         for (std::size_t i = 0; i < problem.n_points; ++i)
           if (problem.kind[i] != PointKind::free)
@@ -78,55 +82,138 @@ namespace nsfd
         return report;
       }
 
+      /** Of a face, and a number of its points: places among all ranks. */
+      using Key = std::pair<std::uint64_t, unsigned int>;
+
+      struct Contact
+      {
+        std::uint64_t face;
+        unsigned int number;
+        double friction;
+        std::array<double, dim> q;
+      };
+
+      using Square = std::array<double, dim * dim>;
+
+      /** What one body adds to the matrix. */
+      struct Part
+      {
+        std::uint64_t face_i, face_j;
+        unsigned int number_i, number_j;
+        Square block;
+      };
+
+      static Key key_of(const InterfacePoints<dim> &points, const std::size_t i)
+      {
+        const auto &face = points.faces[points.face_of[i]];
+        return {face.key, unsigned(i - face.first)};
+      }
+
       /** U = W P + U_free of the points that may touch, in their frames. */
       void assemble(const OneStepProblem<dim> &problem,
                     const Dynamics<dim> &dynamics)
       {
+        const Communicator &all = dynamics.communicator();
         points_.clear();
-        std::vector<unsigned int> number(problem.n_points + 1, none);
-        contact_ = ContactProblem();
-        contact_.dimension = dim;
         for (std::size_t i = 0; i < problem.n_points; ++i)
-          if (problem.contact[i]) {
-            number[i] = unsigned(points_.size());
+          if (problem.contact[i])
             points_.push_back(i);
-            contact_.friction.push_back(
-                problem.interactions[problem.interaction[i]].friction);
-            for (unsigned int c = 0; c < dim; ++c)
-              contact_.q.push_back(problem.free_velocity[i * dim + c] +
-                                   (c == 0
-                                        ? -problem.target[i]
-                                        : problem.sliding_offset[i * dim + c]));
-          }
-        std::vector<std::map<unsigned int, Square>> rows(points_.size());
-        const Bodies &bodies = dynamics.bodies();
-        const auto &frame = dynamics.points().frame;
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-          const Block &W =
-              dynamics.class_blocks()[bodies.class_of[b]].delassus;
-          for (std::size_t s = bodies.first_slot[b];
-               s < bodies.first_slot[b + 1]; ++s)
-            for (std::size_t t = bodies.first_slot[b];
-                 t < bodies.first_slot[b + 1]; ++t) {
-              const std::size_t i = bodies.slot_point[s],
-                                j = bodies.slot_point[t];
-              if (number[i] != none && number[j] != none)
-                add(W, unsigned(s - bodies.first_slot[b]),
-                    unsigned(t - bodies.first_slot[b]),
-                    double(bodies.slot_sign[s]) * bodies.slot_sign[t],
-                    &frame[i * dim * dim], &frame[j * dim * dim],
-                    rows[number[i]][number[j]]);
-            }
+        gather_contacts(all, problem, dynamics.points());
+        const auto parts = gather(all, parts_of_bodies(problem, dynamics));
+        if (!all.is_root())
+          return;
+        std::vector<std::map<unsigned int, Square>> rows(
+            contact_.friction.size());
+        // a block has parts of at most two bodies: their order does not matter
+        for (const Part &part : parts) {
+          Square &sum = rows[number_.at({part.face_i, part.number_i})]
+                            [number_.at({part.face_j, part.number_j})];
+          for (std::size_t k = 0; k < sum.size(); ++k)
+            sum[k] += part.block[k];
         }
         set_matrix(rows);
       }
 
-      using Square = std::array<double, dim * dim>;
-
-      static void add(const Block &W, const unsigned int s,
-                      const unsigned int t, const double sign,
-                      const double *Q_i, const double *Q_j, Square &sum)
+      /** Numbers, friction and U_free on the first rank; who has which point. */
+      void gather_contacts(const Communicator &all,
+                           const OneStepProblem<dim> &problem,
+                           const InterfacePoints<dim> &points)
       {
+        std::vector<Contact> own, seen;
+        for (const std::size_t i : points_) {
+          Contact contact;
+          std::tie(contact.face, contact.number) = key_of(points, i);
+          contact.friction =
+              problem.interactions[problem.interaction[i]].friction;
+          for (unsigned int c = 0; c < dim; ++c)
+            contact.q[c] = problem.free_velocity[i * dim + c] +
+                           (c == 0 ? -problem.target[i]
+                                   : problem.sliding_offset[i * dim + c]);
+          seen.push_back(contact);
+          if (i < problem.n_owned)
+            own.push_back(contact);
+        }
+        auto contacts = gather(all, own);
+        std::sort(contacts.begin(), contacts.end(),
+                  [](const Contact &a, const Contact &b) {
+                    return std::tie(a.face, a.number) <
+                           std::tie(b.face, b.number);
+                  });
+        contact_ = ContactProblem();
+        contact_.dimension = dim;
+        number_.clear();
+        for (const Contact &contact : contacts) {
+          number_.emplace(Key(contact.face, contact.number),
+                          unsigned(number_.size()));
+          contact_.friction.push_back(contact.friction);
+          contact_.q.insert(contact_.q.end(), contact.q.begin(),
+                            contact.q.end());
+        }
+        number_of_seen_.clear();
+        for (const Contact &contact : gather(all, seen, n_seen_))
+          number_of_seen_.push_back(
+              number_.at({contact.face, contact.number}));
+      }
+
+      std::vector<Part> parts_of_bodies(const OneStepProblem<dim> &problem,
+                                        const Dynamics<dim> &dynamics) const
+      {
+        std::vector<Part> parts;
+        const Bodies &bodies = dynamics.bodies();
+        const auto &points = dynamics.points();
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+          const Block &W =
+              dynamics.class_blocks()[bodies.class_of[b]].delassus;
+          const auto touches = [&](const std::size_t slot) {
+            const std::size_t i = bodies.slot_point[slot];
+            return i < problem.n_points && problem.contact[i];
+          };
+          for (std::size_t s = bodies.first_slot[b];
+               s < bodies.first_slot[b + 1]; ++s)
+            for (std::size_t t = bodies.first_slot[b];
+                 t < bodies.first_slot[b + 1]; ++t) {
+              if (!touches(s) || !touches(t))
+                continue;
+              const std::size_t i = bodies.slot_point[s],
+                                j = bodies.slot_point[t];
+              Part &part = parts.emplace_back();
+              std::tie(part.face_i, part.number_i) = key_of(points, i);
+              std::tie(part.face_j, part.number_j) = key_of(points, j);
+              part.block = block_of(
+                  W, unsigned(s - bodies.first_slot[b]),
+                  unsigned(t - bodies.first_slot[b]),
+                  double(bodies.slot_sign[s]) * bodies.slot_sign[t],
+                  &points.frame[i * dim * dim], &points.frame[j * dim * dim]);
+            }
+        }
+        return parts;
+      }
+
+      static Square block_of(const Block &W, const unsigned int s,
+                             const unsigned int t, const double sign,
+                             const double *Q_i, const double *Q_j)
+      {
+        Square sum{};
         for (unsigned int a = 0; a < dim; ++a)
           for (unsigned int b = 0; b < dim; ++b)
             for (unsigned int c = 0; c < dim; ++c)
@@ -134,6 +221,7 @@ namespace nsfd
                 sum[a * dim + b] += sign * Q_i[a * dim + c] *
                                     W(s * dim + c, t * dim + d) *
                                     Q_j[b * dim + d];
+        return sum;
       }
 
       /** Over the mean of its diagonal: its measure compares r with u. */
@@ -156,26 +244,48 @@ namespace nsfd
           }
       }
 
-      void solve_contacts(const double tolerance, std::vector<double> &impulse,
+      void solve_contacts(const double tolerance, const Communicator &all,
+                          std::vector<double> &impulse,
                           SolverReport &report) const
       {
-        std::vector<double> r(contact_.q.size());
-        for (std::size_t k = 0; k < r.size(); ++k)
-          r[k] = impulse[points_[k / dim] * dim + k % dim] * unit_;
-        ContactControl control;
-        control.tolerance = tolerance;
-        const ContactReport part =
-            solve_contact_problem(contact_, "auto", control, r);
-        report.newton += part.factorisations;
-        report.sweeps += part.iterations;
-        report.krylov += part.products;
+        using Impulse = std::array<double, dim>;
+        std::vector<Impulse> mine(points_.size());
+        for (std::size_t k = 0; k < mine.size(); ++k)
+          std::copy_n(&impulse[points_[k] * dim], dim, mine[k].begin());
+        const auto seen = gather(all, mine);
+        std::vector<Impulse> solved(seen.size());
+        std::array<unsigned int, 3> counts{};
+        if (all.is_root()) {
+          // what two ranks see is the same
+          std::vector<double> r(contact_.q.size());
+          for (std::size_t k = 0; k < seen.size(); ++k)
+            for (unsigned int c = 0; c < dim; ++c)
+              r[number_of_seen_[k] * dim + c] = seen[k][c] * unit_;
+          ContactControl control;
+          control.tolerance = tolerance;
+          const ContactReport part =
+              solve_contact_problem(contact_, "auto", control, r);
+          counts = {{part.factorisations, part.iterations, part.products}};
+          for (std::size_t k = 0; k < seen.size(); ++k)
+            for (unsigned int c = 0; c < dim; ++c)
+              solved[k][c] = r[number_of_seen_[k] * dim + c] / unit_;
+        }
+        MPI_Bcast(counts.data(), int(counts.size()), MPI_UNSIGNED, 0, all.mpi());
+        report.newton += counts[0];
+        report.sweeps += counts[1];
+        report.krylov += counts[2];
+        mine = scatter(all, solved, n_seen_);
         std::fill(impulse.begin(), impulse.end(), 0.);
-        for (std::size_t k = 0; k < r.size(); ++k)
-          impulse[points_[k / dim] * dim + k % dim] = r[k] / unit_;
+        for (std::size_t k = 0; k < mine.size(); ++k)
+          std::copy_n(mine[k].begin(), dim, &impulse[points_[k] * dim]);
       }
 
+      std::vector<std::size_t> points_; ///< of this rank that may touch
+      // on the first rank
       ContactProblem contact_;
-      std::vector<std::size_t> points_;
+      std::map<Key, unsigned int> number_; ///< of the contacts of all ranks
+      std::vector<unsigned int> number_of_seen_; ///< of the points_ of all
+      std::vector<int> n_seen_;                  ///< by rank
       double unit_ = 1.;
     };
 
