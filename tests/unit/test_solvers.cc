@@ -439,7 +439,7 @@ end
     check(Scene<2>(pile, {"Mesh/type=crossed triangles"}));
     check(Scene<3>(cube_pile, {"Mesh/type=tetrahedra"}));
     // a bar with more faces than a word has bits
-    check(Scene<2>(rigid_in_rubber,
+    check(Scene<2>(test::rigid_in_rubber,
                    {"Mesh/upper corner=50, 3", "Mesh/cells=50, 3",
                     "Material: block/where=y > 1 && y < 2"}));
   }
