@@ -28,8 +28,6 @@ namespace nsfd
     /** Entries of a node: 8 to 16 take the same time, 32 take longer. */
     constexpr std::size_t node_size = 16;
 
-    using OwnBodies = std::function<bool(unsigned int)>;
-
     template <int dim>
     using Corner =
         boost::geometry::model::point<double, dim,

@@ -9,6 +9,9 @@ namespace nsfd
   double skin_of(const Surfaces<dim> &surfaces,
                  const std::vector<Plane<dim>> &planes);
 
+  /** Bodies to search for. */
+  using OwnBodies = std::function<bool(unsigned int)>;
+
   /**
    * All that may be a pair at gaps up to `reach` when no vertex has moved by
    * more than skin / 2: what points, balls and edges of the bodies that
@@ -18,6 +21,6 @@ namespace nsfd
   NearCandidates
   search_candidates(const Surfaces<dim> &surfaces, const double *x,
                     const std::vector<Plane<dim>> &planes, double reach,
-                    double skin, const std::function<bool(unsigned int)> &is_own,
+                    double skin, const OwnBodies &is_own,
                     const JoinedBodies &joined);
 } // namespace nsfd

@@ -49,20 +49,21 @@ namespace nsfd
 
   /** Those of all ranks, in the order in which one rank alone finds them. */
   template <int dim>
-  void SurfaceSearch<dim>::gather_pairs(NearPairs<dim> &pairs) const
+  void SurfaceSearch<dim>::gather_pairs(const Surfaces<dim> &surfaces,
+                                        NearPairs<dim> &pairs) const
   {
     const auto join = [this](auto &own, const auto &comes_before) {
       own = gather_all(*all_, own);
       // those of one body come from one rank, in order
       std::stable_sort(own.begin(), own.end(), comes_before);
     };
-    std::vector<std::size_t> turn(candidates_.order.size());
-    for (std::size_t k = 0; k < turn.size(); ++k)
-      turn[candidates_.order[k]] = k;
+    const auto vertex = [&](const auto &pair) {
+      return surfaces.points[pair.index].vertex;
+    };
     join(pairs.points, [&](const auto &a, const auto &b) {
-      return turn[a.index] < turn[b.index];
+      return std::pair(vertex(a), a.index) < std::pair(vertex(b), b.index);
     });
-    if (searched_sizes_[2] > 0) {
+    if (!surfaces.balls.empty()) {
       join(pairs.balls, [](const auto &a, const auto &b) {
         return a.index < b.index;
       });
@@ -70,7 +71,7 @@ namespace nsfd
         return std::tie(a.ball, a.other) < std::tie(b.ball, b.other);
       });
     }
-    if (searched_sizes_[3] > 0)
+    if (!surfaces.edges.empty())
       join(pairs.edges, [](const auto &a, const auto &b) {
         return std::tie(a.edge, a.other) < std::tie(b.edge, b.other);
       });
@@ -114,7 +115,7 @@ namespace nsfd
                               pairs.ball_balls);
     find_crossings<dim>(surfaces, x, planes_, reach, candidates_, pairs.edges);
     if (all_)
-      gather_pairs(pairs);
+      gather_pairs(surfaces, pairs);
     settle_touches<dim>(surfaces, x, planes_, pairs.points, pairs.edges);
   }
 

@@ -6,7 +6,8 @@
 #include "nsfd/mesh/mesh_builder.h"
 
 #include <algorithm>
-#include <numeric>
+#include <string>
+#include <vector>
 
 namespace nsfd
 {

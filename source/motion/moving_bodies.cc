@@ -120,15 +120,6 @@ namespace nsfd
   }
 
   template <int dim>
-  std::vector<double> MovingBodies<dim>::positions(const State &state) const
-  {
-    std::vector<double> x(rest_);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] += state.displacement[i];
-    return x;
-  }
-
-  template <int dim>
   double MovingBodies<dim>::largest_speed(const State &state) const
   {
     double square = 0.;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "deformable_cells.h"
+#include "../time/step_data.h"
 #include "row_geometry.h"
 
 #include "nsfd/base/neighbor_messages.h"
@@ -86,8 +87,11 @@ namespace nsfd
     /** The rigid motions nearest to the nodal fields of @p state; materials
         have not been strained yet. Collective. */
     void set_initial(State &state) const;
-    /** Nodes at x, dim per node of every cell. */
-    std::vector<double> positions(const State &state) const;
+    /** Of a node of the state. */
+    Place place(const State &state, const std::size_t node) const
+    {
+      return at_nodes(rest_, node) + Vector(at_nodes(state.displacement, node));
+    }
     /** Of all ranks. Collective. */
     double largest_speed(const State &state) const;
     /** Kinetic and elastic energy, by body. */
@@ -121,7 +125,7 @@ namespace nsfd
     /** Where point @p i of the mesh is among all points. */
     std::size_t mesh_point(const std::size_t i) const
     {
-      return i < n_own_mesh_points_ ? i : i + rows_.size();
+      return point_of_step(i, n_own_mesh_points_, rows_.size());
     }
     /** Unknown velocities at the start and now. */
     const std::vector<double> &old_velocity() const { return v_old_; }

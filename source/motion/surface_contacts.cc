@@ -323,15 +323,14 @@ namespace nsfd
   template <int dim>
   void SurfaceContacts<dim>::share_motion(const State &old)
   {
-    const auto own_x = bodies_.positions(old);
     std::vector<double> own;
     own.reserve(own_moving_nodes_.size() * 2 * dim);
     for (const std::size_t node : own_moving_nodes_) {
-      const std::size_t k = bodies_.own_node(node) * dim;
-      own.insert(own.end(), own_x.begin() + long(k),
-                 own_x.begin() + long(k + dim));
-      own.insert(own.end(), old.velocity.begin() + long(k),
-                 old.velocity.begin() + long(k + dim));
+      const std::size_t k = bodies_.own_node(node);
+      const Point<dim> x = bodies_.place(old, k);
+      own.insert(own.end(), x.begin_raw(), x.end_raw());
+      own.insert(own.end(), old.velocity.begin() + long(k * dim),
+                 old.velocity.begin() + long((k + 1) * dim));
     }
     const auto motion = gather_all(all_, own);
     const double *from = motion.data();
@@ -671,12 +670,8 @@ namespace nsfd
                                           const double reach) const
   {
     std::vector<Row> rows;
-    const auto x = bodies_.positions(old);
     const auto node_place = [&](const std::size_t node) {
-      Point<dim> result;
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] = x[bodies_.own_node(node) * dim + d];
-      return result;
+      return bodies_.place(old, bodies_.own_node(node));
     };
     const auto centre = [&](const unsigned int body) {
       Point<dim> result;

@@ -1,5 +1,7 @@
 #include "crack_pressure.h"
 
+#include "step_data.h"
+
 #include "nsfd/input/scene_input.h"
 #include "nsfd/time/state.h"
 
@@ -10,10 +12,9 @@ namespace nsfd
   CrackPressure<dim>::make(const SceneInput &input,
                            const Discretization<dim> &discretization)
   {
-    for (const auto &block : input.interfaces)
-      if (block.crack_pressure)
-        return std::make_unique<CrackPressure>(input, discretization);
-    return nullptr;
+    return has_crack_pressure(input)
+               ? std::make_unique<CrackPressure>(input, discretization)
+               : nullptr;
   }
 
   template <int dim>

@@ -22,8 +22,8 @@ namespace nsfd
   bool has_crack_pressure(const SceneInput &input);
 
   /**
-   * Where point @p i of a discretization is among @p n_points of a step: those
-   * of the step alone are behind the @p n_owned ones of the mesh, see
+   * Where point @p i of a discretization is among the points of a step: the
+   * @p n_of_step points of the step alone are behind the first @p n_owned, see
    * MovingBodies.
    */
   inline std::size_t point_of_step(const std::size_t i,

@@ -208,6 +208,22 @@ namespace end_to_end
   INSTANTIATE_TEST_SUITE_P(Table, RestartTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
 
+  namespace
+  {
+    /** @p before goes as far as 0.8 of the steps of @p whole, @p after on. */
+    void go_on(const Workspace &workspace, const Launch &before,
+               const Launch &after, const Result &whole, Result &resumed)
+    {
+      const auto steps = unsigned(0.4 * whole.number("steps")) + 1;
+      const Result stored = run(workspace, "resumed", storing(before, steps));
+      ASSERT_TRUE(stored.completed()) << stored.description();
+      // at 0.4, 0.8 and the end
+      fs::rename(previous(stored.directory), newest(stored.directory));
+      resumed = resume(workspace, "resumed", storing(after, steps));
+      ASSERT_TRUE(resumed.completed()) << resumed.description();
+    }
+  } // namespace
+
   // On two ranks bit for bit, and from one number of ranks to another.
   TEST(Restart, OnSeveralRanks)
   {
@@ -223,14 +239,9 @@ namespace end_to_end
         before.ranks = first;
         after.ranks = second;
         const Result whole = good_run(workspace, "whole", before);
-        const auto steps = unsigned(0.4 * whole.number("steps")) + 1;
-        const Result stored = run(workspace, "resumed", storing(before, steps));
-        ASSERT_TRUE(stored.completed()) << stored.description();
-        // at 0.4, 0.8 and the end
-        fs::rename(previous(stored.directory), newest(stored.directory));
-        const Result resumed =
-            resume(workspace, "resumed", storing(after, steps));
-        ASSERT_TRUE(resumed.completed()) << resumed.description();
+        Result resumed;
+        ASSERT_NO_FATAL_FAILURE(
+            go_on(workspace, before, after, whole, resumed));
         EXPECT_TRUE(first != second ||
                     whole.history_text == resumed.history_text);
         expect_below("energies",
@@ -257,13 +268,8 @@ namespace end_to_end
       before.ranks = first;
       after.ranks = second;
       const Result whole = good_run(workspace, "whole", launch);
-      const auto steps = unsigned(0.4 * whole.number("steps")) + 1;
-      const Result stored = run(workspace, "resumed", storing(before, steps));
-      ASSERT_TRUE(stored.completed()) << stored.description();
-      fs::rename(previous(stored.directory), newest(stored.directory));
-      const Result resumed =
-          resume(workspace, "resumed", storing(after, steps));
-      ASSERT_TRUE(resumed.completed()) << resumed.description();
+      Result resumed;
+      ASSERT_NO_FATAL_FAILURE(go_on(workspace, before, after, whole, resumed));
       EXPECT_TRUE(whole.history_text == resumed.history_text)
           << energy_difference(whole.history, resumed.history);
     }

@@ -182,7 +182,8 @@ namespace nsfd
     std::size_t n_searches() const { return n_searches_; }
 
   private:
-    void gather_pairs(NearPairs<dim> &pairs) const;
+    void gather_pairs(const Surfaces<dim> &surfaces,
+                      NearPairs<dim> &pairs) const;
     bool candidates_hold(const Surfaces<dim> &surfaces, const double *x,
                          double reach) const;
 

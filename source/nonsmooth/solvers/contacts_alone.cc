@@ -139,7 +139,7 @@ namespace nsfd
                            const OneStepProblem<dim> &problem,
                            const InterfacePoints<dim> &points)
       {
-        std::vector<Contact> own, seen;
+        std::vector<Contact> mine;
         for (const std::size_t i : points_) {
           Contact contact;
           std::tie(contact.face, contact.number) = key_of(points, i);
@@ -149,11 +149,10 @@ namespace nsfd
             contact.q[c] = problem.free_velocity[i * dim + c] +
                            (c == 0 ? -problem.target[i]
                                    : problem.sliding_offset[i * dim + c]);
-          seen.push_back(contact);
-          if (i < problem.n_owned)
-            own.push_back(contact);
+          mine.push_back(contact);
         }
-        auto contacts = gather(all, own);
+        const auto seen = gather(all, mine, n_seen_);
+        auto contacts = seen;
         std::sort(contacts.begin(), contacts.end(),
                   [](const Contact &a, const Contact &b) {
                     return std::tie(a.face, a.number) <
@@ -163,14 +162,18 @@ namespace nsfd
         contact_.dimension = dim;
         number_.clear();
         for (const Contact &contact : contacts) {
-          number_.emplace(Key(contact.face, contact.number),
-                          unsigned(number_.size()));
+          // what two ranks see is the same
+          if (!number_
+                   .emplace(Key(contact.face, contact.number),
+                            unsigned(number_.size()))
+                   .second)
+            continue;
           contact_.friction.push_back(contact.friction);
           contact_.q.insert(contact_.q.end(), contact.q.begin(),
                             contact.q.end());
         }
         number_of_seen_.clear();
-        for (const Contact &contact : gather(all, seen, n_seen_))
+        for (const Contact &contact : seen)
           number_of_seen_.push_back(
               number_.at({contact.face, contact.number}));
       }
