@@ -41,19 +41,61 @@ namespace nsfd
     constexpr double short_run = 0.2;
     constexpr unsigned int most_repeats = 2; // times those asked for
 
-    std::vector<std::string> environment(const bool parallel)
+    constexpr const char *mpi_files_variable = "OMPI_MCA_orte_tmpdir_base";
+
+    /**
+     * A folder for what MPI keeps of one run. By default all runs of a user
+     * share one, and a run that ends removes it while another one starts.
+     */
+    class MpiFiles
     {
+    public:
+      explicit MpiFiles(const bool needed)
+      {
+        if (!needed)
+          return;
+        const char *base = std::getenv(mpi_files_variable);
+        // short: names of sockets in it may have 107 characters
+        path_ = (base != nullptr ? fs::path(base) : fs::temp_directory_path()) /
+                "nsfd_XXXXXX";
+        if (mkdtemp(path_.data()) == nullptr)
+          throw std::runtime_error("cannot create '" + path_ +
+                                   "': " + std::strerror(errno));
+      }
+      ~MpiFiles()
+      {
+        std::error_code error;
+        if (!path_.empty())
+          fs::remove_all(path_, error);
+      }
+      MpiFiles(const MpiFiles &) = delete;
+      MpiFiles &operator=(const MpiFiles &) = delete;
+
+      /** Empty for a run without MPI. */
+      const std::string &path() const { return path_; }
+
+    private:
+      std::string path_;
+    };
+
+    std::vector<std::string> environment(const MpiFiles &mpi)
+    {
+      const std::string own = mpi_files_variable + std::string("=");
       std::vector<std::string> all;
       for (char **entry = environ; *entry != nullptr; ++entry)
-        all.emplace_back(*entry);
+        if (mpi.path().empty() ||
+            std::strncmp(*entry, own.c_str(), own.size()) != 0)
+          all.emplace_back(*entry);
       if (std::getenv("OMP_NUM_THREADS") == nullptr)
         all.emplace_back("OMP_NUM_THREADS=1");
-      if (parallel)
-        for (const char *name :
-             {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
-              "OMPI_MCA_rmaps_base_oversubscribe"})
-          if (std::getenv(name) == nullptr)
-            all.push_back(std::string(name) + "=1");
+      if (mpi.path().empty())
+        return all;
+      all.push_back(own + mpi.path());
+      for (const char *name :
+           {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
+            "OMPI_MCA_rmaps_base_oversubscribe"})
+        if (std::getenv(name) == nullptr)
+          all.push_back(std::string(name) + "=1");
       return all;
     }
 
@@ -90,7 +132,8 @@ namespace nsfd
     int run_process(std::vector<std::string> words, const bool parallel,
                     const std::string &log)
     {
-      std::vector<std::string> variables = environment(parallel);
+      const MpiFiles mpi(parallel);
+      std::vector<std::string> variables = environment(mpi);
       posix_spawn_file_actions_t actions;
       posix_spawn_file_actions_init(&actions);
       posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
