@@ -51,7 +51,10 @@ namespace nsfd
     return next.beta[i] < 1e-3 && old.beta[i] >= 1e-3;
   }
 
-  /** The largest energy so far, and how far the sum of the lines is off. */
+  /**
+   * The largest energy so far, and how far the sum of the lines is off: not a
+   * number if one of them is none.
+   */
   inline void close_books(const State &old, State &next, StepReport &report)
   {
     const EnergyLines &energy = next.energy;
@@ -64,7 +67,8 @@ namespace nsfd
                           energy.damage + energy.friction + energy.viscous +
                           energy.plastic + energy.impact + energy.numerical -
                           energy.work - next.initial_energy;
-    report.ledger_defect =
-        next.largest_energy > 0. ? std::abs(defect) / next.largest_energy : 0.;
+    report.ledger_defect = next.largest_energy > 0. || !std::isfinite(defect)
+                               ? std::abs(defect) / next.largest_energy
+                               : 0.;
   }
 } // namespace nsfd

@@ -194,8 +194,9 @@ namespace nsfd
                                     const StepReport &report,
                                     const std::size_t worst_point) const
   {
-    if (report.ledger_defect * next.largest_energy >
-        1e-6 * std::max(next.largest_energy, energy_scale))
+    // what is not a number is not within the bound
+    if (!(report.ledger_defect * next.largest_energy <=
+          1e-6 * std::max(next.largest_energy, energy_scale)))
       throw StepRejected(fmt::format(
         "the energies of the step of {:.4g} at t = {:.6g} do not add up "
         "(relative defect {:.1e}): rows that ask for the same have made "
