@@ -118,6 +118,7 @@ namespace end_to_end
         {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
         {"OMPI_MCA_mpi_yield_when_idle", "1"},
         {"OMPI_MCA_btl_vader_single_copy_mechanism", "none"},
+        {"OMPI_MCA_pml", "ob1"}, // not asking for networks saves 0.2 s a run
         {"OMPI_MCA_ess_singleton_isolated", "1"}};
     for (const auto &[name, value] : settings)
       unsetenv(name);
