@@ -130,7 +130,7 @@ namespace nsfd::checkpoint_file
     std::size_t size = 0;
     lines >> names[0] >> its_format >> names[1] >> program >> names[2] >>
         size >> names[3] >> sum;
-    if (its_format != 0 && its_format != format)
+    if (lines && its_format != format)
       return fmt::format("nsfd {} has written it, in format {}; this program "
                          "({}) knows format {}",
                          program, its_format, version().number, format);

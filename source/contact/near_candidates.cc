@@ -406,6 +406,31 @@ namespace nsfd
     return skin_per_size * size;
   }
 
+  std::vector<std::array<unsigned int, 2>>
+  next_facets(const Surfaces<2> &surfaces)
+  {
+    constexpr unsigned int none = NearCandidates::no_facet;
+    std::vector<std::array<unsigned int, 2>> at(surfaces.n_vertices,
+                                                {none, none});
+    std::vector<char> count(surfaces.n_vertices, 0);
+    for (unsigned int f = 0; f < surfaces.facets.size(); ++f)
+      for (unsigned int v = 0; v < 2; ++v) {
+        const unsigned int vertex = surfaces.facets[f].vertex[v];
+        count[vertex] = char(std::min(count[vertex] + 1, 3));
+        if (count[vertex] <= 2)
+          at[vertex][count[vertex] - 1] = f;
+      }
+    std::vector<std::array<unsigned int, 2>> result(surfaces.facets.size(),
+                                                    {none, none});
+    for (unsigned int f = 0; f < result.size(); ++f)
+      for (unsigned int v = 0; v < 2; ++v) {
+        const unsigned int vertex = surfaces.facets[f].vertex[v];
+        if (count[vertex] == 2)
+          result[f][v] = at[vertex][at[vertex][0] == f ? 1 : 0];
+      }
+    return result;
+  }
+
   template <int dim>
   NearCandidates
   search_candidates(const Surfaces<dim> &surfaces, const double *x,
@@ -425,10 +450,11 @@ namespace nsfd
         facets_of_balls<dim>(surfaces, x, tree, margin, is_own, joined);
     result.balls_of_balls =
         balls_of_balls<dim>(surfaces, x, margin, is_own, joined);
-    if constexpr (dim == 3)
-      if (!surfaces.edges.empty())
-        result.edges_of_edges =
-            edges_of_edges(surfaces, x, planes, reach, skin, is_own, joined);
+    if constexpr (dim == 2)
+      result.next_facets = next_facets(surfaces);
+    else if (!surfaces.edges.empty())
+      result.edges_of_edges =
+          edges_of_edges(surfaces, x, planes, reach, skin, is_own, joined);
     return result;
   }
 

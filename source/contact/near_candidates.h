@@ -9,6 +9,13 @@ namespace nsfd
   double skin_of(const Surfaces<dim> &surfaces,
                  const std::vector<Plane<dim>> &planes);
 
+  /**
+   * Those that each facet meets at its two vertices. Where more than two facets
+   * of a body meet, none is the next one.
+   */
+  std::vector<std::array<unsigned int, 2>>
+  next_facets(const Surfaces<2> &surfaces);
+
   /** Bodies to search for. */
   using OwnBodies = std::function<bool(unsigned int)>;
 

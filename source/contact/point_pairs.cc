@@ -13,7 +13,8 @@ namespace nsfd
     struct Touch
     {
       FacetPair<dim> pair;
-      double opposed = 0.; ///< cosine between the two outward normals
+      double opposed = 0.;  ///< cosine between the two outward normals
+      bool is_kept = false; ///< the facet of the last step
     };
 
     template <int dim>
@@ -21,8 +22,10 @@ namespace nsfd
     {
     public:
       PointTouches(const Surfaces<dim> &surfaces, const double *x,
-                   const std::vector<Plane<dim>> &planes, const double reach)
-          : surfaces_(surfaces), x_(x), planes_(planes), reach_(reach)
+                   const std::vector<Plane<dim>> &planes, const double reach,
+                   const NearCandidates &candidates)
+          : surfaces_(surfaces), x_(x), planes_(planes), reach_(reach),
+            next_(candidates.next_facets)
       {
       }
 
@@ -34,22 +37,27 @@ namespace nsfd
         const auto &point = surfaces_.points[p];
         const Plane<dim> &own = planes_[point.facet];
         const Place<dim> y = place<dim>(x_, point.vertex);
-        const Place<dim> inside = sum(y, inset, difference(own.centre, y));
+        const Place<dim> to_centre = difference(own.centre, y);
+        const Place<dim> inside = sum(y, inset, to_centre);
         Touch<dim> touch;
         touch.pair.index = p;
-        for (; begin != end; ++begin)
+        touch.pair.inset = inset * norm(to_centre);
+        for (; begin != end; ++begin) {
+          touch.is_kept = key(*begin) == point.last_key;
           if (touches_facet(own, *begin, y, inside, touch))
             valid_.push_back(touch);
+        }
         if (valid_.size() == 1)
           touches.push_back(valid_[0]);
         else if (!valid_.empty())
-          touches.push_back(*best(same_length * own.size));
+          touches.push_back(*kept(best(same_length * own.size)));
       }
 
       /**
        * Two points of a vertex that is inside the same body: it has come
-       * through one facet only, the nearer one. Otherwise a corner that slides
-       * over an edge by a hair is caught by the side.
+       * through one facet only, that of the last step or else the nearer one.
+       * Otherwise a corner that slides over an edge by a hair is caught by the
+       * side.
        */
       bool yields(const Touch<dim> &a, const Touch<dim> &b) const
       {
@@ -60,6 +68,8 @@ namespace nsfd
         if (facet_a.body != facet_b.body ||
             std::max(a.pair.gap, b.pair.gap) > rounding || notch(a, b))
           return false;
+        if (a.is_kept != b.is_kept)
+          return b.is_kept;
         if (std::abs(a.pair.gap - b.pair.gap) > rounding)
           return a.pair.gap < b.pair.gap;
         if (std::abs(a.opposed - b.opposed) > same_length)
@@ -81,7 +91,9 @@ namespace nsfd
             !within(dot(plane.normal, difference(y, plane.centre)), depth))
           return false;
         const auto &facet = surfaces_.facets[f];
-        if (!projects_into<dim>(facet, plane, x_, inside))
+        // what is inside stays below its facet to the very end of it
+        if (!projects_into<dim>(facet, plane, x_, inside) &&
+            !(touch.is_kept && projects_into<dim>(facet, plane, x_, y)))
           return false;
         const auto foot = closest_place<dim>(facet, plane, x_, y);
         touch.pair.facet = f;
@@ -89,7 +101,33 @@ namespace nsfd
         touch.pair.normal = plane.normal;
         touch.pair.closest = foot.place;
         touch.pair.weights = foot.weights;
-        return within(touch.pair.gap, depth);
+        touch.is_kept = touch.is_kept && touch.pair.gap <= 0.;
+        return within(touch.pair.gap, depth) &&
+               !(touch.pair.gap < -same_length * own.size &&
+                 is_outside(f, y, same_length * own.size));
+      }
+
+      /**
+       * Below a facet, but beyond its end and in front of the next one. In
+       * space edges say so, see settle_touches().
+       */
+      bool is_outside(const unsigned int f, const Place<dim> &y,
+                      const double rounding) const
+      {
+        if (dim == 3 || next_.empty())
+          return false;
+        const auto &ends = surfaces_.facets[f].vertex;
+        const auto past = [&](const unsigned int v) {
+          const Place<dim> end = place<dim>(x_, ends[v]);
+          return dot(difference(y, end),
+                     difference(end, planes_[f].centre)) > 0.;
+        };
+        for (unsigned int v = 0; v < 2; ++v)
+          if (past(v) && next_[f][v] != NearCandidates::no_facet) {
+            const Plane<dim> &next = planes_[next_[f][v]];
+            return dot(next.normal, difference(y, next.centre)) > rounding;
+          }
+        return false;
       }
 
       bool within(const double gap, const double depth) const
@@ -116,6 +154,23 @@ namespace nsfd
               (!result || key(touch.pair.facet) < key(result->pair.facet)))
             result = &touch;
         return result;
+      }
+
+      /**
+       * A point that is inside a body came in through the facet that it was
+       * over in the last step, also where it is nearer to another one now: next
+       * to a corner depths do not tell.
+       */
+      const Touch<dim> *kept(const Touch<dim> *nearest) const
+      {
+        const auto body = [this](const Touch<dim> &touch) {
+          return surfaces_.facets[touch.pair.facet].body;
+        };
+        for (const auto &touch : valid_)
+          if (touch.is_kept && nearest->pair.gap <= 0. &&
+              body(touch) == body(*nearest))
+            return &touch;
+        return nearest;
       }
 
       /** Facets that look at each other: a vertex may touch both. */
@@ -146,6 +201,7 @@ namespace nsfd
       const double *x_;
       const std::vector<Plane<dim>> &planes_;
       double reach_;
+      const std::vector<std::array<unsigned int, 2>> &next_; ///< facets
       std::vector<Touch<dim>> valid_;
     };
   } // namespace
@@ -157,7 +213,7 @@ namespace nsfd
                         std::vector<FacetPair<dim>> &pairs)
   {
     pairs.clear();
-    PointTouches<dim> points(surfaces, x, planes, reach);
+    PointTouches<dim> points(surfaces, x, planes, reach, candidates);
     const auto &order = candidates.order;
     const auto &lists = candidates.facets_of_points;
     std::vector<Touch<dim>> touches; // of one vertex

@@ -205,8 +205,9 @@ namespace nsfd
     const MovingRow<dim> &row = bodies_.rows()[k];
     const std::size_t i = bodies_.row_point(k);
     old_.slip[i] = old.surface_slip[row.place];
-    old_.approach[i] = old.surface_approach[row.place];
-    old_.released_overlap[i] = old.surface_overlap[row.place];
+    old_.approach[i] = std::max(row.approach, old.surface_approach[row.place]);
+    old_.released_overlap[i] =
+        std::max(row.overlap, old.surface_overlap[row.place]);
     if (row.twin != row.nowhere) {
       old_.approach[i] =
           std::max(old_.approach[i], old.surface_approach[row.twin]);
@@ -320,6 +321,30 @@ namespace nsfd
         for (unsigned int a = 0; a < dim; ++a)
           step_problem_.given_velocity[i * dim + a] =
               -(1. - theta) / theta * old_.relative_velocity[i * dim + a];
+    if (this->input_.time.contact_target == ContactTarget::energy_safe)
+      keep_gaps();
+  }
+
+  /**
+   * The speed that vanished at the end of the last step is not quite zero in
+   * the frame of this one: what is closed and rests would sink in as its bodies
+   * turn. Its mean velocity vanishes, which does no work.
+   */
+  template <int dim>
+  void LargeMotion<dim>::keep_gaps()
+  {
+    const double theta = step_problem_.theta;
+    for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
+      const std::size_t i = bodies_.row_point(k);
+      const auto &law =
+          step_problem_.interactions[step_problem_.interaction[i]];
+      if (!old_.contact[i] || law.restitution != 0.)
+        continue;
+      const double lift_speed =
+          lifts_ ? old_.dilation_speed[i] - old_.wear_speed[i] : 0.;
+      step_problem_.target[i] = -(1. - theta) / theta *
+                                (old_.relative_velocity[i * dim] - lift_speed);
+    }
   }
 
   /**
@@ -498,8 +523,10 @@ namespace nsfd
     finish(h, *evaluation, next, report);
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
-    if (contacts_)
+    if (contacts_) {
       remember_surfaces(old, next);
+      contacts_->remember_facets(next);
+    }
     forget_rows(next);
     if (contacts_)
       contacts_->part(next);

@@ -66,6 +66,7 @@ namespace nsfd
     void relative_velocity(const std::vector<double> &v, double time,
                            std::vector<double> &U) const;
     void set_problem(double time_step);
+    void keep_gaps();
     void forecast(double time_step, bool first);
     void warm_start(const State &old);
     bool move_bodies(const std::vector<double> &v);

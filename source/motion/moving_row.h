@@ -46,6 +46,7 @@ namespace nsfd
     unsigned int obstacle = 0, pin = 0;
     double gap = 0.;  ///< at the start of the step, m
     double rate = 0.; ///< of the gap at the start of the step, m/s
+    double approach = 0., overlap = 0.; ///< known of it from elsewhere, m
     double weight = 0.;         ///< m or m^2
     unsigned int interaction = 0; ///< index into OneStepProblem::interactions
     unsigned int block = 0;

@@ -128,6 +128,8 @@ namespace nsfd
         first_place_.back() + table_.bodies.size() + edges_.size();
     state.surface_impulse.assign(n * dim, 0.);
     state.surface_contact.assign(n, 0);
+    state.surface_facet.assign(first_place_.back(), Surfaces<dim>::no_key);
+    state.surface_gap.assign(first_place_.back(), 0.);
     for (auto *array : {&state.surface_slip, &state.surface_overlap,
                         &state.surface_approach})
       array->assign(n, 0.);
@@ -269,6 +271,7 @@ namespace nsfd
   {
     surfaces_ = Surfaces<dim>();
     point_origins_.clear();
+    point_places_.clear();
     facet_cells_.clear();
     for (unsigned int c = 0; c < cells_.size(); ++c) {
       const unsigned int b = table_.body_of_cell[c];
@@ -283,6 +286,10 @@ namespace nsfd
         surfaces_.balls.push_back({b, cells_.ball_radius(b), std::uint64_t(b),
                                    unsigned(cells_.centre_node(b))});
     surfaces_.n_vertices = cells_.n_nodes() + table_.n_rigid;
+    points_by_vertex_.clear();
+    for (unsigned int p = 0; p < surfaces_.points.size(); ++p)
+      points_by_vertex_.emplace_back(surfaces_.points[p].vertex, p);
+    std::sort(points_by_vertex_.begin(), points_by_vertex_.end());
   }
 
   /** Nodes whose motion all ranks need: vertices, and where contacts are. */
@@ -396,6 +403,7 @@ namespace nsfd
             std::find(face.nodes.begin(), face.nodes.end(), node) -
             face.nodes.begin());
         point_origins_.push_back({c, f, j});
+        point_places_.push_back(place_of(c, f, j));
       }
       surfaces_.facets.push_back(facet);
       facet_cells_.push_back(c);
@@ -495,6 +503,59 @@ namespace nsfd
     return old.surface_contact[surfaces_.facets[facet].key / pieces_per_face];
   }
 
+  /** Of a facet with this key; none of Surfaces::no_key. */
+  template <int dim>
+  int SurfaceContacts<dim>::body_of_key(const std::uint64_t key) const
+  {
+    const auto next = std::upper_bound(first_place_.begin(), first_place_.end(),
+                                       key / pieces_per_face);
+    return next == first_place_.end()
+               ? -1
+               : int(table_.body_of_cell[next - first_place_.begin() - 1]);
+  }
+
+  /** Those of the face that a facet belongs to: first and behind the last. */
+  template <int dim>
+  std::array<std::size_t, 2>
+  SurfaceContacts<dim>::places_of_face(const unsigned int facet) const
+  {
+    const unsigned int cell = facet_cells_[facet];
+    const std::size_t first = surfaces_.facets[facet].key / pieces_per_face;
+    unsigned int face = 0;
+    while (place_of(cell, face, 0) != first)
+      ++face;
+    return {first, first + cells_.faces(cell)[face].nodes.size()};
+  }
+
+  /**
+   * Where two faces slide past each other's ends, other points go on with the
+   * overlap that they have, and so does another point of the same corner when
+   * its body turns: they know the bounds of those that were over the same body.
+   */
+  template <int dim>
+  void SurfaceContacts<dim>::take_over(const FacetPair<dim> &pair,
+                                       const State &old, Row &row) const
+  {
+    const auto &point = surfaces_.points[pair.index];
+    const auto take = [&](const std::size_t place, const int over) {
+      if (body_of_key(old.surface_facet[place]) != over)
+        return;
+      row.approach = std::max(row.approach, old.surface_approach[place]);
+      row.overlap = std::max(row.overlap, old.surface_overlap[place]);
+    };
+    for (const bool own : {true, false}) {
+      const auto places = places_of_face(own ? point.facet : pair.facet);
+      for (std::size_t k = places[0]; k < places[1]; ++k)
+        take(k, own ? row.body_1 : int(row.body_2));
+    }
+    const auto first = std::lower_bound(
+        points_by_vertex_.begin(), points_by_vertex_.end(),
+        std::pair(point.vertex, 0u));
+    for (auto p = first;
+         p != points_by_vertex_.end() && p->first == point.vertex; ++p)
+      take(point_places_[p->second], row.body_1);
+  }
+
   /** Facet and gap, and its rate with the velocities at the start. */
   template <int dim>
   void SurfaceContacts<dim>::set_partner(const FacetPair<dim> &pair,
@@ -515,6 +576,18 @@ namespace nsfd
       away -= row.weights[v] * velocity(row.facet[v]);
     for (unsigned int d = 0; d < dim; ++d)
       row.rate += pair.normal[d] * away[d];
+    if (row.gap < 0. && row.node != Row::nowhere) {
+      if (old.surface_facet[row.place] == facet.key) {
+        const double before = old.surface_gap[row.place];
+        row.approach = before > 0. ? before - row.gap : 0.;
+      } else {
+        // it may have come in from any side in the last step, or has not been
+        // seen while only a corner of it overlapped
+        row.approach = old.last_step * away.norm();
+        row.overlap = std::min(-row.gap, pair.inset);
+        take_over(pair, old, row);
+      }
+    }
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
     row.interaction = interaction_of_contact(input_, row.block);
     row.released =
@@ -576,8 +649,7 @@ namespace nsfd
    * Two corners of flat sides that face each other, as those of a face that has
    * just broken, meet once: each would ask for nearly the same, and rows that
    * almost depend on each other are what repeated steps come from. Within a
-   * tenth of a side and eight degrees; what the second one may miss is less
-   * than a hundredth of the side.
+   * tenth of a side and eight degrees.
    */
   template <int dim>
   std::size_t
@@ -606,6 +678,8 @@ namespace nsfd
                                               const double reach,
                                               std::vector<Row> &rows)
   {
+    for (std::size_t p = 0; p < surfaces_.points.size(); ++p)
+      surfaces_.points[p].last_key = old.surface_facet[point_places_[p]];
     search_.find(
         surfaces_, x_.data(), reach,
         [this](const unsigned int a, const unsigned int b) {
@@ -621,13 +695,17 @@ namespace nsfd
       row.cell = origin.cell;
       row.node = cells_.first_node(origin.cell) + face.nodes[origin.node];
       row.weight = face.weights[origin.node];
-      row.place = place_of(origin.cell, origin.face, origin.node);
+      row.place = point_places_[pair.index];
       set_partner(pair, old, row);
       const std::size_t other = seen_from_there(pair, row, rows.size());
-      if (other == unseen)
+      if (other == unseen) {
         rows.push_back(row);
-      else
-        rows[other].twin = row.place;
+        continue;
+      }
+      // the deeper one is the contact
+      if (row.gap < rows[other].gap)
+        std::swap(rows[other], row);
+      rows[other].twin = row.place;
     }
     for (const auto &pair : pairs_.balls) {
       Row row = ball_row(surfaces_.balls[pair.index].body);
@@ -649,6 +727,19 @@ namespace nsfd
     }
     for (const auto &pair : pairs_.edges)
       rows.push_back(edge_row(pair, old));
+  }
+
+  /** Which facets points were over at the start of the step. */
+  template <int dim>
+  void SurfaceContacts<dim>::remember_facets(State &next) const
+  {
+    next.surface_facet.assign(first_place_.back(), Surfaces<dim>::no_key);
+    next.surface_gap.assign(first_place_.back(), 0.);
+    for (const auto &pair : pairs_.points) {
+      const std::size_t place = point_places_[pair.index];
+      next.surface_facet[place] = surfaces_.facets[pair.facet].key;
+      next.surface_gap[place] = pair.gap;
+    }
   }
 
   template <int dim>

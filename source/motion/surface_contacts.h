@@ -52,6 +52,8 @@ namespace nsfd
      * to the search: `parted`. Collective.
      */
     void part(State &state) const;
+    /** After the step of the last call of rows(). */
+    void remember_facets(State &next) const;
 
     /** What may touch in a step of @p time_step from @p old, on all ranks the
         same. Collective. */
@@ -103,6 +105,10 @@ namespace nsfd
     std::size_t seen_from_there(const FacetPair<dim> &pair, const Row &row,
                                 std::size_t index);
     Row edge_row(const EdgePair<dim> &pair, const State &old) const;
+    int body_of_key(std::uint64_t key) const;
+    std::array<std::size_t, 2> places_of_face(unsigned int facet) const;
+    void take_over(const FacetPair<dim> &pair, const State &old,
+                   Row &row) const;
     std::uint8_t mark_of(const State &old, unsigned int facet) const;
     Vector velocity(std::size_t node) const;
     Vector centre_velocity(const State &old, unsigned int body) const;
@@ -135,6 +141,8 @@ namespace nsfd
       unsigned int cell, face, node; ///< node of the face
     };
     std::vector<Origin> point_origins_;
+    std::vector<std::size_t> point_places_;
+    std::vector<std::pair<unsigned int, unsigned int>> points_by_vertex_;
     std::vector<unsigned int> facet_cells_;
     std::vector<ObstacleFace> obstacle_faces_;
     SurfaceSearch<dim> search_;

@@ -5,6 +5,19 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Whole numbers below 2^53. */
+    template <typename Number>
+    void remember_numbers(const std::string &name, std::vector<Number> &numbers,
+                          Archive &archive)
+    {
+      std::vector<double> values(numbers.begin(), numbers.end());
+      archive.common(name, values);
+      numbers.assign(values.begin(), values.end());
+    }
+  } // namespace
+
   void remember(State &s, Archive &archive)
   {
     const Archive::Part part(archive, "state");
@@ -46,10 +59,9 @@ namespace nsfd
     archive.common("surface_wear_speed", s.surface_wear_speed);
     archive.common("surface_overlap", s.surface_overlap);
     archive.common("surface_approach", s.surface_approach);
-    std::vector<double> touches(s.surface_contact.begin(),
-                                s.surface_contact.end());
-    archive.common("surface_contact", touches);
-    s.surface_contact.assign(touches.begin(), touches.end());
+    remember_numbers("surface_contact", s.surface_contact, archive);
+    remember_numbers("surface_facet", s.surface_facet, archive);
+    archive.common("surface_gap", s.surface_gap);
     bool has_viscous = s.viscous_traction.has_value();
     double viscous = s.viscous_traction.value_or(0.);
     archive.numbers("viscous_traction", has_viscous, viscous);

@@ -96,6 +96,19 @@ namespace end_to_end
               "ok as far as measured, 1 of 8 lines are not");
   }
 
+  // Corners slide over the ends of bodies that turn, and off them: no point is
+  // deeper than it came in by.
+  TEST(Certificates, OfAFallingWall)
+  {
+    const Workspace workspace;
+    const Result result = good_run(workspace, "wall",
+                                   {benchmark("falling_wall"),
+                                    {"Time/end=0.5 s"}});
+    EXPECT_GT(result.number("penetration_max"), 1e-4);
+    EXPECT_EQ(verdict(result, "penetration"), "ok");
+    EXPECT_EQ(verdict(result, "ledger defect"), "ok");
+  }
+
   TEST(Certificates, OfAFailedRun)
   {
     const Workspace workspace;

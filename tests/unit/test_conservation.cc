@@ -1,5 +1,7 @@
 #include "make_scene.h"
 
+#include "../../source/time/common_books.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -629,5 +631,19 @@ end
     EXPECT_NEAR(drop(lumped_cell, 1., 1.).largest_rise, 0.0293, 5e-4);
     EXPECT_GT(drop(rigid_cells, 0.75, 1.).largest_rise, 0.01);
     EXPECT_GT(drop(rigid_cells, 1., 1.).largest_rise, 0.01);
+  }
+
+  // A sum with something that is no number is never closed.
+  TEST(Conservation, BooksOfNoNumberAreNotClosed)
+  {
+    State old, next;
+    StepReport report;
+    next.energy.kinetic = 2.;
+    old.initial_energy = next.initial_energy = 2.;
+    close_books(old, next, report);
+    EXPECT_EQ(report.ledger_defect, 0.);
+    next.energy.plastic = std::numeric_limits<double>::quiet_NaN();
+    close_books(old, next, report);
+    EXPECT_TRUE(std::isnan(report.ledger_defect));
   }
 } // namespace

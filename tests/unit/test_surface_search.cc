@@ -247,6 +247,8 @@ namespace
           all.edges_of_edges.entries.push_back(o);
       all.edges_of_edges.first.push_back(all.edges_of_edges.entries.size());
     }
+    if constexpr (dim == 2)
+      all.next_facets = next_facets(surfaces);
     std::vector<Plane<dim>> planes;
     set_planes<dim>(surfaces, scene.x.data(), planes);
     NearPairs<dim> pairs;
@@ -611,6 +613,39 @@ TEST(SurfaceSearch, CornerOverAnEdgeTouchesTheNearerFacet)
       }
     EXPECT_EQ(touched, std::set<std::uint64_t>{inside < 0.03 ? side : top});
   }
+}
+
+// The same: depths next to a corner do not tell which way it came in, the facet
+// of the step before does, also where nothing but the end of it is left.
+TEST(SurfaceSearch, CornerKeepsTheFacetOfTheLastStep)
+{
+  const std::uint64_t side = 101, top = 102;
+  for (const std::uint64_t last : {side, top})
+    for (const double inside : {0.005, 0.02, 0.04}) {
+      Scene<2> scene;
+      add_box(scene, 0, {0., 0.}, {1., 1.});
+      add_box(scene, 1, {1. - inside, 1. - 0.03}, {2. - inside, 1.97});
+      scene.all_points();
+      for (auto &point : scene.surfaces.points)
+        point.last_key = last;
+      for (const auto &pair : scene.find(0.2).points)
+        if (scene.surfaces.points[pair.index].vertex == 4) {
+          EXPECT_EQ(scene.surfaces.facets[pair.facet].key, last);
+          EXPECT_NEAR(pair.gap, last == side ? -inside : -0.03, 1e-15);
+        }
+    }
+}
+
+// The tip of a wedge is beside the box, its inset is over it.
+TEST(SurfaceSearch, CornerBesideABodyIsNotBelowItsTop)
+{
+  Scene<2> scene;
+  add_box(scene, 0, {0., 0.}, {1., 1.});
+  add_polygon(scene, 1, {{1.004, 0.93}, {2., 1.2}, {2., 2.}, {0., 1.6}});
+  scene.all_points();
+  const auto pairs = scene.find(0.2);
+  EXPECT_EQ(names(scene, pairs).count({4, 107, 102}), 0u); // the top
+  EXPECT_EQ(names(scene, pairs).count({4, 107, 101}), 1u); // the side
 }
 
 // A box in the corner of an L touches the floor and the wall, both of one body.

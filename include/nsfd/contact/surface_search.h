@@ -29,10 +29,15 @@ namespace nsfd
       unsigned int body = 0;
       std::uint64_t key = 0; ///< unique; decides where geometry does not
     };
+    /// no facet has it; exact as a double, as keys are
+    static constexpr std::uint64_t no_key = (std::uint64_t(1) << 53) - 1;
+
     /** A vertex of a facet that may touch facets of other bodies. */
     struct Point
     {
       unsigned int vertex = 0, facet = 0;
+      /// of the facet that it was over in the last step: which way it came in
+      std::uint64_t last_key = no_key;
     };
     struct Ball
     {
@@ -90,6 +95,7 @@ namespace nsfd
     double gap = 0.;
     std::array<double, dim> normal{}, closest{};
     std::array<double, 4> weights{}; ///< of the vertices of the facet
+    double inset = 0.; ///< a corner that overlaps by less is not seen
   };
 
   /** ball < other; the normal leads from the other ball to this one. */
@@ -142,13 +148,16 @@ namespace nsfd
     IndexLists facets_of_balls;
     IndexLists balls_of_balls; ///< later balls only
     IndexLists edges_of_edges; ///< of later bodies only
+    /// in the plane: the facets that a facet meets at its two vertices
+    std::vector<std::array<unsigned int, 2>> next_facets;
+    static constexpr unsigned int no_facet = unsigned(-1);
   };
 
   /**
    * Finds which points and balls are near which facets and balls of other
    * bodies, and which edges cross. Candidates are searched in a tree of boxes with a skin around them
    * and kept while nothing has moved by more than half the skin. Pairs depend
-   * on positions and keys only, not on the order of facets or the history.
+   * on positions and keys only, not on the order of facets or on earlier calls.
    */
   template <int dim>
   class SurfaceSearch
