@@ -222,8 +222,11 @@ namespace nsfd
         const double rounding = same_length * own.size;
         if (touch.gap > -rounding)
           return false;
+        // flush boxes overhang by a hair, which is not for the depths of others
         const Place<3> y = place<3>(x_, point.vertex),
-                       inside = sum(y, inset, difference(own.centre, y));
+                       inside = -touch.gap > touch.inset
+                                    ? y
+                                    : sum(y, inset, difference(own.centre, y));
         for (unsigned int i = 0; i < facet.n_vertices; ++i) {
           const Edge *edge = find_edge(
               facet.vertex[i], facet.vertex[(i + 1) % facet.n_vertices]);
