@@ -71,6 +71,8 @@ namespace nsfd
     using Row = MovingRow<dim>;
     using Vector = dealii::Tensor<1, dim>;
     using Pair = std::uint64_t;
+    /// more than there are; keys of facets begin with the place of their face
+    static constexpr std::uint64_t pieces_per_face = 64;
 
     static Pair pair_of(const unsigned int a, const unsigned int b)
     {
