@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 
 namespace nsfd
 {
@@ -108,6 +109,12 @@ namespace nsfd
       if (std::none_of(scene.interfaces.begin(), scene.interfaces.end(),
                        breaks)) {
         reader.refuse({name}, "there are no bonded faces that may break");
+        return;
+      }
+      if (scene.time.scheme == Scheme::symplectic) {
+        // the fastest modes take energy from every change of an explicit step
+        scene.time.largest_overshoot = std::numeric_limits<double>::infinity();
+        reader.refuse({name}, "explicit steps stay as long as they are");
         return;
       }
       scene.time.largest_overshoot = reader.number(

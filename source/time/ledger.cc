@@ -353,6 +353,7 @@ namespace nsfd
     using Operator = typename Dynamics<dim>::Operator;
     const auto &communicator = dynamics_.communicator();
     const std::size_t n = next.velocity.size();
+    const double kick = discretization_.input().time.kick(h, old.last_step);
     // row by row: all terms of all rows at once would be the largest thing of
     // the whole step
     std::vector<double> terms(n), change;
@@ -379,7 +380,7 @@ namespace nsfd
       for (std::size_t i = 0; i < n; ++i)
         terms[i] = 0.5 * next.displacement[i] * product[i];
       result.elastic = communicator.sum(terms);
-      result.of_strain = symplectic_share(h, product, old, next);
+      result.of_strain = symplectic_share(kick, product, old, next);
     } else
       result.elastic = 0.5 * energy(Operator::stiffness, next.displacement);
     if (!symplectic_ && theta_ > 0.5) {
@@ -400,20 +401,20 @@ namespace nsfd
     }
     if (discretization_.has_loads()) {
       for (std::size_t i = 0; i < n; ++i)
-        terms[i] = h * forces[i] * (theta_ * next.velocity[i] +
-                                    (1. - theta_) * old.velocity[i]);
+        terms[i] = kick * forces[i] * (theta_ * next.velocity[i] +
+                                       (1. - theta_) * old.velocity[i]);
       result.work = communicator.sum(terms);
     }
     return result;
   }
 
   /**
-   * What the bodies take from h v.K q_k of the mean velocity beyond their own
-   * change of energy: h/2 (v_k - v).K q_k - dq.K dq / 2. It comes and goes.
-   * @p product is K q of the next state.
+   * What the bodies take from k v.K q_k of the mean velocity, k the kick, beyond
+   * their own change of energy: (k (v_k + v)/2 - dq).K q_k - dq.K dq / 2. It
+   * comes and goes. @p product is K q of the next state.
    */
   template <int dim>
-  double Ledger<dim>::symplectic_share(const double h,
+  double Ledger<dim>::symplectic_share(const double kick,
                                        const std::vector<double> &product,
                                        const State &old,
                                        const State &next) const
@@ -422,10 +423,12 @@ namespace nsfd
     const std::size_t n = next.velocity.size();
     std::vector<double> force(n);
     dynamics_.apply(Operator::stiffness, old.displacement.data(), force.data());
-    for (std::size_t i = 0; i < n; ++i)
-      force[i] = h / 2. * force[i] * (old.velocity[i] - next.velocity[i]) -
-                 (next.displacement[i] - old.displacement[i]) *
-                     (product[i] - force[i]) / 2.;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double dq = next.displacement[i] - old.displacement[i];
+      force[i] =
+          force[i] * (kick / 2. * (old.velocity[i] + next.velocity[i]) - dq) -
+          dq * (product[i] - force[i]) / 2.;
+    }
     return dynamics_.communicator().sum(force);
   }
 

@@ -59,7 +59,7 @@ namespace nsfd
   private:
     double pressure_work(const OneStepProblem<dim> &problem, const State &old,
                          const State &next) const;
-    double symplectic_share(double time_step,
+    double symplectic_share(double kick,
                             const std::vector<double> &product,
                             const State &old, const State &next) const;
 

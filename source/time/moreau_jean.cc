@@ -228,7 +228,8 @@ namespace nsfd
   void MoreauJean<dim>::move_freely(const State &old,
                                     const std::vector<double> &pressure)
   {
-    const double h = problem_.time_step, theta = input_.time.bulk_theta();
+    const double h = problem_.time_step, theta = input_.time.bulk_theta(),
+                 kick = input_.time.kick(h, old.last_step);
     const std::size_t n_dofs = old.velocity.size();
     work_.resize(n_dofs);
     v_free_.resize(n_dofs);
@@ -237,7 +238,7 @@ namespace nsfd
     dynamics_.apply(Dynamics<dim>::Operator::stiffness, v_free_.data(),
                     work_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)
-      work_[i] = h * (forces_[i] - work_[i]);
+      work_[i] = kick * (forces_[i] - work_[i]);
     if (dynamics_.is_viscous()) {
       dynamics_.apply(Dynamics<dim>::Operator::damping, old.velocity.data(),
                       v_free_.data());

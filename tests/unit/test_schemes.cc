@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nsfd
@@ -77,6 +78,34 @@ end
       test::Scene<2> scene(plate, {"Material: plate/initial velocity x=9 * x",
                                    "Material: plate/initial velocity y=7 * y"});
       expect_energy_kept(scene);
+    }
+
+    // Velocities are those of the middle of a step, and the first one starts
+    // half a step late: whatever the steps h_1, h_2, ..., a free fall is
+    // q = g (t^2 + h_1 t)/2 at their ends.
+    TEST(SymplecticTest, FallsExactlyWithAnySteps)
+    {
+      test::Scene<2> scene(
+          plate + "subsection Loads\n  set gravity = 0, -2\nend\n",
+          {"Material: plate/initial velocity x=0",
+           "Material: plate/initial displacement y=0"});
+      const double first = scene.time_step;
+      double t = 0.;
+      for (unsigned int step = 0; step < 60; ++step) {
+        const double h = first * std::array{1., 0.5, 0.7}[step % 3];
+        EXPECT_LT(scene.advance(h).ledger_defect, 1e-12);
+        t += h;
+      }
+      const auto &d = *scene.discretization;
+      const auto nodal = d.to_nodal(scene.state.displacement);
+      const double fall = -(t * t + first * t);
+      for (unsigned int b = 0; b < d.bodies().size(); ++b) {
+        const auto u = d.at_corners(b, nodal);
+        for (std::size_t k = 0; k < u.size(); k += 2) {
+          EXPECT_NEAR(u[k], 0., 1e-12 * std::abs(fall));
+          EXPECT_NEAR(u[k + 1], fall, 1e-12 * std::abs(fall));
+        }
+      }
     }
 
     TEST(SymplecticTest, KeepsItsEnergyWithBonds)

@@ -343,6 +343,18 @@ namespace nsfd
       return scheme == Scheme::symplectic ? 0. : theta;
     }
 
+    /**
+     * How long the forces of the bodies act in a step of length @p h behind one
+     * of @p last (0: none). Explicit velocities are those of the middle of a
+     * step, from one middle to the next; otherwise every change of the step
+     * would move the energy that the scheme keeps, by as much as there is in
+     * the fastest modes.
+     */
+    double kick(const double h, const double last) const
+    {
+      return scheme == Scheme::symplectic && last > 0. ? (h + last) / 2. : h;
+    }
+
     /** Weight of the new velocity in the work of impulses and loads. */
     double work_theta() const
     {
