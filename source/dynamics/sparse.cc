@@ -150,8 +150,8 @@ namespace nsfd
           else if (std::isfinite(stiffness)) {
             least = 1e-2 / stiffness;
             vanishing = 1e-10 / stiffness;
-          } else
-            vanishing = least;
+          } else // rigid on both sides: nothing but inertia to compare with
+            vanishing = 1e-10 * W[k * n + k];
           exact = exact && D[row] >= vanishing;
           inverse_D_[row] = 1. / (D[row] >= vanishing ? D[row] : least);
         }

@@ -61,7 +61,8 @@ namespace nsfd
         solutions[i] =
           solve_frozen_point<dim>(problem_, i, (*frozen_)[i], local,
                                   majorant(i, 0), majorant(i, 1));
-      else if (!linear_[i].exists() ||
+      // what broke in this solve may stay so beside a linear solution
+      else if (!linear_[i].exists() || solutions[i].damages ||
                !linear_[i].solve(problem_, i, local, solutions[i]))
         solutions[i] = solve_point<dim>(problem_, i, local, majorant(i, 0),
                                         majorant(i, 1), solutions[i].reach);

@@ -284,6 +284,40 @@ namespace
     point.expect_solution(P);
   }
 
+  TEST(OnePoint, BrokenStaysBroken)
+  {
+    // The only end of the step is beyond d_0. From the impulse of the intact
+    // spring on, the local problem, whose R is ten times W, has nothing else;
+    // without impulse it has 0.6 d_0 as well.
+    OnePoint point;
+    auto &problem = point.problem;
+    const double C = 312.5, d_0 = 0.01, w = 0.4, h = OnePoint::h;
+    problem.interactions[0].law =
+        make_law("brittle", {{"stiffness", "312.5"}, {"strength", "3.125"}});
+    problem.kind = {PointKind::cohesive};
+    problem.compression_stiffness = {C};
+    problem.opening_max = {0.9 * d_0};
+    problem.jump_old = problem.jump_free = {0.9 * d_0, 0.};
+    problem.majorant_normal = {10. * point.W_NN};
+    point.set_free_velocity(0.3 * d_0 / h, 0.);
+    const Vector intact{-w * h * C * d_0, 0.}, none{0., 0.};
+    LawEvaluation<2> evaluation(problem, *point.dynamics, 1., 1e-12);
+    evaluation.update(intact);
+    EXPECT_TRUE(evaluation.solutions[0].damages);
+    evaluation.update(none);
+    EXPECT_TRUE(evaluation.solutions[0].damages);
+    EXPECT_EQ(evaluation.error, 0.);
+    for (const std::string name : {"dual newton", "gauss seidel"}) {
+      const auto solver = SolverRegistry<2>::instance().create(name);
+      Vector P(intact);
+      LawEvaluation<2> own(problem, *point.dynamics, 1., 1e-12);
+      const auto report =
+          solver->solve(problem, *point.dynamics, 1., SolverControl(), P, own);
+      EXPECT_TRUE(report.converged) << name;
+      EXPECT_NEAR(P[0], 0., 1e-10) << name;
+    }
+  }
+
   // --- many points
 
   /** Blocks on the ground, pushed and sheared: contact and Coulomb friction. */
@@ -631,6 +665,49 @@ end
       EXPECT_NE(text.find("worst face at ("), std::string::npos) << text;
     }
     EXPECT_EQ(stuck.state.velocity, before.velocity);
+  }
+
+  /** A beam of rigid blocks on springs E/l, one end is lifted. */
+  const std::string chain = R"(
+set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 80 mm, 10 mm
+  set cells        = 80, 1
+end
+subsection Material: blocks
+  set model   = rigid
+  set density = 2700
+end
+subsection Interface: joints
+  set law                  = elastic
+  set normal stiffness     = 7e13
+  set tangential stiffness = 7e16
+end
+subsection Boundary: left
+  set velocity y = 1
+end
+subsection Time
+  set end   = 1 ms
+  set step  = 50 us
+  set theta = 1
+end
+subsection Solver
+  set path = global
+end
+)";
+
+  // The springs are linear, so the matrix of the bodies joined by them gives
+  // the impulses of a step at once, also where they are far stiffer than the
+  // inertia of a block: h^2 C w W is some 1e8 here.
+  TEST(Solvers, StiffSpringsBetweenRigidBodies)
+  {
+    Scene<2> scene(chain, {"Solver/tolerance=1e-11"});
+    for (unsigned int step = 0; step < 20; ++step) {
+      const StepReport report = scene.advance();
+      EXPECT_LE(report.solver.newton, 3u) << step;
+      EXPECT_EQ(report.solver.sweeps, 0u) << step;
+    }
   }
 
   // --- the dual objective
