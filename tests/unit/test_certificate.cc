@@ -77,6 +77,10 @@ namespace nsfd
          // below the largest bound, but above that of its point
          [](RunFacts &f) { f.penetration_excess = 1e-8; }, Verdict::bad,
          "1e-08 m deeper"},
+        {"PenetrationBeyondFirstOrder", "penetration",
+         // a thousandth of the largest bound is let pass
+         [](RunFacts &f) { f.penetration_excess = 4e-10; }, Verdict::bad,
+         "4e-10 m deeper"},
         {"Equilibria", "penetration",
          [](RunFacts &f) {
            f.static_steps = f.steps;
