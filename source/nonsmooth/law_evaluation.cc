@@ -7,6 +7,17 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** The traction of its law drops at once. */
+    template <int dim>
+    bool drops(const OneStepProblem<dim> &problem, const std::size_t i)
+    {
+      const auto &law = problem.interactions[problem.interaction[i]].law;
+      return law && std::isinf(law->steepest_softening());
+    }
+  } // namespace
+
   template <int dim>
   LawEvaluation<dim>::LawEvaluation(const OneStepProblem<dim> &problem,
                                     const Dynamics<dim> &dynamics,
@@ -62,7 +73,8 @@ namespace nsfd
           solve_frozen_point<dim>(problem_, i, (*frozen_)[i], local,
                                   majorant(i, 0), majorant(i, 1));
       // what broke in this solve may stay so beside a linear solution
-      else if (!linear_[i].exists() || solutions[i].damages ||
+      else if (!linear_[i].exists() ||
+               (solutions[i].damages && drops(problem_, i)) ||
                !linear_[i].solve(problem_, i, local, solutions[i]))
         solutions[i] = solve_point<dim>(problem_, i, local, majorant(i, 0),
                                         majorant(i, 1), solutions[i].reach);
