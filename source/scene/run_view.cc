@@ -152,10 +152,11 @@ namespace nsfd
     motion_->time = state_->time;
     if (previous_ && row_->time_step > 0.) {
       const double h = row_->time_step, theta = input_.time.work_theta(),
-                   bulk = input_.time.bulk_theta();
+                   bulk = input_.time.bulk_theta(),
+                   kick = input_.time.kick(h, previous_->last_step);
       motion_->time -= (1. - theta) * h;
       for (std::size_t k = 0; k < q.size(); ++k) {
-        a[k] = (v[k] - previous_->velocity[k]) / h;
+        a[k] = (v[k] - previous_->velocity[k]) / kick;
         v[k] = theta * v[k] + (1. - theta) * previous_->velocity[k];
         q[k] = bulk * q[k] + (1. - bulk) * previous_->displacement[k];
       }

@@ -317,7 +317,6 @@ namespace nsfd
     next.step = old.step + 1;
     next.time = old.time + h;
     next.last_step = h;
-    next.last_step = h;
     next.velocity = v_free_;
     dynamics_.add_velocity_change(next.impulse.data(), next.velocity.data());
     next.displacement.resize(v_free_.size());
