@@ -526,6 +526,7 @@ namespace nsfd
     if (contacts_) {
       remember_surfaces(old, next);
       contacts_->remember_facets(next);
+      next.touches = touches(next);
     }
     forget_rows(next);
     if (contacts_)
@@ -658,6 +659,36 @@ namespace nsfd
         next.surface_wear_speed[row.place] = row.wear_speed;
       }
     }
+  }
+
+  /** The contacts of this rank that carried something. */
+  template <int dim>
+  std::vector<SurfaceTouch>
+  LargeMotion<dim>::touches(const State &next) const
+  {
+    std::vector<SurfaceTouch> result;
+    const auto &points = bodies_.points();
+    for (std::size_t k = 0; k < bodies_.n_own_rows(); ++k) {
+      const MovingRow<dim> &row = bodies_.rows()[k];
+      const std::size_t i = bodies_.row_point(k);
+      if (row.partner == MovingRow<dim>::Partner::pin || !next.contact[i])
+        continue;
+      SurfaceTouch &touch = result.emplace_back();
+      touch.obstacle = row.partner == MovingRow<dim>::Partner::obstacle;
+      touch.block = row.block;
+      touch.material_2 =
+          this->discretization_.body_table().bodies[row.body_2].material;
+      touch.weight = row.weight;
+      touch.opening = next.jump[i * dim];
+      for (unsigned int d = 0; d < dim; ++d) {
+        touch.position[d] = points.position[i * dim + d];
+        touch.normal[d] = points.frame[i * dim * dim + d];
+        for (unsigned int a = 0; a < dim; ++a)
+          touch.impulse[d] += points.frame[(i * dim + a) * dim + d] *
+                              next.impulse[i * dim + a];
+      }
+    }
+    return result;
   }
 
   template <int dim>

@@ -80,6 +80,7 @@ namespace nsfd
     struct SurfaceMemory;
     std::vector<SurfaceMemory> own_memory(const State &next) const;
     void remember_surfaces(const State &old, State &next) const;
+    std::vector<SurfaceTouch> touches(const State &next) const;
     void forget_rows(State &next) const;
 
     MovingBodies<dim> &bodies_;

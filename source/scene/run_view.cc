@@ -215,6 +215,69 @@ namespace nsfd
     return result;
   }
 
+  namespace
+  {
+    bool is_at(const PointOrigin origin, const NamedSurface &surface)
+    {
+      return origin.block == surface.block &&
+             origin.kind == (surface.kind == NamedSurface::Kind::obstacle
+                                 ? PointOrigin::Kind::obstacle
+                                 : PointOrigin::Kind::interface);
+    }
+  } // namespace
+
+  template <int dim>
+  bool RunViewOf<dim>::is_second(const unsigned int material,
+                                 const NamedSurface &contact) const
+  {
+    return input_.materials[material].name ==
+           input_.contacts[contact.block].materials[1];
+  }
+
+  template <int dim>
+  std::vector<RunView::Place>
+  RunViewOf<dim>::places(const NamedSurface &surface) const
+  {
+    std::vector<Place> result;
+    if (surface.kind != NamedSurface::Kind::contact)
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (!is_at(points_[i].origin, surface))
+          continue;
+        const PointState state = at(i);
+        Place &place = result.emplace_back();
+        place.position = points_[i].position;
+        place.normal = points_[i].normal;
+        place.area = points_[i].area;
+        place.contact = state.contact;
+        place.pressure = state.pressure;
+        for (unsigned int c = 0; c < 3; ++c) {
+          place.force[c] = -place.area * state.traction[c];
+          place.opening += state.jump[c] * place.normal[c];
+        }
+      }
+    for (const SurfaceTouch &touch : state_->touches) {
+      if (touch.block != surface.block ||
+          touch.obstacle != (surface.kind == NamedSurface::Kind::obstacle) ||
+          surface.kind == NamedSurface::Kind::interface)
+        continue;
+      const double sign =
+          touch.obstacle || is_second(touch.material_2, surface) ? 1. : -1.;
+      Place &place = result.emplace_back();
+      place.position = touch.position;
+      place.area = touch.weight;
+      place.contact = true;
+      place.opening = touch.opening;
+      double normal = 0.;
+      for (unsigned int c = 0; c < 3; ++c) {
+        normal += touch.impulse[c] * touch.normal[c];
+        place.normal[c] = sign * touch.normal[c];
+        place.force[c] = sign * touch.impulse[c] / row_->time_step;
+      }
+      place.pressure = std::max(0., normal) / (place.area * row_->time_step);
+    }
+    return result;
+  }
+
   template <int dim>
   RunView::Vector RunViewOf<dim>::reaction(const unsigned int boundary) const
   {
@@ -277,11 +340,7 @@ namespace nsfd
     const Bodies &bodies = discretization_.bodies();
     const auto &origins = discretization_.origins();
     const auto is_there = [&](const unsigned int point) {
-      return point < origins.size() &&
-             origins[point].block == surface.block &&
-             origins[point].kind == (is_obstacle
-                                         ? PointOrigin::Kind::obstacle
-                                         : PointOrigin::Kind::interface);
+      return point < origins.size() && is_at(origins[point], surface);
     };
     for (unsigned int b = 0; b < bodies.size(); ++b)
       for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];

@@ -46,6 +46,7 @@ namespace nsfd
     }
     const std::vector<Point> &points() const override { return points_; }
     PointState at(std::size_t point) const override;
+    std::vector<Place> places(const NamedSurface &surface) const override;
     Vector reaction(unsigned int boundary) const override;
     double broken_beta(std::size_t point) const override;
     Means on(const NamedSurface &surface) const override;
@@ -90,6 +91,7 @@ namespace nsfd
     bool reaches(unsigned int body, const Vector &centre, double radius) const;
     Means mean_of(const std::vector<double> &terms) const;
     Vector traction(std::size_t point) const;
+    bool is_second(unsigned int material, const NamedSurface &contact) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;

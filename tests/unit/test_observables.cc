@@ -260,6 +260,21 @@ end
     holds("set type = reaction\n set on = crak\n",
           "on = crak is the name of no Boundary");
     holds("set type = contact pressure\n", "`on` must be given");
+    const std::vector<std::string> slides = {"motion=large",
+                                             "Contact: pair/friction=0"};
+    const auto large = [&](const std::string &block) {
+      return report_of("subsection Observable: one\n" + block + "end\n",
+                       slides);
+    };
+    EXPECT_NE(large("set type = contact pressure\n set on = pair\n")
+                .find("write type = reaction"),
+              std::string::npos);
+    EXPECT_NE(large("set type = reaction\n set on = pair\n")
+                .find("of two different materials"),
+              std::string::npos);
+    EXPECT_NE(large("set type = probe\n set on = pair\n")
+                .find("has no faces of its own"),
+              std::string::npos);
     holds("set type = energy release rate\n set at = 0, 0\n"
           "set direction = 0, 0\n",
           "direction = 0 has no direction");

@@ -25,7 +25,8 @@ namespace nsfd
     {
       boundary,
       obstacle,
-      interface
+      interface,
+      contact ///< of large motions, between two materials
     };
     Kind kind = Kind::boundary;
     unsigned int block = 0;
@@ -77,6 +78,22 @@ namespace nsfd
       double pressure = 0.; ///< of the contact, Pa; mean of the step
     };
     virtual PointState at(std::size_t point) const = 0;
+
+    /** A place of an obstacle, an interface or a contact. */
+    struct Place
+    {
+      Vector position{}, normal{}; ///< towards the body, or body 2
+      Vector force{};              ///< on it, mean of the step, N
+      double area = 0., opening = 0.;
+      bool contact = false; ///< pressed together in the step
+      double pressure = 0.; ///< of the contact, Pa; mean of the step
+    };
+    /**
+     * Those of this rank: of an interface, or an obstacle in small motions, all
+     * points(); in large motions those that were touched in the step, and only
+     * on obstacles and contacts, body 2 being the second material.
+     */
+    virtual std::vector<Place> places(const NamedSurface &surface) const = 0;
 
     /** Force of the support of a driven boundary on the body, N. */
     virtual Vector reaction(unsigned int boundary) const = 0;

@@ -3,12 +3,25 @@
 #include "nsfd/nonsmooth/one_step_problem.h"
 #include "nsfd/output/run_record.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace nsfd
 {
+  /** What pressed on a place of a surface in a step of a large motion. */
+  struct SurfaceTouch
+  {
+    bool obstacle = false;       ///< or another body
+    unsigned int block = 0;      ///< of the obstacles, or of the contacts
+    unsigned int material_2 = 0; ///< of the body that has the place
+    double weight = 0.;          ///< of the place, m or m^2
+    double opening = 0.;         ///< at the end of the step, m
+    /// at the middle of the step; the normal to body 2, the impulse on it, N s
+    std::array<double, 3> position{}, normal{}, impulse{};
+  };
+
   /**
    * Everything that changes in time, as plain values: copied and swapped.
    * Bodies: q, v by unknown. Points: dim components in the local frame.
@@ -61,6 +74,8 @@ namespace nsfd
     /// or Surfaces::no_key, and how far, m
     std::vector<std::uint64_t> surface_facet;
     std::vector<double> surface_gap;
+    /// of the bodies of this rank, in the last step only: a checkpoint has none
+    std::vector<SurfaceTouch> touches;
     /// what materials with history remember, cell by cell and point by point
     /// of the cell quadrature, see motion/history_cell.h; empty without such
     std::vector<double> material_history;

@@ -23,16 +23,23 @@ namespace nsfd
                      full_name(surface_) + " touches nothing",
                      "name an Obstacle or an Interface block; for the force of "
                      "a driven boundary write type = reaction");
-      else if (scene.large_motion)
-        reader.error("type",
-                     "contact pressure needs motion = small: places of large "
-                     "motions meet others in every step",
-                     "remove the block, or write motion = small");
+      else if (surface_.kind == NamedSurface::Kind::contact)
+        reader.error("on",
+                     full_name(surface_) + " has places on both bodies, which "
+                                           "share one pressure",
+                     "write type = reaction for the force between them");
+      else if (surface_.kind == NamedSurface::Kind::interface &&
+               scene.large_motion)
+        reader.error("on",
+                     "in large motions the contacts of broken faces are those "
+                     "of Contact blocks",
+                     "name an Obstacle block, or write type = reaction on a "
+                     "Contact block");
     }
 
     void find(const RunView &view) override
     {
-      if (!(view.sums(areas(view), 1)[0] > 0.))
+      if (!(view.on(surface_).size > 0.))
         throw std::runtime_error("on = " + full_name(surface_) +
                                  " has no faces in this mesh");
     }
@@ -52,20 +59,15 @@ namespace nsfd
     {
       std::vector<std::array<double, 8>> touching;
       double peak = 0.;
-      for (std::size_t i = 0; i < view.points().size(); ++i) {
-        if (!is_there(view, i))
+      for (const RunView::Place &place : view.places(surface_)) {
+        if (!place.contact)
           continue;
-        const RunView::PointState state = view.at(i);
-        if (!state.contact)
-          continue;
-        const auto &point = view.points()[i];
-        const double load = point.area * state.pressure;
-        peak = std::max(peak, state.pressure);
-        touching.push_back({{point.area, load, -point.area * state.traction[0],
-                             -point.area * state.traction[1],
-                             -point.area * state.traction[2],
-                             load * point.position[0], load * point.position[1],
-                             load * point.position[2]}});
+        const double load = place.area * place.pressure;
+        peak = std::max(peak, place.pressure);
+        touching.push_back({{place.area, load, place.force[0], place.force[1],
+                             place.force[2], load * place.position[0],
+                             load * place.position[1],
+                             load * place.position[2]}});
       }
       const std::size_t n = touching.size();
       std::vector<double> terms(8 * n);
@@ -98,19 +100,17 @@ namespace nsfd
     std::vector<double> profile(const RunView &view) const override
     {
       std::vector<double> rows;
-      for (std::size_t i = 0; i < view.points().size(); ++i) {
-        if (!is_there(view, i))
-          continue;
-        const auto &point = view.points()[i];
-        const RunView::PointState state = view.at(i);
-        Vector shear = state.traction;
-        const double normal = product(shear, point.normal);
+      for (const RunView::Place &place : view.places(surface_)) {
+        Vector shear = place.force;
+        const double normal = product(shear, place.normal);
         for (unsigned int c = 0; c < 3; ++c)
-          shear[c] -= normal * point.normal[c];
-        add_vector(rows, point.position, dimension_);
-        rows.push_back(state.pressure);
-        rows.push_back(state.contact ? std::sqrt(product(shear, shear)) : 0.);
-        rows.push_back(product(state.jump, point.normal));
+          shear[c] -= normal * place.normal[c];
+        add_vector(rows, place.position, dimension_);
+        rows.push_back(place.pressure);
+        rows.push_back(place.contact ? std::sqrt(product(shear, shear)) /
+                                         place.area
+                                     : 0.);
+        rows.push_back(place.opening);
       }
       return rows;
     }
@@ -118,24 +118,6 @@ namespace nsfd
     std::string text() const override { return "on " + full_name(surface_); }
 
   private:
-    bool is_there(const RunView &view, const std::size_t i) const
-    {
-      const PointOrigin origin = view.points()[i].origin;
-      return origin.block == surface_.block &&
-             origin.kind == (surface_.kind == NamedSurface::Kind::obstacle
-                                 ? PointOrigin::Kind::obstacle
-                                 : PointOrigin::Kind::interface);
-    }
-
-    std::vector<double> areas(const RunView &view) const
-    {
-      std::vector<double> areas;
-      for (std::size_t i = 0; i < view.points().size(); ++i)
-        if (is_there(view, i))
-          areas.push_back(view.points()[i].area);
-      return areas;
-    }
-
     const unsigned int dimension_;
     const NamedSurface surface_;
   };

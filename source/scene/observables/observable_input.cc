@@ -17,6 +17,8 @@ namespace nsfd::observables
         return "Boundary";
       case NamedSurface::Kind::obstacle:
         return "Obstacle";
+      case NamedSurface::Kind::contact:
+        return "Contact";
       default:
         return "Interface";
       }
@@ -32,6 +34,7 @@ namespace nsfd::observables
       add(scene.boundaries, NamedSurface::Kind::boundary);
       add(scene.obstacles, NamedSurface::Kind::obstacle);
       add(scene.interfaces, NamedSurface::Kind::interface);
+      add(scene.contacts, NamedSurface::Kind::contact);
       return all;
     }
   } // namespace
@@ -47,7 +50,8 @@ namespace nsfd::observables
     const std::string name = reader.word("on", "", text);
     if (name.empty()) {
       reader.error("on", "`on` must be given",
-                   "write the name of a Boundary, Obstacle or Interface block");
+                   "write the name of a Boundary, Obstacle, Interface or "
+                   "Contact block");
       return {};
     }
     std::vector<NamedSurface> found;
@@ -61,8 +65,8 @@ namespace nsfd::observables
       return found[0];
     if (found.empty())
       reader.error("on",
-                   fmt::format("on = {} is the name of no Boundary, Obstacle "
-                               "or Interface block",
+                   fmt::format("on = {} is the name of no Boundary, Obstacle, "
+                               "Interface or Contact block",
                                name),
                    did_you_mean(name, names));
     else

@@ -25,6 +25,10 @@ namespace nsfd
                                          dimension_, ""));
       if (has_faces)
         surface_ = read_surface(reader, scene, "");
+      if (surface_ && surface_->kind == NamedSurface::Kind::contact)
+        reader.error("on",
+                     full_name(*surface_) + " has no faces of its own",
+                     "name a Boundary, Obstacle or Interface block");
       if (has_place == has_faces)
         reader.error(has_place ? "on" : "type",
                      has_place ? "a probe looks at a place or at faces, not at "

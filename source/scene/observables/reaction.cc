@@ -7,8 +7,9 @@ namespace nsfd
   using namespace observables;
 
   /**
-   * The force on the bodies at a driven boundary or an obstacle, and of body 1
-   * on body 2 through an interface.
+   * The force on the bodies at a driven boundary or an obstacle, of body 1 on
+   * body 2 through an interface, of the first on the second material of a
+   * contact.
    */
   class Reaction final : public Observable
   {
@@ -16,15 +17,20 @@ namespace nsfd
     Reaction(SectionReader &reader, const SceneInput &scene)
         : dimension_(scene.dimension),
           surface_(read_surface(reader, scene,
-                                "a driven Boundary, an Obstacle or an "
-                                "Interface block"))
+                                "a driven Boundary, an Obstacle, an Interface "
+                                "or a Contact block"))
     {
       if (surface_.name.empty())
         return;
-      if (surface_.kind == NamedSurface::Kind::obstacle && scene.large_motion)
-        reader.error("on",
-                     "the reaction of an obstacle needs motion = small",
-                     "name a driven boundary, or remove the block");
+      if (surface_.kind == NamedSurface::Kind::contact) {
+        const auto &materials = scene.contacts[surface_.block].materials;
+        if (materials[0] == materials[1] || materials[0].empty() ||
+            materials[1].empty())
+          reader.error("on",
+                       full_name(surface_) + " does not say on which of two "
+                                             "materials the force is",
+                       "name a Contact block of two different materials");
+      }
       if (surface_.kind != NamedSurface::Kind::boundary)
         return;
       const BoundaryInput &boundary = scene.boundaries[surface_.block];
@@ -40,7 +46,8 @@ namespace nsfd
 
     void find(const RunView &view) override
     {
-      if (!(view.on(surface_).size > 0.))
+      if (surface_.kind != NamedSurface::Kind::contact &&
+          !(view.on(surface_).size > 0.))
         throw std::runtime_error("on = " + full_name(surface_) +
                                  " has no faces in this mesh");
     }
@@ -68,23 +75,12 @@ namespace nsfd
   private:
     Vector resultant(const RunView &view) const
     {
-      std::vector<Vector> forces;
-      for (std::size_t i = 0; i < view.points().size(); ++i) {
-        const auto &point = view.points()[i];
-        if (point.origin.block != surface_.block ||
-            point.origin.kind != (surface_.kind == NamedSurface::Kind::obstacle
-                                      ? PointOrigin::Kind::obstacle
-                                      : PointOrigin::Kind::interface))
-          continue;
-        Vector &force = forces.emplace_back(view.at(i).traction);
-        for (double &component : force)
-          component *= -point.area;
-      }
-      const std::size_t n = forces.size();
+      const auto places = view.places(surface_);
+      const std::size_t n = places.size();
       std::vector<double> terms(3 * n);
       for (std::size_t k = 0; k < n; ++k)
         for (unsigned int c = 0; c < 3; ++c)
-          terms[c * n + k] = forces[k][c];
+          terms[c * n + k] = places[k].force[c];
       const auto s = view.sums(terms, 3);
       return {{s[0], s[1], s[2]}};
     }
@@ -94,6 +90,6 @@ namespace nsfd
   };
 
   NSFD_REGISTER(ObservableRegistry, Reaction, "reaction",
-                "Force at a driven boundary, an obstacle or an interface",
+                "Force at a driven boundary, an obstacle, an interface, a contact",
                 "on = floor");
 } // namespace nsfd
