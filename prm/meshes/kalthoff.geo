@@ -2,7 +2,9 @@
 // the symmetry line is the lower side, the notch a line of 50 at the height 25.
 // See prm/benchmarks/kalthoff.prm.
 h = 4.5;
-fine = 2.4; // where the crack may go
+If (!Exists(fine))
+  fine = 1.6; // where the crack may go
+EndIf
 Mesh.Algorithm = 5; // Delaunay: no rows of equal triangles, which lead a crack
 Point(1) = {0, 0, 0, h};
 Point(2) = {50, 0, 0, h};

@@ -2,15 +2,9 @@
 // in the same order in both kernels.
 #include "nsfd/dynamics/block_kernels.h"
 
-#include <cstring>
+#include "../base/instruction_sets.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define NSFD_CLONES                                                            \
-  __attribute__((target_clones("arch=skylake-avx512", "arch=haswell",        \
-                               "default")))
-#else
-#define NSFD_CLONES
-#endif
+#include <cstring>
 
 namespace nsfd
 {

@@ -1,17 +1,9 @@
 // No deal.II here: plain arrays, several instruction sets.
 #include "lane_kernels.h"
 
-#include <cmath>
+#include "../base/instruction_sets.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define NSFD_CLONES                                                            \
-  __attribute__((target_clones("arch=skylake-avx512", "arch=haswell",          \
-                               "default")))
-#define NSFD_INLINE inline __attribute__((always_inline))
-#else
-#define NSFD_CLONES
-#define NSFD_INLINE inline
-#endif
+#include <cmath>
 
 namespace nsfd::lane
 {

@@ -2,15 +2,9 @@
 // sets.
 #include "contact_kernels.h"
 
-#include <cstddef>
+#include "../base/instruction_sets.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define NSFD_CLONES                                                            \
-  __attribute__((                                                              \
-      target_clones("arch=skylake-avx512", "arch=haswell", "default")))
-#else
-#define NSFD_CLONES
-#endif
+#include <cstddef>
 
 namespace nsfd::stored
 {
