@@ -234,6 +234,27 @@ end
                 0.1 * scene.state.largest_energy);
     }
 
+    TEST(SymplecticTest, RefusesABoundOfTheOvershoot)
+    {
+      const auto report = [](const char *scheme) {
+        InputErrors errors;
+        read_scene_text(plate, "test.prm",
+                        {"Interface: all/law=camacho-ortiz",
+                         "Interface: all/strength=1",
+                         "Interface: all/toughness=1",
+                         "Interface: all/intact faces=bonded",
+                         std::string("Time/scheme=") + scheme,
+                         "Time/largest overshoot=0.1"},
+                        errors);
+        return errors.report();
+      };
+      EXPECT_NE(report("symplectic").find("explicit steps stay as long as they "
+                                          "are"),
+                std::string::npos)
+          << report("symplectic");
+      EXPECT_EQ(report("moreau-jean"), "");
+    }
+
     TEST(ArkodeTest, RefusesWhatIsNotSmooth)
     {
       InputErrors errors;
