@@ -398,6 +398,37 @@ namespace nsfd
     }
 
     /**
+     * In a short step the end hardly depends on the secant that it makes: the
+     * end of one secant is nearly that of the next, ten times nearer with every
+     * one. False where it is not, and then nothing is said about an end.
+     */
+    template <int dim>
+    bool follow_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
+                             const Reach &start, LocalProblem<dim> &local,
+                             Reach &end)
+    {
+      const Reach &low = damage.history();
+      end = {std::clamp(start.opening, low.opening, high.opening),
+             std::clamp(start.slip, low.slip, high.slip)};
+      double last = infinity;
+      for (unsigned int k = 0; k < 12; ++k) {
+        local.solve_end(damage, end);
+        const Reach next{
+          std::max(low.opening, local.solution.reach.opening),
+          std::max(low.slip, local.solution.reach.slip)};
+        const double change = std::abs(next.opening - end.opening) +
+                              std::abs(next.slip - end.slip);
+        end = next;
+        if (change <= 4e-16 * (end.opening + end.slip))
+          return true;
+        if (!(change < 0.1 * last))
+          return false;
+        last = change;
+      }
+      return false;
+    }
+
+    /**
      * Two scalars: the slip outside, and for each slip the opening that goes
      * with it; either may stay within its history.
      */
@@ -406,8 +437,21 @@ namespace nsfd
                             const Reach &start, LocalProblem<dim> &local)
     {
       const Reach &low = damage.history();
-      const auto reach = [&](const Reach &end) -> const Reach & {
-        local.solve_end(damage, end);
+      const auto finish = [&](const Reach &root) {
+        // where nothing grows, the point is where its springs are
+        Reach &end = local.solution.reach;
+        if (root.opening > low.opening)
+          end.opening = root.opening;
+        if (root.slip > low.slip)
+          end.slip = root.slip;
+      };
+      Reach end;
+      if (follow_mixed_damage<dim>(damage, high, start, local, end)) {
+        finish(end);
+        return;
+      }
+      const auto reach = [&](const Reach &at) -> const Reach & {
+        local.solve_end(damage, at);
         return local.solution.reach;
       };
       double opening = low.opening;
@@ -426,12 +470,7 @@ namespace nsfd
           ? adjacent_root(slip_excess, low.slip, high.slip, start.slip)
           : low.slip;
       slip_excess(slip);
-      // where nothing grows, the point is where its springs are
-      auto &end = local.solution.reach;
-      if (opening > low.opening)
-        end.opening = opening;
-      if (slip > low.slip)
-        end.slip = slip;
+      finish({opening, slip});
     }
   } // namespace
 
