@@ -26,11 +26,11 @@ namespace nsfd
   }
 
   template <int dim>
-  void
+  bool
   BondedDynamics<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
   {
     if (!this->communicator_.any(bonded != bonded_))
-      return;
+      return false;
     bool impossible = false;
     for (std::size_t i = 0; i < bonded.size(); ++i)
       impossible |= bonded[i] && bulk_.bonds()[i].penalty == 0.;
@@ -39,6 +39,7 @@ namespace nsfd
                                "them with the law `rigid`");
     bonded_ = bonded;
     bonds_changed();
+    return true;
   }
 
   template <int dim>

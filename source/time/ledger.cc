@@ -337,7 +337,6 @@ namespace nsfd
                       const UniquenessBound<dim> &uniqueness)
       : discretization_(discretization), dynamics_(dynamics),
         uniqueness_(uniqueness), theta_(input.time.work_theta()),
-        symplectic_(input.time.scheme == Scheme::symplectic),
         reactions_(discretization.driven_boundaries().size() * dim, 0.)
   {
   }
@@ -348,7 +347,8 @@ namespace nsfd
   template <int dim>
   BodyEnergies
   Ledger<dim>::book_bodies(const std::vector<double> &forces, const double h,
-                           const State &old, const State &next) const
+                           const State &old, const State &next,
+                           const ElasticForces<dim> *elastic) const
   {
     using Operator = typename Dynamics<dim>::Operator;
     const auto &communicator = dynamics_.communicator();
@@ -373,17 +373,14 @@ namespace nsfd
       return change;
     };
     result.kinetic = 0.5 * energy(Operator::mass, next.velocity);
-    if (symplectic_) {
-      std::vector<double> product(n);
-      dynamics_.apply(Operator::stiffness, next.displacement.data(),
-                      product.data());
+    if (elastic) {
       for (std::size_t i = 0; i < n; ++i)
-        terms[i] = 0.5 * next.displacement[i] * product[i];
+        terms[i] = 0.5 * next.displacement[i] * elastic->at_end()[i];
       result.elastic = communicator.sum(terms);
-      result.of_strain = symplectic_share(kick, product, old, next);
+      result.of_strain = symplectic_share(kick, *elastic, old, next);
     } else
       result.elastic = 0.5 * energy(Operator::stiffness, next.displacement);
-    if (!symplectic_ && theta_ > 0.5) {
+    if (!elastic && theta_ > 0.5) {
       const double share = theta_ - 0.5;
       result.of_mass =
           share *
@@ -411,25 +408,24 @@ namespace nsfd
   /**
    * What the bodies take from k v.K q_k of the mean velocity, k the kick, beyond
    * their own change of energy: (k (v_k + v)/2 - dq).K q_k - dq.K dq / 2. It
-   * comes and goes. @p product is K q of the next state.
+   * comes and goes.
    */
   template <int dim>
   double Ledger<dim>::symplectic_share(const double kick,
-                                       const std::vector<double> &product,
+                                       const ElasticForces<dim> &elastic,
                                        const State &old,
                                        const State &next) const
   {
-    using Operator = typename Dynamics<dim>::Operator;
     const std::size_t n = next.velocity.size();
-    std::vector<double> force(n);
-    dynamics_.apply(Operator::stiffness, old.displacement.data(), force.data());
+    std::vector<double> terms(n);
     for (std::size_t i = 0; i < n; ++i) {
-      const double dq = next.displacement[i] - old.displacement[i];
-      force[i] =
-          force[i] * (kick / 2. * (old.velocity[i] + next.velocity[i]) - dq) -
-          dq * (product[i] - force[i]) / 2.;
+      const double dq = next.displacement[i] - old.displacement[i],
+                   before = elastic.at_start()[i], after = elastic.at_end()[i];
+      terms[i] =
+          before * (kick / 2. * (old.velocity[i] + next.velocity[i]) - dq) -
+          dq * (after - before) / 2.;
     }
-    return dynamics_.communicator().sum(force);
+    return dynamics_.communicator().sum(terms);
   }
 
   /** w h p U_theta,N of the pressure in cracks. */

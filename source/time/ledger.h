@@ -1,9 +1,11 @@
 #pragma once
 
+#include "elastic_forces.h"
+#include "uniqueness.h"
+
 #include "nsfd/mesh/discretization.h"
 #include "nsfd/nonsmooth/solver.h"
 #include "nsfd/time/state.h"
-#include "uniqueness.h"
 
 #include <vector>
 
@@ -48,10 +50,12 @@ namespace nsfd
               const BodyEnergies &bodies, const State &old, State &next,
               StepReport &report);
 
-    /** Of small motions; @p forces are the loads of the step. Collective. */
+    /** Of small motions; @p forces are the loads of the step, @p elastic K q of
+        an explicit one, else null. Collective. */
     BodyEnergies book_bodies(const std::vector<double> &forces,
                              double time_step, const State &old,
-                             const State &next) const;
+                             const State &next,
+                             const ElasticForces<dim> *elastic) const;
 
     /** Force on each driven boundary during the last step, dim per boundary. */
     const std::vector<double> &reactions() const { return reactions_; }
@@ -59,15 +63,13 @@ namespace nsfd
   private:
     double pressure_work(const OneStepProblem<dim> &problem, const State &old,
                          const State &next) const;
-    double symplectic_share(double kick,
-                            const std::vector<double> &product,
+    double symplectic_share(double kick, const ElasticForces<dim> &elastic,
                             const State &old, const State &next) const;
 
     const Discretization<dim> &discretization_;
     const Dynamics<dim> &dynamics_;
     const UniquenessBound<dim> &uniqueness_;
     double theta_; ///< of the velocity that impulses and loads work with
-    bool symplectic_;
     std::vector<double> reactions_;
   };
 } // namespace nsfd

@@ -5,6 +5,7 @@
 #include "bond_release.h"
 #include "crack_pressure.h"
 #include "driven_motion.h"
+#include "elastic_forces.h"
 #include "initial_state.h"
 #include "ledger.h"
 #include "save_problem.h"
@@ -45,6 +46,8 @@ namespace nsfd
       dynamics.set_viscous_theta(input.time.work_theta());
     for (const auto &block : input.interfaces)
       has_extrinsic_ |= block.intact == IntactFaces::rigid && block.law;
+    if (input.time.scheme == Scheme::symplectic)
+      elastic_forces_ = std::make_unique<ElasticForces<dim>>(dynamics);
     if (input.has_bonded_faces())
       bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
   }
@@ -117,8 +120,9 @@ namespace nsfd
     {
       const Stopwatch watch(timings_.assembly);
       const Charge charge(Cost::free_motion);
-      if (bonded_)
-        bonded_->set_bonds(bonded_points(old));
+      const bool others = bonded_ && bonded_->set_bonds(bonded_points(old));
+      if (elastic_forces_)
+        elastic_forces_->start(old, others);
       dynamics_.reinit(h, input_.time.bulk_theta());
       set_step(input_, discretization_, discretization_.origins(), dynamics_,
                *motion_, old, h, problem_);
@@ -159,9 +163,12 @@ namespace nsfd
       charge_memory("vectors of a step and its solver");
     const Stopwatch watch(timings_.ledger);
     const Charge charge(Cost::ledger);
-    ledger_->book(problem_, evaluation, discretization_.origins(),
-                  ledger_->book_bodies(forces_, h, old, next), old, next,
-                  report);
+    if (elastic_forces_)
+      elastic_forces_->finish(next);
+    ledger_->book(
+      problem_, evaluation, discretization_.origins(),
+      ledger_->book_bodies(forces_, h, old, next, elastic_forces_.get()), old,
+      next, report);
     check_books(h, old.time, energy_scale, next, report,
                 evaluation.worst_point);
     if (bulk_) {
@@ -233,10 +240,14 @@ namespace nsfd
     const std::size_t n_dofs = old.velocity.size();
     work_.resize(n_dofs);
     v_free_.resize(n_dofs);
-    for (std::size_t i = 0; i < n_dofs; ++i)
-      v_free_[i] = old.displacement[i] + h * theta * old.velocity[i];
-    dynamics_.apply(Dynamics<dim>::Operator::stiffness, v_free_.data(),
-                    work_.data());
+    if (elastic_forces_)
+      work_ = elastic_forces_->at_start();
+    else {
+      for (std::size_t i = 0; i < n_dofs; ++i)
+        v_free_[i] = old.displacement[i] + h * theta * old.velocity[i];
+      dynamics_.apply(Dynamics<dim>::Operator::stiffness, v_free_.data(),
+                      work_.data());
+    }
     for (std::size_t i = 0; i < n_dofs; ++i)
       work_[i] = kick * (forces_[i] - work_[i]);
     if (dynamics_.is_viscous()) {

@@ -32,10 +32,10 @@ namespace nsfd
 
     /**
      * From now on these points are bonded (one per point, not zero: bonded).
-     * Nothing happens if they were. Collective. @throws std::runtime_error if
-     * two rigid bodies share one.
+     * Nothing happens if they were, and false is returned. Collective. @throws
+     * std::runtime_error if two rigid bodies share one.
      */
-    void set_bonds(const std::vector<std::uint8_t> &bonded);
+    bool set_bonds(const std::vector<std::uint8_t> &bonded);
 
     void apply(Operator op, const double *x, double *y) const override;
 

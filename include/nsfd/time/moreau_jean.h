@@ -13,6 +13,8 @@ namespace nsfd
   template <int dim>
   class CrackPressure;
   template <int dim>
+  class ElasticForces;
+  template <int dim>
   class Ledger;
   template <int dim>
   class UniquenessBound;
@@ -148,6 +150,7 @@ namespace nsfd
     std::unique_ptr<DrivenMotion<dim>> motion_;
     std::unique_ptr<CrackPressure<dim>> crack_pressure_; ///< or null
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
+    std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
     bool has_extrinsic_ = false;
     std::vector<double> forces_, v_free_, work_;
     bool forces_known_ = false;
