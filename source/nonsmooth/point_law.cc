@@ -401,6 +401,7 @@ namespace nsfd
      * In a short step the end hardly depends on the secant that it makes: the
      * end of one secant is nearly that of the next, ten times nearer with every
      * one. False where it is not, and then nothing is said about an end.
+     * Round-off moves ends by some 1e-15.
      */
     template <int dim>
     bool follow_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
@@ -419,7 +420,7 @@ namespace nsfd
         const double change = std::abs(next.opening - end.opening) +
                               std::abs(next.slip - end.slip);
         end = next;
-        if (change <= 4e-16 * (end.opening + end.slip))
+        if (change <= 1e-14 * (end.opening + end.slip))
           return true;
         if (!(change < 0.1 * last))
           return false;
