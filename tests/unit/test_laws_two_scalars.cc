@@ -3,6 +3,8 @@
 #include "nsfd/input/scene_input.h"
 #include "nsfd/nonsmooth/point_law.h"
 
+#include <optional>
+
 using namespace nsfd;
 using namespace nsfd::test;
 
@@ -260,6 +262,46 @@ namespace
                       1e-6);
       EXPECT_EQ(point.energies.damage, 0.);
     }
+  }
+
+  // Iterated with its secant where that is a contraction, bracketed where it is
+  // not: the end of a step is the one that its secant leads to, from any start.
+  TEST(TwoScalars, EndIsThatOfItsSecantFromAnyStart)
+  {
+    for (const auto &law : examples())
+      for (const double share : {1e-3, 0.1, 1.}) {
+        const MixedLaw &mixed = *law->mixed();
+        const double a = law->peak_opening(), b = mixed.peak_slip();
+        Driven point(*law, CohesionRule::exact);
+        point.to({0.2 * a, 0.1 * b, 0.});
+        auto &problem = point.problem;
+        problem.jump_free = problem.jump_old;
+        const double R =
+            share / (problem.weight[0] * problem.time_step *
+                     law->normal_stiffness() * (1. + law->stiffness_ratio()));
+        const std::array<double, 3> U = {{0.5 * a, 0.2 * b, 0.3 * b}};
+        std::optional<std::array<double, 3>> first;
+        for (const double start : {0., 0.3, 0.6, 2.}) {
+          const auto solution =
+              solve_point<3>(problem, 0, U, R, R, {start * a, start * b});
+          if (!first) {
+            first = solution.velocity;
+            EXPECT_TRUE(solution.damages) << share;
+          }
+          for (unsigned int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(solution.velocity[c], (*first)[c], 1e-13 * a)
+                << share << ' ' << start;
+            // U_local - R P(secant of that end)
+            const double K = c == 0 ? solution.frozen.secant.normal
+                                    : solution.frozen.secant.tangential,
+                         mean = problem.jump_old[c] +
+                                solution.velocity[c] * problem.time_step / 2.,
+                         P = -problem.weight[0] * problem.time_step * K * mean;
+            EXPECT_NEAR(solution.velocity[c], U[c] + R * P, 1e-12 * a)
+                << share << ' ' << start;
+          }
+        }
+      }
   }
 
   // The exact rule: its work is what is stored and dissipated, in any steps;
