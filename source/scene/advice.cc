@@ -73,12 +73,20 @@ namespace nsfd
     std::vector<char> touches(families.size() * input.materials.size(), 0);
     for (const auto &face : points.faces) {
       const PointOrigin origin = discretization.origins()[face.first];
-      if (origin.kind == PointOrigin::Kind::interface)
-        for (const int body : face.bodies)
-          if (body >= 0)
-            touches[origin.block * input.materials.size() +
-                    discretization.material_of(unsigned(body))] = 1;
+      if (origin.kind != PointOrigin::Kind::interface)
+        continue;
+      for (const int body : face.bodies)
+        if (body >= 0)
+          touches[origin.block * input.materials.size() +
+                  discretization.material_of(unsigned(body))] = 1;
+      double size = 0.;
+      for (unsigned int i = face.first; i < face.first + face.count; ++i)
+        size += points.weight[i];
+      double &longest = families[origin.block].longest;
+      longest = std::max(longest, dim == 2 ? size : std::sqrt(size));
     }
+    for (FaceFamily &family : families)
+      family.longest = communicator.max(family.longest);
     for (unsigned int block = 0; block < families.size(); ++block)
       for (unsigned int m = 0; m < input.materials.size(); ++m)
         if (communicator.any(touches[block * input.materials.size() + m] != 0) &&

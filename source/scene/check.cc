@@ -145,9 +145,9 @@ namespace nsfd
 
       void choose_material(const std::vector<unsigned int> &among);
       void print_interface(unsigned int b);
-      void print_resolution(const CohesiveLaw &law,
+      void print_resolution(const CohesiveLaw &law, double longest,
                             const MaterialExtremes::Moduli &softest) const;
-      void print_bounds(const CohesiveLaw &law, double Z) const;
+      void print_bounds(const CohesiveLaw &law, const FaceFamily &family) const;
       void print_jumps(const CohesiveLaw &law) const;
       void print_step(const CohesiveLaw &law, double unique) const;
       void print_stiffness() const;
@@ -194,7 +194,8 @@ namespace nsfd
       if (young > 0.) {
         // a front runs through the softer side where it is shorter
         print_resolution(
-            law, extremes[*std::min_element(
+            law, families[b].longest,
+            extremes[*std::min_element(
                               materials.begin(), materials.end(),
                               [&](const unsigned int m, const unsigned int n) {
                                 return extremes[m].softest.young <
@@ -204,7 +205,7 @@ namespace nsfd
         // the compliance of some named faces belongs to the scene
         if (!law.extrinsic() &&
             families[b].density > 0.5 * mesh.interface_density)
-          print_bounds(law, families[b].density);
+          print_bounds(law, families[b]);
         print_jumps(law);
       }
       if (input.may_move())
@@ -214,12 +215,13 @@ namespace nsfd
     /** (49)-(52). */
     template <int dim>
     void Advisor<dim>::print_resolution(const CohesiveLaw &law,
+                                        const double longest,
                                         const MaterialExtremes::Moduli &softest)
         const
     {
       const double length =
           cohesive_length(softest.young, softest.poisson, law);
-      const double edges = length / mesh.largest_edge;
+      const double edges = length / longest;
       const unsigned int per_edge = input.discretization.interface_points;
       const double points = edges * per_edge;
       const bool is_resolved = points >= points_wanted;
@@ -248,19 +250,20 @@ namespace nsfd
     /** (53) and (80) as an exact rule, (54) for any law. */
     template <int dim>
     void Advisor<dim>::print_bounds(const CohesiveLaw &law,
-                                    const double Z) const
+                                    const FaceFamily &family) const
     {
       const double C_N = law.normal_stiffness();
       const double needed = smallest_stiffness(
-          plane_young, Z, dim, law.stiffness_ratio(), share_wanted);
+          plane_young, family.density, dim, law.stiffness_ratio(),
+          share_wanted);
       const unsigned int points = input.discretization.interface_points;
       const auto bounds =
-          stiffness_bounds(needed, young, poisson, law, mesh.largest_edge,
-                           points, points_wanted);
+          stiffness_bounds(needed, young, poisson, law, family.longest, points,
+                           points_wanted);
       line("C_N L/E",
-           fmt::format("{:.3g} (L = {:.3g}, the longest edge); both at this "
-                       "toughness and shape:",
-                       C_N * mesh.largest_edge / young, mesh.largest_edge));
+           fmt::format("{:.3g} (L = {:.3g}, the longest of these faces); both "
+                       "at this toughness and shape:",
+                       C_N * family.longest / young, family.longest));
       line("", fmt::format("at least {:.3g} leaves {} of the modulus, at most "
                            "{:.3g} resolves the cohesive length",
                            bounds.lower, share_wanted, bounds.upper));

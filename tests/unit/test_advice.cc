@@ -55,7 +55,8 @@ end
 } // namespace
 
 // Cells of side 1: Z per mesh, and the compliance that patch tests measure,
-// 1/E_eff = 1/E + (1 - 1/p)/C_N + k (1/C_N + 1/C_T), C_N = 5, C_T = 2.
+// 1/E_eff = 1/E + (1 - 1/p)/C_N + k (1/C_N + 1/C_T), C_N = 5, C_T = 2. The
+// longest face between two cells.
 TEST(Advice, FacesOfRegularMeshes)
 {
   const double root = std::sqrt(2.);
@@ -67,6 +68,9 @@ TEST(Advice, FacesOfRegularMeshes)
     EXPECT_NEAR(diagonal.density, root + 2. * ends, 1e-12);
     const auto squares = family<2>("rectangle", p);
     EXPECT_NEAR(squares.density, 2. * ends, 1e-12);
+    EXPECT_NEAR(crossed.longest, p == 1 ? 1. / root : 1., 1e-12);
+    EXPECT_NEAR(diagonal.longest, root, 1e-12);
+    EXPECT_NEAR(squares.longest, p == 1 ? 0. : 1., 1e-12);
     for (const unsigned int axis : {0u, 1u}) {
       EXPECT_NEAR(crossed.compliance(axis, 5., 2.), ends / 5. + root / 2. * .7,
                   1e-12);
@@ -81,6 +85,7 @@ TEST(Advice, FacesOfRegularMeshes)
     }
     const auto cubes = family<3>("brick", p);
     EXPECT_NEAR(cubes.density, 3. * ends, 1e-12);
+    EXPECT_NEAR(cubes.longest, p == 1 ? 0. : 1., 1e-12);
     const auto tetrahedra = family<3>("tetrahedra", p);
     EXPECT_NEAR(tetrahedra.density, 3. + 3. * root - 3. / p, 1e-12);
     for (const unsigned int axis : {0u, 1u, 2u}) {

@@ -57,6 +57,7 @@ namespace nsfd
     double density = 0.;                     ///< Z, 1/m
     std::array<double, 3> normal{}, shear{}; ///< of n_a^4, n_a^2 - n_a^4
     std::vector<unsigned int> materials;     ///< elastic ones that it touches
+    double longest = 0.; ///< of its faces, m; in space the root of the area
 
     /** Added to 1/E by uniform stress along an axis. */
     double compliance(unsigned int axis, double C_N, double C_T) const;
