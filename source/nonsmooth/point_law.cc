@@ -398,33 +398,62 @@ namespace nsfd
     }
 
     /**
-     * In a short step the end hardly depends on the secant that it makes: the
-     * end of one secant is nearly that of the next, ten times nearer with every
-     * one. False where it is not, and then nothing is said about an end.
-     * Round-off moves ends by some 1e-15.
+     * In a short step the end hardly depends on the secant that it makes: from
+     * one end to that of its secant, with Broyden's change of the way, each
+     * time at most half as far until round-off ends it, which may be 1e-12: the
+     * mean secant of a short way is a quotient of small differences. False
+     * where it is not so, and then nothing is said about an end.
      */
     template <int dim>
     bool follow_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
                              const Reach &start, LocalProblem<dim> &local,
                              Reach &end)
     {
-      const Reach &low = damage.history();
-      end = {std::clamp(start.opening, low.opening, high.opening),
-             std::clamp(start.slip, low.slip, high.slip)};
-      double last = infinity;
+      using Pair = std::array<double, 2>;
+      const Pair low{{damage.history().opening, damage.history().slip}};
+      Pair x{{std::clamp(start.opening, low[0], high.opening),
+              std::clamp(start.slip, low[1], high.slip)}};
+      std::array<Pair, 2> H{{{{1., 0.}}, {{0., 1.}}}}; // step over distance
+      Pair step{}, last{};
+      const auto product = [&](const Pair &v) {
+        return Pair{{H[0][0] * v[0] + H[0][1] * v[1],
+                     H[1][0] * v[0] + H[1][1] * v[1]}};
+      };
+      const auto size = [](const Pair &v) {
+        return std::abs(v[0]) + std::abs(v[1]);
+      };
       for (unsigned int k = 0; k < 12; ++k) {
-        local.solve_end(damage, end);
-        const Reach next{
-          std::max(low.opening, local.solution.reach.opening),
-          std::max(low.slip, local.solution.reach.slip)};
-        const double change = std::abs(next.opening - end.opening) +
-                              std::abs(next.slip - end.slip);
-        end = next;
-        if (change <= 1e-14 * (end.opening + end.slip))
+        local.solve_end(damage, {x[0], x[1]});
+        const Reach &reach = local.solution.reach;
+        const Pair to{{std::max(low[0], reach.opening),
+                       std::max(low[1], reach.slip)}};
+        const Pair distance{{to[0] - x[0], to[1] - x[1]}};
+        const bool nearer = k == 0 || size(distance) < 0.5 * size(last);
+        if (size(distance) <= (nearer ? 1e-14 : 1e-12) * size(to)) {
+          end = {to[0], to[1]};
           return true;
-        if (!(change < 0.1 * last))
+        }
+        if (!nearer)
           return false;
-        last = change;
+        if (k > 0) {
+          const Pair change = product(
+            {{distance[0] - last[0], distance[1] - last[1]}});
+          const double along = step[0] * change[0] + step[1] * change[1];
+          if (!(along < 0.))
+            return false;
+          const Pair row{{step[0] * H[0][0] + step[1] * H[1][0],
+                          step[0] * H[0][1] + step[1] * H[1][1]}};
+          for (unsigned int r = 0; r < 2; ++r)
+            for (unsigned int c = 0; c < 2; ++c)
+              H[r][c] -= (step[r] + change[r]) * row[c] / along;
+        }
+        const Pair way = product(distance);
+        for (unsigned int c = 0; c < 2; ++c) {
+          const double next = std::max(low[c], x[c] + way[c]);
+          step[c] = next - x[c];
+          x[c] = next;
+        }
+        last = distance;
       }
       return false;
     }
