@@ -36,6 +36,7 @@ namespace nsfd
         valid_.clear();
         const auto &point = surfaces_.points[p];
         const Plane<dim> &own = planes_[point.facet];
+        beside_ = beside(point);
         const Place<dim> y = place<dim>(x_, point.vertex);
         const Place<dim> to_centre = difference(own.centre, y);
         const Place<dim> inside = sum(y, inset, to_centre);
@@ -78,6 +79,28 @@ namespace nsfd
       }
 
     private:
+      /** The facet beside that of a point, at the point; or null. */
+      const Plane<dim> *beside(const typename Surfaces<dim>::Point &point) const
+      {
+        if (dim == 3 || next_.empty())
+          return nullptr;
+        const auto &ends = surfaces_.facets[point.facet].vertex;
+        const unsigned int next =
+            next_[point.facet][ends[0] == point.vertex ? 0 : 1];
+        return next == NearCandidates::no_facet ? nullptr : &planes_[next];
+      }
+
+      /** -normal = a own + b beside with a, b >= 0. */
+      bool in_cone(const Plane<dim> &own, const Place<dim> &normal) const
+      {
+        const Place<dim> &c = own.normal, &d = beside_->normal;
+        const auto area = [](const Place<dim> &a, const Place<dim> &b) {
+          return a[0] * b[1] - a[1] * b[0];
+        };
+        const double all = area(c, d);
+        return area(d, normal) * all >= 0. && area(normal, c) * all >= 0.;
+      }
+
       bool touches_facet(const Plane<dim> &own, const unsigned int f,
                          const Place<dim> &y, const Place<dim> &inside,
                          Touch<dim> &touch) const
@@ -85,6 +108,9 @@ namespace nsfd
         const Plane<dim> &plane = planes_[f];
         touch.opposed = dot(own.normal, plane.normal);
         if (!(touch.opposed < opposed_below))
+          return false;
+        if (beside_ && !(touch.opposed < face_to_face) &&
+            !in_cone(own, plane.normal))
           return false;
         const double depth = deepest * std::min(own.size, plane.size);
         if (dim == 2 &&
@@ -203,6 +229,7 @@ namespace nsfd
       double reach_;
       const std::vector<std::array<unsigned int, 2>> &next_; ///< facets
       std::vector<Touch<dim>> valid_;
+      const Plane<dim> *beside_ = nullptr; ///< of the point at hand
     };
   } // namespace
 

@@ -9,6 +9,14 @@ namespace nsfd
    */
   constexpr double opposed_below = -0.1;
 
+  /**
+   * A corner touches facets whose normals point back into the cone of its own
+   * ones, or nearly opposite to that of its facet (45 degrees): the bottom
+   * corner of a box that leans over another one does not touch its side, however
+   * near it is, while it sinks into its top.
+   */
+  constexpr double face_to_face = -0.7;
+
   /** Deeper inside, in sizes of the smaller facet, a point has not come through
    * this facet. */
   constexpr double deepest = 0.25;

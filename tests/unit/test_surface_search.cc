@@ -636,7 +636,8 @@ TEST(SurfaceSearch, CornerKeepsTheFacetOfTheLastStep)
     }
 }
 
-// The tip of a wedge is beside the box, its inset is over it.
+// The tip of a wedge is beside the box, its inset is over it; what the wedge has
+// come in through is the corner of the box.
 TEST(SurfaceSearch, CornerBesideABodyIsNotBelowItsTop)
 {
   Scene<2> scene;
@@ -644,8 +645,30 @@ TEST(SurfaceSearch, CornerBesideABodyIsNotBelowItsTop)
   add_polygon(scene, 1, {{1.004, 0.93}, {2., 1.2}, {2., 2.}, {0., 1.6}});
   scene.all_points();
   const auto pairs = scene.find(0.2);
-  EXPECT_EQ(names(scene, pairs).count({4, 107, 102}), 0u); // the top
-  EXPECT_EQ(names(scene, pairs).count({4, 107, 101}), 1u); // the side
+  const auto found = names(scene, pairs);
+  EXPECT_EQ(found.count({4, 107, 102}), 0u); // the top
+  EXPECT_EQ(found.count({4, 107, 101}), 0u); // the side
+  EXPECT_EQ(found.count({2, 101, 107}) + found.count({2, 102, 107}), 1u);
+}
+
+// A box has sunk into the top of another one, its left side nearly flush: the
+// corner is a hair inside of the side, which it cannot have come in through.
+TEST(SurfaceSearch, CornerThatLeansOverASideIsBelowTheTop)
+{
+  const double turn = 0.12, c = std::cos(turn), s = std::sin(turn);
+  const double x = 0.0004, y = 0.95;
+  for (const std::uint64_t last : {Surfaces<2>::no_key, std::uint64_t(103)}) {
+    Scene<2> scene;
+    add_box(scene, 0, {0., 0.}, {1., 1.});
+    add_polygon(scene, 1,
+                {{x, y}, {x + c, y + s}, {x + c - s, y + s + c}, {x - s, y + c}});
+    scene.all_points();
+    for (auto &point : scene.surfaces.points)
+      point.last_key = last;
+    const auto found = names(scene, scene.find(0.1));
+    EXPECT_EQ(found.count({4, 104, 102}), 1u) << "the top";
+    EXPECT_EQ(found.count({4, 104, 103}), 0u) << "the side";
+  }
 }
 
 // A box in the corner of an L touches the floor and the wall, both of one body.
