@@ -526,7 +526,8 @@ namespace nsfd
     if (contacts_) {
       remember_surfaces(old, next);
       contacts_->remember_facets(next);
-      next.touches = touches(next);
+      if (!this->input_.observables.empty())
+        next.touches = touches(next);
     }
     forget_rows(next);
     if (contacts_)

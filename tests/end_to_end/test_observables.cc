@@ -196,7 +196,7 @@ end
   {
     const Workspace workspace;
     const fs::path file = workspace.path() / "stack.prm";
-    write_text(file, R"(# stack.prm - two rigid slabs rest on a floor that is not quite level.
+    write_text(file, R"(# stack.prm - a rigid slab on an elastic one on a floor that is not quite level.
 set dimension = 2
 set motion    = large
 
@@ -205,12 +205,11 @@ subsection Mesh
   set cells        = 8, 6
 end
 subsection Material: lower
-  set where   = y < 1
+  set where         = y < 1
   set model         = saint-venant kirchhoff
   set Young modulus = 10 MPa
   set Poisson ratio = 0.3
   set density       = 1000
-
 end
 subsection Material: upper
   set model   = rigid
@@ -218,11 +217,11 @@ subsection Material: upper
   set density = 500
 end
 subsection Interface: inside
-  set where   = between materials [lower, lower]
-  set law     = rigid
+  set where = between materials [lower, lower]
+  set law   = rigid
 end
 subsection Interface: joint
-  set law = contact
+  set law      = contact
   set friction = 0.5
 end
 subsection Contact: slabs
