@@ -94,6 +94,7 @@ namespace nsfd
       Summary summary_;
       RunCosts<dim> costs_;
       SolvedSteps solved_steps_;
+      EnergyWatch watch_; ///< of the lines that must not give energy
       double start_wall_, last_step_ = 0.;
       unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
       unsigned long long released_ = 0; ///< bonds, in accepted steps
@@ -260,6 +261,7 @@ namespace nsfd
         observer_->remember(archive);
       if (adaptive_)
         adaptive_->remember(archive);
+      watch_.remember(archive);
       archive.numbers("largest", summary_.ledger_defect_max,
                       summary_.residual_max);
       solved_steps_.remember(archive);
@@ -643,6 +645,7 @@ namespace nsfd
     {
       beyond_unique_ += report.beyond_unique;
       released_ += report.released;
+      watch_.add(report.changes);
       costs_.record(report.solver, model_.dynamics->counters().delassus);
       solved_steps_.add(is_static_ ? SolvedSteps::Kind::quasi_static
                         : smooth_  ? SolvedSteps::Kind::smooth

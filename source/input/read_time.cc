@@ -423,8 +423,12 @@ namespace nsfd
                                   "energy safe, velocity or position");
     time.sliding = read_named<Sliding>(
         reader, "sliding",
-        {{"velocity", Sliding::velocity}, {"increment", Sliding::increment}},
-        "what friction opposes: velocity or increment");
+        {{"energy safe", Sliding::energy_safe},
+         {"velocity", Sliding::velocity},
+         {"increment", Sliding::increment}},
+        "the velocity that friction opposes: that of the end of the step "
+        "(velocity), the mean (increment), or that of the end but for points "
+        "where friction would then give energy (energy safe)");
     time.maximum_halvings = reader.integer("maximum halvings", "10", 0, 60,
                                            "of a step that cannot be solved");
     read_overshoot(reader, scene);

@@ -2,6 +2,7 @@
 
 #include "../time/crack_pressure.h"
 #include "../time/driven_motion.h"
+#include "../time/energy_safe_sliding.h"
 #include "../time/ledger.h"
 #include "../time/save_problem.h"
 #include "../time/step_data.h"
@@ -74,9 +75,8 @@ namespace nsfd
       this->dynamics_.renew(h, theta);
     else
       this->dynamics_.reinit(h, theta);
-    set_step(this->input_, this->discretization_,
-             this->discretization_.origins(), this->dynamics_, *this->motion_,
-             old, h, this->problem_);
+    this->set_problem_of_step(this->discretization_.origins(), old, h,
+                              this->problem_);
   }
 
   /** Under the impulses of the last step. */
@@ -132,7 +132,7 @@ namespace nsfd
                                                : this->input_.solver.method);
       const SolverReport part =
           this->solve(*solver, this->problem_, this->discretization_.origins(),
-                      control, energy_scale_, next.impulse, *evaluation);
+                      control, energy_scale_, old, next.impulse, *evaluation);
       total.go_on_with(part);
       if (!part.converged)
         return total;
@@ -188,6 +188,7 @@ namespace nsfd
       const Stopwatch watch(this->timings_.assembly);
       const Charge charge(Cost::free_motion);
       this->set_loads(old.time + theta * h);
+      this->sliding_->begin();
       bodies_.start(old, h, theta, this->forces_);
       crack_impulse_.clear();
       if (this->crack_pressure_) {
@@ -219,6 +220,7 @@ namespace nsfd
                         old, next, report);
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
+    this->watch_energy(energy_scale_, old, next, report);
     return report;
   }
 

@@ -4,6 +4,7 @@
 #include "../time/common_books.h"
 #include "../time/crack_pressure.h"
 #include "../time/driven_motion.h"
+#include "../time/energy_safe_sliding.h"
 #include "../time/initial_state.h"
 #include "../time/ledger.h"
 #include "../time/save_problem.h"
@@ -242,6 +243,7 @@ namespace nsfd
     rows.insert(rows.end(), held.begin(), held.end());
     bodies_.set_rows(rows);
     extend(old);
+    this->sliding_->begin();
     mesh_jumps_ = bodies_.jumps(old.displacement);
     crack_impulse_.clear();
     if (this->crack_pressure_) {
@@ -311,8 +313,7 @@ namespace nsfd
                                                             : 0.;
     relative_velocity(bodies_.old_velocity(), old_.time,
                       old_.relative_velocity);
-    set_step(this->input_, this->discretization_, origins_, this->dynamics_,
-             *this->motion_, old_, h, step_problem_);
+    this->set_problem_of_step(origins_, old_, h, step_problem_);
     // what is joined stays where it is: the mean velocity vanishes
     const double theta = step_problem_.theta;
     for (std::size_t i = 0; i < step_problem_.n_points; ++i)
@@ -462,7 +463,7 @@ namespace nsfd
                                                : this->input_.solver.method);
       const SolverReport part =
           this->solve(*solver, step_problem_, origins_, control, energy_scale_,
-                      impulse_, *evaluation);
+                      old_, impulse_, *evaluation);
       total.go_on_with(part);
       if (!part.converged)
         return total;
@@ -523,6 +524,7 @@ namespace nsfd
     finish(h, *evaluation, next, report);
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
+    this->watch_energy(energy_scale_, old, next, report);
     if (contacts_) {
       remember_surfaces(old, next);
       contacts_->remember_facets(next);

@@ -24,6 +24,8 @@ namespace nsfd
       numerical,
       motion,
       broken,
+      joint,   ///< work of rows of joints, a part of impact or numerical
+      support, ///< of supports beyond their prescribed velocity, of the work
       viscous ///< only where a point of the scene has_rates()
     };
 
@@ -48,6 +50,16 @@ namespace nsfd
       double penetration = 0., excess = 0., drift = 0., viscous_traction = 0.;
       unsigned int active = 0;
       bool beyond_unique = false;
+
+      /** The own point that gave most in a row, or none. */
+      std::size_t worst(const PointRow row) const
+      {
+        if (n_owned == 0)
+          return LineChanges::no_point;
+        const auto first = terms.begin() + long(row * n_owned);
+        const auto least = std::min_element(first, first + long(n_owned));
+        return *least < 0. ? std::size_t(least - first) : LineChanges::no_point;
+      }
 
     private:
       using Vector = std::array<double, dim>;
@@ -154,6 +166,11 @@ namespace nsfd
       const PointOrigin origin = origins_[i];
       if (origin.kind == PointOrigin::Kind::motion) {
         put(motion, i, power);
+        double beyond = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          beyond += P[c] * (next_.relative_velocity[i * dim + c] -
+                            problem_.given_velocity[i * dim + c]);
+        put(support, i, -work_theta_ * beyond);
         const auto &driven = discretization_.driven_boundaries();
         const std::size_t d =
             std::find(driven.begin(), driven.end(), origin.block) -
@@ -162,7 +179,11 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             reactions[(d * dim + c) * n_owned + i] = P[c] / problem_.time_step;
       } else {
-        put(impact, i, -power); // a joint that closes a jump of velocities
+        // the first step closes what jump of velocities the scene began with;
+        // later ones only have what the solver leaves
+        const bool closes = old_.last_step == 0.;
+        put(closes ? impact : numerical, i, -power);
+        put(joint, i, closes ? 0. : -power);
         double square = 0.;
         for (unsigned int c = 0; c < dim; ++c)
           square += next_.jump[i * dim + c] * next_.jump[i * dim + c];
@@ -497,6 +518,22 @@ namespace nsfd
         std::max(old.rigid_drift, communicator.max(points.drift));
     report.active = unsigned(communicator.sum_integer(points.active));
     report.beyond_unique = communicator.any(points.beyond_unique);
+
+    const auto set = [&](const WatchedLine line, const double taken,
+                         const std::size_t worst) {
+      report.changes.taken[std::size_t(line)] = taken;
+      report.changes.worst[std::size_t(line)] = worst;
+    };
+    set(WatchedLine::friction, sums[friction], points.worst(friction));
+    set(WatchedLine::damage, sums[damage], points.worst(damage));
+    set(WatchedLine::impact, sums[impact], points.worst(impact));
+    set(WatchedLine::viscous, energy.viscous - old.energy.viscous,
+        LineChanges::no_point);
+    set(WatchedLine::plastic, bodies.plastic, LineChanges::no_point);
+    set(WatchedLine::joints, sums[joint], points.worst(joint));
+    set(WatchedLine::supports, sums[support], points.worst(support));
+    set(WatchedLine::scheme, energy.numerical - old.energy.numerical,
+        points.worst(numerical));
 
     close_books(old, next, report);
   }

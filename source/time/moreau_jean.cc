@@ -6,6 +6,7 @@
 #include "crack_pressure.h"
 #include "driven_motion.h"
 #include "elastic_forces.h"
+#include "energy_safe_sliding.h"
 #include "initial_state.h"
 #include "ledger.h"
 #include "save_problem.h"
@@ -40,6 +41,7 @@ namespace nsfd
                                             *uniqueness_))
     , motion_(std::make_unique<DrivenMotion<dim>>(input, discretization))
     , crack_pressure_(CrackPressure<dim>::make(input, discretization))
+    , sliding_(std::make_unique<EnergySafeSliding<dim>>(input))
     , forces_(discretization.bodies().n_dofs(), 0.)
   {
     if (input.has_viscous_bodies())
@@ -124,8 +126,8 @@ namespace nsfd
       if (elastic_forces_)
         elastic_forces_->start(old, others);
       dynamics_.reinit(h, input_.time.bulk_theta());
-      set_step(input_, discretization_, discretization_.origins(), dynamics_,
-               *motion_, old, h, problem_);
+      sliding_->begin();
+      set_problem_of_step(discretization_.origins(), old, h, problem_);
       set_loads(old.time + input_.time.bulk_theta() * h);
       if (crack_pressure_)
         crack_pressure_->evaluate(old, old.time + input_.time.theta * h,
@@ -147,7 +149,7 @@ namespace nsfd
       const Stopwatch watch(timings_.solve);
       const Charge charge(Cost::solver);
       report.solver = solve(solver_, problem_, discretization_.origins(),
-                            solver_control(idle_rounds), energy_scale,
+                            solver_control(idle_rounds), energy_scale, old,
                             next.impulse, evaluation);
     }
     save_problem<dim>(input_, problem_, dynamics_, evaluation, report.solver,
@@ -178,6 +180,7 @@ namespace nsfd
       report.overshoot = bonds.overshoot;
       report.share = bonds.share;
     }
+    watch_energy(energy_scale, old, next, report);
     return report;
   }
 
@@ -209,6 +212,33 @@ namespace nsfd
         "(relative defect {:.1e}): rows that ask for the same have made "
         "impulses too large; worst face {}",
         h, time, report.ledger_defect, describe(worst_point)));
+  }
+
+  template <int dim>
+  void MoreauJean<dim>::watch_energy(const double energy_scale,
+                                     const State &old, const State &next,
+                                     StepReport &report) const
+  {
+    LineChanges &changes = report.changes;
+    changes.taken[std::size_t(WatchedLine::scheme)] =
+      next.energy.numerical - old.energy.numerical;
+    changes.noise = report.solver.residual * energy_scale;
+    const double bound =
+      energy_round_off * next.largest_energy + changes.noise;
+    for (std::size_t k = 0; k < n_watched_lines; ++k) {
+      const auto line = WatchedLine(k);
+      const bool two_sided =
+        line == WatchedLine::joints || line == WatchedLine::supports;
+      const double given =
+        two_sided ? std::abs(changes.taken[k]) : -changes.taken[k];
+      if (given <= bound || !never_gives(line, input_))
+        continue;
+      throw StepRejected(fmt::format(
+        "the step of {:.4g} s at t = {:.6g} s would give {:.3g} J to `{}`, "
+        "{:.1e} of the largest energy; worst face {}",
+        next.time - old.time, old.time, given, name_of(line),
+        given / next.largest_energy, describe(changes.worst[k])));
+    }
   }
 
   /** Assembled again only if they depend on time. */
@@ -268,11 +298,22 @@ namespace nsfd
   }
 
   template <int dim>
+  void MoreauJean<dim>::set_problem_of_step(
+    const std::vector<PointOrigin> &origins, const State &old, const double h,
+    OneStepProblem<dim> &problem) const
+  {
+    set_step(input_, discretization_, origins, dynamics_, *motion_, old, h,
+             problem);
+    sliding_->apply(old.relative_velocity, problem);
+  }
+
+  template <int dim>
   SolverReport MoreauJean<dim>::solve(NonsmoothSolver<dim> &solver,
                                       OneStepProblem<dim> &problem,
                                       const std::vector<PointOrigin> &origins,
                                       const SolverControl &control,
                                       const double energy_scale,
+                                      const State &old,
                                       std::vector<double> &impulse,
                                       LawEvaluation<dim> &evaluation)
   {
@@ -282,10 +323,17 @@ namespace nsfd
         problem, dynamics_, energy_scale, control, impulse, evaluation);
       report.go_on_with(part);
       ++counters_.solves;
-      if (!part.converged || !has_extrinsic_ || round > 30 ||
-          !activate(dynamics_, origins, impulse, problem))
+      if (!part.converged || round > 30)
         break;
-      ++counters_.activation_rounds;
+      if (has_extrinsic_ && activate(dynamics_, origins, impulse, problem))
+        ++counters_.activation_rounds;
+      else if (sliding_->revise(dynamics_.communicator(), evaluation, impulse,
+                                old.relative_velocity,
+                                std::max(old.largest_energy, energy_scale),
+                                problem))
+        ++counters_.sliding_rounds;
+      else
+        break;
     }
     counters_.newton += report.newton;
     counters_.krylov += report.krylov;

@@ -232,7 +232,7 @@ namespace nsfd
       const Charge charge(Cost::solver);
       report = this->solve(this->solver_, this->problem_,
                            this->discretization_.origins(), control,
-                           energy_scale, impulse, evaluation);
+                           energy_scale, at_, impulse, evaluation);
     }
     const Stopwatch watch(this->timings_.update);
     const Charge charge(Cost::update);

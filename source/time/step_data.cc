@@ -134,11 +134,6 @@ namespace nsfd
                                h * (1. - time.theta) * lift_speed,
                            h);
       }
-      if (time.sliding == Sliding::increment)
-        for (unsigned int c = 1; c < dim; ++c)
-          problem.sliding_offset[i * dim + c] =
-              (1. - time.theta) / time.theta *
-              old.relative_velocity[i * dim + c];
     }
 
     /** Of points that were not broken before the step. */

@@ -299,10 +299,12 @@ namespace nsfd
     velocity,
     position
   };
+  /** The velocity that friction opposes. */
   enum class Sliding
   {
-    velocity,
-    increment
+    velocity,   ///< of the end of the step
+    increment,  ///< the mean of the step
+    energy_safe ///< that of the end, the mean where friction would give energy
   };
   enum class StepKind
   {
@@ -328,7 +330,7 @@ namespace nsfd
     double forecast_gamma1 = 0.5, forecast_gamma2 = 0.;
     CohesionRule cohesion_rule = CohesionRule::exact;
     ContactTarget contact_target = ContactTarget::energy_safe;
-    Sliding sliding = Sliding::velocity;
+    Sliding sliding = Sliding::energy_safe;
     unsigned int maximum_halvings = 10;
     double largest_overshoot = 0.05; ///< of the strength of a bonded point
     /// of scheme = arkode: implicit (SDIRK) or explicit Runge-Kutta pairs,

@@ -2,6 +2,7 @@
 
 #include "nsfd/mesh/discretization.h"
 #include "nsfd/nonsmooth/solver.h"
+#include "nsfd/time/energy_watch.h"
 #include "nsfd/time/state.h"
 
 #include <memory>
@@ -14,6 +15,8 @@ namespace nsfd
   class CrackPressure;
   template <int dim>
   class ElasticForces;
+  template <int dim>
+  class EnergySafeSliding;
   template <int dim>
   class Ledger;
   template <int dim>
@@ -37,6 +40,7 @@ namespace nsfd
   {
     SolverReport solver;
     double ledger_defect = 0.; ///< of this step, relative
+    LineChanges changes;       ///< of the energy balance
     unsigned int active = 0;   ///< points in contact or damaging
     bool beyond_unique = false; ///< step above the uniqueness bound
     unsigned int released = 0;  ///< points that leave their bond
@@ -105,7 +109,7 @@ namespace nsfd
     {
       unsigned long long solves = 0, newton = 0, krylov = 0, sweeps = 0,
                          law_sweeps = 0, line_searches = 0, load_assemblies = 0,
-                         activation_rounds = 0;
+                         activation_rounds = 0, sliding_rounds = 0;
     };
     const Counters &counters() const { return counters_; }
     /** Counts go on where those of another mesh have ended. */
@@ -120,12 +124,20 @@ namespace nsfd
     SolverControl solver_control(unsigned int idle_rounds) const;
     void set_loads(double time);
     void move_freely(const State &old, const std::vector<double> &pressure);
-    /** Again as long as extrinsic points reach their strength. */
+    /** set_step(), and the velocities that friction opposes. */
+    void set_problem_of_step(const std::vector<PointOrigin> &origins,
+                             const State &old, double time_step,
+                             OneStepProblem<dim> &problem) const;
+    /**
+     * Again as long as extrinsic points reach their strength, or friction gives
+     * energy; @p old as it was for set_step().
+     */
     SolverReport solve(NonsmoothSolver<dim> &solver,
                        OneStepProblem<dim> &problem,
                        const std::vector<PointOrigin> &origins,
                        const SolverControl &control,
                        double energy_scale,
+                       const State &old,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation);
     [[noreturn]] void reject(double time_step, double time,
@@ -134,6 +146,12 @@ namespace nsfd
     void check_books(double time_step, double time, double energy_scale,
                      const State &next, const StepReport &report,
                      std::size_t worst_point) const;
+    /**
+     * Notes what the lines of the balance took. @throws StepRejected where one
+     * gave energy that its rule cannot give: line, step and place.
+     */
+    void watch_energy(double energy_scale, const State &old,
+                      const State &next, StepReport &report) const;
     void move(const State &old, const LawEvaluation<dim> &evaluation,
               State &next) const;
     virtual std::string describe(std::size_t point) const;
@@ -151,6 +169,7 @@ namespace nsfd
     std::unique_ptr<CrackPressure<dim>> crack_pressure_; ///< or null
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
     std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
+    std::unique_ptr<EnergySafeSliding<dim>> sliding_;
     bool has_extrinsic_ = false;
     std::vector<double> forces_, v_free_, work_;
     bool forces_known_ = false;

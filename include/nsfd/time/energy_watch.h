@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace nsfd
+{
+  class Archive;
+  struct SceneInput;
+
+  /** Lines of the energy balance that must not give energy. */
+  enum class WatchedLine : unsigned int
+  {
+    friction,
+    damage,
+    impact,
+    viscous,
+    plastic,
+    joints,   ///< rows of joints: no work, either way
+    supports, ///< rows of supports beyond their prescribed motion: none
+    scheme    ///< what the rules of the time step make: `numerical`
+  };
+  constexpr std::size_t n_watched_lines = 8;
+
+  /** "friction", ...: as the certificate names it. */
+  const char *name_of(WatchedLine line);
+
+  /**
+   * The rules that the scene has chosen cannot give energy by this line: a step
+   * that does is not accepted. Pure rules (`sliding = velocity`, theta above
+   * 1 / (1 + e), cohesion at the end point, explicit steps, interior penalty)
+   * can; then the certificate says how much.
+   */
+  bool never_gives(WatchedLine line, const SceneInput &scene);
+
+  /**
+   * What each line took in one step, in J: negative where it gave. `worst` is
+   * the point of this rank that gave most, or no_point.
+   */
+  struct LineChanges
+  {
+    static constexpr std::size_t no_point = std::size_t(-1);
+
+    std::array<double, n_watched_lines> taken{};
+    std::array<std::size_t, n_watched_lines> worst{};
+    double noise = 0.; ///< what the residual of the solver leaves open, J
+  };
+
+  /**
+   * The lines over a whole run, in J. `given` is the most that a line gave
+   * back in any stretch of steps: the largest fall of its sum from where it
+   * was highest; of joints and supports, the largest size of their sum.
+   */
+  struct EnergyWatch
+  {
+    std::array<double, n_watched_lines> fallen{}, given{};
+    double noise = 0.; ///< sum over the steps
+
+    void add(const LineChanges &step);
+    void remember(Archive &archive);
+  };
+
+  /** Share of the largest energy that counts as none. */
+  constexpr double energy_round_off = 1e-9;
+} // namespace nsfd
