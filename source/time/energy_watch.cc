@@ -71,6 +71,7 @@ namespace nsfd
   void EnergyWatch::add(const LineChanges &step)
   {
     noise += step.noise;
+    scale = std::max(scale, step.scale);
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
       if (line == WatchedLine::joints || line == WatchedLine::supports) {
@@ -88,12 +89,14 @@ namespace nsfd
     std::vector<double> sums(fallen.begin(), fallen.end());
     sums.insert(sums.end(), given.begin(), given.end());
     sums.push_back(noise);
+    sums.push_back(scale);
     archive.common("energy_watch", sums);
-    if (sums.size() != 2 * n_watched_lines + 1)
+    if (sums.size() != 2 * n_watched_lines + 2)
       throw BadCheckpoint("energy_watch has another number of values");
     std::copy_n(sums.begin(), n_watched_lines, fallen.begin());
     std::copy_n(sums.begin() + n_watched_lines, n_watched_lines,
                 given.begin());
-    noise = sums.back();
+    noise = sums[2 * n_watched_lines];
+    scale = sums.back();
   }
 } // namespace nsfd

@@ -222,9 +222,10 @@ namespace nsfd
     LineChanges &changes = report.changes;
     changes.taken[std::size_t(WatchedLine::scheme)] =
       next.energy.numerical - old.energy.numerical;
+    // at rest there is no energy but what the loads would give in a step
+    changes.scale = std::max(next.largest_energy, energy_scale);
     changes.noise = report.solver.residual * energy_scale;
-    const double bound =
-      energy_round_off * next.largest_energy + changes.noise;
+    const double bound = energy_round_off * changes.scale + changes.noise;
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
       const bool two_sided =
@@ -237,7 +238,7 @@ namespace nsfd
         "the step of {:.4g} s at t = {:.6g} s would give {:.3g} J to `{}`, "
         "{:.1e} of the largest energy; worst face {}",
         next.time - old.time, old.time, given, name_of(line),
-        given / next.largest_energy, describe(changes.worst[k])));
+        given / changes.scale, describe(changes.worst[k])));
     }
   }
 

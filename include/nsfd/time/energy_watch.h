@@ -44,6 +44,8 @@ namespace nsfd
     std::array<double, n_watched_lines> taken{};
     std::array<std::size_t, n_watched_lines> worst{};
     double noise = 0.; ///< what the residual of the solver leaves open, J
+    double scale = 0.; ///< the largest energy so far, or what the loads would
+                       ///< give in this step without impulses, J
   };
 
   /**
@@ -55,6 +57,7 @@ namespace nsfd
   {
     std::array<double, n_watched_lines> fallen{}, given{};
     double noise = 0.; ///< sum over the steps
+    double scale = 0.; ///< the largest one
 
     void add(const LineChanges &step);
     void remember(Archive &archive);
