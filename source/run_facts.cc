@@ -42,7 +42,8 @@ namespace nsfd
 
   template <int dim>
   RunFacts run_facts(const SceneInput &input, const Model<dim> &model,
-                     const SolvedSteps &steps, const State &state,
+                     const SolvedSteps &steps, const Extremes<dim> &extremes,
+                     const State &state,
                      const Summary &summary, const Communicator &communicator)
   {
     const auto counter = [&summary](const char *name) {
@@ -79,6 +80,13 @@ namespace nsfd
         facts.softens = true;
         facts.brittle |= std::isinf(block.law->steepest_softening());
       }
+    extremes.fill(facts);
+    facts.follows_jumps = input.statics &&
+                          input.statics->at_jump == SolutionJump::dynamic;
+    facts.takes_jumps =
+        input.statics && input.statics->at_jump == SolutionJump::relax;
+    facts.moreau_jean = input.time.scheme == Scheme::moreau_jean;
+    facts.maximum_halvings = input.time.maximum_halvings;
     facts.automatic_steps = input.time.step_kind == StepKind::automatic;
     facts.beyond_unique = counter("steps_beyond_uniqueness");
     facts.solution_jumps = counter("solution_jumps");
@@ -92,9 +100,11 @@ namespace nsfd
   }
 
   template RunFacts run_facts(const SceneInput &, const Model<2> &,
-                              const SolvedSteps &, const State &,
+                              const SolvedSteps &, const Extremes<2> &,
+                              const State &,
                               const Summary &, const Communicator &);
   template RunFacts run_facts(const SceneInput &, const Model<3> &,
-                              const SolvedSteps &, const State &,
+                              const SolvedSteps &, const Extremes<3> &,
+                              const State &,
                               const Summary &, const Communicator &);
 } // namespace nsfd

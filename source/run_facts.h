@@ -1,5 +1,6 @@
 #pragma once
 
+#include "extremes.h"
 #include "model.h"
 
 #include "nsfd/output/certificate.h"
@@ -26,6 +27,7 @@ namespace nsfd
   /** What the certificate of a run is made from. Collective. */
   template <int dim>
   RunFacts run_facts(const SceneInput &input, const Model<dim> &model,
-                     const SolvedSteps &steps, const State &state,
+                     const SolvedSteps &steps, const Extremes<dim> &extremes,
+                     const State &state,
                      const Summary &summary, const Communicator &communicator);
 } // namespace nsfd

@@ -2,8 +2,10 @@
 
 #include "adapt/adaptive_mesh.h"
 #include "checkpoint/checkpoints.h"
+#include "extremes.h"
 #include "model.h"
 #include "run_costs.h"
+#include "run_end.h"
 #include "run_facts.h"
 #include "run_info.h"
 #include "run_totals.h"
@@ -69,6 +71,7 @@ namespace nsfd
       void write_if_due(bool last = false);
       bool find_observables();
       const std::vector<double> &reactions() const;
+      void say(const std::vector<std::string> &sentences);
       HistoryRow record(const StepReport &report, double time_step);
       void finish(const std::string &failure);
       RunTotals totals() const;
@@ -82,6 +85,7 @@ namespace nsfd
       std::unique_ptr<CaseObserver<dim>> observer_;
       std::unique_ptr<Observers<dim>> observers_; ///< or null
       std::unique_ptr<Fragments<dim>> fragments_;
+      std::unique_ptr<Extremes<dim>> extremes_;
       std::unique_ptr<RunOutput<dim>> output_;
       std::unique_ptr<StaticRun<dim>> static_run_; ///< or null
       bool is_static_ = false; ///< the steps are those of static_run_
@@ -156,6 +160,8 @@ namespace nsfd
       fragments_ = std::make_unique<Fragments<dim>>(*model_.discretization,
                                                     communicator_);
       fragments_->update(state_);
+      extremes_ = std::make_unique<Extremes<dim>>(
+          input_, *model_.discretization, communicator_);
       charge_memory("state and history of the points");
       open_output();
       summary_.setup_seconds = cpu_seconds() - setup;
@@ -265,6 +271,7 @@ namespace nsfd
       archive.numbers("largest", summary_.ledger_defect_max,
                       summary_.residual_max);
       solved_steps_.remember(archive);
+      extremes_->remember(archive);
       costs_.remember(archive);
       earlier_.remember(archive, totals());
     }
@@ -415,6 +422,7 @@ namespace nsfd
       const State at_start = model_.stepper->initial_state();
       output_->mesh_changed(at_start);
       checkpoints_->mesh_changed();
+      extremes_->mesh_changed();
       if (observer_)
         observer_->mesh_changed(at_start);
       if (observers_)
@@ -458,6 +466,7 @@ namespace nsfd
       row.fragments = fragments_->count();
       row.reactions = reactions();
       output_->start(row);
+      say(extremes_->start(state_));
       observe(nullptr, row);
     }
 
@@ -633,10 +642,19 @@ namespace nsfd
       const Charge charge(Cost::output);
       fragments_->update(state_);
       const HistoryRow row = record(report, h);
-      observe(&next, row); // the state before the step
+      say(extremes_->observe(next, state_)); // next: before the step
+      observe(&next, row);
       write_if_due();
       if (checkpoints_->is_due(state_.step))
         store();
+    }
+
+    /** Between the lines of the progress. */
+    template <int dim>
+    void Simulation<dim>::say(const std::vector<std::string> &sentences)
+    {
+      for (const std::string &sentence : sentences)
+        output_->message(sentence);
     }
 
     template <int dim>
@@ -678,6 +696,7 @@ namespace nsfd
     {
       const Charge charge(Cost::output);
       write_if_due(true);
+      say(extremes_->finish(state_));
       output_->end_progress();
       auto &s = summary_;
       s.completed = failure.empty();
@@ -692,14 +711,7 @@ namespace nsfd
       s.viscous_traction_max = state_.viscous_traction;
       s.rigid_drift_max = state_.rigid_drift;
       s.fragments = fragments_->count();
-      double bound = 0.;
-      const auto widen = [&bound](const auto &overlap, const auto &approach) {
-        for (std::size_t i = 0; i < overlap.size(); ++i)
-          bound = std::max(bound, overlap[i] + approach[i]);
-      };
-      widen(state_.released_overlap, state_.approach);
-      widen(state_.surface_overlap, state_.surface_approach);
-      s.penetration_bound = communicator_.max(bound);
+      s.penetration_bound = extremes_->penetration_bound();
       if (observer_)
         observer_->finish(state_, s.errors);
       if (observers_)
@@ -715,8 +727,9 @@ namespace nsfd
       s.peak_memory_mb = peak_memory_mb();
       charge_memory("fields and curves");
       s.cost = costs_.finish(*model_.dynamics);
-      const Certificate certificate = certify(run_facts(
-          input_, model_, solved_steps_, state_, s, communicator_));
+      const Certificate certificate = certify(
+          run_facts(input_, model_, solved_steps_, *extremes_, state_, s,
+                    communicator_));
       output_->write_summary(s, certificate);
       if (communicator_.is_root() && !options_.quiet)
         print_end(certificate);
@@ -799,37 +812,10 @@ namespace nsfd
     template <int dim>
     void Simulation<dim>::print_end(const Certificate &certificate) const
     {
-      const auto &s = summary_;
-      auto c = s.counters;
-      double seconds = 0.;
-      for (const auto &[name, value] : s.timings)
-        if (name != "set-up" && name != "equilibria" && name != "output")
-          seconds += value;
-      const double steps = std::max(1., double(s.steps));
-      std::cout << fmt::format(
-          "{} steps, {:.3g} s wall; residual {:.1e}, ledger defect {:.1e}, "
-          "penetration {:.3g} (bound {:.3g})\n",
-          s.steps, s.wall_seconds, s.residual_max, s.ledger_defect_max,
-          s.penetration_max, s.penetration_bound);
-      std::cout << fmt::format(
-          "  per step: {:.3g} ms, Newton {:.2f}, Krylov {:.1f}, sweeps {:.1f}; "
-          "rejected {}, redone {}, beyond uniqueness {}\n",
-          1e3 * seconds / steps, c["newton"] / steps, c["krylov"] / steps,
-          c["gauss_seidel_sweeps"] / steps, c["rejected_steps"],
-          c["redone_steps"], c["steps_beyond_uniqueness"]);
-      std::cout << fmt::format(
-          "  energy: kinetic {:.6g}, elastic {:.6g}, cohesive {:.6g}, damage "
-          "{:.6g}, friction {:.6g}, impact {:.6g}, numerical {:.3g}, work "
-          "{:.6g}; broken area {:.4g}, fragments {}\n",
-          s.energy.kinetic, s.energy.elastic, s.energy.cohesive,
-          s.energy.damage, s.energy.friction, s.energy.impact,
-          s.energy.numerical, s.energy.work, state_.broken_area, s.fragments);
-      for (const auto &[name, value] : s.errors)
-        std::cout << fmt::format("  {:<28} {:.6g}\n", name, value);
-      std::cout << cost_text(s.cost, s.peak_memory_mb);
-      std::cout << "  " << input_.output.directory
-                << (input_.output.report ? "/report.html\n" : "/\n")
-                << certificate_text(certificate);
+      const auto &output = input_.output;
+      std::cout << run_end_text(
+          summary_, certificate, state_.broken_area,
+          output.directory + (output.report ? "/report.html" : "/"), false);
     }
   } // namespace
 

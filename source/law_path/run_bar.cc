@@ -109,8 +109,8 @@ namespace nsfd
       table_line(
           "steepest softening",
           std::isinf(ratio)
-              ? "the traction drops: every bar jumps (42)"
-              : fmt::format("{} = {:.4g} k: {} (42)",
+              ? "the traction drops: every bar jumps (Acary & Monerie 2006, (42))"
+              : fmt::format("{} = {:.4g} k: {} (Acary & Monerie 2006, (42))",
                             engineering(law.steepest_softening(), "Pa/m", 4),
                             ratio,
                             ratio <= 1. ? "one equilibrium for every U"

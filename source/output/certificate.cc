@@ -1,9 +1,14 @@
 #include "nsfd/output/certificate.h"
 
+#include "certificate_lines.h"
+
+#include "nsfd/output/engineering.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
@@ -16,40 +21,10 @@ namespace nsfd
     constexpr double largest_defect = 1e-9;
     constexpr double largest_creation = 1e-2; // as well as curves can be read
 
-    Verdict within(const bool holds)
+    /** Of a length in m. */
+    std::string length_text(const double value)
     {
-      return holds ? Verdict::ok : Verdict::bad;
-    }
-
-    Line unmeasured(const std::string &name, const std::string &remark)
-    {
-      Line line;
-      line.name = name;
-      line.remark = remark;
-      return line;
-    }
-
-    Line none(const std::string &name, const std::string &remark)
-    {
-      Line line = unmeasured(name, remark);
-      line.verdict = Verdict::none;
-      return line;
-    }
-
-    /** NaN is never within a bound. */
-    Line line_of(const std::string &name, const double number,
-                 const double limit, const Verdict verdict,
-                 const std::string &format = "{:.1e}",
-                 const char *relation = "at most ")
-    {
-      Line line;
-      line.name = name;
-      line.number = number;
-      line.limit = limit;
-      line.value = fmt::format(fmt::runtime(format), number);
-      line.bound = relation + fmt::format(fmt::runtime(format), limit);
-      line.verdict = verdict;
-      return line;
+      return engineering(value, "m");
     }
 
     unsigned long long accepted(const RunFacts &facts)
@@ -61,7 +36,7 @@ namespace nsfd
     {
       Line line;
       line.name = "end";
-      line.value = fmt::format("t = {:.6g}", facts.time);
+      line.value = "t = " + engineering(facts.time, "s", 6);
       line.verdict = within(facts.completed);
       if (!facts.completed)
         line.remark = "not reached: " + (facts.failure.empty()
@@ -78,8 +53,9 @@ namespace nsfd
       Line line =
           line_of(name, residual, tolerance, within(residual <= tolerance));
       if (line.verdict == Verdict::bad)
-        line.remark = "steps were kept that were not solved: lower "
-                      "Solver/tolerance or Time/step";
+        line.remark = "steps were kept that were not solved to "
+                      "Solver/tolerance: a shorter Time/step or another "
+                      "Solver/method may be";
       return line;
     }
 
@@ -92,53 +68,66 @@ namespace nsfd
         lines.push_back(residual_of("imbalance", facts.imbalance,
                                     facts.static_tolerance));
       if (facts.smooth_steps > 0)
-        lines.push_back(unmeasured(
+        lines.push_back(unmeasured_line(
             "residual", "scheme = arkode solves no contact problem; its "
                         "errors follow Time/integration tolerance"));
       if (accepted(facts) == 0)
-        lines.push_back(unmeasured("residual", "no step was accepted"));
+        lines.push_back(unmeasured_line("residual", "no step was accepted"));
+    }
+
+    /**
+     * What positions are known to: each is rounded once, each of its changes
+     * once more. A contact adds a handful of them; round-off of n steps grows
+     * like sqrt(n) as a rule and like n at worst.
+     */
+    double rounding_of_positions(const RunFacts &facts)
+    {
+      constexpr double unit = std::numeric_limits<double>::epsilon();
+      constexpr double terms = 8.; // of a gap: two bodies, place and shape
+      return terms * unit *
+             (facts.extent + double(accepted(facts)) * facts.displacement);
     }
 
     Line penetration_of(const RunFacts &facts)
     {
-      if (facts.steps == 0 && facts.penetration > 0.)
-        return unmeasured("penetration",
-                          fmt::format("{:.3g} m: equilibria have no speed of "
-                                      "approach to bound it",
-                                      facts.penetration));
+      const double noise = facts.tolerance * facts.displacement +
+                           rounding_of_positions(facts);
+      if (facts.steps == 0 && facts.penetration > noise)
+        return unmeasured_line(
+            "penetration", length_text(facts.penetration) +
+                               ": equilibria have no speed of approach to "
+                               "bound it");
       if (facts.steps + facts.static_steps == 0)
         return facts.smooth_steps > 0
-                   ? none("penetration", "nothing can touch")
-                   : unmeasured("penetration", "no step was accepted");
-      // speeds change within a step: bounds hold to first order in its length
-      const double noise = facts.tolerance * facts.displacement +
-                           1e-3 * facts.penetration_bound;
-      Line line = line_of("penetration", facts.penetration,
-                          facts.penetration_bound,
-                          within(facts.penetration_excess <= noise), "{:.3g} m");
-      if (line.verdict == Verdict::bad)
+                   ? no_line("penetration", "nothing can touch")
+                   : unmeasured_line("penetration", "no step was accepted");
+      const double bound = facts.penetration_bound + noise;
+      Line line = line_of("penetration", facts.penetration, bound,
+                          within(facts.penetration_excess <= noise));
+      line.value = length_text(facts.penetration);
+      line.bound = "at most " + length_text(bound);
+      if (line.verdict == Verdict::bad) {
         line.remark = fmt::format(
-            "a point is {:.3g} m deeper than its own bound ({:.2g} % of the "
-            "largest): it closes again and again, or bodies overlap at the "
-            "start; shorten Time/step",
-            facts.penetration_excess,
-            100. * facts.penetration_excess / facts.penetration_bound);
-      else if (facts.penetration == 0.)
-        line.remark = "none";
+            "a point is {} deeper than what its last closing explains: it "
+            "closes again and again without opening, or bodies overlap at the "
+            "start",
+            length_text(facts.penetration_excess));
+        if (!facts.automatic_steps)
+          line.remark += "; shorten Time/step";
+      }
       return line;
     }
 
     Line defect_of(const RunFacts &facts)
     {
       if (accepted(facts) == 0)
-        return unmeasured("ledger defect", "no step was accepted");
+        return unmeasured_line("ledger defect", "no step was accepted");
       const double defect = std::abs(facts.ledger_defect);
       Line line = line_of("ledger defect", defect, largest_defect,
                           within(defect <= largest_defect));
       if (line.verdict == Verdict::bad)
-        line.remark = "energies do not add up: hardly any energy in the "
-                      "scene, or rows that ask for the same; energies.svg "
-                      "shows when";
+        line.remark = "energies do not add up: rows may ask for the same; "
+                      "energies.svg shows when";
       return line;
     }
 
@@ -150,8 +139,11 @@ namespace nsfd
       Line line = line_of("created", facts.created, largest_creation,
                           within(facts.created <= largest_creation));
       if (line.verdict == Verdict::bad)
-        line.remark = "the scheme has made energy: shorten Time/step, or take "
-                      "scheme = moreau-jean";
+        line.remark =
+            std::string("the scheme has made energy: ") +
+            (facts.automatic_steps ? "set Time/step to a shorter time"
+                                   : "shorten Time/step") +
+            (facts.moreau_jean ? "" : ", or take scheme = moreau-jean");
       lines.push_back(line);
     }
 
@@ -167,45 +159,57 @@ namespace nsfd
               "in {} of {} steps a softening face may have had several "
               "solutions: {}",
               facts.beyond_unique, facts.steps,
-              facts.brittle ? "its traction jumps, no step is short enough"
+              facts.brittle
+                  ? std::string("its traction jumps, no step is short enough")
               : facts.automatic_steps
-                  ? "raise Time/maximum halvings"
-                  : "set step = auto, or a shorter one (--check names it)");
+                  ? fmt::format("raise Time/maximum halvings above {}",
+                                facts.maximum_halvings)
+                  : std::string(
+                        "set step = auto, or a shorter one (--check names "
+                        "it)"));
         lines.push_back(line);
       }
       if (facts.static_steps > 0) {
         Line line = line_of("solution jumps", double(facts.solution_jumps), 0.,
                             within(facts.solution_jumps == 0), "{:.0f}");
         if (facts.solution_jumps > 0)
-          line.remark = "no equilibrium continues the last one: set at "
-                        "solution jump = dynamic follows it in time";
+          line.remark =
+              facts.follows_jumps
+                  ? "no equilibrium continues the last one: from there on it is "
+                    "a motion, and its energies are those of one"
+              : facts.takes_jumps
+                  ? "no equilibrium continues the last one: the next one was "
+                    "taken; set at solution jump = dynamic follows it in time"
+                  : "no equilibrium continues the last one: set at solution "
+                    "jump = dynamic follows it in time, = relax takes the "
+                    "next one";
         lines.push_back(line);
       }
       if (facts.steps + facts.static_steps == 0)
         lines.push_back(facts.smooth_steps > 0
-                            ? none("uniqueness", "nothing can soften")
-                            : unmeasured("uniqueness", "no step was accepted"));
+                            ? no_line("uniqueness", "nothing can soften")
+                            : unmeasured_line("uniqueness", "no step was accepted"));
     }
 
     Line zone_of(const RunFacts &facts)
     {
       if (!facts.zone)
-        return none("cohesive zone", facts.softens ? "no point has softened"
+        return no_line("cohesive zone", facts.softens ? "no point has softened"
                                                    : "nothing can soften");
       const ZoneResolution &zone = *facts.zone;
       if (!(zone.length > 0.))
-        return none("cohesive zone", "between rigid bodies alone");
+        return no_line("cohesive zone", "between rigid bodies alone");
       Line line = line_of("cohesive zone", zone.points(),
                           points_per_cohesive_length,
                           within(zone.points() >= points_per_cohesive_length),
                           "{:.3g} points", "at least ");
-      line.remark = fmt::format("length {:.3g} m in {}", zone.length,
+      line.remark = fmt::format("length {} in {}", length_text(zone.length),
                                 zone.interface);
       if (line.verdict == Verdict::bad)
         line.remark += fmt::format(
             ": its energy is right, stresses at its front are not; points "
-            "every {:.2g} m, or a strength {:.2g} times as large",
-            zone.length / points_per_cohesive_length,
+            "every {}, or a strength {:.2g} times as large",
+            engineering(zone.length / points_per_cohesive_length, "m", 2),
             std::sqrt(zone.points() / points_per_cohesive_length));
       return line;
     }
@@ -213,7 +217,7 @@ namespace nsfd
     Line attempts_of(const RunFacts &facts)
     {
       if (accepted(facts) == 0)
-        return unmeasured("taken again",
+        return unmeasured_line("taken again",
                           fmt::format("{} attempts, no step was accepted",
                                       facts.rejected + facts.redone));
       const double again = double(facts.rejected + facts.redone);
@@ -222,7 +226,10 @@ namespace nsfd
                           "{:.0f} steps",
                           "less than ");
       if (line.verdict == Verdict::bad)
-        line.remark = "most attempts are lost: shorten Time/step";
+        line.remark = std::string("most attempts are lost: ") +
+                      (facts.automatic_steps
+                           ? "set Time/step to a shorter time"
+                           : "shorten Time/step");
       else if (again > 0.)
         line.remark = fmt::format("{} not solved, {} too long", facts.rejected,
                                   facts.redone);
@@ -273,7 +280,39 @@ namespace nsfd
     add_uniqueness(facts, lines);
     lines.push_back(zone_of(facts));
     lines.push_back(attempts_of(facts));
+    add_motion_limits(facts, lines);
     return certificate;
+  }
+
+  std::string wrapped(const std::string &text, const std::size_t indent,
+                      const std::size_t width)
+  {
+    std::string result, row(indent, ' ');
+    std::size_t begin = 0, columns = indent; // bytes are not columns
+    const auto size_of = [](const std::string &part) {
+      return std::size_t(std::count_if(part.begin(), part.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+      }));
+    };
+    while (begin < text.size()) {
+      // to the next blank that does not follow a number
+      std::size_t end = text.find(' ', begin);
+      while (end != std::string::npos && end > begin &&
+             text[end - 1] >= '0' && text[end - 1] <= '9')
+        end = text.find(' ', end + 1);
+      const std::string word = text.substr(begin, end - begin);
+      const bool first = columns == indent;
+      if (!first && columns + 1 + size_of(word) > width) {
+        result += row + "\n";
+        row = std::string(indent, ' ') + word;
+        columns = indent + size_of(word);
+      } else {
+        row += (first ? "" : " ") + word;
+        columns += size_of(word) + (first ? 0 : 1);
+      }
+      begin = end == std::string::npos ? text.size() : end + 1;
+    }
+    return columns == indent ? result : result + row + "\n";
   }
 
   std::string certificate_text(const Certificate &certificate)
@@ -286,11 +325,15 @@ namespace nsfd
     }
     std::string text = "certificate: " + certificate.verdict() + "\n";
     for (const Line &line : certificate.lines) {
-      std::string row = fmt::format(
-          "  {:<{}}  {:<{}}  {:<{}}  {:<12}  {}", line.name, name, line.value,
-          value, line.bound, bound, text_of(line.verdict), line.remark);
+      std::string row =
+          fmt::format("  {:<{}}  {:<{}}  {:<{}}  {:<12}", line.name, name,
+                      line.value, value, line.bound, bound,
+                      text_of(line.verdict));
+      const bool fits = row.size() + 2 + line.remark.size() <= 80;
+      if (fits)
+        row += "  " + line.remark;
       row.resize(row.find_last_not_of(' ') + 1);
-      text += row + "\n";
+      text += row + "\n" + (fits ? "" : wrapped(line.remark, 6));
     }
     return text;
   }

@@ -54,6 +54,52 @@ namespace nsfd
       return report.info.file.empty() ? "A run of nsfd" : report.info.file;
     }
 
+    /** Line, value, bound and verdict; whatever is not ok comes first. */
+    std::string certificate_card(const Certificate &certificate)
+    {
+      using Of = CertificateLine::Verdict;
+      Table table;
+      for (const bool is_bad : {true, false})
+        for (const CertificateLine &line : certificate.lines)
+          if ((line.verdict == Of::bad) == is_bad)
+            table.add_judged(line.name, line.value, line.bound,
+                             text_of(line.verdict),
+                             line.verdict == Of::ok    ? Verdict::good
+                             : line.verdict == Of::bad ? Verdict::bad
+                                                       : Verdict::none,
+                             line.remark);
+      return table.card("Certificate: " + certificate.verdict());
+    }
+
+    /** What is said of a run first: that it ended, and how good it is. */
+    std::string state_of(const Report &report, const std::string &at)
+    {
+      const Summary &s = report.summary;
+      if (!s.completed)
+        return "<p class=\"state bad\">⚠ Stopped before the end, after " +
+               escape_markup(at) + ". " +
+               escape_markup(s.failure.empty() ? "No reason was recorded."
+                                               : s.failure) +
+               "</p>\n<p class=\"muted\">Everything below describes the "
+               "steps that were accepted.</p>\n";
+      const std::string completed = "Completed: " + escape_markup(at) + " in " +
+                                    Progress::duration(s.wall_seconds);
+      const auto &certificate = report.findings.certificate;
+      if (!certificate)
+        return "<p class=\"state open\">" + completed + "</p>\n";
+      const auto &lines = certificate->lines;
+      const bool bad =
+          std::any_of(lines.begin(), lines.end(), [](const auto &line) {
+            return line.verdict == CertificateLine::Verdict::bad;
+          });
+      return std::string("<p class=\"state ") +
+             (bad                    ? "bad\">⚠ "
+              : certificate->is_ok() ? "good\">✓ "
+                                     : "open\">– ") +
+             completed + "; certificate: " +
+             escape_markup(certificate->verdict()) + "</p>\n";
+    }
+
     std::string headline(const Report &report)
     {
       const Summary &s = report.summary;
@@ -63,16 +109,9 @@ namespace nsfd
 
       std::string html = "<h1>" + escape_markup(title) + "</h1>\n";
       html += paragraphs(report.description);
-      if (s.completed)
-        html += "<p class=\"state good\">✓ Completed: " + escape_markup(at) +
-                " in " + Progress::duration(s.wall_seconds) + "</p>\n";
-      else
-        html += "<p class=\"state bad\">⚠ Stopped before the end, after " +
-                escape_markup(at) + ". " +
-                escape_markup(s.failure.empty() ? "No reason was recorded."
-                                                : s.failure) +
-                "</p>\n<p class=\"muted\">Everything below describes the "
-                "steps that were accepted.</p>\n";
+      html += state_of(report, at);
+      if (report.findings.certificate)
+        html += certificate_card(*report.findings.certificate);
       html += fmt::format("<p class=\"muted\">{}D · {} · {} · {}</p>\n",
                           s.dimension, count(s.cells, "cell"),
                           count(s.dofs, "unknown") + " of motion",
@@ -143,22 +182,6 @@ namespace nsfd
       return section("The body over time", note + row_of(strip));
     }
 
-    void add_certificate(const Certificate &certificate, Table &table)
-    {
-      table.add_text("certificate", certificate.verdict());
-      for (const CertificateLine &line : certificate.lines) {
-        using Of = CertificateLine::Verdict;
-        const bool judged = line.verdict == Of::ok || line.verdict == Of::bad;
-        std::string remark = judged ? line.bound : text_of(line.verdict);
-        if (!line.remark.empty())
-          remark += (remark.empty() ? "" : "; ") + line.remark;
-        table.add(line.name, line.value, remark,
-                  line.verdict == Of::ok    ? Verdict::good
-                  : line.verdict == Of::bad ? Verdict::bad
-                                            : Verdict::none);
-      }
-    }
-
     void add_sizes(const FragmentSizes &sizes, const Units &units, Table &table)
     {
       const auto mass = [&](const double value) {
@@ -218,30 +241,28 @@ namespace nsfd
                         : "");
       }
 
-      Table certificate;
-      if (report.findings.certificate)
-        add_certificate(*report.findings.certificate, certificate);
+      Table trust;
       if (s.viscous_traction_max)
-        certificate.add("largest viscous traction",
+        trust.add("largest viscous traction",
                         engineering(*s.viscous_traction_max, "Pa", 4),
                         "added to the strength of the law");
       if (s.positive_friction_work != 0.)
-        certificate.add("positive friction work",
+        trust.add("positive friction work",
                         energy(s.positive_friction_work),
                         "energy that friction created");
       if (s.rigid_drift_max != 0.)
-        certificate.add("drift of rigid rows",
+        trust.add("drift of rigid rows",
                         engineering(s.rigid_drift_max, "m"));
-      certificate.add("steps", count(s.steps),
+      trust.add("steps", count(s.steps),
                       s.steps > 0 ? "mean step " +
                                         engineering(s.final_time / s.steps, "s")
                                   : "");
-      certificate.add("wall time", Progress::duration(s.wall_seconds),
+      trust.add("wall time", Progress::duration(s.wall_seconds),
                       s.setup_seconds > 0.
                           ? "of it " + Progress::duration(s.setup_seconds) +
                                 " to set up"
                           : "");
-      certificate.add("largest memory",
+      trust.add("largest memory",
                       fmt::format("{:.0f} MB", s.peak_memory_mb));
 
       Table errors;
@@ -252,7 +273,7 @@ namespace nsfd
         add_sizes(*report.findings.fragment_sizes, units, fragments);
       return section("Key numbers",
                      row_of(physics.card("What happened") +
-                            certificate.card("How far to trust it") +
+                            trust.card("How far to trust it") +
                             fragments.card("Fragments") +
                             errors.card("Errors against exact values")));
     }

@@ -95,8 +95,13 @@ namespace nsfd
                   engineering(cost.copy_bytes_per_second, "B/s") +
                       " in a copy");
         table.add("share of the nearer limit",
-                  percent(cost.share_of_limit()),
-                  cost.limited_by_copy() ? "the copy" : "the product");
+                  cost.share_of_limit() > 1. ? "all"
+                                             : percent(cost.share_of_limit()),
+                  std::string(cost.limited_by_copy() ? "the copy"
+                                                     : "the product") +
+                      (cost.share_of_limit() > 1.
+                           ? "; it was measured while the machine was busier"
+                           : ""));
       }
       return table.card("One application of W");
     }

@@ -1,5 +1,6 @@
 #include "report_html.h"
 
+#include "nsfd/output/engineering.h"
 #include "nsfd/output/svg.h"
 
 #include <fmt/format.h>
@@ -29,6 +30,7 @@ p{margin:.4rem 0;max-width:75ch}
 .muted{color:var(--muted)}
 .state{display:inline-block;border-radius:6px;padding:.45rem .8rem;
 margin:.5rem 0;font-weight:600;overflow-wrap:anywhere}
+.state.open{border:1px solid var(--line)}
 .good{color:var(--good)}.bad{color:var(--bad)}
 .state.good{background:var(--good-back)}.state.bad{background:var(--bad-back)}
 .row{display:grid;gap:14px;align-items:start;
@@ -50,7 +52,7 @@ border-top:1px solid var(--muted)}
 tr.group>th{font-size:.85rem;font-weight:600;padding-top:.6rem;border-bottom:0;
 color:var(--ink)}
 td.remark{color:var(--muted);font-size:.88rem}
-td.text{overflow-wrap:anywhere}
+td.text{overflow-wrap:anywhere}td.verdict{white-space:nowrap}
 .share,.state{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 .share{display:block;height:8px;border-radius:2px;background:var(--bar);
 min-width:1px;margin-top:.45rem}
@@ -97,7 +99,11 @@ pre{white-space:pre-wrap}}
 
   std::string percent(const double share)
   {
-    return std::isfinite(share) ? fmt::format("{:.1f} %", 100. * share) : "n/a";
+    if (!std::isfinite(share))
+      return "n/a";
+    // no minus before what is rounded to nothing
+    const std::string text = fmt::format("{:.1f} %", 100. * share);
+    return text == "-0.0 %" ? "0.0 %" : with_minus(text);
   }
 
   void Table::add(const std::string &name, const std::string &value,
@@ -109,6 +115,22 @@ pre{white-space:pre-wrap}}
     rows_ += fmt::format("<tr><th>{}</th><td class=\"number\">{}</td>"
                          "<td class=\"remark\">{}{}</td></tr>\n",
                          escape_markup(name), escape_markup(value), mark,
+                         escape_markup(remark));
+  }
+
+  void Table::add_judged(const std::string &name, const std::string &value,
+                         const std::string &bound, const std::string &verdict,
+                         const Verdict kind, const std::string &remark)
+  {
+    const char *mark = kind == Verdict::good  ? "<b class=\"good\">✓</b> "
+                       : kind == Verdict::bad ? "<b class=\"bad\">⚠</b> "
+                                              : "– ";
+    rows_ += fmt::format("<tr><th>{}</th><td class=\"number\">{}</td>"
+                         "<td class=\"number\">{}</td>"
+                         "<td class=\"verdict\">{}{}</td>"
+                         "<td class=\"remark\">{}</td></tr>\n",
+                         escape_markup(name), escape_markup(value),
+                         escape_markup(bound), mark, escape_markup(verdict),
                          escape_markup(remark));
   }
 

@@ -26,6 +26,10 @@ namespace nsfd
   public:
     void add(const std::string &name, const std::string &value,
              const std::string &remark = "", Verdict verdict = Verdict::none);
+    /** A row of five: name, value, bound, verdict in words, remark. */
+    void add_judged(const std::string &name, const std::string &value,
+                    const std::string &bound, const std::string &verdict,
+                    Verdict kind, const std::string &remark);
     void add_sum(const std::string &name, const std::string &value);
     void add_group(const std::string &name);
     /** A bar of @p share of the width next to the value. */

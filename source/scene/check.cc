@@ -7,6 +7,7 @@
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
 #include "nsfd/output/certificate.h"
+#include "nsfd/output/engineering.h"
 #include "nsfd/scene/advice.h"
 #include "nsfd/scene/observable.h"
 #include "nsfd/time/moreau_jean.h"
@@ -19,6 +20,8 @@
 #include <cmath>
 #include <iostream>
 #include <numeric>
+
+// [AM06]: V. Acary, Y. Monerie, INRIA research report RR-6032, 2006.
 
 namespace nsfd
 {
@@ -118,14 +121,15 @@ namespace nsfd
       if (!material.graded && !material.transverse)
         return fmt::format("c_p {:.6g}, c_s {:.6g} m/s", extremes.fastest,
                            extremes.slowest);
-      return fmt::format("{}, waves {:.6g} to {:.6g} m/s, E {:.4g} to {:.4g}",
+      return fmt::format("{}, waves {:.6g} to {:.6g} m/s, E {} to {}",
                          material.transverse ? material.graded
                                                    ? "transversely isotropic, "
                                                      "graded"
                                                    : "transversely isotropic"
                                              : "graded",
                          extremes.slowest, extremes.fastest,
-                         extremes.softest.young, extremes.stiffest.young);
+                         engineering(extremes.softest.young, "Pa", 4),
+                         engineering(extremes.stiffest.young, "Pa", 4));
     }
 
     /** What the advice on all interfaces is computed from. */
@@ -174,8 +178,9 @@ namespace nsfd
     std::string Advisor<dim>::in_crossings(const double h) const
     {
       return crossing > 0.
-                 ? fmt::format("{:.3g} = {:.3g} crossings", h, h / crossing)
-                 : fmt::format("{:.3g}", h);
+                 ? fmt::format("{} = {:.3g} crossings", engineering(h, "s"),
+                               h / crossing)
+                 : engineering(h, "s");
     }
 
     template <int dim>
@@ -186,10 +191,12 @@ namespace nsfd
       const auto &block = input.interfaces[b];
       const auto &law = *block.law;
       std::cout << fmt::format(
-          "  interface  {}: {}, strength {:.4g}, toughness {:.4g}", block.name,
-          block.law_name, law.strength(), law.toughness());
+          "  interface  {}: {}, strength {}, toughness {}", block.name,
+          block.law_name, engineering(law.strength(), "Pa", 4),
+          engineering(law.toughness(), "J/m²", 4));
       if (!law.extrinsic())
-        std::cout << fmt::format(", C_N {:.4g}", law.normal_stiffness());
+        std::cout << ", C_N "
+                  << engineering(law.normal_stiffness(), "Pa/m", 4);
       std::cout << "\n";
       if (young > 0.) {
         // a front runs through the softer side where it is shorter
@@ -212,7 +219,7 @@ namespace nsfd
         print_step(law, unique_steps[b]);
     }
 
-    /** (49)-(52). */
+    /** (49)-(52) of [AM06]. */
     template <int dim>
     void Advisor<dim>::print_resolution(const CohesiveLaw &law,
                                         const double longest,
@@ -227,8 +234,8 @@ namespace nsfd
       const bool is_resolved = points >= points_wanted;
       line("resolution",
            fmt::format(
-               "cohesive length {:.3g} = {:.3g} edges = {:.3g} points{}",
-               length, edges, points,
+               "cohesive length {} = {:.3g} edges = {:.3g} points{}",
+               engineering(length, "m"), edges, points,
                is_resolved
                    ? ": resolved"
                    : fmt::format("; it takes {} points", points_wanted)));
@@ -241,13 +248,15 @@ namespace nsfd
       if (needed <= most_points)
         text = fmt::format("`set interface points = {:g}`, or ", needed);
       change(text +
-             fmt::format("edges of {:.3g}, or a strength of {:.3g} at "
-                         "this toughness",
-                         length * per_edge / points_wanted,
-                         law.strength() * std::sqrt(points / points_wanted)));
+             fmt::format(
+                 "edges of {}, or a strength of {} at this toughness",
+                 engineering(length * per_edge / points_wanted, "m"),
+                 engineering(law.strength() *
+                                 std::sqrt(points / points_wanted),
+                             "Pa")));
     }
 
-    /** (53) and (80) as an exact rule, (54) for any law. */
+    /** (53) and (80) of [AM06] as an exact rule, (54) for any law. */
     template <int dim>
     void Advisor<dim>::print_bounds(const CohesiveLaw &law,
                                     const FaceFamily &family) const
@@ -261,15 +270,18 @@ namespace nsfd
           stiffness_bounds(needed, young, poisson, law, family.longest, points,
                            points_wanted);
       line("C_N L/E",
-           fmt::format("{:.3g} (L = {:.3g}, the longest of these faces); both "
+           fmt::format("{:.3g} (L = {}, the longest of these faces); both "
                        "at this toughness and shape:",
-                       C_N * family.longest / young, family.longest));
+                       C_N * family.longest / young,
+                       engineering(family.longest, "m")));
       line("", fmt::format("at least {:.3g} leaves {} of the modulus, at most "
                            "{:.3g} resolves the cohesive length",
                            bounds.lower, share_wanted, bounds.upper));
       if (C_N < needed && std::isfinite(needed))
-        change(fmt::format("a stiffness of {:.4g}, so a strength of {:.4g}",
-                           needed, law.strength() * std::sqrt(needed / C_N)));
+        change(fmt::format(
+            "a stiffness of {}, so a strength of {}",
+            engineering(needed, "Pa/m", 4),
+            engineering(law.strength() * std::sqrt(needed / C_N), "Pa", 4)));
       if (!bounds.conflict())
         return;
       line("", "conflict on any mesh: faces stiff enough to be invisible are "
@@ -284,7 +296,7 @@ namespace nsfd
                          points, enough));
     }
 
-    /** (42), with the diagonal of the mesh as the bar. */
+    /** (42) of [AM06], with the diagonal of the mesh as the bar. */
     template <int dim>
     void Advisor<dim>::print_jumps(const CohesiveLaw &law) const
     {
@@ -297,15 +309,16 @@ namespace nsfd
       const double length = young / slope, ratio = diagonal / length;
       line("jumps",
            fmt::format(
-               "max |R'| is {:.3g} E/L (42), L = {:.3g} the diagonal: {}",
-               ratio, diagonal,
+               "max |R'| is {:.3g} E/L (Acary & Monerie 2006, (42)), L = {} "
+               "the diagonal: {}",
+               ratio, engineering(diagonal, "m"),
                ratio < 1. ? "no quasi-static solution jumps"
                           : "quasi-static solutions jump,"));
       if (ratio >= 1.)
         line("",
              fmt::format("what they release becomes motion; in bodies below "
-                         "{:.3g} they do not",
-                         length));
+                         "{} they do not",
+                         engineering(length, "m")));
     }
 
     template <int dim>
@@ -338,7 +351,7 @@ namespace nsfd
             fmt::format("`set step = auto`, or `set step = {}`",
                         crossing > 0. && input.time.step_kind != StepKind::time
                             ? fmt::format("{:.2g} crossings", safe / crossing)
-                            : fmt::format("{:.2g}", safe)));
+                            : fmt::format("{:.2g} s", safe)));
       }
     }
 
@@ -364,20 +377,20 @@ namespace nsfd
       }
       if (any)
         std::cout << fmt::format(
-            "  stiffness  intact faces ({:.4g} of area per "
+            "  stiffness  intact faces ({:.4g} 1/m of area per "
             "volume) leave E_eff/E = {}\n",
             density, text);
     }
 
-    /** (38). */
+    /** (38) of [AM06]. */
     template <int dim>
     void Advisor<dim>::print_contraction() const
     {
       if (!(contraction > 0.) || !input.may_move())
         return;
       std::cout << fmt::format(
-          "  softening  on all faces at once: flexibility times slope (38) is "
-          "{:.3g} at this step",
+          "  softening  on all faces at once: flexibility times slope ("
+          "Acary & Monerie 2006, (38)) is {:.3g} at this step",
           contraction);
       std::cout << (contraction < 1.
                         ? ", a contraction\n"
@@ -406,10 +419,12 @@ namespace nsfd
     {
       auto &out = std::cout;
       out << fmt::format(
-          "  mesh       {} cells, edges {:.4g} to {:.4g}, angles "
-          "{:.3g} to {:.3g} degrees, volume {:.6g}\n",
-          mesh.n_cells, mesh.smallest_edge, mesh.largest_edge,
-          mesh.smallest_angle, mesh.largest_angle, mesh.volume);
+          "  mesh       {} cells, edges {} to {}, angles {:.3g} to {:.3g} "
+          "degrees, {} {:.6g} {}\n",
+          mesh.n_cells, engineering(mesh.smallest_edge, "m", 4),
+          engineering(mesh.largest_edge, "m", 4), mesh.smallest_angle,
+          mesh.largest_angle, dim == 3 ? "volume" : "area", mesh.volume,
+          dim == 3 ? "m³" : "m²");
       for (const auto &[keyword, sentence] : group_report(input))
         out << fmt::format("  {:<10} {}\n", keyword, sentence);
       out << fmt::format("  bodies     {} of {} different shapes, {} unknowns, "
@@ -432,20 +447,22 @@ namespace nsfd
       const double crossing = discretization.crossing_time();
       const StaticInput statics = input.statics.value_or(StaticInput());
       if (statics.steps)
-        out << fmt::format("  load       {:.4g} per step, {} quasi-static "
+        out << fmt::format("  load       {} per step, {} quasi-static "
                            "steps\n",
-                           statics.step,
+                           engineering(statics.step, "s", 4),
                            std::llround(statics.until / statics.step));
       if (!input.may_move())
         return;
       const auto n_steps =
           std::llround((input.time.end - statics.until) / step);
       if (crossing > 0.)
-        out << fmt::format("  step       {:.4g} = {:.3g} crossings of the "
-                           "smallest cell (one is {:.4g}), {} steps\n",
-                           step, step / crossing, crossing, n_steps);
+        out << fmt::format("  step       {} = {:.3g} crossings of the "
+                           "smallest cell (one is {}), {} steps\n",
+                           engineering(step, "s", 4), step / crossing,
+                           engineering(crossing, "s", 4), n_steps);
       else
-        out << fmt::format("  step       {:.4g}, {} steps\n", step, n_steps);
+        out << fmt::format("  step       {}, {} steps\n",
+                           engineering(step, "s", 4), n_steps);
       if (step > 1.01 * crossing && crossing > 0.)
         out << "             waves cross more than a cell per step: they are "
                "damped or late\n"

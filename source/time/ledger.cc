@@ -304,7 +304,8 @@ namespace nsfd
 
     /**
      * Penetration against its bound: the overlap of the spring where it turned
-     * into a contact, and h times the largest approach speed at activation. A
+     * into a contact, and h times the largest approach speed at an activation
+     * since the point was last open: earlier ones explain no overlap. A
      * point that was forecast to stay open may have come in during the last
      * step, with the speed of its end: then the longer of the two steps counts.
      */
@@ -329,7 +330,10 @@ namespace nsfd
       else if (depth > 0.) // the forecast did not see it come
         approach = std::max(approach, -h * next_.relative_velocity[i * dim]);
       penetration = std::max(penetration, depth);
-      excess = std::max(excess, depth - (released + approach));
+      // speeds change within a step: bounds hold to first order in its length
+      excess = std::max(excess, depth - 1.001 * (released + approach));
+      if (depth <= 0.)
+        released = approach = 0.;
     }
   } // namespace
 

@@ -35,6 +35,13 @@ namespace nsfd
       facts.zone = ZoneResolution{4e-3, 1e-3, "all"};
       facts.rejected = 2;
       facts.redone = 1;
+      facts.extent = 1.;
+      facts.limits.rotation = facts.limits.strain = facts.limits.stride =
+          Peak{1e-3, 1e-4, {}};
+      facts.limits.thickness = 0.1;
+      facts.limits.joints = 1e-15;
+      facts.limits.joint_theta = 0.5;
+      facts.limits.front = SharpFront{1e5, 0., 1e6, 1e-6, "Boundary: left"};
       return facts;
     }
 
@@ -76,11 +83,17 @@ namespace nsfd
         {"Penetration", "penetration",
          // below the largest bound, but above that of its point
          [](RunFacts &f) { f.penetration_excess = 1e-8; }, Verdict::bad,
-         "1e-08 m deeper"},
-        {"PenetrationBeyondFirstOrder", "penetration",
-         // a thousandth of the largest bound is let pass
-         [](RunFacts &f) { f.penetration_excess = 4e-10; }, Verdict::bad,
-         "4e-10 m deeper"},
+         "10.0 nm deeper"},
+        {"PenetrationOfAutomaticSteps", "penetration",
+         [](RunFacts &f) {
+           f.penetration_excess = 1e-8;
+           f.automatic_steps = true;
+         },
+         Verdict::bad, "overlap at the start"},
+        {"PenetrationBeyondRoundOff", "penetration",
+         // positions of 1 m are known to some 1e-15 m, the tolerance is 1e-11 m
+         [](RunFacts &f) { f.penetration_excess = 2e-11; }, Verdict::bad,
+         "20.0 pm deeper"},
         {"Equilibria", "penetration",
          [](RunFacts &f) {
            f.static_steps = f.steps;
@@ -108,13 +121,28 @@ namespace nsfd
            f.static_steps = 3;
            f.solution_jumps = 1;
          },
-         Verdict::bad, "at solution jump = dynamic"},
+         Verdict::bad, "set at solution jump = dynamic"},
         {"Zone", "cohesive zone",
          [](RunFacts &f) { f.zone = ZoneResolution{1e-3, 1e-3, "all"}; },
          // a strength of sqrt(1 / 2.5)
-         Verdict::bad, "points every 0.0004 m, or a strength 0.63 times"},
+         Verdict::bad, "points every 400 µm, or a strength 0.63 times"},
         {"Attempts", "taken again", [](RunFacts &f) { f.rejected = 99; },
          Verdict::bad, "shorten Time/step"},
+        {"Rotation", "rotation",
+         [](RunFacts &f) { f.limits.rotation->value = 3.; }, Verdict::bad,
+         "motion = large"},
+        {"Strain", "strain", [](RunFacts &f) { f.limits.strain->value = 2.; },
+         Verdict::bad, "at t = 100 µs"},
+        {"StrainUnknown", "strain",
+         [](RunFacts &f) { f.limits.strain->value = nan_value; }, Verdict::bad,
+         ""},
+        {"StepLength", "way of a step",
+         [](RunFacts &f) { f.limits.stride->value = 1.5; }, Verdict::bad,
+         "shorten Time/step: it takes 3 times shorter"},
+        {"Joints", "joints", [](RunFacts &f) { f.limits.joints = 1.; },
+         Verdict::bad, "the same initial velocity"},
+        {"Front", "front", [](RunFacts &f) { f.limits.front->stress = 2e7; },
+         Verdict::bad, "Boundary: left brings 20.0 MPa"},
     };
 
     void PrintTo(const Fault &fault, std::ostream *stream)
@@ -160,6 +188,62 @@ namespace nsfd
                              return std::string(info.param.name);
                            });
 
+  // A block at rest far from the origin, or one that has come a long way: its
+  // overlap is that of its positions.
+  TEST(Certificate, TakesRoundOffForWhatItIs)
+  {
+    constexpr double unit = std::numeric_limits<double>::epsilon();
+    for (const double extent : {1e-6, 1., 1e4}) {
+      RunFacts facts = good_facts();
+      facts.displacement = facts.penetration_bound = 0.;
+      facts.extent = extent;
+      facts.penetration = facts.penetration_excess = 4. * unit * extent;
+      EXPECT_EQ(line(certify(facts), "penetration").verdict, Verdict::ok);
+      facts.penetration = facts.penetration_excess = 40. * unit * extent;
+      EXPECT_EQ(line(certify(facts), "penetration").verdict, Verdict::bad);
+    }
+  }
+
+  TEST(Certificate, NamesNoSettingThatIsSet)
+  {
+    RunFacts facts = good_facts();
+    facts.automatic_steps = facts.follows_jumps = true;
+    facts.static_steps = 3;
+    facts.solution_jumps = 1;
+    facts.penetration_excess = 1e-3;
+    facts.created = 1.;
+    facts.rejected = 1000;
+    facts.limits.stride->value = 2.;
+    const Certificate certificate = certify(facts);
+    EXPECT_EQ(line(certificate, "solution jumps").remark.find("set at"),
+              std::string::npos);
+    for (const char *name : {"penetration", "created", "taken again"}) {
+      const std::string &remark = line(certificate, name).remark;
+      EXPECT_EQ(line(certificate, name).verdict, Verdict::bad);
+      EXPECT_EQ(remark.find("shorten Time/step"), std::string::npos) << remark;
+      EXPECT_EQ(remark.find("moreau-jean"), std::string::npos) << remark;
+    }
+    facts.moreau_jean = false;
+    EXPECT_NE(line(certify(facts), "created").remark.find("moreau-jean"),
+              std::string::npos);
+  }
+
+  TEST(Certificate, TakesJointsOutAtOnceWithThetaOne)
+  {
+    RunFacts facts = good_facts();
+    facts.limits.joints = 1.;
+    facts.limits.joint_theta = 1.;
+    EXPECT_EQ(line(certify(facts), "joints").verdict, Verdict::ok);
+  }
+
+  TEST(Certificate, HasNoFrontToFearWhereNothingSoftens)
+  {
+    RunFacts facts = good_facts();
+    facts.limits.front->stress = 2e7;
+    facts.zone.reset();
+    EXPECT_EQ(line(certify(facts), "front").verdict, Verdict::ok);
+  }
+
   TEST(Certificate, SaysOkToNothingThatWasNotMeasured)
   {
     const Certificate nothing = certify(RunFacts());
@@ -189,19 +273,38 @@ namespace nsfd
 
   TEST(Certificate, IsALinePerNumberAndAligned)
   {
-    std::istringstream text(certificate_text(certify(good_facts())));
+    RunFacts facts = good_facts();
+    facts.penetration_excess = 1e-3; // a remark of several lines
+    std::istringstream text(certificate_text(certify(facts)));
     std::string first, row;
     std::getline(text, first);
-    EXPECT_EQ(first, "certificate: ok");
+    EXPECT_EQ(first, "certificate: 1 of 13 lines not ok");
     std::size_t n = 0, place = 0;
-    for (; std::getline(text, row); ++n) {
+    while (std::getline(text, row)) {
+      EXPECT_LE(row.size(), 82u) << row; // two bytes of a micro sign
+      EXPECT_NE(row.back(), ' ');
+      if (row.substr(0, 3) == "   ")
+        continue; // of a remark
+      if (row.find("not ok") != std::string::npos) {
+        ++n;
+        continue;
+      }
       const std::size_t ok = row.find("  ok");
       ASSERT_NE(ok, std::string::npos) << row;
-      EXPECT_TRUE(n == 0 || ok == place) << row;
-      place = ok;
-      EXPECT_NE(row.back(), ' ');
+      if (row.find("µ") == std::string::npos) {
+        EXPECT_TRUE(place == 0 || ok == place) << row;
+        place = ok;
+      }
+      ++n;
     }
-    EXPECT_EQ(n, 8u);
+    EXPECT_EQ(n, 13u);
+  }
+
+  TEST(Certificate, BreaksNoLineBehindANumber)
+  {
+    EXPECT_EQ(wrapped("it is 12 m away", 2, 10), "  it is\n  12 m\n  away\n");
+    EXPECT_EQ(wrapped("of 1 2 3 m", 0, 4), "of\n1 2 3 m\n");
+    EXPECT_EQ(wrapped("", 2), "");
   }
 
   // ------------------------------------------------------------ cohesive zone

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/output/motion_limits.h"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,13 +34,19 @@ namespace nsfd
     double penetration = 0., penetration_bound = 0.; ///< largest ones, m
     double penetration_excess = 0.; ///< of a point above its own bound, m
     double displacement = 0.;       ///< largest, m
+    double extent = 0.;             ///< largest coordinate, m
     bool softens = false; ///< some face has a cohesive law
     bool brittle = false; ///< the traction of one of them jumps to zero
     bool automatic_steps = false; ///< step = auto
+    bool follows_jumps = false;   ///< at solution jump = dynamic
+    bool takes_jumps = false;     ///< at solution jump = relax
+    bool moreau_jean = true;      ///< scheme = moreau-jean
+    unsigned int maximum_halvings = 10;
     unsigned long long beyond_unique = 0, solution_jumps = 0;
     /// nothing: no point has softened; length 0: between rigid bodies
     std::optional<ZoneResolution> zone;
     unsigned long long rejected = 0, redone = 0; ///< attempts
+    MotionLimits limits;
   };
 
   /** A number of a run, what it must be, and what to do if it is not. */
@@ -76,9 +84,10 @@ namespace nsfd
    * Every number against its bound: nothing is ok that was not measured.
    *
    *     residual      of the contact problems, and of equilibria: tolerances
-   *     penetration   at every point: h times the largest approach speed at
-   *                   its activations and the overlap of its released spring;
-   *                   beyond it, the tolerance times the displacement
+   *     penetration   at every point: h times the approach speed at which it
+   *                   closed since it was last open, and the overlap of its
+   *                   released spring; beyond it, the tolerance times the
+   *                   displacement and the round-off of positions
    *     ledger defect 1e-9 of the largest energy
    *     created       1 % of it: what a scheme makes out of nothing is in the
    *                   books, so that they close all the same
@@ -86,12 +95,22 @@ namespace nsfd
    *                   solutions
    *     cohesive zone points_per_cohesive_length points
    *     attempts      fewer steps taken again than accepted ones
+   *     rotation, strain, step length, joints, front
+   *                   what the method assumes of a motion, see MotionLimits
    */
   Certificate certify(const RunFacts &facts);
 
-  /** Points on the cohesive length that resolve it, (49). */
+  /** Points on the cohesive length that resolve it, (49) of [AM06]. */
   constexpr double points_per_cohesive_length = 2.5;
 
-  /** The last lines of a run, aligned. */
+  /** The table as lines of at most 80 columns, aligned. */
   std::string certificate_text(const Certificate &certificate);
+
+  /**
+   * @p text in lines of at most @p width columns, between words but never
+   * between a number and what follows it; every line starts with @p indent
+   * blanks.
+   */
+  std::string wrapped(const std::string &text, std::size_t indent,
+                      std::size_t width = 80);
 } // namespace nsfd

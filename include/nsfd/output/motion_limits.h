@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace nsfd
+{
+  /** The largest value of a number over a run, and where and when it was. */
+  struct Peak {
+    double value = 0., time = 0.;  ///< s
+    std::array<double, 3> place{}; ///< m, at t = 0
+  };
+
+  /** What comes into bodies faster than their cells can carry. */
+  struct SharpFront {
+    double stress = 0., time = 0.; ///< within one crossing, Pa; since when, s
+    double strength = 0.;          ///< the smallest one, Pa
+    double crossing = 0.;          ///< of the largest cell, s
+    std::string name;              ///< "Boundary: left"
+
+    double share() const { return stress / strength; }
+  };
+
+  /**
+   * How far a run went towards what its method assumes to be small; nothing
+   * where it assumes nothing of the kind.
+   */
+  struct MotionLimits {
+    std::optional<Peak> rotation, strain; ///< of cells, of small motions
+    /// way of bodies past each other in a step over the smallest thickness
+    std::optional<Peak> stride;
+    double thickness = 0.; ///< m
+    /// velocity of what rigid joints join at t = 0, over the largest speed
+    std::optional<double> joints;
+    double joint_theta = 0.;         ///< of the run: 1 takes it out at once
+    std::optional<SharpFront> front; ///< the sharpest one, of faces that break
+  };
+
+  /// rad: a body that turns by it is 0.5 % too long, its forces 6 degrees off
+  constexpr double largest_rotation = 0.1;
+  /// stress is off by three halves of it
+  constexpr double largest_strain = 0.05;
+  /// of the thickness: what is farther in has left on the other side
+  constexpr double largest_stride = 1.;
+  /// of the strength, within one crossing of a cell
+  constexpr double largest_front = 0.25;
+  /// of the largest speed: a hundredth of it is 1e-4 of the energy
+  constexpr double largest_joint_speed = 1e-2;
+} // namespace nsfd
