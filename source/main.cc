@@ -14,6 +14,7 @@
 
 #include <malloc.h>
 
+#include <cstdlib>
 #include <iostream>
 #include <string>
 
@@ -126,13 +127,14 @@ int main(int argc, char **argv)
   if (command.print_parameters)
     return print_parameters(command);
 
+  const char *const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  stop_request::end_at_signals(rank == nullptr || rank == std::string("0"));
   dealii::deal_II_exceptions::disable_abort_on_exception();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool root =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   const unsigned int n_ranks =
       dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  stop_request::end_at_signals(root);
   try {
     if (solve)
       return run_on_root(
