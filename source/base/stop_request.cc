@@ -70,7 +70,7 @@ namespace nsfd::stop_request
         if (is_first) {
           say("nsfd: ended by ");
           say(name_of(signal));
-          say(" during set-up: nothing had been computed yet\n");
+          say(": nothing had been computed that could be stored\n");
         }
         _exit(exit_code);
       }

@@ -11,6 +11,7 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -34,6 +35,11 @@ namespace nsfd
         "parameters.prm", "run.json",       "units.json",    "history.csv",
         "summary.json",   "fields.pvd",     "interfaces.pvd", "checkpoint.h5",
         "report.html"};
+
+    /** Those of many runs. */
+    const std::vector<std::string> frequent = {
+        "checkpoint_previous.h5", "fields.xdmf",       "fields.h5",
+        "interfaces.xdmf",        "interfaces.h5",     "fragments.csv"};
 
     bool refuse(const std::string &text)
     {
@@ -191,6 +197,16 @@ namespace nsfd
           "that --force could replace: nothing was run.\n"
           "  write --output DIR with another one",
           directory));
+    if (read_description(folder).contains("files"))
+      for (const std::vector<std::string> *all : {&promised, &frequent})
+        for (const std::string &name : *all)
+          if (is_there(folder / name) &&
+              std::find(names.begin(), names.end(), name) == names.end())
+            return refuse(fmt::format(
+                "`{}` is not of the run that --force would replace, and a new "
+                "run might: nothing was run.\n"
+                "  move it away, or write --output DIR",
+                (folder / name).string()));
     for (const std::string &name : names)
       if (type_of(folder / name) == fs::file_type::directory)
         return refuse(fmt::format(
@@ -264,7 +280,7 @@ namespace nsfd
     if (directory_.empty())
       return;
     head_ = json;
-    files_.insert(list_name);
+    files_.insert(promised.begin(), promised.end()); // some at once
     write_list();
   }
 
@@ -306,9 +322,10 @@ namespace nsfd
                         "followed.");
     const std::lock_guard<std::recursive_mutex> guard(mutex_);
     changed_ |= files_.insert(name.generic_string()).second;
-    // in long series the list may be a little late
+    // a long list may be a little late
     if (changed_ && !head_.empty() && name != list_name &&
-        std::chrono::steady_clock::now() - listed_ > 50 * cost_)
+        (files_.size() < 200 ||
+         std::chrono::steady_clock::now() - listed_ > 50 * cost_))
       write_list();
   }
 

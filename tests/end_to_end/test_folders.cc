@@ -151,7 +151,7 @@ namespace end_to_end
     expect_words(run_in(workspace, workspace.path() / "file"), 1,
                  {"is no folder"});
     expect_words(run_in(workspace, workspace.path() / "file" / "below"), 1,
-                 {"file"});
+                 {"Not a directory"});
     Launch two = small;
     two.ranks = 2;
     expect_words(run_in(workspace, workspace.path() / "file", {}, two), 1,

@@ -25,7 +25,7 @@ namespace nsfd
 
     /**
      * From here on it is remembered, for requested() and within Interruptible.
-     * The same signal again, a second later, ends the process. With
+     * Another signal, a second later, ends the process. With
      * @p watches_output a standard output without a reader counts as one.
      */
     void remember_signals(bool watches_output);
