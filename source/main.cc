@@ -1,8 +1,10 @@
 #include "nsfd/compare/compare_command.h"
+#include "nsfd/base/stop_request.h"
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/read_law.h"
 #include "nsfd/input/read_scene.h"
 #include "nsfd/law_path/run_law.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/simulation.h"
 #include "nsfd/stored/solve_command.h"
 #include "nsfd/study/study_command.h"
@@ -12,6 +14,7 @@
 
 #include <malloc.h>
 
+#include <cstdlib>
 #include <iostream>
 #include <string>
 
@@ -66,6 +69,32 @@ namespace
     }
   }
 
+  /** For a shell: quoted only where it must be. */
+  std::string quoted(const std::string &word)
+  {
+    if (!word.empty() &&
+        word.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
+                               "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                               "_-./:=,+@%") == std::string::npos)
+      return word;
+    std::string result = "'";
+    for (const char c : word)
+      result += c == '\'' ? "'\\''" : std::string(1, c);
+    return result + "'";
+  }
+
+  /** What goes on with a run of this command. */
+  std::string resume_line(const int argc, char **argv, const bool resumes,
+                          const unsigned int n_ranks)
+  {
+    std::string line =
+        n_ranks > 1 ? "mpirun -n " + std::to_string(n_ranks) + " " : "";
+    for (int i = 0; i < argc; ++i)
+      if (argv[i] != std::string("--force"))
+        line += (i > 0 ? " " : "") + quoted(argv[i]);
+    return resumes ? line : line + " --resume";
+  }
+
   /** One process is enough; all end with its exit code. */
   template <typename Work>
   int run_on_root(const bool root, const Work &work)
@@ -98,10 +127,14 @@ int main(int argc, char **argv)
   if (command.print_parameters)
     return print_parameters(command);
 
+  const char *const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  stop_request::end_at_signals(rank == nullptr || rank == std::string("0"));
   dealii::deal_II_exceptions::disable_abort_on_exception();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool root =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  const unsigned int n_ranks =
+      dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
   try {
     if (solve)
       return run_on_root(
@@ -118,14 +151,23 @@ int main(int argc, char **argv)
     for (int i = 0; i < argc; ++i)
       options.command_line += std::string(i ? " " : "") + argv[i];
     options.force = command.force;
+    options.resume_line = resume_line(argc, argv, command.resume, n_ranks);
     options.quiet = command.quiet;
+    options.verbose = command.verbose;
+    options.strict = command.strict;
     options.check = command.check;
     options.resume = command.resume;
     return run_scene(*input, options, MPI_COMM_WORLD);
+  } catch (const OutputError &error) {
+    if (root || !error.is_on_all_ranks())
+      std::cerr << "error: " << error.what() << "\n";
+    if (n_ranks > 1 && !error.is_on_all_ranks())
+      MPI_Abort(MPI_COMM_WORLD, exit_code::internal_error);
+    return exit_code::internal_error;
   } catch (const std::exception &error) {
     std::cerr << "internal error: " << error.what()
               << "\nPlease report it with the parameter file.\n";
-    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    if (n_ranks > 1)
       MPI_Abort(MPI_COMM_WORLD, exit_code::internal_error);
     return exit_code::internal_error;
   }

@@ -12,10 +12,12 @@
 #include "static_run.h"
 
 #include "nsfd/base/cost.h"
+#include "nsfd/base/stop_request.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/command_line.h"
 #include "nsfd/output/fragment_output.h"
 #include "nsfd/output/fragments.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/run_output.h"
 #include "nsfd/scene/case_observer.h"
 #include "nsfd/scene/check.h"
@@ -26,7 +28,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <iostream>
 #include <map>
 
@@ -34,9 +35,6 @@ namespace nsfd
 {
   namespace
   {
-    volatile std::sig_atomic_t stop_requested = 0;
-    void request_stop(int) { stop_requested = 1; }
-
     template <int dim>
     class Simulation
     {
@@ -56,11 +54,14 @@ namespace nsfd
       void renew_control();
       void remember_state(Archive &archive);
       void remember_parts(Archive &archive, bool with_solver);
-      void store();
+      bool store(bool with_solver = true);
       bool find_equilibrium(std::string &failure);
       void start();
       void start_dynamics();
       int step_to_the_end();
+      bool take_steps(bool &stopped, std::string &failure);
+      int stop(bool between_steps);
+      bool claim_folder(bool resumes);
       void choose_step();
       bool must_redo(const StepReport &report, const State &next);
       bool overshoots(const StepReport &report);
@@ -105,7 +106,9 @@ namespace nsfd
       unsigned int attempts_ = 0; // at the present step, all rejected
       double redo_until_ = 0., redo_step_ = 0.;
       unsigned int stored_at_ = 0; ///< step of the last checkpoint
-      bool resumed_ = false;
+      bool stored_ = false;        ///< it is on the disk
+      bool resumed_ = false, certified_ = false;
+      bool has_solver_ = true; ///< the checkpoint holds what solvers keep
       std::map<std::string, unsigned int> switches_;
     };
 
@@ -126,6 +129,8 @@ namespace nsfd
       auto charge = std::make_unique<Charge>(Cost::set_up);
       std::optional<FoundCheckpoint> found;
       if (options_.resume && !options_.check) {
+        if (!claim_folder(true))
+          return exit_code::bad_input;
         found = find_checkpoint(input_, communicator_);
         if (!found)
           return exit_code::bad_input;
@@ -139,10 +144,7 @@ namespace nsfd
             model_.dynamic_control(input_, 0.)->base_step(), communicator_);
       if (!input_.adaptivity)
         model_.forget_mesh();
-      bool ours = true;
-      if (communicator_.is_root() && !found)
-        ours = claim_directory(input_.output.directory, options_.force);
-      if (communicator_.any(!ours))
+      if (!found && !claim_folder(false))
         return exit_code::bad_input;
 
       model_.dynamics->reinit(model_.control->step(), input_.time.bulk_theta());
@@ -167,19 +169,34 @@ namespace nsfd
       summary_.setup_seconds = cpu_seconds() - setup;
       charge.reset();
 
-      std::signal(SIGINT, request_stop);
-      std::signal(SIGTERM, request_stop);
       std::string failure;
+      const bool watches = communicator_.is_root() && !options_.quiet;
       if (found) {
         const bool resumed = resume(*found);
         found.reset(); // a copy of the whole state
+        stop_request::remember_signals(watches);
         return resumed ? step_to_the_end() : exit_code::bad_input;
       }
       const bool in_equilibrium =
           !model_.quasi_static || find_equilibrium(failure);
       build_smooth_motion();
       start();
+      stop_request::remember_signals(watches);
       return in_equilibrium ? step_to_the_end() : fail(failure);
+    }
+
+    /** One run in a folder at a time. Collective. */
+    template <int dim>
+    bool Simulation<dim>::claim_folder(const bool resumes)
+    {
+      bool ours = true;
+      if (communicator_.is_root())
+        ours = resumes ? OutputFolder::instance().claim(
+                             input_.output.directory,
+                             OutputFolder::Claim::go_on)
+                       : claim_directory(input_.output.directory,
+                                         options_.force);
+      return !communicator_.any(!ours);
     }
 
     template <int dim>
@@ -201,7 +218,7 @@ namespace nsfd
         checkpoints_->read(found, [&](Archive &archive) {
           remember_state(archive);
           build_smooth_motion();
-          remember_parts(archive, found.same_solver);
+          remember_parts(archive, found.same_solver && has_solver_);
           if (!found.same_steps)
             renew_control();
           output_->remember(archive); // the first to touch a file
@@ -214,7 +231,7 @@ namespace nsfd
                     << error.what() << "\n";
         return false;
       }
-      resumed_ = true;
+      resumed_ = stored_ = true;
       stored_at_ = state_.step;
       fragments_->update(state_);
       output_->message(fmt::format("goes on after step {}, t = {:.6g}",
@@ -242,7 +259,7 @@ namespace nsfd
     void Simulation<dim>::remember_state(Archive &archive)
     {
       remember(state_, archive);
-      archive.numbers("is_static", is_static_);
+      archive.numbers("is_static", is_static_, has_solver_);
     }
 
     /** Everything else that later steps or the end of the run depend on. */
@@ -276,24 +293,32 @@ namespace nsfd
       earlier_.remember(archive, totals());
     }
 
-    /** What goes wrong is a warning: the checkpoints before are still there. */
+    /**
+     * What goes wrong is a warning: the checkpoints before are still there.
+     * Without what the solver keeps if it was left in the middle of a step.
+     */
     template <int dim>
-    void Simulation<dim>::store()
+    bool Simulation<dim>::store(const bool with_solver)
     {
       const Charge charge(Cost::output);
       stored_at_ = state_.step;
+      has_solver_ = with_solver;
       const std::string failure = checkpoints_->write([&](Archive &archive) {
         remember_state(archive);
-        remember_parts(archive, true);
+        remember_parts(archive, with_solver);
         output_->remember(archive);
         if (observers_)
           observers_->remember(archive);
       });
+      stored_ = !communicator_.any(!failure.empty());
       if (!failure.empty())
         print_problems(communicator_, input_, "warning",
-                       {fmt::format("no checkpoint after step {}: {}; the one "
-                                    "before is kept",
-                                    state_.step, failure)});
+                       {fmt::format("no checkpoint after step {}: {}; {}",
+                                    state_.step, failure,
+                                    checkpoints_->has_earlier()
+                                        ? "the one before is kept"
+                                        : "there is none before it")});
+      return stored_;
     }
 
     /** Instead of the given state at t = 0. */
@@ -436,7 +461,9 @@ namespace nsfd
       const RunInfo info =
           run_info(input_, options_, model_, unsigned(communicator_.size()));
       output_ = std::make_unique<RunOutput<dim>>(
-          input_, info, options_.quiet, *model_.discretization, communicator_,
+          input_, info, options_.quiet, options_.verbose,
+          *model_.discretization, communicator_,
+          observers_ ? observers_->records() : std::vector<ObservableRecord>(),
           options_.resume);
       if (has_fragments(input_, *model_.discretization, *fragments_,
                         communicator_))
@@ -463,6 +490,7 @@ namespace nsfd
       write_if_due();
       HistoryRow row;
       row.energy = state_.energy;
+      row.broken_area = state_.broken_area;
       row.fragments = fragments_->count();
       row.reactions = reactions();
       output_->start(row);
@@ -492,6 +520,29 @@ namespace nsfd
     template <int dim>
     int Simulation<dim>::step_to_the_end()
     {
+      std::string failure;
+      bool stopped = false;
+      try {
+        if (!take_steps(stopped, failure)) {
+          store();
+          return fail(failure);
+        }
+      } catch (const StopRequested &) {
+        return stop(false);
+      }
+      if (stopped)
+        return stop(true);
+      if (checkpoints_->wanted() && stored_at_ != state_.step)
+        store();
+      finish("");
+      return options_.strict && !certified_ ? exit_code::not_certified
+                                            : exit_code::done;
+    }
+
+    /** To the end, or to where a signal asks to stop. False if it failed. */
+    template <int dim>
+    bool Simulation<dim>::take_steps(bool &stopped, std::string &failure)
+    {
       State next = state_;
       charge_memory("state and history of the points");
       while (!model_.control->finished() || is_static_) {
@@ -500,24 +551,35 @@ namespace nsfd
             break;
           start_dynamics();
         }
-        if (communicator_.any(stop_requested != 0)) {
-          store();
-          finish(fmt::format("stopped on request at t = {:.6g}", state_.time));
-          return exit_code::stopped;
+        if (communicator_.any(stop_request::requested())) {
+          stopped = true;
+          return true;
         }
         if (!is_static_ && input_.time.step_kind == StepKind::automatic)
           choose_step();
-        std::string failure;
         if (!(is_static_ ? advance_load(next, failure)
-                         : advance(next, failure))) {
-          store();
-          return fail(failure);
-        }
+                         : advance(next, failure)))
+          return false;
       }
-      if (checkpoints_->wanted() && stored_at_ != state_.step)
-        store();
-      finish("");
-      return exit_code::done;
+      return true;
+    }
+
+    /** The last good state is stored, with a line to paste. */
+    template <int dim>
+    int Simulation<dim>::stop(const bool between_steps)
+    {
+      const bool have =
+          (stored_ && stored_at_ == state_.step) || store(between_steps);
+      finish(fmt::format("stopped on request at t = {:.6g}", state_.time));
+      if (communicator_.is_root())
+        std::cerr << fmt::format("{}: stopped by {} at t = {:.6g}, after step "
+                                 "{}{}\n  {}\n",
+                                 input_.file, stop_request::reason(),
+                                 state_.time, state_.step,
+                                 between_steps ? "" : ", within the next one",
+                                 have ? "go on with: " + options_.resume_line
+                                      : "this state could not be stored");
+      return exit_code::stopped;
     }
 
     /** Down the ladder at once where points soften, up one level per step. */
@@ -589,6 +651,7 @@ namespace nsfd
           control.can_halve() ? std::min(attempts_, 10u) : 10;
       // the one place that catches StepRejected and shortens the step
       try {
+        const stop_request::Interruptible step(communicator_.size());
         report = smooth_ ? smooth_->advance(state_, h, next)
                          : model_.stepper->advance(
                                state_, h, next,
@@ -617,7 +680,11 @@ namespace nsfd
       using Outcome = typename StaticRun<dim>::Outcome;
       const double h = model_.control->step();
       StepReport report;
-      switch (static_run_->step(state_, next, report, failure)) {
+      const auto outcome = [&] {
+        const stop_request::Interruptible step(communicator_.size());
+        return static_run_->step(state_, next, report, failure);
+      }();
+      switch (outcome) {
       case Outcome::accepted:
         accept(next, report, h);
         return true;
@@ -730,6 +797,7 @@ namespace nsfd
       const Certificate certificate = certify(
           run_facts(input_, model_, solved_steps_, *extremes_, state_, s,
                     communicator_));
+      certified_ = certificate.is_ok();
       output_->write_summary(s, certificate);
       if (communicator_.is_root() && !options_.quiet)
         print_end(certificate);

@@ -11,7 +11,10 @@ namespace nsfd
   struct RunOptions
   {
     std::string command_line;
-    bool force = false, quiet = false, check = false, resume = false;
+    /// the same for a shell, to go on after a stop
+    std::string resume_line;
+    bool force = false, quiet = false, check = false, resume = false,
+         strict = false, verbose = false;
   };
 
   /**

@@ -1,5 +1,7 @@
 #include "nsfd/base/accelerated_rounds.h"
 
+#include "nsfd/base/stop_request.h"
+
 #include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/la_parallel_vector.h>
@@ -27,7 +29,7 @@ namespace nsfd
     kinsol.reinit_vector = [&](Distributed &v) {
       v.reinit(owned, communicator.mpi());
     };
-    bool finished = false;
+    bool finished = false, stopped = false;
     unsigned int rounds = 0;
     kinsol.iteration_function = [&](const Distributed &in, Distributed &out) {
       if (finished) { // nothing changes: KINSOL stops
@@ -35,7 +37,12 @@ namespace nsfd
         return 0;
       }
       std::copy_n(in.begin(), x.size(), x.begin());
-      finished = !round(x) || ++rounds == maximum;
+      try { // nothing leaves through C code
+        finished = !round(x) || ++rounds == maximum;
+      } catch (const StopRequested &) {
+        stopped = true;
+        return -1;
+      }
       std::copy_n(x.begin(), x.size(), out.begin());
       return 0;
     };
@@ -46,6 +53,8 @@ namespace nsfd
     } catch (const dealii::ExceptionBase &) {
       // judged by what the rounds reached
     }
+    if (stopped)
+      throw StopRequested();
     std::copy_n(vector.begin(), x.size(), x.begin());
   }
 } // namespace nsfd

@@ -1,6 +1,7 @@
 #include "nsfd/base/communicator.h"
 
 #include "nsfd/base/cost.h"
+#include "nsfd/base/stop_request.h"
 #include "nsfd/dynamics/block_kernels.h"
 
 #include <algorithm>
@@ -10,6 +11,12 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /// of the bits of a double that is not negative: the sign
+    constexpr unsigned long long stop_bit = 1ull << 63;
+  } // namespace
+
   Communicator::Communicator(const MPI_Comm communicator)
     : communicator_(communicator)
   {
@@ -43,9 +50,14 @@ namespace nsfd
     std::vector<unsigned long long> largest(rows);
     for (std::size_t r = 0; r < rows; ++r)
       largest[r] = largest_bits(terms + r * n, n);
+    // a request to stop travels along: all ranks see it in the same sum
+    if (rows > 0 && stop_request::is_due(size_))
+      largest[0] |= stop_bit;
     if (size_ > 1)
       MPI_Allreduce(MPI_IN_PLACE, largest.data(), int(rows),
                     MPI_UNSIGNED_LONG_LONG, MPI_MAX, communicator_);
+    if (rows > 0 && (largest[0] & stop_bit) != 0)
+      throw StopRequested();
     // The splitting places must not depend on the number of ranks: an upper
     // bound of the number of terms that is the same for all of them.
     const int log_n = 24;
@@ -71,10 +83,12 @@ namespace nsfd
 
   double Communicator::max(double value) const
   {
+    double both[2] = {value, stop_request::is_due(size_) ? 1. : 0.};
     if (size_ > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX,
-                    communicator_);
-    return value;
+      MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_DOUBLE, MPI_MAX, communicator_);
+    if (both[1] > 0.)
+      throw StopRequested();
+    return both[0];
   }
 
   double Communicator::min(const double value) const { return -max(-value); }

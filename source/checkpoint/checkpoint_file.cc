@@ -3,6 +3,7 @@
 #include "../mesh/mix_bits.h"
 
 #include "nsfd/base/version.h"
+#include "nsfd/output/output_folder.h"
 
 #include <fmt/format.h>
 
@@ -43,8 +44,9 @@ namespace nsfd::checkpoint_file
     public:
       explicit NewFile(const fs::path &path) : path_(path)
       {
+        std::remove(path.c_str()); // a link would be followed
         file_ =
-            open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+            open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         demand(file_ >= 0);
       }
       ~NewFile()
@@ -145,6 +147,8 @@ namespace nsfd::checkpoint_file
 
   std::vector<char> read(const fs::path &file)
   {
+    if (fs::is_directory(file))
+      throw std::runtime_error("it is a folder, no file");
     errno = 0;
     std::ifstream stream(file, std::ios::binary | std::ios::ate);
     if (!stream)
@@ -168,6 +172,8 @@ namespace nsfd::checkpoint_file
   {
     const auto places = candidates(folder);
     const fs::path part = folder / "checkpoint.h5.part";
+    for (const fs::path &place : places)
+      OutputFolder::instance().note(place.string());
     NewFile file(part);
     file.write_all(bytes);
     if (fs::exists(places[0]))

@@ -108,6 +108,16 @@ namespace nsfd
   }
 
   template <int dim>
+  bool Checkpoints<dim>::has_earlier() const
+  {
+    for (const auto &file :
+         checkpoint_file::candidates(input_.output.directory))
+      if (std::filesystem::is_regular_file(file))
+        return true;
+    return false;
+  }
+
+  template <int dim>
   void Checkpoints<dim>::read(const FoundCheckpoint &found,
                               const RememberAll &remember) const
   {

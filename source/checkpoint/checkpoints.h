@@ -63,6 +63,9 @@ namespace nsfd
      */
     std::string write(const RememberAll &remember);
 
+    /** A file of this or an earlier step is there; on the first rank. */
+    bool has_earlier() const;
+
     /** @throws BadCheckpoint if it belongs to another mesh. Collective. */
     void read(const FoundCheckpoint &found, const RememberAll &remember) const;
 

@@ -2,10 +2,11 @@
 #include "nsfd/compare/comparison.h"
 
 #include "nsfd/input/command_line.h"
-#include "nsfd/output/run_output.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/summary_file.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <ostream>
 #include <stdexcept>
@@ -44,9 +45,14 @@ namespace nsfd
                          *command.tolerance);
     out << "\n";
     if (!command.output.empty()) {
+      OutputFolder &folder = OutputFolder::instance();
+      folder.describe(nlohmann::json{{"subcommand", "compare"},
+                                     {"runs", command.runs}}
+                          .dump());
       write_file_atomically(command.output + "/compare.json",
                             comparison_json(comparison, command.tolerance));
       write_comparison_page(comparison, command.output);
+      folder.finish();
       out << command.output << "/compare.html\n";
     }
     return within ? exit_code::done : exit_code::differs;

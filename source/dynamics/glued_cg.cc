@@ -4,6 +4,8 @@
 #include "multigrid.h"
 #include "sparse_rows.h"
 
+#include "nsfd/base/stop_request.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -155,15 +157,19 @@ namespace nsfd
     double GluedCg::dot(const double *a, const double *b,
                         const double *coarse_a, const double *coarse_b) const
     {
-      double sum = 0.;
+      // the second one: how many ranks are asked to stop
+      double sums[2] = {0., stop_request::is_due(communicator_.size()) ? 1.
+                                                                       : 0.};
       for (std::size_t i = 0; i < place_.size(); ++i)
-        sum += a[i] * b[i];
+        sums[0] += a[i] * b[i];
       for (long long i = 0; i < n_coarse_; ++i)
-        sum += coarse_a[i] * coarse_b[i];
+        sums[0] += coarse_a[i] * coarse_b[i];
       if (communicator_.size() > 1)
-        MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM,
+        MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM,
                       communicator_.mpi());
-      return sum;
+      if (sums[1] > 0.)
+        throw StopRequested();
+      return sums[0];
     }
 
     /** q = A (p + P p_c), and P^T q of it. */

@@ -143,12 +143,15 @@ namespace nsfd
             ->expected(0, 1);
     const Flag flags[] = {
         {"--force", &command_line.force,
-         "overwrite the results of an earlier run"},
+         "replace the files of an earlier run, and no others"},
         {"--check", &command_line.check,
          "say whether it would run, do not run it"},
         {"--print-parameters", &command_line.print_parameters,
          "print the complete file, all defaults with their texts"},
         {"--quiet", &command_line.quiet, "print errors only"},
+        {"--verbose", &command_line.verbose, "print a line for every step"},
+        {"--strict", &command_line.strict,
+         "exit code 7 if the certificate is not ok"},
         {"--list", &list, "print the names of all laws, meshes, solvers, ..."},
         {"--version", &version, "print the version"},
         {"--help", &help, "print this help"}};
@@ -169,6 +172,9 @@ namespace nsfd
     if (command_line.resume && command_line.force)
       return fail(err, "--force and --resume exclude each other",
                   "--force begins again, --resume goes on");
+    if (command_line.quiet && command_line.verbose)
+      return fail(err, "--quiet and --verbose exclude each other",
+                  "write one of them");
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
       return fail_at(err, extras.front(), app);

@@ -4,7 +4,7 @@
 #include "law_table.h"
 #include "run_bar.h"
 
-#include "nsfd/output/run_output.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/summary_file.h"
 #include "nsfd/output/svg.h"
 
@@ -141,9 +141,13 @@ namespace nsfd
     }
     if (!claim_directory(input->directory, command.force))
       return exit_code::bad_input;
+    OutputFolder &folder = OutputFolder::instance();
+    folder.describe(
+        nlohmann::json{{"subcommand", "law"}, {"file", command.file}}.dump());
 
     if (input->bar) {
       run_bar(*input, command.quiet);
+      folder.finish();
       return exit_code::done;
     }
     std::vector<Curve> curves;
@@ -151,6 +155,7 @@ namespace nsfd
       curves.push_back(
           drive_point(curve.interaction, curve.points, input->cohesion_rule));
     write_files(*input, curves);
+    folder.finish();
     if (command.quiet)
       return exit_code::done;
     if (!input->entries.empty())

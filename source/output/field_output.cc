@@ -5,6 +5,7 @@
 #include "xdmf_series.h"
 
 #include "nsfd/base/archive.h"
+#include "nsfd/output/output_folder.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -117,9 +118,17 @@ namespace nsfd
     } catch (const std::exception &exception) {
       error = exception.what();
     }
-    if (communicator_.any(!error.empty()))
-      throw std::runtime_error(
-          error.empty() ? "Another rank could not write its fields." : error);
+    if (!communicator_.any(!error.empty()))
+      return;
+    // the words of the first of them, on all
+    const int none = communicator_.size(),
+              who = int(communicator_.min(
+                  error.empty() ? none : communicator_.rank()));
+    int length = int(error.size());
+    MPI_Bcast(&length, 1, MPI_INT, who, communicator_.mpi());
+    error.resize(std::size_t(length));
+    MPI_Bcast(error.data(), length, MPI_CHAR, who, communicator_.mpi());
+    throw OutputError(error, true);
   }
 
   template <int dim>
@@ -144,6 +153,9 @@ namespace nsfd
                       unsigned(communicator_.size()));
     };
     together([&]() {
+      if (communicator_.is_root())
+        for (int rank = 1; rank < communicator_.size(); ++rank)
+          OutputFolder::instance().note((directory / name(rank)).string());
       write_vtu((directory / name(communicator_.rank())).string(), grid);
     });
     together([&]() {

@@ -1,36 +1,55 @@
 #include "nsfd/output/row_file.h"
 
+#include "nsfd/output/output_folder.h"
+
 #include <fmt/format.h>
 
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
 namespace nsfd
 {
   RowFile::RowFile(const std::string &path, const std::string &header)
-      : path_(path), file_(path)
+      : path_(path)
   {
+    OutputFolder::instance().note(path);
+    errno = 0;
+    file_.open(path);
     write(header);
   }
 
   RowFile::RowFile(const std::string &path, const std::uintmax_t n_bytes)
       : path_(path)
   {
+    if (std::filesystem::is_symlink(path))
+      throw OutputError("Cannot write '" + path_ +
+                        "': it is a link, and links are not followed.");
+    OutputFolder::instance().note(path);
     std::filesystem::resize_file(path, n_bytes);
+    errno = 0;
     file_.open(path, std::ios::app);
-    if (!file_)
-      throw std::runtime_error("Cannot write '" + path_ + "'.");
+    demand_good();
   }
 
   void RowFile::write(const std::string &lines)
   {
+    errno = 0;
     file_ << lines << '\n' << std::flush;
+    demand_good();
+  }
+
+  void RowFile::demand_good() const
+  {
+    const int reason = errno;
     if (!file_)
-      throw std::runtime_error("Cannot write '" + path_ + "'.");
+      throw OutputError("Cannot write '" + path_ + "': " +
+                        (reason ? std::strerror(reason) : "it failed") + '.');
   }
 
   std::uintmax_t RowFile::n_bytes()

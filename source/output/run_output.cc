@@ -1,6 +1,7 @@
 #include "nsfd/output/run_output.h"
 
 #include "remember_pictures.h"
+#include "units_file.h"
 
 #include "nsfd/base/archive.h"
 #include "nsfd/base/cost.h"
@@ -9,81 +10,40 @@
 #include "nsfd/output/field_output.h"
 #include "nsfd/output/fragment_output.h"
 #include "nsfd/output/history_file.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/progress.h"
 #include "nsfd/output/report.h"
 #include "nsfd/output/summary_file.h"
 
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 
 namespace nsfd
 {
-  bool claim_directory(const std::string &directory, const bool force)
-  {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    if (fs::exists(directory, error) && !fs::is_empty(directory, error)) {
-      if (!force) {
-        const bool stored =
-            fs::exists(fs::path(directory) / "checkpoint.h5", error);
-        std::cerr << "the output directory `" << directory
-                  << "` exists already: nothing was run.\n"
-                  << "  write --force to replace it, "
-                  << (stored ? "--resume to go on, " : "")
-                  << "or --output DIR\n";
-        return false;
-      }
-      // replace what a run has written, leave everything else
-      for (const auto &entry : fs::directory_iterator(directory)) {
-        const std::string extension = entry.path().extension().string();
-        for (const char *ours :
-             {".vtu", ".pvtu", ".pvd", ".csv", ".json", ".svg", ".html",
-              ".xdmf"})
-          if (extension == ours)
-            fs::remove(entry.path(), error);
-      }
-      for (const char *ours :
-           {"checkpoint.h5", "checkpoint_previous.h5", "checkpoint.h5.part",
-            "fields.h5", "interfaces.h5"})
-        fs::remove(fs::path(directory) / ours, error);
-      for (const auto &entry :
-           fs::directory_iterator(fs::path(directory) / "observables", error))
-        if (entry.path().extension() == ".csv")
-          fs::remove(entry.path(), error);
-      for (const auto &entry :
-           fs::directory_iterator(fs::path(directory) / "problems", error))
-        if (entry.path().extension() == ".hdf5")
-          fs::remove(entry.path(), error);
-    }
-    fs::create_directories(directory, error);
-    if (error) {
-      std::cerr << "cannot create the output directory `" << directory
-                << "`: " << error.message() << "\n";
-      return false;
-    }
-    return true;
-  }
-
   template <int dim>
-  RunOutput<dim>::RunOutput(const SceneInput &input, const RunInfo &info,
-                            const bool quiet,
-                            const Discretization<dim> &discretization,
-                            const Communicator &communicator,
-                            const bool resumes)
+  RunOutput<dim>::RunOutput(
+      const SceneInput &input, const RunInfo &info, const bool quiet,
+      const bool verbose, const Discretization<dim> &discretization,
+      const Communicator &communicator,
+      const std::vector<ObservableRecord> &observables, const bool resumes)
       : input_(input), info_(info), communicator_(communicator)
   {
     const std::string &directory = input.output.directory;
     for (const unsigned int b : discretization.driven_boundaries())
       driven_.push_back(input.boundaries[b].name);
+    units_ = units_text(dim, driven_, observables);
     if (communicator.is_root()) {
       if (!resumes) {
         write_descriptions();
         history_file_ = std::make_unique<HistoryFile>(
             directory + "/history.csv", driven_, dim);
       }
-      progress_ = std::make_unique<Progress>(std::cout, input.time.end,
-                                             Progress::mode_for_stdout(quiet));
+      progress_ =
+          verbose ? std::make_unique<Progress>(std::cout, input.time.end,
+                                               Progress::Mode::lines, 1)
+                  : std::make_unique<Progress>(
+                        std::cout, input.time.end,
+                        Progress::mode_for_stdout(quiet));
     }
     if (input.output.fields || input.output.report)
       fields_ = std::make_unique<FieldOutput<dim>>(
@@ -104,14 +64,17 @@ namespace nsfd
   void RunOutput<dim>::write_descriptions() const
   {
     const std::string &directory = input_.output.directory;
+    OutputFolder::instance().describe(describe_run(info_)); // before all others
     write_file_atomically(directory + "/parameters.prm", input_.echo);
-    write_run_info(directory + "/run.json", info_);
+    write_file_atomically(directory + "/units.json", units_);
   }
 
   template <int dim>
   void RunOutput<dim>::start(const HistoryRow &row)
   {
-    history_.push_back(row);
+    if (history_file_)
+      history_file_->write(row);
+    keep(row);
   }
 
   template <int dim>
@@ -222,20 +185,15 @@ namespace nsfd
       write_descriptions();
   }
 
-  /** The row at t = 0 is in no file. */
   template <int dim>
   void RunOutput<dim>::remember_history(Archive &archive)
   {
     std::uintmax_t n_bytes = history_file_ ? history_file_->n_bytes() : 0;
     archive.numbers("history_bytes", n_bytes);
-    HistoryRow first = history_.empty() ? HistoryRow() : history_.front();
-    EnergyLines &e = first.energy;
-    archive.numbers("start", e.kinetic, e.elastic, e.cohesive, first.fragments);
-    archive.common("start_reactions", first.reactions);
     if (!archive.reads())
       return;
     std::string failure;
-    history_.assign(1, first);
+    history_.clear();
     if (communicator_.is_root())
       try {
         const std::string path = input_.output.directory + "/history.csv";
@@ -263,8 +221,15 @@ namespace nsfd
     if (fragments_)
       findings.fragment_sizes = fragment_sizes(fragments_->records(), dim);
     nsfd::write_summary(directory + "/summary.json", summary, findings);
-    if (!input_.output.report)
-      return;
+    if (input_.output.report)
+      write_page(summary, findings);
+    OutputFolder::instance().finish();
+  }
+
+  template <int dim>
+  void RunOutput<dim>::write_page(const Summary &summary,
+                                  const RunFindings &findings) const
+  {
     Report report;
     report.title = input_.title;
     report.description = input_.description;
@@ -275,7 +240,7 @@ namespace nsfd
     report.reaction_names = driven_;
     report.snapshots = snapshots_;
     report.parameters = input_.echo;
-    write_report(directory + "/report.html", report);
+    write_report(input_.output.directory + "/report.html", report);
   }
 
   template class RunOutput<2>;

@@ -1,13 +1,17 @@
 #include "nsfd/output/summary_file.h"
 
+#include "nsfd/output/output_folder.h"
+
 #include <nlohmann/json.hpp>
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <stdexcept>
 
 namespace nsfd
 {
@@ -92,6 +96,16 @@ namespace nsfd
       return json;
     }
 
+    /** Of the time loop, without output. */
+    double loop_seconds(const Summary &summary)
+    {
+      double seconds = summary.cpu_seconds;
+      for (const auto &[stage, spent] : summary.timings)
+        if (stage == "set-up" || stage == "output")
+          seconds -= spent;
+      return std::max(0., seconds);
+    }
+
     Json sizes(const FragmentSizes &all)
     {
       return {{"mean_size", number(all.mean_size)},
@@ -141,14 +155,28 @@ namespace nsfd
     const auto fail = [&]() {
       const std::string reason = std::strerror(errno);
       std::remove(temporary.c_str());
-      throw std::runtime_error("Cannot write '" + path + "': " + reason + '.');
+      throw OutputError("Cannot write '" + path + "': " + reason + '.');
     };
 
-    errno = 0;
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.close();
-    if (!file || std::rename(temporary.c_str(), path.c_str()) != 0)
+    OutputFolder::instance().note(path);
+    std::remove(temporary.c_str()); // a link would be followed
+    const int file =
+        open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0)
+      fail();
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t n = write(file, text.data() + done, text.size() - done);
+      if (n < 0 && errno == EINTR)
+        continue;
+      if (n <= 0) {
+        const int reason = errno;
+        close(file);
+        errno = reason;
+        fail();
+      }
+      done += std::size_t(n);
+    }
+    if (close(file) != 0 || std::rename(temporary.c_str(), path.c_str()) != 0)
       fail();
   }
 
@@ -170,6 +198,7 @@ namespace nsfd
     json["wall_seconds"] = number(summary.wall_seconds);
     json["cpu_seconds"] = number(summary.cpu_seconds);
     json["setup_seconds"] = number(summary.setup_seconds);
+    json["loop_cpu_seconds"] = number(loop_seconds(summary));
     json["peak_memory_mb"] = number(summary.peak_memory_mb);
     json["energy"] = {{"kinetic", number(e.kinetic)},
                       {"elastic", number(e.elastic)},
@@ -203,7 +232,7 @@ namespace nsfd
     write_json(path, json);
   }
 
-  void write_run_info(const std::string &path, const RunInfo &info)
+  std::string describe_run(const RunInfo &info)
   {
     Json json;
     json["version"] = info.version;
@@ -219,6 +248,6 @@ namespace nsfd
     json["parts"] = Json::array();
     for (const auto &[kind, name] : info.parts)
       json["parts"].push_back({{"kind", kind}, {"name", name}});
-    write_json(path, json);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
   }
 } // namespace nsfd

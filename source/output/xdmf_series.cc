@@ -4,10 +4,17 @@
 
 #include "nsfd/base/archive.h"
 #include "nsfd/output/markup.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/summary_file.h"
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
@@ -78,6 +85,45 @@ namespace nsfd
       }
     }
 
+    /**
+     * Room for @p bytes more in the file, or on an empty one. HDF5 must never
+     * meet a full disk: it ends the program when it cannot write what it holds.
+     */
+    void reserve(const std::string &name, const bool anew,
+                 const std::size_t bytes)
+    {
+      const int file =
+          open(name.c_str(),
+               O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC |
+                   (anew ? O_TRUNC : 0),
+               0666);
+      int failure = errno;
+      if (file >= 0) {
+        struct stat status = {};
+        fstat(file, &status);
+        failure = posix_fallocate(file, status.st_size, off_t(bytes));
+        if (failure != 0 && ftruncate(file, status.st_size) != 0)
+          failure = errno;
+        close(file);
+      }
+      if (file < 0 || failure != 0)
+        throw OutputError("Cannot write '" + name +
+                          "': " + std::strerror(failure) + '.');
+    }
+
+    /** What a time may take in the file, with all of its headers. */
+    std::size_t most_bytes(const VtuGrid &grid)
+    {
+      std::size_t bytes = 1 << 16;
+      const auto add = [&bytes](const std::size_t n) { bytes += 8 * n + 4096; };
+      add(3 * grid.points.size());
+      add(grid.connectivity.size() + 2 * grid.cells.size());
+      for (const auto *arrays : {&grid.point_data, &grid.cell_data})
+        for (const VtuGrid::Array &array : *arrays)
+          add(array.values.size());
+      return bytes;
+    }
+
     /** The HDF5 file of a series, open for one time. */
     class SeriesFile
     {
@@ -135,7 +181,7 @@ namespace nsfd
       void demand(const bool good) const
       {
         if (!good)
-          throw std::runtime_error("Cannot write '" + name_ + "'.");
+          throw OutputError("Cannot write '" + name_ + "'.");
       }
 
       const stored::QuietHdf5 quiet_;
@@ -170,7 +216,12 @@ namespace nsfd
                            grid.cells == last_mesh_.cells &&
                            grid.connectivity == last_mesh_.connectivity &&
                            grid.offsets == last_mesh_.offsets;
-    SeriesFile file(path_ + ".h5", entries_.empty());
+    const bool anew = entries_.empty();
+    OutputFolder::instance().note(path_ + ".h5");
+    reserve(path_ + ".h5", anew, most_bytes(grid));
+    SeriesFile file(path_ + ".h5", anew);
+    if (anew) // which has emptied it again
+      reserve(path_ + ".h5", false, most_bytes(grid));
     file.group(group);
     if (same_mesh)
       for (const char *part : {"/points", "/cells"})

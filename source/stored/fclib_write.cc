@@ -1,4 +1,5 @@
 #include "hdf5_file.h"
+#include "nsfd/output/summary_file.h"
 #include "nsfd/stored/fclib.h"
 
 #include <fmt/format.h>
@@ -13,11 +14,20 @@ namespace nsfd
     {
     public:
       explicit Writer(const std::string &name)
-          : name_(name), file_(H5Fcreate(name.c_str(), H5F_ACC_TRUNC,
-                                         H5P_DEFAULT, H5P_DEFAULT),
-                               H5Fclose)
+          : name_(name), file_(in_memory(name), H5Fclose)
       {
         demand(bool(file_));
+      }
+
+      /** On the disk in one go: HDF5 must never meet a full one. */
+      void finish() const
+      {
+        demand(H5Fflush(file_, H5F_SCOPE_LOCAL) >= 0);
+        const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
+        demand(size > 0);
+        std::string bytes(std::size_t(size), '\0');
+        demand(H5Fget_file_image(file_, bytes.data(), bytes.size()) == size);
+        write_file_atomically(name_, bytes);
       }
 
       void group(const std::string &path) const
@@ -44,6 +54,12 @@ namespace nsfd
       }
 
     private:
+      static hid_t in_memory(const std::string &name)
+      {
+        const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+        H5Pset_fapl_core(access, 1 << 16, false);
+        return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+      }
       void demand(const bool good) const
       {
         if (!good)
@@ -112,5 +128,6 @@ namespace nsfd
       writer.write("/guesses/number_of_guesses", number(1));
       write_pair(writer, "/guesses/1", problem, problem.guess);
     }
+    writer.finish();
   }
 } // namespace nsfd

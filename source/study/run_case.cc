@@ -217,8 +217,13 @@ namespace nsfd
     struct sigaction action = {};
     action.sa_handler = stop_all;
     sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
+    for (const int signal :
+         {SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGXCPU, SIGPIPE})
+      sigaction(signal, &action, nullptr);
+    struct sigaction before = {};
+    sigaction(SIGHUP, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) // nohup
+      sigaction(SIGHUP, &action, nullptr);
   }
 
   bool stop_was_requested() { return stop_requested != 0; }
@@ -241,6 +246,8 @@ namespace nsfd
     fs::create_directories(folder, error);
     fs::remove(record, error); // until it is finished
     write_file_atomically(scene, one.scene);
+    if (!fs::exists(folder + "/run.json", error)) // else it is no run's folder
+      write_file_atomically(folder + "/run.json", "{\"files\": []}\n");
     do {
       const bool first = result.solve.empty();
       const std::string output = first ? folder : again;

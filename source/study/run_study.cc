@@ -5,9 +5,11 @@
 #include "nsfd/base/version.h"
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/input_errors.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/summary_file.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <unistd.h>
 
@@ -133,24 +135,40 @@ namespace nsfd
       study.date = text;
     }
 
-    /** False, with a message, if results are there that must not be lost. */
+    /**
+     * False, with a message, if results are there that must not be lost. Cases
+     * replace or keep what is in their own folders.
+     */
     bool claim(const std::string &directory, const StudyCommand &command,
                std::ostream &err)
     {
       std::error_code error;
-      if (fs::exists(directory, error) && !fs::is_empty(directory, error) &&
-          !command.force && !command.resume) {
+      const fs::path folder(directory);
+      const bool used = fs::is_directory(folder, error) &&
+                        !fs::is_empty(folder, error);
+      if (used && !command.force && !command.resume) {
         err << "the output directory `" << directory
             << "` exists already: nothing was run.\n"
                "  write --resume to run what is missing, --force to run all "
                "again, or --output DIR\n";
         return false;
       }
-      fs::create_directories(directory, error);
-      if (error)
-        err << "cannot create the output directory `" << directory
-            << "`: " << error.message() << "\n";
-      return !error;
+      if (used && !fs::exists(folder / "run.json") &&
+          !fs::exists(folder / "study.json")) {
+        err << "the output directory `" << directory
+            << "` holds files, but not those of a study: nothing was run.\n"
+               "  write --output DIR with another one\n";
+        return false;
+      }
+      OutputFolder &ours = OutputFolder::instance();
+      if (!ours.claim(directory, used ? OutputFolder::Claim::go_on
+                                      : OutputFolder::Claim::anew))
+        return false;
+      ours.describe(nlohmann::json{{"subcommand", "study"},
+                                   {"file", command.file},
+                                   {"command_line", command.command_line}}
+                        .dump());
+      return true;
     }
 
     /** The best cases of the main error, best first. */
@@ -295,6 +313,7 @@ namespace nsfd
     write_file_atomically(directory + "/study.csv", study_csv(study));
     write_file_atomically(directory + "/study.json", study_json(study));
     write_study_page(study, directory);
+    OutputFolder::instance().finish();
     if (!command.quiet)
       out << "\n" << study_text(study) << "  " << directory << "/study.html\n";
     const int code = code_of(study);

@@ -4,6 +4,7 @@
 #include "common_books.h"
 
 #include "nsfd/base/cost.h"
+#include "nsfd/base/stop_request.h"
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/scene_input.h"
 
@@ -58,11 +59,15 @@ namespace nsfd
     void *memory = nullptr;
     // what fails in a callback must not leave through C code
     std::string failure;
-    const auto guard = [&failure](const auto &work) {
+    bool stopped = false;
+    const auto guard = [&failure, &stopped](const auto &work) {
       try {
         work();
       } catch (const std::exception &error) {
         failure = error.what();
+        return -1;
+      } catch (const StopRequested &) {
+        stopped = true;
         return -1;
       }
       return 0;
@@ -100,6 +105,8 @@ namespace nsfd
     try {
       solver.solve_ode(y);
     } catch (const std::exception &) {
+      if (stopped)
+        throw StopRequested();
       throw StepRejected(fmt::format(
         "ARKODE could not go on between t = {:.6g} and {:.6g}{}", t, t + h,
         failure.empty() ? "" : ": " + failure));

@@ -47,12 +47,12 @@ value() { # value KEY: a number from the summary
 }
 spread() { # spread COLUMN: median (largest) over the accepted steps
   awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i }
-    NR > 1 { print $c }' "$out/run/history.csv" | sort -n |
+    NR > 2 { print $c }' "$out/run/history.csv" | sort -n |
     awk '{ x[NR] = $1 } END { printf "%g (%g)", x[int((NR + 1) / 2)], x[NR] }'
 }
 whole() { # whole STEP: steps that were not cut
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "time_step") c = i }
-    NR > 1 { if ($c > big) big = $c; h[NR] = $c }
+    NR > 2 { if ($c > big) big = $c; h[NR] = $c }
     END { for (i in h) n += h[i] > 0.99 * big; print n + 0 }' \
     "$out/run/history.csv"
 }

@@ -22,7 +22,7 @@ value() { sed -n "s/^ *\"$1\": *\([-0-9.e+]*\),*$/\1/p" "$out/run/summary.json" 
 part() { sed -n "/\"$1\": {/,/}/s/^ *\"seconds\": *\([-0-9.e+]*\),*$/\1/p" "$out/run/summary.json" | head -n 1; }
 spread() {
   awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i }
-    NR > 1 { print $c }' "$out/run/history.csv" | sort -n |
+    NR > 2 { print $c }' "$out/run/history.csv" | sort -n |
     awk '{ x[NR] = $1 } END { printf "%g (%g)", x[int((NR + 1) / 2)], x[NR] }'
 }
 

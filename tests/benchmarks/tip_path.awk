@@ -40,6 +40,7 @@ FNR == 1 {
   broken = 0
   next
 }
+$column["step"] == 0 { next } # as above
 {
   k = ++n[f]
   time[f, k] = $column["time"]

@@ -267,7 +267,7 @@ end
                       workspace.path());
       const auto n_steps = [&] {
         const std::string text = read_text(directory / "history.csv");
-        return std::count(text.begin(), text.end(), '\n') - 1;
+        return std::count(text.begin(), text.end(), '\n') - 2; // header, start
       };
       for (unsigned int i = 0; i < 3000 && n_steps() < 5; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));

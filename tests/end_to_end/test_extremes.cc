@@ -193,7 +193,7 @@ end
 
     // up to the impact at 0.45 s
     ASSERT_GT(result.history.size(), 100u);
-    EXPECT_EQ(result.number("steps"), result.history.size());
+    EXPECT_EQ(result.number("steps") + 1., double(result.history.size()));
     const double last = result.history["time"].back();
     EXPECT_NEAR(last, 0.4515, 0.005);
     EXPECT_EQ(result.number("final_time"), last);
@@ -317,8 +317,8 @@ end
     EXPECT_EQ(result.counter("redone_steps"), 1.);
     // short until the face is broken, long again soon after
     const auto &steps = result.history["time_step"];
-    const double shortest = *std::min_element(steps.begin(), steps.end());
-    EXPECT_LT(shortest, 0.26 * steps.front());
-    EXPECT_EQ(steps.back(), steps.front());
+    const double shortest = *std::min_element(steps.begin() + 1, steps.end());
+    EXPECT_LT(shortest, 0.26 * steps[1]);
+    EXPECT_EQ(steps.back(), steps[1]);
   }
 } // namespace end_to_end

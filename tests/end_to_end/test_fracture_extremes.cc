@@ -86,10 +86,10 @@ end
                     " J/m^2\n"));
       ASSERT_TRUE(result.completed());
       const History &history = result.history;
-      EXPECT_EQ(rows_without_damage(history), 0u);
-      EXPECT_NEAR(history["broken_area"][0], 5e-3, 1e-12);
-      for (const double damage : history["damage"])
-        EXPECT_NEAR(damage / (toughness * 5e-3), 1., 1e-9);
+      EXPECT_EQ(rows_without_damage(history), 1u) << "the start";
+      EXPECT_NEAR(history["broken_area"][1], 5e-3, 1e-12);
+      for (std::size_t i = 1; i < history.size(); ++i)
+        EXPECT_NEAR(history["damage"][i] / (toughness * 5e-3), 1., 1e-9);
       EXPECT_EQ(result.number("fragments"), 2);
       EXPECT_EQ(result.counter("rejected_steps"), 0.);
       // at 100 us each half is at rest in length and moves as a whole

@@ -1,8 +1,7 @@
+#include "disk.h"
 #include "restart.h"
 
 #include <gtest/gtest.h>
-
-#include <sys/mount.h>
 
 #include <map>
 
@@ -18,36 +17,6 @@ namespace end_to_end
     const Launch small = {scene("midplane"),
                           {"Mesh/cells=6, 6", "Time/end=4 ns"}};
     constexpr unsigned int every = 8;
-
-    /** A small file system in memory, gone with the object. */
-    class Disk
-    {
-    public:
-      Disk(const fs::path &place, const std::string &size) : place_(place)
-      {
-        fs::create_directories(place);
-        mounted_ = mount("nsfd", place.c_str(), "tmpfs", 0,
-                         ("size=" + size).c_str()) == 0;
-      }
-      ~Disk()
-      {
-        if (mounted_)
-          umount2(place_.c_str(), MNT_DETACH);
-      }
-      Disk(const Disk &) = delete;
-      Disk &operator=(const Disk &) = delete;
-
-      bool mounted() const { return mounted_; }
-      bool make_read_only() const
-      {
-        return mount("nsfd", place_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY,
-                     nullptr) == 0;
-      }
-
-    private:
-      const fs::path place_;
-      bool mounted_ = false;
-    };
 
     /** All files of a run by name. */
     std::map<std::string, std::string> contents(const fs::path &directory)

@@ -226,13 +226,11 @@ namespace
     info.command_line = "nsfd \"a\".prm \xff";
     info.seeds = {1, 2};
     info.parts = {{"cohesive law", "camacho-ortiz"}};
-    const std::string path = scratch("run.json");
-    write_run_info(path, info);
-    const auto json = nlohmann::json::parse(read(path));
+    const auto json = nlohmann::json::parse(describe_run(info));
     EXPECT_EQ(json["ranks"], 1);
     EXPECT_EQ(json["seeds"][1], 2);
     EXPECT_EQ(json["parts"][0]["name"], "camacho-ortiz");
-    EXPECT_THROW(write_run_info("/no/such/folder/run.json", info),
+    EXPECT_THROW(write_file_atomically("/no/such/folder/run.json", "{}"),
                  std::runtime_error);
   }
 

@@ -12,7 +12,8 @@ namespace nsfd
   {
     constexpr int done = 0, bad_input = 1, wrong_usage = 2, step_failed = 3,
                   stopped = 4, internal_error = 5,
-                  differs = 6; ///< of `nsfd compare --tolerance`
+                  differs = 6,       ///< of `nsfd compare --tolerance`
+                  not_certified = 7; ///< --strict: done, certificate not ok
   }
 
   /** What was asked for: `nsfd FILE.prm` or `nsfd law NAME`, and options. */
@@ -25,6 +26,8 @@ namespace nsfd
     bool check = false;           ///< read and build, but do not run
     bool print_parameters = false;
     bool quiet = false;
+    bool verbose = false; ///< a line for every step
+    bool strict = false;  ///< a certificate that is not ok is a failure
     bool resume = false;  ///< from the last checkpoint of the output directory
 
     /** What read_scene() takes: --set, and --output as one of them. */

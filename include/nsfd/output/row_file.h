@@ -33,6 +33,8 @@ namespace nsfd
     const std::string &path() const { return path_; }
 
   private:
+    void demand_good() const;
+
     std::string path_;
     std::ofstream file_;
   };

@@ -20,13 +20,7 @@ namespace nsfd
   class HistoryFile;
   class Progress;
   struct Certificate;
-
-  /**
-   * Make an output directory ours: what an earlier run has written is removed,
-   * everything else stays. False with a message on standard error if it holds
-   * files and @p force was not given.
-   */
-  bool claim_directory(const std::string &directory, bool force);
+  struct RunFindings;
 
   /** Everything that a run writes, and what it says while it runs. */
   template <int dim>
@@ -34,18 +28,20 @@ namespace nsfd
   {
   public:
     /**
-     * Starts all files in the directory of the input, or, if the run @p
-     * resumes, leaves them to remember().
+     * Starts all files in the claimed directory of the input, or, if the run
+     * @p resumes, leaves them to remember(). A @p verbose run says every step.
      */
     RunOutput(const SceneInput &input, const RunInfo &info, bool quiet,
-              const Discretization<dim> &discretization,
-              const Communicator &communicator, bool resumes = false);
+              bool verbose, const Discretization<dim> &discretization,
+              const Communicator &communicator,
+              const std::vector<ObservableRecord> &observables,
+              bool resumes = false);
     ~RunOutput();
 
     /** Of a scene that has fragments. */
     void set_fragments(std::unique_ptr<FragmentOutput<dim>> fragments);
 
-    /** The initial state, for the report only. */
+    /** The initial state: the row of step 0. */
     void start(const HistoryRow &row);
 
     /** An accepted step: history.csv, progress, the curves of the report. */
@@ -86,11 +82,13 @@ namespace nsfd
     void keep(const HistoryRow &row);
     void write_descriptions() const;
     void remember_history(Archive &archive);
+    void write_page(const Summary &summary, const RunFindings &findings) const;
 
     const SceneInput &input_;
     const RunInfo info_;
     const Communicator &communicator_;
     std::vector<std::string> driven_;
+    std::string units_; ///< units.json
     std::unique_ptr<HistoryFile> history_file_;
     std::unique_ptr<Progress> progress_;
     std::unique_ptr<FieldOutput<dim>> fields_;

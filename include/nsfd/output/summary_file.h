@@ -20,12 +20,13 @@ namespace nsfd
   void write_summary(const std::string &path, const Summary &summary,
                      const RunFindings &findings = {});
 
-  /** Writes run.json. */
-  void write_run_info(const std::string &path, const RunInfo &info);
+  /** What run.json says, without the list of files. */
+  std::string describe_run(const RunInfo &info);
 
   /**
    * Replaces the file at @p path in one go: readers see the old or the new
-   * text, never a part of it. Throws std::runtime_error with the reason.
+   * text, never a part of it. Links are replaced, not followed.
+   * @throws OutputError with the reason
    */
   void write_file_atomically(const std::string &path, const std::string &text);
 } // namespace nsfd

@@ -1,5 +1,7 @@
 #include "body_krylov.h"
 
+#include "nsfd/base/stop_request.h"
+
 #include <deal.II/lac/lapack_templates.h>
 
 #include <algorithm>
@@ -280,6 +282,7 @@ namespace nsfd
       for (double &value : basis[0])
         value /= start;
     while (count < most_iterations && least.residual() > tolerance * start) {
+      stop_request::leave_if_due();
       precondition(basis[count].data(), z.data());
       Vector next(size), column(count + 2, 0.);
       apply(z.data(), next.data());

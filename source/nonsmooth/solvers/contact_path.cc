@@ -2,6 +2,8 @@
 
 #include "../springs.h"
 
+#include "nsfd/base/stop_request.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -186,6 +188,7 @@ namespace nsfd
     Vector trial(n * dim);
     bool solved = false;
     for (unsigned int k = 0; k < count && !solved; ++k) {
+      stop_request::leave_if_due();
       for (std::size_t j = 0; j < n * dim; ++j) {
         const std::size_t i = j / dim;
         if (!linear[i] || is_held(i))
@@ -466,6 +469,7 @@ namespace nsfd
     double alpha = 1.;
     unsigned int short_steps = 0;
     for (unsigned int k = 0; k < limit; ++k) {
+      stop_request::leave_if_due();
       const double sigma = alpha > 0.9 ? 0.1 : alpha > 0.5 ? 0.3 :
                            alpha > 0.1 ? 0.6 : 1.;
       if (!step(sigma, alpha) || !(evaluation_.error < 1e300))

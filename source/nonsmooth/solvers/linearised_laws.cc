@@ -1,5 +1,7 @@
 #include "linearised_laws.h"
 
+#include "nsfd/base/stop_request.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -136,6 +138,7 @@ namespace nsfd
     double best_error = evaluation.error;
     unsigned int idle = 0, still = 0;
     while (evaluation.error > tolerance && idle <= patience && still < 2) {
+      stop_request::leave_if_due();
       const double before = evaluation.error;
       laws.update(problem, evaluation, impulse);
       if (!system.factorise(laws.stiffness))

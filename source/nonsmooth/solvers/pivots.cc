@@ -1,5 +1,7 @@
 #include "pivots.h"
 
+#include "nsfd/base/stop_request.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,6 +52,7 @@ namespace nsfd
           for (unsigned int k = 0;; ++k) {
             if (k == 50 + 20 * n_)
               return false;
+            stop_request::leave_if_due();
             const std::size_t left = basic_[row];
             pivot(row, column);
             if (left == 2 * n_)

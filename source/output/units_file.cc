@@ -1,0 +1,91 @@
+#include "units_file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+    const char *const energies[] = {"kinetic", "elastic", "cohesive"};
+    const char *const losses[] = {"damage",  "friction", "viscous",
+                                  "plastic", "impact",   "numerical"};
+    const char *const pure_columns[] = {"fragments", "active", "newton",
+                                        "krylov", "residual"};
+
+    Json history_units(const unsigned int dimension,
+                       const std::vector<std::string> &driven,
+                       const std::string &energy)
+    {
+      Json units = {{"step", ""}, {"time", "s"}, {"time_step", "s"}};
+      for (const char *name : energies)
+        units[name] = energy;
+      for (const char *name : losses)
+        units[name] = energy;
+      units["work"] = energy;
+      units["ledger_defect"] = "";
+      units["broken_area"] = dimension == 2 ? "m" : "m^2";
+      for (const char *name : pure_columns)
+        units[name] = "";
+      for (const std::string &name : driven)
+        for (unsigned int c = 0; c < dimension; ++c)
+          units["reaction_" + name + '_' + "xyz"[c]] =
+              dimension == 2 ? "N/m" : "N";
+      return units;
+    }
+
+    Json summary_units(const unsigned int dimension, const std::string &energy)
+    {
+      Json units = Json::object();
+      for (const char *name :
+           {"steps", "dofs", "cells", "interface_points", "ledger_defect_max",
+            "residual_max", "fragments", "counters", "errors"})
+        units[name] = "";
+      for (const char *name : {"final_time", "wall_seconds", "cpu_seconds",
+                               "setup_seconds", "loop_cpu_seconds", "timings"})
+        units[name] = "s";
+      units["peak_memory_mb"] = "MB";
+      for (const char *name : energies)
+        units["energy"][name] = energy;
+      for (const char *name : losses)
+        units["dissipated"][name] = energy;
+      for (const char *name :
+           {"work", "crack_pressure_work", "positive_friction_work"})
+        units[name] = energy;
+      units["viscous_traction_max"] = "Pa";
+      for (const char *name :
+           {"penetration_max", "penetration_bound", "rigid_drift_max"})
+        units[name] = "m";
+      const char *const mass = dimension == 2 ? "kg/m" : "kg";
+      Json &sizes = units["fragment_sizes"];
+      for (const char *name : {"mean_size", "median_size", "smallest_size",
+                               "largest_size", "mean_size_by_mass"})
+        sizes[name] = "m";
+      for (const char *name : {"total_mass", "mean_mass", "median_mass",
+                               "smallest_mass", "largest_mass"})
+        sizes[name] = mass;
+      sizes["largest_mass_share"] = "";
+      sizes["mass_exponent"] = "";
+      sizes["surface"] = dimension == 2 ? "m" : "m^2";
+      return units;
+    }
+  } // namespace
+
+  std::string units_text(const unsigned int dimension,
+                         const std::vector<std::string> &driven,
+                         const std::vector<ObservableRecord> &observables)
+  {
+    const std::string energy = dimension == 2 ? "J/m" : "J";
+    Json json = Json::object();
+    json["history.csv"] = history_units(dimension, driven, energy);
+    for (const ObservableRecord &record : observables) {
+      Json &table = json["observables/" + record.name + ".csv"];
+      table = {{"step", ""}, {"time", "s"}};
+      for (const ObservedColumn &column : record.columns)
+        table[column.name] = column.unit;
+    }
+    json["summary.json"] = summary_units(dimension, energy);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  }
+} // namespace nsfd
