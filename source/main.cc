@@ -13,6 +13,7 @@
 #include <malloc.h>
 
 #include <iostream>
+#include <new>
 #include <string>
 
 namespace
@@ -32,6 +33,8 @@ namespace
       echo = scene->echo;
     std::cerr << errors.report();
     std::cout << echo;
+    if (!std::cout.flush())
+      return exit_code::internal_error;
     return errors.has_errors() ? exit_code::bad_input : exit_code::done;
   }
 
@@ -96,7 +99,12 @@ int main(int argc, char **argv)
 
   // what needs no bodies needs no MPI
   if (command.print_parameters)
-    return print_parameters(command);
+    try {
+      return print_parameters(command);
+    } catch (const std::exception &error) {
+      std::cerr << "internal error: " << error.what() << "\n";
+      return exit_code::internal_error;
+    }
 
   dealii::deal_II_exceptions::disable_abort_on_exception();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
@@ -122,6 +130,11 @@ int main(int argc, char **argv)
     options.check = command.check;
     options.resume = command.resume;
     return run_scene(*input, options, MPI_COMM_WORLD);
+  } catch (const std::bad_alloc &) {
+    std::cerr << "there is not enough memory left for this\n";
+    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      MPI_Abort(MPI_COMM_WORLD, exit_code::internal_error);
+    return exit_code::internal_error;
   } catch (const std::exception &error) {
     std::cerr << "internal error: " << error.what()
               << "\nPlease report it with the parameter file.\n";
