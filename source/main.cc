@@ -12,7 +12,9 @@
 
 #include <malloc.h>
 
+#include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <string>
 
@@ -69,6 +71,15 @@ namespace
     }
   }
 
+  /** As far as is known before MPI has started. */
+  bool is_first_process()
+  {
+    for (const char *rank : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
+      if (const char *value = std::getenv(rank))
+        return value == std::string("0");
+    return true;
+  }
+
   /** One process is enough; all end with its exit code. */
   template <typename Work>
   int run_on_root(const bool root, const Work &work)
@@ -107,6 +118,20 @@ int main(int argc, char **argv)
     }
 
   dealii::deal_II_exceptions::disable_abort_on_exception();
+  InputErrors errors;
+  std::unique_ptr<SceneInput> input;
+  if (!solve && !command.law)
+    try {
+      input = read_scene(command.file, command.overrides(), errors);
+      if (is_first_process())
+        std::cerr << errors.report();
+      if (!input)
+        return exit_code::bad_input;
+    } catch (const std::exception &error) {
+      std::cerr << "internal error: " << error.what()
+                << "\nPlease report it with the parameter file.\n";
+      return exit_code::internal_error;
+    }
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool root =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
@@ -116,12 +141,6 @@ int main(int argc, char **argv)
           root, [&] { return run_solve(stored, std::cout, std::cerr); });
     if (command.law)
       return run_on_root(root, [&] { return run_law(command); });
-    InputErrors errors;
-    const auto input = read_scene(command.file, command.overrides(), errors);
-    if (root)
-      std::cerr << errors.report();
-    if (!input)
-      return exit_code::bad_input;
     RunOptions options;
     for (int i = 0; i < argc; ++i)
       options.command_line += std::string(i ? " " : "") + argv[i];
