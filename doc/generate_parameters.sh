@@ -333,6 +333,12 @@ that it does not use.
   of two bodies is theirs; bodies without one pass through each other.
 - A line ends with `\` if the next one continues it; `#` starts a comment;
   `include FILE` reads another file.
+- Files are UTF-8 text of at most 4 MiB, 20 000 statements and 20 000 bytes a
+  line; names have at most 80 bytes, formulas 10 000 bytes and 200 brackets in
+  brackets. Lengths lie between 1e-20 and 1e20, other numbers between 1e-45 and
+  1e45. Pipes and devices are not read. A mesh that the free memory of the
+  machine (or of its control group) cannot hold is refused, and so are more than
+  1e9 steps.
 - `--set 'Section/name=value'` changes an entry from the command line; a block
   is named in full: `--set 'Interface: all/toughness=2 J/m^2'`.
 

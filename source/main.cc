@@ -16,6 +16,8 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <memory>
+#include <new>
 #include <string>
 
 namespace
@@ -35,6 +37,8 @@ namespace
       echo = scene->echo;
     std::cerr << errors.report();
     std::cout << echo;
+    if (!std::cout.flush())
+      return exit_code::internal_error;
     return errors.has_errors() ? exit_code::bad_input : exit_code::done;
   }
 
@@ -95,6 +99,15 @@ namespace
     return resumes ? line : line + " --resume";
   }
 
+  /** As far as is known before MPI has started. */
+  bool is_first_process()
+  {
+    for (const char *rank : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
+      if (const char *value = std::getenv(rank))
+        return value == std::string("0");
+    return true;
+  }
+
   /** One process is enough; all end with its exit code. */
   template <typename Work>
   int run_on_root(const bool root, const Work &work)
@@ -125,11 +138,29 @@ int main(int argc, char **argv)
 
   // what needs no bodies needs no MPI
   if (command.print_parameters)
-    return print_parameters(command);
+    try {
+      return print_parameters(command);
+    } catch (const std::exception &error) {
+      std::cerr << "internal error: " << error.what() << "\n";
+      return exit_code::internal_error;
+    }
 
-  const char *const rank = std::getenv("OMPI_COMM_WORLD_RANK");
-  stop_request::end_at_signals(rank == nullptr || rank == std::string("0"));
+  stop_request::end_at_signals(is_first_process());
   dealii::deal_II_exceptions::disable_abort_on_exception();
+  InputErrors errors;
+  std::unique_ptr<SceneInput> input;
+  if (!solve && !command.law)
+    try {
+      input = read_scene(command.file, command.overrides(), errors);
+      if (is_first_process())
+        std::cerr << errors.report();
+      if (!input)
+        return exit_code::bad_input;
+    } catch (const std::exception &error) {
+      std::cerr << "internal error: " << error.what()
+                << "\nPlease report it with the parameter file.\n";
+      return exit_code::internal_error;
+    }
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool root =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
@@ -141,12 +172,6 @@ int main(int argc, char **argv)
           root, [&] { return run_solve(stored, std::cout, std::cerr); });
     if (command.law)
       return run_on_root(root, [&] { return run_law(command); });
-    InputErrors errors;
-    const auto input = read_scene(command.file, command.overrides(), errors);
-    if (root)
-      std::cerr << errors.report();
-    if (!input)
-      return exit_code::bad_input;
     RunOptions options;
     for (int i = 0; i < argc; ++i)
       options.command_line += std::string(i ? " " : "") + argv[i];
@@ -162,6 +187,11 @@ int main(int argc, char **argv)
     if (root || !error.is_on_all_ranks())
       std::cerr << "error: " << error.what() << "\n";
     if (n_ranks > 1 && !error.is_on_all_ranks())
+      MPI_Abort(MPI_COMM_WORLD, exit_code::internal_error);
+    return exit_code::internal_error;
+  } catch (const std::bad_alloc &) {
+    std::cerr << "there is not enough memory left for this\n";
+    if (n_ranks > 1)
       MPI_Abort(MPI_COMM_WORLD, exit_code::internal_error);
     return exit_code::internal_error;
   } catch (const std::exception &error) {

@@ -2,7 +2,10 @@
 
 #include "time/stable_step.h"
 
+#include "scene/formula_check.h"
+
 #include "nsfd/base/cost.h"
+#include "nsfd/input/place_of.h"
 #include "nsfd/interface/point_factors.h"
 #include "nsfd/mesh/node_coordinates.h"
 
@@ -23,9 +26,25 @@ namespace nsfd
   {
     if (!communicator.is_root())
       return;
-    for (const auto &problem : problems)
-      std::cerr << input.file << ": " << kind << ": " << problem << "\n";
+    InputErrors errors;
+    for (const auto &problem : problems) {
+      if (kind == std::string("error"))
+        errors.error(place_of(input.file, problem), problem);
+      else if (kind == std::string("warning"))
+        errors.warning(place_of(input.file, problem), problem);
+      else
+        std::cerr << input.file << ": " << kind << ": " << problem << "\n";
+    }
+    std::cerr << errors.report();
   }
+
+  namespace
+  {
+    std::string after_semicolon(const std::string &sentence)
+    {
+      return sentence.empty() ? "" : "; " + sentence;
+    }
+  } // namespace
 
   template <int dim>
   bool Model<dim>::build(const SceneInput &input,
@@ -35,8 +54,11 @@ namespace nsfd
     build_mesh_parts(input, communicator, problems);
     if (problems.empty()) {
       find_unused_blocks(input, communicator, problems);
+      find_impossible_bonds(input, communicator, problems);
       check_point_factors(input, *discretization, communicator, problems);
       build_control(input, problems);
+      const auto bad = check_formulas(input, *discretization, communicator);
+      problems.insert(problems.end(), bad.begin(), bad.end());
     }
     if (!problems.empty()) {
       print_problems(communicator, input, "error", problems);
@@ -149,12 +171,76 @@ namespace nsfd
             any = any || groups->holds_boundary_face(where, cell, f);
       if (!communicator.any(any))
         problems.push_back(name + ": no boundary face of the mesh is there" +
-                           groups->missing(where));
+                           after_semicolon(groups->missing(where)));
     };
     for (const auto &boundary : input.boundaries)
       check("Boundary: " + boundary.name, boundary.where);
     for (const auto &obstacle : input.obstacles)
       check("Obstacle: " + obstacle.name, obstacle.where);
+    if (!input.adaptivity) // refined cells have new faces
+      warn_of_unused_interfaces(input, communicator);
+  }
+
+  /** As of materials that own no cell: of faces, and of broken ones. */
+  template <int dim>
+  void Model<dim>::warn_of_unused_interfaces(
+      const SceneInput &input, const Communicator &communicator) const
+  {
+    const auto &origins = discretization->origins();
+    const std::size_t n_blocks = input.interfaces.size();
+    std::vector<char> has_faces(n_blocks, 0), has_broken(n_blocks, 0);
+    for (std::size_t i = 0; i < discretization->points().n_owned; ++i) {
+      if (origins[i].kind != PointOrigin::Kind::interface)
+        continue;
+      const InterfaceInput &block = input.interfaces[origins[i].block];
+      has_faces[origins[i].block] = 1;
+      if (block.has_broken && !has_broken[origins[i].block])
+        has_broken[origins[i].block] =
+            block.broken.at(discretization->position(i)) != 0.;
+    }
+    std::vector<std::string> warnings;
+    for (std::size_t b = 0; b < n_blocks; ++b) {
+      const InterfaceInput &block = input.interfaces[b];
+      const std::string name = "Interface: " + block.name;
+      if (!communicator.any(has_faces[b]))
+        warnings.push_back(name + ": no face; `where` holds nowhere, or only "
+                                  "where an earlier section does" +
+                           after_semicolon(groups->missing(block.where)));
+      else if (block.has_broken && !communicator.any(has_broken[b]))
+        warnings.push_back(name + "/broken: no point of its faces is broken");
+    }
+    print_problems(communicator, input, "warning", warnings);
+  }
+
+  /** Bonds act through the bulk of cells, and rigid ones have none. */
+  template <int dim>
+  void Model<dim>::find_impossible_bonds(
+      const SceneInput &input, const Communicator &communicator,
+      std::vector<std::string> &problems) const
+  {
+    const auto &points = discretization->points();
+    const auto is_rigid = [&](const int body) {
+      return body >= 0 &&
+             input.materials[discretization->material_of(unsigned(body))].rigid;
+    };
+    std::vector<char> found(input.interfaces.size(), 0);
+    for (const auto &face : points.faces) {
+      const PointOrigin origin = discretization->origins()[face.first];
+      if (face.count > 0 && origin.kind == PointOrigin::Kind::interface &&
+          input.interfaces[origin.block].intact == IntactFaces::bonded &&
+          is_rigid(face.bodies[0]) && is_rigid(face.bodies[1]))
+        found[origin.block] = 1;
+    }
+    for (std::size_t b = 0; b < input.interfaces.size(); ++b)
+      if (communicator.any(found[b])) {
+        const InterfaceInput &block = input.interfaces[b];
+        problems.push_back(fmt::format(
+            "Interface: {}/{}: bonded faces join cells through what they are "
+            "made of, and two rigid cells meet here: write before it an "
+            "Interface block for the faces between rigid cells, with {}",
+            block.name, block.law ? "intact faces" : "law",
+            block.law ? "intact faces = rigid" : "law = rigid"));
+      }
   }
 
   template <int dim>
@@ -168,6 +254,24 @@ namespace nsfd
       return;
     }
     const bool quasi_static = input.statics && input.statics->steps;
+    // more are a slip of the pen, and are counted in 32 bits
+    constexpr double most_steps = 1e9;
+    const auto demand_fewer = [&](const char *entry, const double duration,
+                                  const double step) {
+      if (duration / step <= most_steps)
+        return true;
+      problems.push_back(fmt::format(
+          "Time/{}: {:.4g} s in steps of {:.4g} s are {:.2g} steps, more than "
+          "{:g}: write a shorter time or longer steps",
+          entry, duration, step, duration / step, most_steps));
+      return false;
+    };
+    const double until = input.statics ? input.statics->until : 0.;
+    if (quasi_static && !demand_fewer("step", until, input.statics->step))
+      return;
+    if (input.may_move() &&
+        !demand_fewer("end", input.time.end - until, dynamic_step(input)))
+      return;
     control = quasi_static ? std::make_unique<StepControl>(
                                  input.statics->until, input.statics->step,
                                  input.time.maximum_halvings)

@@ -85,5 +85,10 @@ namespace nsfd
     void find_unused_blocks(const SceneInput &input,
                             const Communicator &communicator,
                             std::vector<std::string> &problems) const;
+    void warn_of_unused_interfaces(const SceneInput &input,
+                                   const Communicator &communicator) const;
+    void find_impossible_bonds(const SceneInput &input,
+                               const Communicator &communicator,
+                               std::vector<std::string> &problems) const;
   };
 } // namespace nsfd

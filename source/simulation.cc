@@ -9,6 +9,7 @@
 #include "run_facts.h"
 #include "run_info.h"
 #include "run_totals.h"
+#include "scene/formula_check.h"
 #include "static_run.h"
 
 #include "nsfd/base/cost.h"
@@ -67,6 +68,7 @@ namespace nsfd
       bool overshoots(const StepReport &report);
       bool advance(State &next, std::string &failure);
       bool advance_load(State &next, std::string &failure);
+      bool has_bad_formulas(std::string &failure) const;
       void accept(State &next, const StepReport &report, double time_step);
       void observe(const State *previous, const HistoryRow &row);
       void write_if_due(bool last = false);
@@ -657,6 +659,8 @@ namespace nsfd
                                state_, h, next,
                                SolverControl().idle_rounds << doublings);
       } catch (const StepRejected &rejected) {
+        if (has_bad_formulas(failure))
+          return false;
         ++rejected_;
         ++attempts_;
         if (control.halve())
@@ -666,11 +670,21 @@ namespace nsfd
                               input_.time.maximum_halvings);
         return false;
       }
+      if (has_bad_formulas(failure))
+        return false;
       if (must_redo(report, next) || overshoots(report) || change_mesh(next))
         return true;
       attempts_ = 0;
       accept(next, report, h);
       return true;
+    }
+
+    /** No shorter step makes numbers of what is none. */
+    template <int dim>
+    bool Simulation<dim>::has_bad_formulas(std::string &failure) const
+    {
+      failure = fmt::format("{}", fmt::join(bad_formulas(communicator_), "; "));
+      return !failure.empty();
     }
 
     /** The same for a quasi-static step. */
@@ -684,6 +698,10 @@ namespace nsfd
         const stop_request::Interruptible step(communicator_.size());
         return static_run_->step(state_, next, report, failure);
       }();
+      if (std::string reason; has_bad_formulas(reason)) {
+        failure = reason;
+        return false;
+      }
       switch (outcome) {
       case Outcome::accepted:
         accept(next, report, h);

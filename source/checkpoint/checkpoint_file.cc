@@ -147,8 +147,11 @@ namespace nsfd::checkpoint_file
 
   std::vector<char> read(const fs::path &file)
   {
-    if (fs::is_directory(file))
-      throw std::runtime_error("it is a folder, no file");
+    std::error_code unknown;
+    if (!fs::is_regular_file(file, unknown))
+      throw std::runtime_error(
+          fmt::format("{}: it is no file, but a folder or a device",
+                      file.string()));
     errno = 0;
     std::ifstream stream(file, std::ios::binary | std::ios::ate);
     if (!stream)

@@ -1,6 +1,7 @@
 #include "read_sections.h"
 
 #include "formula.h"
+#include "nsfd/input/text_file.h"
 
 #include <fmt/format.h>
 
@@ -44,6 +45,12 @@ namespace nsfd
     SectionReader reader(section, errors);
     for (const ParameterEntry &entry : section.entries()) {
       check_name(entry, errors);
+      if (section.entries().size() > text_limits::constants)
+        return reader.error(
+            "",
+            fmt::format("section `Constants` has {} entries, more than {}",
+                        section.entries().size(), text_limits::constants),
+            "keep those that are used");
       const auto value = reader.raw(entry.name, "", "", "3 um");
       // after an error, a number that fits everywhere: no further errors
       Constant constant{1., units::none, true};
@@ -61,8 +68,11 @@ namespace nsfd
                           formula.error->message),
               formula.error->advice);
         else
-          constant = {*formula.constant, formula.unit.value_or(units::none),
-                      !formula.unit};
+          constant = {*formula.constant,
+                      formula.unit.value_or(
+                          formula.likely_unit.value_or(units::none)),
+                      !formula.unit && !formula.likely_unit,
+                      formula.likely_unit.has_value()};
       }
       file.constants()[entry.name] = constant;
     }

@@ -1,13 +1,17 @@
 #include "nsfd/input/expression.h"
 
 #include "formula.h"
+#include "nsfd/input/bad_values.h"
 
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 namespace nsfd
 {
@@ -21,6 +25,7 @@ namespace nsfd
     bool depends_on_time = false, depends_on_position = false;
     mutable std::unique_ptr<mu::Parser> parser; ///< null: not a formula
     Function function;                          ///< empty: not one either
+    mutable std::string name; ///< empty: no formula of the input
     mutable double x = 0., y = 0., z = 0., t = 0.;
   };
 
@@ -53,6 +58,39 @@ namespace nsfd
         hash = z ^ (z >> 31);
       }
       return double(hash >> 11) * 0x1p-53;
+    }
+
+    /** Of this rank, one for each formula. */
+    struct BadValue {
+      const Expression::Compiled *formula;
+      std::string text;
+    };
+
+    std::vector<BadValue> &bad_values()
+    {
+      static std::vector<BadValue> values;
+      return values;
+    }
+
+    void note_bad_value(const Expression::Compiled &formula, const double value,
+                        const std::array<double, 4> &at)
+    {
+      constexpr std::size_t most = 20;
+      std::vector<BadValue> &known = bad_values();
+      const bool is_known =
+          std::any_of(known.begin(), known.end(), [&](const BadValue &bad) {
+            return bad.formula == &formula;
+          });
+      if (is_known || known.size() == most)
+        return;
+      known.push_back(
+          {&formula,
+           fmt::format("{} = {} is {} at ({:.6g}, {:.6g}, {:.6g}), t = {:.6g}",
+                       formula.name, formula.text,
+                       std::isnan(value) ? "not a number"
+                       : value > 0.      ? "infinite"
+                                         : "minus infinite",
+                       at[0], at[1], at[2], at[3])});
     }
 
     /** Functions that muParser does not bring along. */
@@ -142,8 +180,32 @@ namespace nsfd
     compiled_->y = y;
     compiled_->z = z;
     compiled_->t = t;
-    return compiled_->parser->Eval();
+    const double value = compiled_->parser->Eval();
+    if (!std::isfinite(value) && !compiled_->name.empty())
+      note_bad_value(*compiled_, value, {{x, y, z, t}});
+    return value;
   }
+
+  double evaluate_constant(const Expression::Compiled &formula)
+  {
+    return formula.parser ? formula.parser->Eval() : formula.constant;
+  }
+
+  void set_name(const Expression::Compiled &formula, const std::string &name)
+  {
+    formula.name = name;
+  }
+
+  std::vector<std::string> take_bad_values()
+  {
+    std::vector<std::string> texts;
+    for (const BadValue &bad : bad_values())
+      texts.push_back(bad.text);
+    bad_values().clear();
+    return texts;
+  }
+
+  bool has_bad_values() { return !bad_values().empty(); }
 
   bool Expression::depends_on_time() const
   {

@@ -20,6 +20,16 @@ namespace nsfd
                           const Constants &constants, const bool with_variables)
   {
     Formula result;
+    // what is written out for muParser grows with the square of the length
+    constexpr std::size_t longest = 10000;
+    if (text.size() > longest) {
+      result.error = FormulaError{
+          0, text.size(),
+          fmt::format("this formula has {} bytes, more than {}", text.size(),
+                      longest),
+          "name parts of it in section Constants, or give a table in a file"};
+      return result;
+    }
     try {
       formula::Parser parser(text, constants, with_variables);
       const formula::Part part = parser.parse();
@@ -33,11 +43,13 @@ namespace nsfd
           return result;
         }
       }
+      else if (part.dimension.certainty == formula::Certainty::natural)
+        result.likely_unit = part.dimension.unit;
       result.depends_on_time = parser.uses_time();
       result.compiled = compile_translated(
           part.translated, text, parser.uses_time(), parser.uses_position());
       if (!parser.uses_variables()) {
-        const double value = Expression(result.compiled)(0., 0., 0., 0.);
+        const double value = evaluate_constant(*result.compiled);
         if (!std::isfinite(value))
           throw FormulaError{0, text.size(),
                              fmt::format("`{}` is not a finite number", text),

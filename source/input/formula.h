@@ -21,6 +21,8 @@ namespace nsfd
     std::optional<FormulaError> error;
     /// dimension, if every part of the formula states one
     std::optional<Unit> unit;
+    /// dimension of its parts that have one: `2 * 5 um` is likely a length
+    std::optional<Unit> likely_unit;
     /// the number, if no x, y, z, t occurs
     std::optional<double> constant;
     bool depends_on_time = false;
@@ -39,6 +41,12 @@ namespace nsfd
 
   /** True if @p name means something in every formula: x, pi, sin, ... */
   bool is_formula_word(const std::string &name);
+
+  /** Value of a formula of no variable, finite or not. */
+  double evaluate_constant(const Expression::Compiled &formula);
+
+  /** What messages call the formula, such as "Boundary: left/velocity x". */
+  void set_name(const Expression::Compiled &formula, const std::string &name);
 
   /** A constant with a text of its own. */
   std::shared_ptr<const Expression::Compiled>

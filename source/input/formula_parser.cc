@@ -35,9 +35,8 @@ namespace nsfd::formula
 
   Part Parser::condition()
   {
-    constexpr unsigned int deepest = 200;
     if (++depth_ > deepest)
-      fail(at_, at_ + 1, "the formula is nested too deeply");
+      fail_too_deep();
     Part result = disjunction();
     if (accept("?")) {
       const Part a = condition();
@@ -148,8 +147,8 @@ namespace nsfd::formula
     const Part base = operand();
     if (!accept("^"))
       return base;
-    if (++depth_ > 200)
-      fail(at_, at_ + 1, "the formula is nested too deeply");
+    if (++depth_ > deepest)
+      fail_too_deep();
     const Part exponent = sign();
     --depth_;
     return combine(base, "^", exponent, raised(base, exponent));
@@ -212,7 +211,10 @@ namespace nsfd::formula
     if (constant != constants_.end()) {
       const Constant &c = constant->second;
       return {fmt::format("({:.17g})", c.value),
-              {c.bare ? Certainty::any : Certainty::stated, c.unit},
+              {c.bare    ? Certainty::unknown
+               : c.mixed ? Certainty::natural
+                         : Certainty::stated,
+               c.unit},
               begin,
               end};
     }
@@ -290,7 +292,7 @@ namespace nsfd::formula
     case Rule::root: {
       const Unit u = first.dimension.unit;
       if (u.kilogram % 2 != 0 || u.metre % 2 != 0 || u.second % 2 != 0)
-        return {};
+        return {Certainty::unknown, units::none};
       return {first.dimension.certainty,
               {u.kilogram / 2, u.metre / 2, u.second / 2}};
     }
@@ -307,8 +309,10 @@ namespace nsfd::formula
       return pure_number;
     const std::string digits = written(exponent);
     const bool is_digit = digits.size() == 1 && std::isdigit(digits[0]);
-    if (base.dimension.certainty == Certainty::any || !is_digit)
+    if (base.dimension.certainty == Certainty::any)
       return {};
+    if (base.dimension.certainty == Certainty::unknown || !is_digit)
+      return {Certainty::unknown, units::none};
     return {base.dimension.certainty,
             power(base.dimension.unit, digits[0] - '0')};
   }

@@ -63,6 +63,15 @@ namespace nsfd::formula
 
     [[noreturn]] void fail_unexpected() const;
 
+    /// brackets in brackets, conditions in conditions, powers of powers
+    static constexpr unsigned int deepest = 200;
+    [[noreturn]] void fail_too_deep() const
+    {
+      fail(at_, at_ + 1,
+           "the formula is nested more than 200 times, too deeply",
+           "name inner parts in section Constants");
+    }
+
     // --- characters
 
     char peek()

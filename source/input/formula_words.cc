@@ -32,7 +32,8 @@ namespace nsfd::formula
   bool conflict(const Dimension &a, const Dimension &b)
   {
     const auto fits_everywhere = [](const Dimension &d) {
-      return d.certainty == Certainty::pure || d.certainty == Certainty::any;
+      return d.certainty == Certainty::pure || d.certainty == Certainty::any ||
+             d.certainty == Certainty::unknown;
     };
     if (fits_everywhere(a) || fits_everywhere(b))
       return false;
@@ -44,7 +45,7 @@ namespace nsfd::formula
   {
     if (a.certainty == Certainty::natural &&
         b.certainty == Certainty::natural && a.unit != b.unit)
-      return {};
+      return {Certainty::unknown, units::none};
     return a.certainty < b.certainty ? b : a;
   }
 
@@ -53,11 +54,15 @@ namespace nsfd::formula
     if (a.certainty == Certainty::pure || b.certainty == Certainty::pure)
       return {a.certainty == Certainty::pure ? b.certainty : a.certainty,
               a.unit * b.unit};
+    if (a.certainty == Certainty::unknown || b.certainty == Certainty::unknown)
+      return {Certainty::unknown, units::none};
     // `2 * 5 um` is a length, but the 2 may be in metres per second
     if (a.certainty == Certainty::any || b.certainty == Certainty::any) {
       const Dimension &other = a.certainty == Certainty::any ? b : a;
-      if (other.certainty != Certainty::stated)
+      if (other.certainty == Certainty::any)
         return {};
+      if (other.certainty == Certainty::natural)
+        return {Certainty::unknown, units::none};
       return {Certainty::natural, other.unit};
     }
     return {std::min(a.certainty, b.certainty), a.unit * b.unit};

@@ -13,6 +13,7 @@ namespace nsfd::formula
     enum class Certainty {
       pure,    ///< a mere factor by its nature: pi, sin(...), x < y
       any,     ///< a bare number: fits everywhere
+      unknown, ///< bare numbers times x, y, z, t: fits everywhere as well
       natural, ///< x, y, z, t, which may be in bare units as well
       stated   ///< from unit suffixes
     };

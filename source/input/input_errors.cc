@@ -32,6 +32,20 @@ namespace nsfd
       return text;
     }
 
+    /** A value of many lines says no more in full. */
+    std::string shortened(const std::string &text)
+    {
+      constexpr std::size_t longest = 500, kept = 220;
+      if (text.size() <= longest)
+        return text;
+      std::size_t end = kept, begin = text.size() - kept;
+      while (end > 0 && continues_character(text[end]))
+        --end;
+      while (begin < text.size() && continues_character(text[begin]))
+        ++begin;
+      return text.substr(0, end) + " ... " + text.substr(begin);
+    }
+
     /** The line with its caret line, cut to a window around the caret. */
     std::string excerpt(const SourceLocation &at)
     {
@@ -73,17 +87,25 @@ namespace nsfd
       if (at.line > 0)
         result += ":" + std::to_string(at.line);
       result += diagnostic.is_error ? ": error: " : ": warning: ";
-      result += printable(diagnostic.message) + "\n";
+      result += printable(shortened(diagnostic.message)) + "\n";
       if (!at.text.empty())
         result += excerpt(at);
       if (!diagnostic.advice.empty())
-        result += "  " + printable(diagnostic.advice) + "\n";
+        result += "  " + printable(shortened(diagnostic.advice)) + "\n";
       return result;
     }
 
-    /** Edits (insert, delete, replace, swap of neighbours) from a to b. */
-    std::size_t edit_distance(const std::string &a, const std::string &b)
+    /**
+     * Edits (insert, delete, replace, swap of neighbours) from a to b, or some
+     * number from @p enough on if they are more.
+     */
+    std::size_t edit_distance(const std::string &a, const std::string &b,
+                              const std::size_t enough)
     {
+      const std::size_t difference =
+          a.size() < b.size() ? b.size() - a.size() : a.size() - b.size();
+      if (difference >= enough)
+        return difference;
       std::vector<std::vector<std::size_t>> d(
           a.size() + 1, std::vector<std::size_t>(b.size() + 1));
       for (std::size_t i = 0; i <= a.size(); ++i)
@@ -190,7 +212,8 @@ namespace nsfd
     std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string &candidate : candidates) {
       const std::size_t distance =
-          edit_distance(lower_case(word), lower_case(candidate));
+          edit_distance(lower_case(word), lower_case(candidate),
+                        best_distance);
       if (distance < best_distance && distance < candidate.size()) {
         best = candidate;
         best_distance = distance;

@@ -1,5 +1,7 @@
 #include "nsfd/input/parameter_file.h"
 
+#include "nsfd/input/text_file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -200,15 +202,17 @@ namespace nsfd
     for (const std::string &name : mentioned_)
       if (std::find(valid.begin(), valid.end(), name) == valid.end())
         valid.push_back(name);
+    std::vector<const ParameterEntry *> given;
+    for (const std::string &name : valid)
+      given.push_back(find(name));
     // what is given already cannot have been meant a second time, but --set
     // may replace what the file gives
     const auto candidates = [&](const ParameterEntry &stray) {
       std::vector<std::string> names;
-      for (const std::string &name : valid) {
-        const ParameterEntry *given = find(name);
-        if (given == nullptr || (is_override(stray) && !is_override(*given)))
-          names.push_back(name);
-      }
+      for (std::size_t i = 0; i < valid.size(); ++i)
+        if (given[i] == nullptr ||
+            (is_override(stray) && !is_override(*given[i])))
+          names.push_back(valid[i]);
       return names;
     };
 
@@ -348,6 +352,16 @@ namespace nsfd
     const SourceText source(
         assignment, {command_line, 0, 0,
                      static_cast<unsigned int>(assignment.size()), assignment});
+    if (assignment.size() > text_limits::line)
+      return errors.error({command_line, 0, 0, 0, ""},
+                          fmt::format("`{}...` has {} bytes, more than {}",
+                                      assignment.substr(0, 40),
+                                      assignment.size(), text_limits::line),
+                          "tables of numbers belong into files");
+    if (find_non_utf8(assignment) != std::string::npos)
+      return errors.error({command_line, 0, 0, 0, ""},
+                          "a value of --set is not UTF-8",
+                          "write ASCII letters, or use a terminal of UTF-8");
     const std::size_t equals = assignment.find('=');
     // names of blocks may hold a slash, names of entries do not
     const std::size_t slash = equals == std::string::npos || equals == 0

@@ -1,11 +1,12 @@
 #include "nsfd/input/parameter_file.h"
 
+#include "nsfd/input/text_file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 namespace nsfd
@@ -65,7 +66,8 @@ namespace nsfd
 
       void parse(const std::string &text, const std::string &source);
       /** @return false if there is no such text file */
-      bool include(const std::string &path, const SourceLocation &from);
+      bool include(const std::string &path, const SourceLocation &from,
+                   bool is_outermost);
 
     private:
       ParameterFile &file_;
@@ -74,8 +76,10 @@ namespace nsfd
       /// entries of a doubled section are read, but go nowhere
       std::unique_ptr<ParameterSection> discarded_;
       std::vector<std::string> open_files_;
+      std::size_t n_statements_ = 0;
 
-      void statement(const SourceText &line, const std::string &source);
+      /// false, and reported, if nothing more is to be read
+      bool statement(const SourceText &line, const std::string &source);
       void set(const SourceText &rest, const SourceText &line);
       void begin_section(const SourceText &name, const SourceText &line);
       void end_section(const SourceText &rest, const SourceText &line);
@@ -85,10 +89,25 @@ namespace nsfd
     {
       const std::vector<std::string> lines = split_lines(text);
       ParameterSection *const outer = section_;
+      // every place in a line has a copy of the line
+      const auto is_short = [&](const std::size_t size,
+                                const std::size_t number,
+                                const std::string &what) {
+        if (size <= text_limits::line)
+          return true;
+        errors_.error({source, unsigned(number), 0, 0, ""},
+                      fmt::format("this {} has {} bytes, more than {}", what,
+                                  size, text_limits::line),
+                      "break it up; tables of numbers belong into files of "
+                      "their own");
+        return false;
+      };
 
       SourceText statement_text;
       for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::string &line = lines[i];
+        if (!is_short(line.size(), i + 1, "line"))
+          continue;
         const SourceLocation start{source, static_cast<unsigned int>(i + 1), 0,
                                    0, line};
         const std::size_t comment = line.find('#');
@@ -103,15 +122,20 @@ namespace nsfd
         const bool continues = !code.empty() && code.text().back() == '\\';
         if (continues)
           code = code.part(0, code.text().size() - 1);
-        statement_text.append(code);
+        // of a statement that is too long, the first lines have been blamed
+        if (statement_text.text().size() <= text_limits::line)
+          statement_text.append(code);
         if (continues)
           continue;
-        if (!statement_text.empty())
-          statement(statement_text, source);
+        if (!statement_text.empty() &&
+            is_short(statement_text.text().size(), i + 1,
+                     "statement of several lines") &&
+            !statement(statement_text, source))
+          return;
         statement_text = SourceText();
       }
-      if (!statement_text.empty())
-        statement(statement_text, source);
+      if (!statement_text.empty() && !statement(statement_text, source))
+        return;
 
       if (section_ == &file_.top() && outer != section_)
         errors_.error({source, 0, 0, 0, ""},
@@ -126,8 +150,16 @@ namespace nsfd
       }
     }
 
-    void Parser::statement(const SourceText &line, const std::string &source)
+    bool Parser::statement(const SourceText &line, const std::string &source)
     {
+      if (++n_statements_ > text_limits::statements) {
+        if (n_statements_ == text_limits::statements + 1)
+          errors_.error(line.location(),
+                        fmt::format("these are more than {} statements",
+                                    text_limits::statements),
+                        "the rest was not read; no scene needs so many");
+        return false;
+      }
       const std::string &text = line.text();
       std::size_t end = 0;
       while (end < text.size() && !is_blank(text[end]))
@@ -142,13 +174,15 @@ namespace nsfd
       else if (keyword == "end" || keyword == "END")
         end_section(rest, line);
       else if (keyword == "include" || keyword == "INCLUDE") {
-        if (rest.empty())
-          return errors_.error(line.location(), "`include` names no file",
-                               "write for example: include common.prm");
+        if (rest.empty()) {
+          errors_.error(line.location(), "`include` names no file",
+                        "write for example: include common.prm");
+          return true;
+        }
         // an absolute path replaces the folder
         const auto folder = std::filesystem::path(source).parent_path();
         include((folder / rest.text()).lexically_normal().string(),
-                rest.location());
+                rest.location(), false);
       } else {
         const bool assigns = text.find('=') != std::string::npos;
         std::string advice = did_you_mean(
@@ -159,6 +193,7 @@ namespace nsfd
                       fmt::format("`{}` does not begin a statement", keyword),
                       advice);
       }
+      return true;
     }
 
     void Parser::set(const SourceText &rest, const SourceText &line)
@@ -198,9 +233,15 @@ namespace nsfd
         section_ = &file_.top();
       }
 
-      const std::string full_name = canonical_section_name(name.text());
+      std::string full_name = canonical_section_name(name.text());
       const std::size_t colon = full_name.find(": ");
-      if (full_name.empty())
+      if (full_name.size() > text_limits::name) {
+        errors_.error(name.location(),
+                      fmt::format("this name has {} bytes, more than {}",
+                                  full_name.size(), text_limits::name),
+                      "give the section a shorter name");
+        full_name.clear(); // what follows goes nowhere
+      } else if (full_name.empty())
         errors_.error(line.location(), "the section has no name",
                       "write for example: subsection Time");
       else if (colon != std::string::npos &&
@@ -240,30 +281,38 @@ namespace nsfd
       section_ = &file_.top();
     }
 
-    bool Parser::include(const std::string &path, const SourceLocation &from)
+    bool Parser::include(const std::string &path, const SourceLocation &from,
+                         const bool is_outermost)
     {
-      const auto refuse = [&](const char *problem, const char *advice) {
-        errors_.error(from, fmt::format("`{}` {}", path, problem), advice);
-        return false;
-      };
       if (std::find(open_files_.begin(), open_files_.end(), path) !=
-          open_files_.end())
-        return refuse("includes itself", "remove this line");
-      std::error_code ignored;
-      if (std::filesystem::is_directory(path, ignored))
-        return refuse("is a folder", "name a parameter file");
-
-      std::ifstream stream(path, std::ios::binary);
-      if (!stream)
-        return refuse("cannot be read",
-                      "check the name and the folder you are in");
-      std::ostringstream content;
-      content << stream.rdbuf();
-      if (content.str().find('\0') != std::string::npos)
-        return refuse("is not a text file", "name a parameter file");
+          open_files_.end()) {
+        errors_.error(from, fmt::format("`{}` includes itself", path),
+                      "remove this line");
+        return false;
+      }
+      constexpr std::size_t deepest = 20;
+      if (open_files_.size() == deepest) {
+        errors_.error(from,
+                      fmt::format("`{}` is included by a file that is "
+                                  "included, and so on, {} times",
+                                  path, deepest),
+                      "write what it says into one of them");
+        return false;
+      }
+      const TextFile file = read_text_file(path, text_limits::parameter_file);
+      if (!file.problem.empty()) {
+        SourceLocation place = from;
+        if (file.line > 0)
+          place = {path, file.line, 0, 0, ""};
+        errors_.error(place, fmt::format("`{}` {}", path, file.problem),
+                      file.advice);
+        return false;
+      }
+      if (is_outermost)
+        file_.set_opening_comment(leading_comment(split_lines(file.content)));
 
       open_files_.push_back(path);
-      parse(content.str(), path);
+      parse(file.content, path);
       open_files_.pop_back();
       return true;
     }
@@ -273,11 +322,7 @@ namespace nsfd
   {
     const SourceLocation whole{file, 0, 0, 0, ""};
     top().set_location(whole);
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream content;
-    content << stream.rdbuf();
-    set_opening_comment(leading_comment(split_lines(content.str())));
-    return Parser(*this, errors).include(file, whole);
+    return Parser(*this, errors).include(file, whole, true);
   }
 
   void ParameterFile::read_text(const std::string &text,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -96,6 +97,13 @@ namespace nsfd
       input.has_broken = !input.broken.is_zero();
     }
 
+    bool all_rigid(const SceneInput &scene)
+    {
+      return !scene.materials.empty() &&
+             std::all_of(scene.materials.begin(), scene.materials.end(),
+                         [](const MaterialInput &m) { return m.rigid; });
+    }
+
     /** Bonds act on the bulk of cells as Hooke's law of small strain has it. */
     void refuse_bonds(SectionReader &reader, const SceneInput &scene,
                       const std::string &name)
@@ -103,9 +111,11 @@ namespace nsfd
       reader.error(
           name,
           fmt::format("{} = bonded joins bodies {}, and the scene has {}", name,
-                      scene.large_motion ? "that turn and strain little"
+                      scene.large_motion  ? "that turn and strain little"
+                      : all_rigid(scene) ? "that deform"
                                          : "without memory",
-                      scene.large_motion ? "motion = large"
+                      scene.large_motion  ? "motion = large"
+                      : all_rigid(scene) ? "rigid ones only"
                                          : remembering_model(scene)),
           "write rigid");
     }
@@ -124,9 +134,11 @@ namespace nsfd
                      scene.iterates()
                          ? "write rigid, or take an intrinsic law"
                          : "write rigid or bonded, or take an intrinsic law");
-      else if (extrinsic && scene.iterates() && name == "bonded")
+      else if (extrinsic && name == "bonded" &&
+               (scene.iterates() || all_rigid(scene)))
         refuse_bonds(reader, scene, "intact faces");
-      else if (extrinsic && !scene.iterates() && name == "rigid" &&
+      else if (extrinsic && !scene.iterates() && !all_rigid(scene) &&
+               name == "rigid" &&
                input.where.kind == Where::Kind::all)
         reader.error("intact faces",
                      fmt::format("intact faces = rigid with where = all and "
@@ -150,7 +162,8 @@ namespace nsfd
       const bool extrinsic = input.law && input.law->extrinsic();
       // rigid rows on all faces make W singular, and tractions ambiguous: but
       // there are no bonds where steps are iterations
-      const bool bonds = !scene.iterates() && input.where.kind == Where::Kind::all;
+      const bool bonds = !scene.iterates() && !all_rigid(scene) &&
+                         input.where.kind == Where::Kind::all;
       const std::string name = reader.choice(
           "intact faces",
           !extrinsic ? "spring"
@@ -273,7 +286,8 @@ namespace nsfd
       if (input.law_name == "rigid" || input.law_name == "bonded") {
         input.intact = input.law_name == "rigid" ? IntactFaces::rigid
                                                  : IntactFaces::bonded;
-        if (scene.iterates() && input.law_name == "bonded")
+        if (input.law_name == "bonded" &&
+            (scene.iterates() || all_rigid(scene)))
           refuse_bonds(reader, scene, "law");
         const std::string reason =
             fmt::format("faces of the law `{}` never open", input.law_name);

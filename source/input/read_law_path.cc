@@ -1,6 +1,7 @@
 #include "read_law_path.h"
 
 #include "nsfd/input/parameter_file.h"
+#include "nsfd/input/text_file.h"
 #include "nsfd/law_path/drive_point.h"
 
 #include <fmt/format.h>
@@ -8,8 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
 namespace nsfd
@@ -168,13 +167,14 @@ namespace nsfd
           "path.csv");
       if (path.empty())
         return {};
-      std::ifstream stream(path);
-      std::error_code ignored;
-      if (!stream || std::filesystem::is_directory(path, ignored)) {
-        reader.error("file", "cannot read `" + path + "`", file_advice);
+      const TextFile file = read_text_file(path, text_limits::table);
+      if (!file.problem.empty()) {
+        reader.error("file", fmt::format("`{}` {}", path, file.problem),
+                     file_advice);
         return {};
       }
       try {
+        std::istringstream stream(file.content);
         return read_table(stream);
       } catch (const std::runtime_error &error) {
         reader.error("file", fmt::format("{}: {}", path, error.what()),

@@ -152,8 +152,13 @@ namespace nsfd
                              const std::string &name, const Unit unit,
                              const Range range, const std::string &text)
     {
-      if (!reader.has(name) || !depends(reader.raw(name, "", text)->text()))
+      if (!reader.has(name))
         return reader.number(name, "", unit, range, text);
+      const auto given = reader.raw(name, "", text, example(unit));
+      if (!given)
+        return Expression(std::numeric_limits<double>::quiet_NaN());
+      if (!depends(given->text()))
+        return reader.number_in(*given, name, "", unit, range);
       const unsigned int n_before = reader.errors().n_errors();
       Expression value = read_initial_expression(reader, name, "", unit, text);
       if (!uniform.empty() && reader.errors().n_errors() == n_before)

@@ -205,7 +205,8 @@ namespace nsfd
                         "xy"[d], mesh.upper[d], mesh.lower[d]),
             "exchange the two corners");
     }
-    if (n_cells > 1e8)
+    constexpr double most_cells = 2e6; // in seconds, not in minutes
+    if (n_cells > most_cells)
       return reader.error("element size",
                           fmt::format("the mesh would have {:.2g} cells",
                                       n_cells),

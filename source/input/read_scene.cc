@@ -159,6 +159,8 @@ namespace nsfd
       read_adaptivity(file, errors, *scene);
       read_observables(file, errors, *scene);
       file.report_stray(errors);
+      if (!errors.has_errors())
+        check_memory(file, errors, *scene);
       if (errors.has_errors())
         return nullptr;
       scene->echo = file.print();

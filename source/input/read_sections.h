@@ -69,6 +69,10 @@ namespace nsfd
   void read_adaptivity(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene);
 
+  /** A mesh that the memory of this machine cannot hold is an error. */
+  void check_memory(ParameterFile &file, InputErrors &errors,
+                    const SceneInput &scene);
+
   /** Observable blocks. */
   void read_observables(ParameterFile &file, InputErrors &errors,
                         SceneInput &scene);

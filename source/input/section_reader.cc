@@ -39,6 +39,21 @@ namespace nsfd
       return result;
     }
 
+    /**
+     * Why a value is none of this world, or nothing. Far beyond any body and
+     * any matter, so that products of a few of them stay numbers.
+     */
+    std::string strangeness(const double value, const Unit &unit)
+    {
+      const double size = std::abs(value);
+      const double limit = unit == units::length ? 1e20 : 1e45;
+      if (size > limit)
+        return fmt::format("is beyond {:g}", limit);
+      if (unit != units::none && size > 0. && size < 1. / limit)
+        return fmt::format("is below {:g}", 1. / limit);
+      return "";
+    }
+
     /** Some number in the range, to go on with after an error. */
     double number_inside(const Range &range)
     {
@@ -219,6 +234,13 @@ namespace nsfd
           value.location(),
           fmt::format("{} = {} {}", name, value.text(), describe(range)),
           advice);
+    else if (const std::string why = strangeness(*formula.constant, unit);
+             !why.empty())
+      errors_.error(value.location(),
+                    fmt::format("{} = {} {}, where the numbers of a machine "
+                                "come to their end",
+                                name, value.text(), why),
+                    advice);
     else
       return *formula.constant;
     return number_inside(range);
@@ -369,8 +391,22 @@ namespace nsfd
   {
     const Formula formula =
         compile_formula(value.text(), unit, section_.constants(), true);
-    if (!formula.error)
+    if (!formula.error) {
+      const std::string why =
+          formula.constant ? strangeness(*formula.constant, unit) : "";
+      if (!why.empty()) {
+        errors_.error(value.location(),
+                      fmt::format("{} = {} {}, where the numbers of a machine "
+                                  "come to their end",
+                                  name, value.text(), why),
+                      for_example(example_value(name, "", unit)));
+        return {};
+      }
+      set_name(*formula.compiled, section_.name().empty()
+                                      ? name
+                                      : section_.name() + "/" + name);
       return Expression(formula.compiled);
+    }
     if (formula.unit)
       errors_.error(value.location(),
                     fmt::format("{}; `{}` must be {}", formula.error->message,

@@ -27,72 +27,6 @@ namespace nsfd
 {
   namespace
   {
-    /** Every expression of the scene at some places and both ends of time. */
-    template <int dim>
-    std::vector<std::string>
-    evaluate_expressions(const SceneInput &input,
-                         const Discretization<dim> &discretization)
-    {
-      std::vector<std::string> problems;
-      const auto &points = discretization.points();
-      const auto try_at = [&](const Expression &expression,
-                              const std::string &name,
-                              const dealii::Point<dim> &x) {
-        for (const double t : {0., input.time.end}) {
-          const double value = expression.at(x, t);
-          if (!std::isfinite(value)) {
-            problems.push_back(fmt::format(
-                "{} = {} is {} at ({:.4g}, {:.4g}{}), t = {:.4g}", name,
-                expression.text(), value, x[0], x[1],
-                dim == 3 ? fmt::format(", {:.4g}", x[dim - 1]) : "", t));
-            return false;
-          }
-        }
-        return true;
-      };
-      const char *axis[] = {"x", "y", "z"};
-      for (unsigned int m = 0; m < input.materials.size(); ++m)
-        for (unsigned int c = 0; c < dim; ++c)
-          for (const auto &[expression, entry] :
-               {std::pair(&input.materials[m].initial_displacement[c],
-                          "initial displacement "),
-                std::pair(&input.materials[m].initial_velocity[c],
-                          "initial velocity "),
-                std::pair(&input.materials[m].body_force[c], "body force ")})
-            for (std::size_t b = 0; b < discretization.bodies().size(); ++b)
-              if (discretization.material_of(unsigned(b)) == m &&
-                  !try_at(*expression,
-                          "Material: " + input.materials[m].name + "/" + entry +
-                              axis[c],
-                          discretization.centre(unsigned(b))))
-                break;
-      for (const ObstacleInput &obstacle : input.obstacles)
-        for (unsigned int c = 0; c < dim; ++c)
-          if (obstacle.velocity[c])
-            try_at(*obstacle.velocity[c],
-                   "Obstacle: " + obstacle.name + "/velocity " + axis[c],
-                   dealii::Point<dim>());
-      std::vector<char> failed(input.boundaries.size(), 0);
-      for (std::size_t i = 0; i < points.n_points; ++i) {
-        const PointOrigin origin = discretization.origins()[i];
-        dealii::Point<dim> x;
-        for (unsigned int c = 0; c < dim; ++c)
-          x[c] = points.position[i * dim + c];
-        if (origin.kind == PointOrigin::Kind::motion && !failed[origin.block]) {
-          const auto &boundary = input.boundaries[origin.block];
-          for (unsigned int c = 0; c < dim; ++c)
-            for (const auto *motion :
-                 {&boundary.velocity[c], &boundary.displacement[c]})
-              if (*motion &&
-                  !try_at(**motion,
-                          "Boundary: " + boundary.name + "/motion " + axis[c],
-                          x))
-                failed[origin.block] = 1;
-        }
-      }
-      return problems;
-    }
-
     constexpr double points_wanted = points_per_cohesive_length;
     constexpr double share_wanted = 0.9;  // of the modulus, while intact
     constexpr unsigned int most_points = 10;
@@ -479,21 +413,6 @@ namespace nsfd
                   const double step, const Communicator &communicator)
   {
     const MeshReport mesh = mesh_report<dim>(triangulation);
-    const auto problems = evaluate_expressions(input, discretization);
-    bool finite = true;
-    for (const double t : {0., input.time.end}) {
-      std::vector<double> forces(discretization.bodies().n_dofs());
-      discretization.add_loads(t, forces);
-      for (const double f : forces)
-        finite = finite && std::isfinite(f);
-    }
-    const bool bad = communicator.any(!problems.empty() || !finite);
-    for (const auto &problem : problems)
-      std::cerr << input.file << ": error: " << problem << "\n";
-    if (!finite)
-      std::cerr
-          << input.file
-          << ": error: a load is not a finite number at the start or the end\n";
     const std::array<double, 3> counts = {
         {communicator.max(double(discretization.bodies().classes.size())),
          double(communicator.sum_integer(discretization.bodies().n_dofs())),
@@ -510,30 +429,24 @@ namespace nsfd
     std::vector<unsigned int> all(input.materials.size());
     std::iota(all.begin(), all.end(), 0u);
     advisor.choose_material(all);
-    if (!bad) {
-      const State state = stepper.initial_state();
-      for (int b = 0; b < int(input.interfaces.size()); ++b) {
-        const double unique =
-            stepper.unique_step(all_softening(state, discretization, input, b));
-        advisor.unique_steps.push_back(std::isfinite(unique) ? unique : 0.);
-      }
-      const State softening = all_softening(state, discretization, input);
-      advisor.contraction = contraction_number(input, stepper.problem(),
-                                               softening, dynamics, step);
-      if (advisor.contraction >= 1.)
-        advisor.contraction_step =
-            step_of_contraction(input, stepper.problem(), softening, dynamics,
-                                step, advisor.contraction);
+    const State state = stepper.initial_state();
+    for (int b = 0; b < int(input.interfaces.size()); ++b) {
+      const double unique =
+          stepper.unique_step(all_softening(state, discretization, input, b));
+      advisor.unique_steps.push_back(std::isfinite(unique) ? unique : 0.);
     }
+    const State softening = all_softening(state, discretization, input);
+    advisor.contraction = contraction_number(input, stepper.problem(),
+                                             softening, dynamics, step);
+    if (advisor.contraction >= 1.)
+      advisor.contraction_step =
+          step_of_contraction(input, stepper.problem(), softening, dynamics,
+                              step, advisor.contraction);
     if (!communicator.is_root())
-      return bad ? exit_code::bad_input : exit_code::done;
+      return exit_code::done;
 
     std::cout << fmt::format("{}: checked, nothing is run\n", input.file);
     print_mesh(input, mesh, discretization, counts, step);
-    if (bad) {
-      std::cout << "  not runnable: see the errors above\n";
-      return exit_code::bad_input;
-    }
     if (advisor.young > 0.)
       advisor.print_stiffness();
     for (unsigned int b = 0; b < input.interfaces.size(); ++b)

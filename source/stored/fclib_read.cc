@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 
 namespace nsfd
@@ -19,7 +20,8 @@ namespace nsfd
     {
     public:
       explicit Reader(const std::string &name)
-          : name_(name), file_(open(name), H5Fclose)
+          : name_(name), n_bytes_(double(std::filesystem::file_size(name))),
+            file_(open(name), H5Fclose)
       {
         if (!file_)
           fail("it is not an HDF5 file, or not a whole one");
@@ -69,7 +71,13 @@ namespace nsfd
         if (!type || H5Tget_class(type) != H5T_STRING ||
             H5Tis_variable_str(type) > 0)
           return "";
-        std::string result(H5Tget_size(type), '\0');
+        constexpr std::size_t longest = 1u << 20;
+        const std::size_t size = H5Tget_size(type);
+        const Handle space(H5Dget_space(set), H5Sclose);
+        if (size > longest || !space ||
+            H5Sget_simple_extent_npoints(space) != 1)
+          return "";
+        std::string result(size, '\0');
         if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &result[0]) < 0)
           return "";
         return result.substr(0, result.find('\0'));
@@ -93,6 +101,13 @@ namespace nsfd
         const hssize_t size = space ? H5Sget_simple_extent_npoints(space) : -1;
         if (size < 0)
           fail(fmt::format("{} is not a data set", path));
+        // what is not stored can have any size; compressed, a byte holds some
+        // thousand zeros at most
+        constexpr double most_per_byte = 1100.;
+        if (double(size) * sizeof(T) > most_per_byte * n_bytes_ ||
+            size > std::numeric_limits<int>::max())
+          fail(fmt::format("{} has {} values, which the file cannot hold", path,
+                           size));
         std::vector<T> result(size);
         if (size > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                                 result.data()) < 0)
@@ -102,6 +117,7 @@ namespace nsfd
       }
 
       std::string name_;
+      double n_bytes_;
       Handle file_;
     };
 

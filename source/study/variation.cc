@@ -70,9 +70,10 @@ namespace nsfd
       const int step = std::max(1, std::abs(by));
       if (std::abs(double(last) - first) / step > 1e4)
         return result;
-      for (int i = first; first <= last ? i <= last : i >= last;
+      // the one after the last may be too large for an int
+      for (long long i = first; first <= last ? i <= last : i >= last;
            i += first <= last ? step : -step)
-        result.push_back(i);
+        result.push_back(int(i));
       return result;
     }
 
@@ -120,6 +121,13 @@ namespace nsfd
     std::vector<std::string> expand_ranges(const std::string &text,
                                            std::string &problem)
     {
+      // regular expressions recurse for every character
+      constexpr std::size_t longest = 2000;
+      if (text.size() > longest) {
+        problem = fmt::format("this value has {} bytes, more than {}",
+                              text.size(), longest);
+        return {text.substr(0, 40)};
+      }
       std::vector<RangeInText> ranges;
       RangeInText range;
       for (std::size_t at = 0; find_range(text, at, range);
@@ -214,6 +222,11 @@ namespace nsfd
       }
       for (const std::string &one : expand_ranges(value, problem))
         values.push_back(one);
+      constexpr std::size_t most_values = 10000;
+      if (values.size() > most_values) {
+        problem = fmt::format("these are more than {} values", most_values);
+        return {};
+      }
     }
     return values;
   }

@@ -7,6 +7,13 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    // Lengths of cells far from the origin, hence crossings, are known to
+    // round-off of the coordinates only: 2e-9 at 1e7 lengths of a cell.
+    constexpr double round_off = 1e-8;
+  } // namespace
+
   StepControl::StepControl(const double end,
                            const double base,
                            const unsigned int maximum_halvings,
@@ -14,7 +21,7 @@ namespace nsfd
     : end_(end)
     , ceiling_(std::numeric_limits<double>::infinity())
     , n_base_(static_cast<unsigned long long>(
-        std::fmax(1., std::ceil((end - start) / base * (1. - 1e-12)))))
+        std::fmax(1., std::ceil((end - start) / base * (1. - round_off)))))
     , maximum_level_(maximum_halvings)
     , start_(start)
   {

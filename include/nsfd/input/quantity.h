@@ -57,6 +57,8 @@ namespace nsfd
     Unit unit;
     /// written without any unit: fits every dimension
     bool bare = true;
+    /// a formula of numbers with and without: `unit` is that of the former
+    bool mixed = false;
   };
   using Constants = std::map<std::string, Constant>;
 } // namespace nsfd

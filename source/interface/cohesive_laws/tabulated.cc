@@ -1,16 +1,16 @@
 #include "law_input.h"
 #include "nsfd/input/input_errors.h"
 #include "nsfd/input/parameter_file.h"
+#include "nsfd/input/text_file.h"
 #include "nsfd/interface/cohesive_law.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -115,12 +115,14 @@ namespace nsfd
         curve.name = reader.file("curve", file_text, "curve.csv");
         if (curve.name.empty())
           return {};
-        std::error_code ignored;
-        std::ifstream stream(curve.name, std::ios::binary);
-        if (stream && !std::filesystem::is_directory(curve.name, ignored))
+        const TextFile file =
+            read_text_file(curve.name, text_limits::parameter_file);
+        std::istringstream stream(file.content);
+        if (file.problem.empty())
           read_lines(reader, stream, curve);
         else
-          reader.error("curve", fmt::format("`{}` cannot be read", curve.name),
+          reader.error("curve",
+                       fmt::format("`{}` {}", curve.name, file.problem),
                        "name a CSV file; its folder is relative to that of "
                        "the parameter file");
       }
