@@ -4,6 +4,7 @@
 #include "nsfd/input/read_law.h"
 #include "nsfd/input/read_scene.h"
 #include "nsfd/law_path/run_law.h"
+#include "nsfd/mesh/gmsh_process.h"
 #include "nsfd/output/output_folder.h"
 #include "nsfd/simulation.h"
 #include "nsfd/stored/solve_command.h"
@@ -120,6 +121,8 @@ namespace
 
 int main(int argc, char **argv)
 {
+  if (const auto code = run_gmsh_if_asked(argc, argv))
+    return *code;
   if (asks_for_study(argc, argv))
     return study(argc, argv);
   if (argc > 1 && argv[1] == std::string("compare"))

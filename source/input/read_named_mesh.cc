@@ -23,7 +23,8 @@ namespace nsfd
         {"ucd", MeshFormat::ucd},        {"vtk", MeshFormat::vtk},
         {"vtu", MeshFormat::vtu}};
 
-    MeshFormat read_format(SectionReader &reader, const std::string &file)
+    MeshFormat read_format(SectionReader &reader, const std::string &file,
+                           const bool exists)
     {
       std::vector<std::string> names = {"auto"};
       for (const auto &[name, format] : formats)
@@ -33,7 +34,18 @@ namespace nsfd
           "auto (by the name of the file), gmsh, geo (script of Gmsh), cad "
           "(STEP, IGES, BREP), abaqus, ucd, vtk, vtu");
       const auto found = formats.find(name);
-      return found == formats.end() ? guess_format(file) : found->second;
+      if (found != formats.end())
+        return found->second;
+      const auto guessed = guess_format(file);
+      if (!guessed && exists)
+        reader.error("file",
+                     fmt::format("`{}`: no mesh is read from a file of this "
+                                 "name",
+                                 file),
+                     fmt::format("its name must end in one of {}, or `format` "
+                                 "must say what it is",
+                                 listed_mesh_extensions()));
+      return guessed.value_or(MeshFormat::gmsh_mesh);
     }
 
     /** `mm`, or a number of scene units. */
@@ -66,12 +78,27 @@ namespace nsfd
                      "write the name of a mesh in it");
         return false;
       }
+      if (std::filesystem::exists(file) &&
+          !std::filesystem::is_regular_file(file)) {
+        reader.error("file", fmt::format("`{}` is no ordinary file", file),
+                     "write the name of a mesh");
+        return false;
+      }
       if (!std::ifstream(file)) {
         reader.error("file", fmt::format("there is no file `{}`", file),
                      "paths are relative to the folder of the parameter file");
         return false;
       }
       return true;
+    }
+
+    /** What runs away ends by it; what is large may ask for more. */
+    double read_meshing_time(SectionReader &reader)
+    {
+      constexpr double one_day = 86400.;
+      return reader.number("meshing time", "20", units::none,
+                           {0., one_day, true, false},
+                           "s of CPU that Gmsh may take");
     }
 
     double read_element_size(SectionReader &reader, const bool is_geometry)
@@ -147,7 +174,7 @@ namespace nsfd
     request.dimension = dimension;
     request.file = reader.file("file", "mesh or geometry", "plate.msh");
     const bool exists = can_be_opened(reader, request.file);
-    request.format = read_format(reader, request.file);
+    request.format = read_format(reader, request.file, exists);
     if (request.format == MeshFormat::cad)
       reader.refuse({"length unit"}, "CAD files name their own unit");
     else
@@ -157,6 +184,7 @@ namespace nsfd
     request.element_size = read_element_size(reader, is_geometry);
     if (is_geometry)
       request.shape = read_shape(reader, dimension);
+    request.seconds = read_meshing_time(reader);
     request.merge_vertices = reader.boolean(
         "merge vertices", false, "join vertices that are at one place");
     mesh.split_simplices = read_split(reader);
@@ -190,6 +218,7 @@ namespace nsfd
         "steps of Lloyd: more of them make more equal grains");
     request.element_size = reader.number("element size", "", units::length,
                                          Range::positive(), "m");
+    request.seconds = read_meshing_time(reader);
     if (reader.errors().n_errors() > n_before)
       return;
     double n_cells = 1.;

@@ -1,4 +1,4 @@
-#include "gmsh_reader.h"
+#include "gmsh_job.h"
 
 #include "gmsh_session.h"
 
@@ -277,8 +277,8 @@ namespace nsfd
     }
   } // namespace
 
-  NamedMesh read_gmsh(const GmshRequest &request,
-                      std::vector<std::string> &problems)
+  NamedMesh read_gmsh_here(const GmshRequest &request,
+                           std::vector<std::string> &problems)
   {
     GmshSession session;
     // before the file, which may know better
@@ -357,17 +357,14 @@ namespace nsfd
     }
   } // namespace
 
-  NamedMesh mesh_regions(const PlaneRegions &regions, const double element_size,
-                         std::vector<std::string> &problems)
+  NamedMesh mesh_regions_here(const PlaneRegions &regions,
+                              const GmshRequest &request,
+                              std::vector<std::string> &problems)
   {
     GmshSession session;
-    GmshRequest request;
-    request.is_geometry = true;
-    request.shape = GmshRequest::Shape::cubes;
-    request.element_size = element_size;
     NamedMesh mesh;
     const bool done = session.run([&] {
-      add_regions(regions, element_size);
+      add_regions(regions, request.element_size);
       if (make_cells(session, request, problems))
         mesh = Collector(2, true).collect(problems);
     });

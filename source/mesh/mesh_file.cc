@@ -6,6 +6,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 namespace nsfd
 {
@@ -32,6 +33,39 @@ namespace nsfd
       return false;
     }
 
+    struct KnownExtension {
+      const char *text; ///< in lower case
+      MeshFormat format;
+    };
+
+    /// Gmsh takes a file of any other extension for one of its scripts
+    const KnownExtension extensions[] = {
+        {".msh", MeshFormat::gmsh_mesh},
+        {".geo", MeshFormat::gmsh_geometry},
+        {".geo_unrolled", MeshFormat::gmsh_geometry},
+        {".step", MeshFormat::cad},
+        {".stp", MeshFormat::cad},
+        {".iges", MeshFormat::cad},
+        {".igs", MeshFormat::cad},
+        {".brep", MeshFormat::cad},
+        {".inp", MeshFormat::abaqus},
+        {".ucd", MeshFormat::ucd},
+        {".vtk", MeshFormat::vtk},
+        {".vtu", MeshFormat::vtu},
+        {".unv", MeshFormat::gmsh_mesh},
+        {".mesh", MeshFormat::gmsh_mesh},
+        {".bdf", MeshFormat::gmsh_mesh},
+        {".nas", MeshFormat::gmsh_mesh}};
+
+    const KnownExtension *find_extension(const std::string &file)
+    {
+      const std::string end = extension(file);
+      const auto found =
+          std::find_if(std::begin(extensions), std::end(extensions),
+                       [&](const auto &known) { return end == known.text; });
+      return found == std::end(extensions) ? nullptr : &*found;
+    }
+
     GmshRequest gmsh_request(const MeshFileRequest &request, const double unit)
     {
       GmshRequest result;
@@ -40,29 +74,27 @@ namespace nsfd
       result.is_geometry = request.format != MeshFormat::gmsh_mesh;
       result.element_size = request.element_size / unit;
       result.shape = GmshRequest::Shape(int(request.shape));
+      result.seconds = request.seconds;
       return result;
     }
   } // namespace
 
-  MeshFormat guess_format(const std::string &file)
+  std::optional<MeshFormat> guess_format(const std::string &file)
   {
-    const std::string end = extension(file);
-    const auto is = [&](const std::initializer_list<const char *> ends) {
-      return std::find(ends.begin(), ends.end(), end) != ends.end();
-    };
-    if (is({".geo", ".geo_unrolled", ".opt"}))
-      return MeshFormat::gmsh_geometry;
-    if (is({".step", ".stp", ".iges", ".igs", ".brep"}))
-      return MeshFormat::cad;
-    if (is({".vtk"}))
-      return MeshFormat::vtk;
-    if (is({".vtu"}))
-      return MeshFormat::vtu;
-    if (is({".ucd"}))
+    const KnownExtension *known = find_extension(file);
+    if (known == nullptr)
+      return {};
+    if (known->format == MeshFormat::abaqus && !begins_with_star(file))
       return MeshFormat::ucd;
-    if (is({".inp"}))
-      return begins_with_star(file) ? MeshFormat::abaqus : MeshFormat::ucd;
-    return MeshFormat::gmsh_mesh;
+    return known->format;
+  }
+
+  std::string listed_mesh_extensions()
+  {
+    std::string list;
+    for (const KnownExtension &known : extensions)
+      list += (list.empty() ? "" : ", ") + std::string(known.text);
+    return list;
   }
 
   std::string name_of(const MeshFormat format)
@@ -91,21 +123,43 @@ namespace nsfd
     bool is_gmsh_mesh(const std::string &file)
     {
       std::ifstream in(file);
-      char first = 0;
-      in >> first;
-      return first == '$';
+      std::string line;
+      std::getline(in, line);
+      for (const char *head : {"$MeshFormat", "$Comments", "$NOD"})
+        if (line.compare(0, std::string(head).size(), head) == 0)
+          return true;
+      return false;
+    }
+
+    NamedMesh read_by_gmsh(const MeshFileRequest &request, const double unit,
+                           std::vector<std::string> &problems)
+    {
+      GmshRequest job = gmsh_request(request, unit);
+      if (request.format == MeshFormat::gmsh_geometry) {
+        const GmshScript script = read_gmsh_script(request.file, problems);
+        return problems.empty() ? read_gmsh(job, script, problems)
+                                : NamedMesh();
+      }
+      const KnownExtension *known = find_extension(request.file);
+      const bool fits = known != nullptr && known->format == request.format;
+      if (request.format == MeshFormat::cad && !fits) {
+        problems.push_back("the name of a CAD file must end in .step, .stp, "
+                           ".iges, .igs or .brep");
+        return {};
+      }
+      job.extension = fits ? known->text : ".msh";
+      if (job.extension == ".msh" && !is_gmsh_mesh(request.file)) {
+        problems.push_back("this is no mesh of Gmsh: it does not begin with "
+                           "$MeshFormat");
+        return {};
+      }
+      return read_gmsh(job, problems);
     }
   } // namespace
 
   NamedMesh read_mesh_file(const MeshFileRequest &request,
                            std::vector<std::string> &problems)
   {
-    if (request.format == MeshFormat::gmsh_mesh &&
-        extension(request.file) == ".msh" && !is_gmsh_mesh(request.file)) {
-      problems.push_back("this is no mesh of Gmsh: it does not begin with "
-                         "$MeshFormat");
-      return {};
-    }
     // CAD files are read in millimetres, whatever their own unit
     const double unit =
         request.format == MeshFormat::cad ? 1e-3 : request.unit;
@@ -124,7 +178,7 @@ namespace nsfd
       mesh = read_by_deal_ii(request.file, request.dimension, problems);
       break;
     default:
-      mesh = read_gmsh(gmsh_request(request, unit), problems);
+      mesh = read_by_gmsh(request, unit, problems);
     }
     if (problems.empty())
       put_in_order(mesh, unit, request.merge_vertices, problems);

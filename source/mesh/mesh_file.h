@@ -2,13 +2,14 @@
 
 #include "nsfd/mesh/named_mesh.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace nsfd
 {
   enum class MeshFormat {
-    gmsh_mesh,     ///< and all other meshes that Gmsh reads
+    gmsh_mesh,     ///< .msh, and other meshes that Gmsh reads
     gmsh_geometry, ///< a script: .geo
     cad,           ///< STEP, IGES, BREP: names its own unit
     abaqus,
@@ -17,8 +18,14 @@ namespace nsfd
     vtu
   };
 
-  /** By the name of the file, `.inp` by its first line. */
-  MeshFormat guess_format(const std::string &file);
+  /**
+   * By the name of the file, `.inp` by its first line; none if its extension
+   * is not listed.
+   */
+  std::optional<MeshFormat> guess_format(const std::string &file);
+
+  /** ".msh, .geo, ..." */
+  std::string listed_mesh_extensions();
 
   /** Shown, with the text of `format`, to who writes something else. */
   std::string name_of(MeshFormat format);
@@ -32,6 +39,7 @@ namespace nsfd
     enum class Shape { as_given, simplices, cubes };
     Shape shape = Shape::as_given;
     bool merge_vertices = false;
+    double seconds = 20.; ///< of CPU that Gmsh may take
   };
 
   /** The mesh of a file, in order. Everything that is wrong is a sentence. */

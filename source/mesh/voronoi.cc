@@ -303,8 +303,8 @@ namespace nsfd
       return {};
     const double scale = grain_size(request);
     // Gmsh knows absolute tolerances: it sees grains of size 1
-    NamedMesh mesh =
-        mesh_regions(regions, request.element_size / scale, problems);
+    NamedMesh mesh = mesh_regions(regions, request.element_size / scale,
+                                  request.seconds, problems);
     for (std::size_t v = 0; v < mesh.n_vertices(); ++v) {
       double *p = mesh.coordinates.data() + 3 * v;
       const Vector x = in_units(request, p[0], p[1]);

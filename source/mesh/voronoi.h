@@ -15,6 +15,7 @@ namespace nsfd
     unsigned int grains = 1, seed = 1;
     unsigned int relaxation = 0; ///< steps of Lloyd: seeds to the centroids
     double element_size = 0.;
+    double seconds = 20.; ///< of CPU for the mesh
   };
 
   /**
