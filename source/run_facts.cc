@@ -40,10 +40,113 @@ namespace nsfd
                     imbalance_);
   }
 
+  namespace
+  {
+    /** Something of the scene can rub, and the like. */
+    bool has_line(const WatchedLine line, const SceneInput &input,
+                  const State &state)
+    {
+      const auto any = [](const auto &blocks, const auto &test) {
+        return std::any_of(blocks.begin(), blocks.end(), test);
+      };
+      const auto rubs = [](const auto &b) { return b.friction > 0.; };
+      const EnergyLines &e = state.energy;
+      switch (line) {
+      case WatchedLine::friction:
+        return any(input.interfaces, rubs) || any(input.obstacles, rubs) ||
+               any(input.contacts, rubs);
+      case WatchedLine::damage:
+        return any(input.interfaces, [](const auto &b) { return bool(b.law); });
+      case WatchedLine::impact:
+        return !input.obstacles.empty() || !input.contacts.empty() ||
+               any(input.interfaces, [](const auto &b) {
+                 return b.law || b.law_name == "contact";
+               });
+      case WatchedLine::viscous:
+        return e.viscous != 0.;
+      case WatchedLine::plastic:
+        return e.plastic != 0.;
+      case WatchedLine::joints:
+        return any(input.interfaces, [](const auto &b) {
+          return b.intact == IntactFaces::rigid;
+        });
+      case WatchedLine::supports:
+        return any(input.boundaries, [](const auto &b) {
+          const auto given = [](const auto &x) { return x.has_value(); };
+          return b.exact_motion ||
+                 std::any_of(b.velocity.begin(), b.velocity.end(), given) ||
+                 std::any_of(b.displacement.begin(), b.displacement.end(),
+                             given);
+        });
+      default:
+        return true;
+      }
+    }
+
+    std::string advice_of(const WatchedLine line, const SceneInput &input)
+    {
+      const TimeInput &time = input.time;
+      switch (line) {
+      case WatchedLine::friction:
+        return time.sliding == Sliding::velocity
+                   ? "set sliding = energy safe"
+                   : "lower Solver/tolerance";
+      case WatchedLine::impact:
+        return time.contact_target != ContactTarget::energy_safe
+                   ? "set contact target = energy safe"
+               : time.theta > 0.5 ? "lower theta to 1 / (1 + restitution)"
+                                  : "lower Solver/tolerance";
+      case WatchedLine::joints:
+      case WatchedLine::supports:
+        return "lower Solver/tolerance; rows may ask for the same";
+      case WatchedLine::scheme:
+        return time.scheme == Scheme::symplectic
+                   ? "set step to a shorter time, or scheme = moreau-jean"
+               : time.cohesion_rule != CohesionRule::exact && !input.statics
+                   ? "set cohesion rule = exact"
+                   : "set step to a shorter time";
+      default:
+        return "";
+      }
+    }
+
+    std::vector<GivenEnergy> given_energy(const SceneInput &input,
+                                          const EnergyWatch &watch,
+                                          const State &state)
+    {
+      // what the rules of explicit steps, end points and interior penalty make
+      // comes and goes: as well as curves can be read
+      constexpr double of_pure_rules = 1e-2;
+      const double scale = std::max(watch.scale, state.largest_energy);
+      const auto share = [scale](const double energy) {
+        return energy == 0. ? 0. : energy / scale;
+      };
+      std::vector<GivenEnergy> result;
+      for (std::size_t k = 0; k < n_watched_lines; ++k) {
+        const auto line = WatchedLine(k);
+        if (!has_line(line, input, state))
+          continue;
+        GivenEnergy given;
+        given.line = line == WatchedLine::scheme ? "time scheme" : name_of(line);
+        given.share = share(watch.given[k]);
+        given.bound = energy_round_off;
+        if (line == WatchedLine::joints || line == WatchedLine::supports)
+          given.bound += share(watch.noise);
+        if (line == WatchedLine::scheme)
+          given.bound = never_gives(line, input)
+                            ? energy_round_off + share(watch.noise)
+                            : of_pure_rules;
+        given.advice = advice_of(line, input);
+        result.push_back(std::move(given));
+      }
+      return result;
+    }
+  } // namespace
+
   template <int dim>
   RunFacts run_facts(const SceneInput &input, const Model<dim> &model,
                      const SolvedSteps &steps, const Extremes<dim> &extremes,
-                     const State &state,
+                     const EnergyWatch &watch, const State &state,
                      const Summary &summary, const Communicator &communicator)
   {
     const auto counter = [&summary](const char *name) {
@@ -64,10 +167,7 @@ namespace nsfd
     const EnergyLines &e = summary.energy;
     if (!std::isfinite(e.kinetic + e.elastic + e.cohesive + e.numerical))
       facts.ledger_defect = std::numeric_limits<double>::quiet_NaN();
-    if (state.largest_energy > 0.)
-      facts.created = std::max(0., -e.numerical) / state.largest_energy;
-    if (std::isnan(facts.ledger_defect))
-      facts.created = facts.ledger_defect;
+    facts.given = given_energy(input, watch, state);
     facts.penetration = summary.penetration_max;
     facts.penetration_bound = summary.penetration_bound;
     facts.penetration_excess = state.penetration_excess;
@@ -101,10 +201,10 @@ namespace nsfd
 
   template RunFacts run_facts(const SceneInput &, const Model<2> &,
                               const SolvedSteps &, const Extremes<2> &,
-                              const State &,
+                              const EnergyWatch &, const State &,
                               const Summary &, const Communicator &);
   template RunFacts run_facts(const SceneInput &, const Model<3> &,
                               const SolvedSteps &, const Extremes<3> &,
-                              const State &,
+                              const EnergyWatch &, const State &,
                               const Summary &, const Communicator &);
 } // namespace nsfd

@@ -4,6 +4,7 @@
 #include "model.h"
 
 #include "nsfd/output/certificate.h"
+#include "nsfd/time/energy_watch.h"
 
 namespace nsfd
 {
@@ -28,6 +29,6 @@ namespace nsfd
   template <int dim>
   RunFacts run_facts(const SceneInput &input, const Model<dim> &model,
                      const SolvedSteps &steps, const Extremes<dim> &extremes,
-                     const State &state,
+                     const EnergyWatch &watch, const State &state,
                      const Summary &summary, const Communicator &communicator);
 } // namespace nsfd

@@ -75,6 +75,7 @@ namespace nsfd
       bool find_observables();
       const std::vector<double> &reactions() const;
       void say(const std::vector<std::string> &sentences);
+      LineChanges changes_of_energy(const EnergyLines &before) const;
       HistoryRow record(const StepReport &report, double time_step);
       void finish(const std::string &failure);
       RunTotals totals() const;
@@ -102,6 +103,7 @@ namespace nsfd
       RunCosts<dim> costs_;
       SolvedSteps solved_steps_;
       EnergyWatch watch_; ///< of the lines that must not give energy
+      EnergyLines watched_energy_; ///< after the step that it has seen last
       double start_wall_, last_step_ = 0.;
       unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
       unsigned long long released_ = 0; ///< bonds, in accepted steps
@@ -742,13 +744,36 @@ namespace nsfd
         output_->message(sentence);
     }
 
+    /** Of a step of an integrator that does not split them by point. */
+    template <int dim>
+    LineChanges
+    Simulation<dim>::changes_of_energy(const EnergyLines &before) const
+    {
+      LineChanges changes;
+      changes.scale = state_.largest_energy;
+      const auto take = [&](const WatchedLine line,
+                            double EnergyLines::*const member) {
+        changes.taken[std::size_t(line)] =
+            state_.energy.*member - before.*member;
+      };
+      take(WatchedLine::friction, &EnergyLines::friction);
+      take(WatchedLine::damage, &EnergyLines::damage);
+      take(WatchedLine::impact, &EnergyLines::impact);
+      take(WatchedLine::viscous, &EnergyLines::viscous);
+      take(WatchedLine::plastic, &EnergyLines::plastic);
+      take(WatchedLine::scheme, &EnergyLines::numerical);
+      return changes;
+    }
+
     template <int dim>
     HistoryRow Simulation<dim>::record(const StepReport &report,
                                        const double time_step)
     {
       beyond_unique_ += report.beyond_unique;
       released_ += report.released;
-      watch_.add(report.changes);
+      watch_.add(is_static_ || smooth_ ? changes_of_energy(watched_energy_)
+                                       : report.changes);
+      watched_energy_ = state_.energy;
       costs_.record(report.solver, model_.dynamics->counters().delassus);
       solved_steps_.add(is_static_ ? SolvedSteps::Kind::quasi_static
                         : smooth_  ? SolvedSteps::Kind::smooth
@@ -813,7 +838,7 @@ namespace nsfd
       charge_memory("fields and curves");
       s.cost = costs_.finish(*model_.dynamics);
       const Certificate certificate = certify(
-          run_facts(input_, model_, solved_steps_, *extremes_, state_, s,
+          run_facts(input_, model_, solved_steps_, *extremes_, watch_, state_, s,
                     communicator_));
       certified_ = certificate.is_ok();
       output_->write_summary(s, certificate);

@@ -19,33 +19,51 @@ namespace nsfd
     std::string what;
     bool found = true;
     try {
-      equilibrium = model_.quasi_static->advance(state, after.time(), next);
+      equilibrium = model_.quasi_static->advance(state, after.time(), next,
+                                                 control.can_halve());
     } catch (const StepRejected &rejected) {
       found = false;
       what = rejected.what();
     }
-    if (found && !equilibrium.jumps) {
+    if (found && equilibrium.accepted()) {
       report = equilibrium.step;
       return Outcome::accepted;
     }
+    // to where the first point comes to its peak
+    const double step = control.step() * equilibrium.share;
     if (control.halve()) {
+      while (found && control.step() > step && control.halve()) {
+      }
       ++shortened_;
       return Outcome::shortened;
     }
     ++jumps_;
     if (jumps_ == 1)
       first_jump_ = state.time;
-    if (found) {
+    const bool may_follow = found && equilibrium.may_follow();
+    if (may_follow) {
       released_ += equilibrium.left_over;
       what = fmt::format(
           "solution jump between t = {:.8g} and {:.8g}: no equilibrium "
           "continues the last one, {:.6g} J are left over; worst face {}",
           state.time, after.time(), equilibrium.left_over, equilibrium.place);
-    } else
+    } else if (found && equilibrium.skips_peak)
+      what = fmt::format(
+          "no equilibrium was found between t = {:.8g} and {:.8g} that does "
+          "not skip the peak of a law: {} would be beyond it, and has seen "
+          "{:.3g} of that traction; shorter steps of the load (`step`, "
+          "`maximum halvings`) come closer",
+          state.time, after.time(), equilibrium.place, equilibrium.peak_seen);
+    else if (found)
+      what = fmt::format(
+          "no equilibrium was found at t = {:.8g} that the energy at t = "
+          "{:.8g} suffices for: {:.6g} J are missing; worst face {}",
+          after.time(), state.time, -equilibrium.left_over, equilibrium.place);
+    else
       what =
           fmt::format("solution jump after t = {:.8g}: {}", state.time, what);
     report = equilibrium.step;
-    return jump(what, found, text);
+    return jump(what, may_follow, text);
   }
 
   template <int dim>
@@ -58,8 +76,11 @@ namespace nsfd
                      {what + "; goes on in dynamic steps"});
       return Outcome::to_dynamics;
     case SolutionJump::relax:
-      if (may_relax)
+      if (may_relax) {
+        print_problems(communicator_, input_, "note",
+                       {what + "; relaxes to the next equilibrium"});
         return Outcome::accepted;
+      }
       [[fallthrough]];
     default:
       text = what + (may_relax ? "\n  in section Time, `set at solution jump = "

@@ -19,7 +19,6 @@ namespace nsfd
 
     // of the largest energy
     constexpr double largest_defect = 1e-9;
-    constexpr double largest_creation = 1e-2; // as well as curves can be read
 
     /** Of a length in m. */
     std::string length_text(const double value)
@@ -131,20 +130,17 @@ namespace nsfd
       return line;
     }
 
-    /** The books of a scheme that makes energy close like all others. */
-    void add_created(const RunFacts &facts, std::vector<Line> &lines)
+    /** A balance closes whatever its lines do: each has a bound of its own. */
+    void add_given(const RunFacts &facts, std::vector<Line> &lines)
     {
-      if (facts.steps + facts.smooth_steps == 0)
-        return;
-      Line line = line_of("created", facts.created, largest_creation,
-                          within(facts.created <= largest_creation));
-      if (line.verdict == Verdict::bad)
-        line.remark =
-            std::string("the scheme has made energy: ") +
-            (facts.automatic_steps ? "set Time/step to a shorter time"
-                                   : "shorten Time/step") +
-            (facts.moreau_jean ? "" : ", or take scheme = moreau-jean");
-      lines.push_back(line);
+      for (const GivenEnergy &given : facts.given) {
+        Line line = line_of("given by " + given.line, given.share, given.bound,
+                            within(given.share <= given.bound));
+        if (line.verdict == Verdict::bad)
+          line.remark = "energy out of nothing, over the largest of the run" +
+                        (given.advice.empty() ? "" : ": " + given.advice);
+        lines.push_back(line);
+      }
     }
 
     void add_uniqueness(const RunFacts &facts, std::vector<Line> &lines)
@@ -276,7 +272,7 @@ namespace nsfd
     add_residuals(facts, lines);
     lines.push_back(penetration_of(facts));
     lines.push_back(defect_of(facts));
-    add_created(facts, lines);
+    add_given(facts, lines);
     add_uniqueness(facts, lines);
     lines.push_back(zone_of(facts));
     lines.push_back(attempts_of(facts));

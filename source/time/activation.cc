@@ -74,12 +74,11 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  bool activate(const Dynamics<dim> &dynamics,
-                const std::vector<PointOrigin> &origins,
-                const std::vector<double> &impulse,
-                OneStepProblem<dim> &problem)
+  std::vector<double> strength_shares(const Dynamics<dim> &dynamics,
+                                      const std::vector<PointOrigin> &origins,
+                                      const std::vector<double> &impulse,
+                                      const OneStepProblem<dim> &problem)
   {
-    const auto &communicator = dynamics.communicator();
     std::vector<double> joined(problem.n_points * dim, 0.);
     for (std::size_t k = 0; k < joined.size(); ++k)
       if (is_joined(problem, k))
@@ -88,25 +87,44 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_points; ++i)
       if (may_let_go(problem, origins, i))
         candidates.push_back(i);
-    if (!communicator.any(!candidates.empty()))
-      return false;
+    if (!dynamics.communicator().any(!candidates.empty()))
+      return {};
 
     const auto least = least_impulse(dynamics, problem, joined);
-    bool any = false;
+    std::vector<double> shares(problem.n_points, 0.);
     for (const std::size_t i : candidates) {
       const auto &interaction = problem.interactions[problem.interaction[i]];
       const double *P = &least[i * dim];
-      if (pull_and_shear<dim>(-P[0], P + 1, interaction.shear_weight) >
-          problem.weight[i] * problem.time_step *
-              point_strength<dim>(problem, i)) {
+      shares[i] = pull_and_shear<dim>(-P[0], P + 1, interaction.shear_weight) /
+                  (problem.weight[i] * problem.time_step *
+                   point_strength<dim>(problem, i));
+    }
+    return shares;
+  }
+
+  template <int dim>
+  bool activate(const Dynamics<dim> &dynamics,
+                const std::vector<PointOrigin> &origins,
+                const std::vector<double> &impulse,
+                OneStepProblem<dim> &problem)
+  {
+    const auto shares = strength_shares(dynamics, origins, impulse, problem);
+    bool any = false;
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      if (shares[i] > 1.) {
         problem.kind[i] = PointKind::rigid;
         problem.mask[i] = 0;
         any = true;
       }
-    }
-    return communicator.any(any);
+    return dynamics.communicator().any(any);
   }
 
+  template std::vector<double>
+  strength_shares(const Dynamics<2> &, const std::vector<PointOrigin> &,
+                  const std::vector<double> &, const OneStepProblem<2> &);
+  template std::vector<double>
+  strength_shares(const Dynamics<3> &, const std::vector<PointOrigin> &,
+                  const std::vector<double> &, const OneStepProblem<3> &);
   template bool activate(const Dynamics<2> &, const std::vector<PointOrigin> &,
                          const std::vector<double> &, OneStepProblem<2> &);
   template bool activate(const Dynamics<3> &, const std::vector<PointOrigin> &,

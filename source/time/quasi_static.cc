@@ -1,6 +1,7 @@
 #include "nsfd/time/quasi_static.h"
 
 #include "loose_motion.h"
+#include "peak_rule.h"
 #include "relaxation.h"
 #include "static_ledger.h"
 
@@ -23,6 +24,8 @@ namespace nsfd
     // Above, (h/crossing)^2 times round-off would be seen in the jumps.
     constexpr double longest = 300., shortest = 0.05;
     constexpr unsigned int most_rounds = 200, accelerated = 12;
+    // with springs in place of laws; and how often these are damaged further
+    constexpr unsigned int most_held_rounds = 40, most_bits = 100;
 
     /**
      * Ten crossings of all bodies: then masses hold against their slowest
@@ -50,7 +53,7 @@ namespace nsfd
         scene_(std::make_unique<const SceneInput>(static_scene(input))),
         communicator_(communicator), discretization_(discretization),
         crossing_(discretization.crossing_time()),
-        h_(first_step(input, discretization))
+        h_(first_step(input, discretization)), first_h_(h_)
   {
     const auto &solver = input.solver;
     dynamics_ = solver.path == "element-wise"
@@ -107,7 +110,7 @@ namespace nsfd
   {
     State state = given;
     StepReport report;
-    find(given, 0., state, report);
+    find(given, 0., Way::near, state, report);
     ledger_->book(*relaxation_, std::vector<double>(given.velocity.size(), 0.),
                   given, state, report);
     const EnergyLines found = state.energy;
@@ -122,33 +125,106 @@ namespace nsfd
     return state;
   }
 
+  /** Named by the last rank that has the largest @p value. */
   template <int dim>
-  EquilibriumReport QuasiStatic<dim>::advance(const State &old,
-                                              const double time, State &next)
+  std::string QuasiStatic<dim>::face_of_all(const double value,
+                                            const std::size_t point) const
+  {
+    const bool mine = value == communicator_.max(value);
+    const int rank =
+        int(communicator_.max(mine ? double(communicator_.rank()) : -1.));
+    std::string place = relaxation_->face(point);
+    int length = int(place.size());
+    MPI_Bcast(&length, 1, MPI_INT, rank, communicator_.mpi());
+    place.resize(std::size_t(length));
+    MPI_Bcast(place.data(), length, MPI_CHAR, rank, communicator_.mpi());
+    return place;
+  }
+
+  template <int dim>
+  EquilibriumReport QuasiStatic<dim>::try_way(const State &old,
+                                              const double time, const Way way,
+                                              State &next)
   {
     EquilibriumReport report;
     std::vector<double> forces_old(old.velocity.size(), 0.);
     if (discretization_.has_loads())
       discretization_.add_loads(old.time, forces_old);
-    find(old, time, next, report.step);
+    find(old, time, way, next, report.step);
     report.stable = relaxation_->softening() < 1.;
     const EnergyLeft left =
         ledger_->book(*relaxation_, forces_old, old, next, report.step);
     report.left_over = left.energy;
-    report.jumps = !report.stable || left.energy > jump_share * left.turnover;
-    if (report.jumps) {
-      // named by the last rank that has it
-      const bool mine = left.worst == communicator_.max(left.worst);
-      const int rank =
-          int(communicator_.max(mine ? double(communicator_.rank()) : -1.));
-      report.place = relaxation_->face(left.worst_point);
-      int length = int(report.place.size());
-      MPI_Bcast(&length, 1, MPI_INT, rank, communicator_.mpi());
-      report.place.resize(std::size_t(length));
-      MPI_Bcast(report.place.data(), length, MPI_CHAR, rank,
-                communicator_.mpi());
-    }
+    report.jumps = !report.stable ||
+                   std::abs(left.energy) > jump_share * left.turnover;
+    const auto [seen, point] = relaxation_->least_passage(next);
+    report.peak_seen = -communicator_.max(-seen);
+    report.skips_peak = report.peak_seen < Passage::least_share;
+    if (report.skips_peak)
+      report.place = face_of_all(-seen, point);
+    else if (report.jumps)
+      report.place = face_of_all(left.worst, left.worst_point);
     return report;
+  }
+
+  template <int dim>
+  EquilibriumReport QuasiStatic<dim>::advance(const State &old,
+                                              const double time, State &next,
+                                              const bool may_be_shortened)
+  {
+    if (!relaxation_->has_laws())
+      return try_way(old, time, Way::near, next);
+
+    // nothing damages: one equilibrium, and next to the last one
+    relaxation_->begin(old, time, time - old.time);
+    relaxation_->hold_laws();
+    held_ = old.displacement;
+    StepReport held;
+    typename Relaxation<dim>::Prediction ahead;
+    ahead.damages = true;
+    if (settle(held_, most_held_rounds, input_.statics->tolerance, held,
+               nullptr))
+      ahead = relaxation_->prediction();
+    EquilibriumReport best;
+    if (may_be_shortened && ahead.certain) {
+      best.skips_peak = true;
+      best.share = ahead.share;
+      return best;
+    }
+
+    std::string failure;
+    bool found = false;
+    State best_next;
+    std::vector<double> reactions;
+    for (const Way way : {Way::held, Way::near, Way::damped}) {
+      if (way == Way::held && ahead.damages)
+        continue;
+      EquilibriumReport report;
+      try {
+        report = try_way(old, time, way, next);
+      } catch (const StepRejected &rejected) {
+        failure = rejected.what();
+        continue;
+      }
+      const auto merit = [](const EquilibriumReport &x) {
+        return x.accepted() ? 3 : x.may_follow() ? 1 + x.stable : 0;
+      };
+      if (!found || merit(report) > merit(best)) {
+        found = true;
+        best = report;
+        best_next = next;
+        reactions = ledger_->reactions();
+      }
+      if (best.accepted())
+        break;
+    }
+    if (!found)
+      throw StepRejected(failure);
+    next = best_next;
+    ledger_->set_reactions(reactions);
+    if (best.skips_peak)
+      best.share = ahead.share;
+    return best;
   }
 
   /**
@@ -181,7 +257,7 @@ namespace nsfd
   {
     // round-off of floating cells is seen in the jumps by (h/crossing)^2
     const double ratio = h_ / crossing_,
-                 tolerance = std::max(0.1 * input_.statics->tolerance,
+                 tolerance = std::max(0.1 * goal_,
                                       1e-15 * ratio * ratio);
     ++counters_.rounds;
     const SolverReport solve = relaxation_->relax(q, h_, tolerance);
@@ -189,35 +265,39 @@ namespace nsfd
     solved_ = solve.converged;
     report.solver.residual = relaxation_->imbalance();
     report.solver.converged =
-        solved_ && relaxation_->imbalance() <= input_.statics->tolerance;
+        solved_ && relaxation_->imbalance() <= goal_;
     return solved_ && !report.solver.converged;
   }
 
   template <int dim>
   void QuasiStatic<dim>::refuse_loose_motion(const State &old,
-                                             const double time, const double h)
+                                             const double time)
   {
     const std::string loose = loose_motion(discretization_, communicator_, old,
                                            relaxation_->residual());
     if (loose.empty())
       return;
-    h_ = h;
     throw StepRejected(
         fmt::format("no equilibrium at t = {:.6g}: the loads are not balanced, "
                     "and nothing holds {}",
                     time, loose));
   }
 
+  /**
+   * Rounds until the forces left over are below @p goal. What nothing holds is
+   * named if it comes from @p old, and else ends them.
+   */
   template <int dim>
-  void QuasiStatic<dim>::find(const State &old, const double time, State &next,
-                              StepReport &report)
+  bool QuasiStatic<dim>::settle(std::vector<double> &q,
+                                const unsigned int rounds, const double goal,
+                                StepReport &report, const State *old)
   {
-    relaxation_->begin(old, time, time - old.time);
-    std::vector<double> q = old.displacement;
-    const double h = h_;
     double last = std::numeric_limits<double>::infinity(), near = 1e-3;
     bool &converged = report.solver.converged;
-    for (unsigned int n = 0; n < most_rounds && !converged; ++n) {
+    converged = false;
+    goal_ = goal;
+    h_ = first_h_;
+    for (unsigned int n = 0; n < rounds; ++n) {
       round(q, report);
       if (converged)
         break;
@@ -231,14 +311,17 @@ namespace nsfd
       }
       const double ratio = relaxation_->imbalance() / last;
       last = relaxation_->imbalance();
-      if (h_ < h) {
-        h_ = std::min(2. * h_, h);
+      if (h_ < first_h_) {
+        h_ = std::min(2. * h_, first_h_);
         last = std::numeric_limits<double>::infinity();
         continue;
       }
       // what only masses resist stays as it is
-      if (std::abs(ratio - 1.) < 1e-3)
-        refuse_loose_motion(old, time, h);
+      if (std::abs(ratio - 1.) < 1e-3) {
+        if (old == nullptr)
+          break;
+        refuse_loose_motion(*old, relaxation_->time());
+      }
       if (ratio > 0.1 && last < near) {
         if (!accelerate(q, report))
           near = 0.1 * last;
@@ -250,9 +333,55 @@ namespace nsfd
       } else if (ratio > 0.5 && n > most_rounds / 4)
         near = std::numeric_limits<double>::infinity();
     }
-    h_ = h;
-    if (!converged) {
-      refuse_loose_motion(old, time, h);
+    return converged;
+  }
+
+  /**
+   * Springs in place of the laws, damaged as far as they have been opened, again
+   * and again: as a motion goes that a damper slows down. Where equilibria of
+   * the laws lie on its way it comes to the first of them; from there on the
+   * laws themselves are solved. Damage that grows faster and faster is hurried.
+   */
+  template <int dim>
+  void QuasiStatic<dim>::follow_damped(std::vector<double> &q,
+                                       StepReport &report)
+  {
+    // openings over G/R_max: what the laws find by themselves
+    constexpr double near = 1e-3, contracts = 0.7, faster = 4.;
+    double last = 0., growth, stretch = 1.;
+    relaxation_->hold_laws();
+    for (unsigned int n = 0; n < most_bits; ++n) {
+      settle(q, most_held_rounds, std::max(input_.statics->tolerance, 1e-6),
+             report, nullptr);
+      if (!solved_ || !relaxation_->let_damage_grow(growth, stretch))
+        break;
+      if (n > 0) {
+        if (growth < near && growth < contracts * last)
+          break;
+        // growth goes by 1 - stretch (1 - x); half way to where x leads
+        const double decay = (1. - growth / last) / stretch;
+        stretch = decay * faster * stretch > 0.5 ? std::max(1., 0.5 / decay)
+                                                 : faster * stretch;
+      }
+      last = growth;
+    }
+    relaxation_->free_laws();
+  }
+
+  template <int dim>
+  void QuasiStatic<dim>::find(const State &old, const double time,
+                              const Way way, State &next, StepReport &report)
+  {
+    std::vector<double> q = old.displacement;
+    if (way == Way::held) {
+      q = held_;
+      relaxation_->free_laws();
+    } else
+      relaxation_->begin(old, time, time - old.time);
+    if (way == Way::damped)
+      follow_damped(q, report);
+    if (!settle(q, most_rounds, input_.statics->tolerance, report, &old)) {
+      refuse_loose_motion(old, time);
       throw StepRejected(fmt::format(
           "no equilibrium was found at t = {:.6g}: {:.2e} of the forces are "
           "left over; worst face {}",

@@ -1,5 +1,6 @@
 #include "relaxation.h"
 
+#include "activation.h"
 #include "crack_pressure.h"
 #include "driven_motion.h"
 #include "ledger.h"
@@ -41,6 +42,8 @@ namespace nsfd
     force_ = old.point_force;
     force_.resize(old.jump.size(), 0.);
     let_go_.assign(old.kind.size(), 0);
+    free_laws();
+    joint_loads_known_ = false;
     target_ = old.jump;
     for (std::size_t i = 0; i < old.kind.size(); ++i) {
       const PointOrigin origin = this->discretization_.origins()[i];
@@ -210,6 +213,16 @@ namespace nsfd
                this->discretization_.origins(), dynamics, *this->motion_, at_, h,
                this->problem_);
       constrain(h);
+      if (this->has_extrinsic_ && !joint_loads_known_) {
+        std::vector<double> impulse = force_;
+        for (double &P : impulse)
+          P *= h;
+        joint_loads_ = strength_shares(
+            dynamics, this->discretization_.origins(), impulse, this->problem_);
+        joint_loads_known_ = true;
+      }
+      if (holds_)
+        hold();
       soften(h);
       this->move_freely(at_, pressure_);
     }
@@ -230,9 +243,12 @@ namespace nsfd
     {
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
+      const bool lets_go = this->has_extrinsic_;
+      this->has_extrinsic_ = lets_go && !holds_;
       report = this->solve(this->solver_, this->problem_,
                            this->discretization_.origins(), control,
                            energy_scale, at_, impulse, evaluation);
+      this->has_extrinsic_ = lets_go;
     }
     const Stopwatch watch(this->timings_.update);
     const Charge charge(Cost::update);

@@ -3,6 +3,7 @@
 #include "nsfd/input/scene_input.h"
 #include "nsfd/time/moreau_jean.h"
 
+#include <utility>
 #include <vector>
 
 namespace nsfd
@@ -50,6 +51,40 @@ namespace nsfd
     SolverReport relax(std::vector<double> &q, double h, double tolerance);
 
     /**
+     * From now on the rounds see what the laws are as long as nothing is
+     * damaged beyond its history: springs, and joints that do not let go. The
+     * equilibrium of that is unique but for contact, no round goes astray, and
+     * it is the one sought where no point is damaged in it. Until begin().
+     */
+    void hold_laws();
+    /** Where those rounds have come to. */
+    struct Prediction {
+      bool damages = false; ///< some point does not stay what it was held to be
+      /// of the step until the first point comes to its peak that is not there
+      /// yet, by straight lines; 1: none does
+      double share = 1.;
+      bool certain = false; ///< lines are right: it is elastic to its peak
+      std::size_t point = 0; ///< local, where this rank has the first one
+    };
+    /** Collective, after held rounds that have settled. */
+    Prediction prediction();
+    /**
+     * The same springs, of points that are damaged as far as the last held
+     * rounds have opened them, and @p stretch times the growth: the next ones
+     * along the path of an overdamped motion. False if nothing grows.
+     */
+    bool let_damage_grow(double &largest_growth, double stretch);
+    /** Laws again, next to where the held rounds have ended. */
+    void free_laws();
+    /** Points have laws that damage, on any rank. */
+    bool has_laws() const;
+    /**
+     * The point that has skipped the peak of its law furthest in the step from
+     * the last equilibrium to @p next, see Passage; 1 where none has.
+     */
+    std::pair<double, std::size_t> least_passage(const State &next) const;
+
+    /**
      * |F + H^T r - K q'| over the largest forces that were present so far: what
      * is broken may carry none at all. Round-off of K q counts as a force.
      */
@@ -82,6 +117,8 @@ namespace nsfd
 
     const std::vector<double> &forces() const { return this->forces_; }
     const std::vector<double> &pressure() const { return pressure_; }
+    /** Of the equilibrium that is looked for, s. */
+    double time() const { return time_; }
     std::string worst_face() const { return this->describe(worst_point_); }
     std::string face(const std::size_t point) const
     {
@@ -90,6 +127,10 @@ namespace nsfd
 
   private:
     void set_start(std::size_t point, Reach &start) const;
+    void hold();
+    bool may_damage(std::size_t point) const;
+    Reach history(std::size_t point) const;
+    Reach held_reach(std::size_t point) const;
     void constrain(double h);
     void soften(double h);
     void set_support();
@@ -105,6 +146,12 @@ namespace nsfd
     std::vector<char> let_go_;   ///< extrinsic points that opened in this step
     std::vector<double> force_, pressure_, residual_;
     std::vector<LocalSolution<dim>> solutions_;
+    bool holds_ = false;      ///< laws are springs
+    std::vector<Reach> held_; ///< histories of these springs
+    std::vector<Interaction> interactions_;  ///< of the laws
+    std::vector<unsigned int> interaction_;  ///< of the points in these
+    std::vector<double> joint_loads_; ///< over the strength, at the start
+    bool joint_loads_known_ = false;
     std::vector<double> support_; ///< w kappa of the points, N/m
     double round_off_ = 0., point_round_off_ = 0.; ///< as the next two
     double present_ = 0.;     ///< largest forces at an equilibrium, N

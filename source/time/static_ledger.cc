@@ -14,8 +14,9 @@ namespace nsfd
       damage,
       friction,
       positive_friction,
-      numerical,
-      left_over, ///< the part of `numerical` that cohesion has
+      rest,      ///< of the work of the mean forces, with either sign
+      released,  ///< of overlaps that damage has turned into contacts
+      left_over, ///< the part of `rest` that cohesion has
       moved,     ///< |work| of the mean forces in cohesion and joints
       motion,
       pressure_work,
@@ -84,7 +85,7 @@ namespace nsfd
     template <int dim>
     void StaticBook<dim>::book_joint(const std::size_t i)
     {
-      put(numerical, i, -mean_work(i));
+      put(rest, i, -mean_work(i));
       double square = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         square += next_.jump[i * dim + c] * next_.jump[i * dim + c];
@@ -127,7 +128,8 @@ namespace nsfd
       const auto energies =
           point_energies<dim>(problem_, i, velocity, solution.frozen);
       const Vector before = old_cohesion(i);
-      double cohesive_work = 0., normal_work = 0., rubbing = 0., square = 0.;
+      double cohesive_work = 0., normal_work = 0., rubbing = 0., square = 0.,
+             rubbing_before = 0.; // by the forces before the step
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
         const double R_0 = w * before[c],
@@ -138,15 +140,19 @@ namespace nsfd
             (old_force(k) + R_0 + next_.point_force[k] + R_1) / 2. * du;
         (c == 0 ? normal_work : rubbing) += contact;
         square += c == 0 ? 0. : du * du;
+        rubbing_before += c == 0 ? 0. : (old_force(k) + R_0) * du;
       }
       const bool closed = solution.contact_impulse > 0.;
-      // mean contact forces: what closes or opens within the step has a gap
-      put(numerical, i, -normal_work);
+      // what closes or opens within the step has a gap in its mean force
+      put(rest, i, -normal_work);
       if (problem_.interactions[problem_.interaction[i]].friction > 0.) {
-        put(friction, i, -rubbing);
-        put(positive_friction, i, std::max(0., rubbing));
+        // where slip has turned, the force before it is of the other way
+        const double taken = rubbing - std::max(0., rubbing_before) / 2.;
+        put(friction, i, -taken);
+        put(positive_friction, i, std::max(0., taken));
+        put(rest, i, taken - rubbing);
       } else
-        put(numerical, i, -rubbing);
+        put(rest, i, -rubbing);
       next_.contact[i] = closed;
       if (closed)
         next_.slip[i] += std::sqrt(square);
@@ -158,12 +164,13 @@ namespace nsfd
                                 energies.stored_old);
       put(stored, i, w * energies.stored);
       put(damage, i, dissipated);
-      const double rest = cohesive_work - spent - dissipated;
-      put(numerical, i, rest + w * energies.overlap_released);
-      put(left_over, i, rest);
+      const double over = cohesive_work - spent - dissipated;
+      put(rest, i, over);
+      put(released, i, w * energies.overlap_released);
+      put(left_over, i, over);
       put(moved, i, std::abs(cohesive_work));
-      if (i < problem_.n_owned && std::abs(rest) > left.worst) {
-        left.worst = std::abs(rest);
+      if (i < problem_.n_owned && std::abs(over) > left.worst) {
+        left.worst = std::abs(over);
         left.worst_point = i;
       }
       if (remember_damage<dim>(energies, i,
@@ -242,8 +249,9 @@ namespace nsfd
     energy.cohesive = sums[stored];
     energy.damage += sums[damage];
     energy.friction += sums[friction];
-    energy.numerical += sums[numerical];
-    const double work = sums[motion] + body[1] + sums[pressure_work];
+    energy.numerical += sums[released] + std::max(0., sums[rest]);
+    const double work = sums[motion] + body[1] + sums[pressure_work] +
+                        std::max(0., -sums[rest]);
     energy.work += work;
     next.pressure_work = old.pressure_work + sums[pressure_work];
     next.broken_area = old.broken_area + sums[broken];

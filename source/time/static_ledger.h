@@ -19,9 +19,15 @@ namespace nsfd
    *     d(q.K q/2) = (F_k + F_{k+1})/2 . dq + sum (r_k + r_{k+1})/2 . du,
    *
    * without any term of the scheme. What a point takes from the bodies by its
-   * mean force is booked by its law: stored, damage, friction; the rest is
-   * numerical. In the cohesion that rest is of third order in the step as long
-   * as the path is continuous, and it is what a solution jump leaves over.
+   * mean force is booked by its law: stored, damage, friction, nothing for a
+   * contact. What is over is booked as numerical: of third order in the step
+   * as long as the path is continuous, and what a solution jump leaves over.
+   *
+   * It is never negative. The laws take what they take on any path, so that
+   * the loads and the prescribed motion have given no less than what is stored
+   * and dissipated: where their mean forces come to less (the traction between
+   * the two equilibria is above the straight line between its ends), that
+   * least is their work.
    */
   template <int dim>
   class StaticLedger
@@ -46,6 +52,11 @@ namespace nsfd
                     State &next, StepReport &report);
 
     const std::vector<double> &reactions() const { return reactions_; }
+    /** Those of another way to the same time. */
+    void set_reactions(const std::vector<double> &reactions)
+    {
+      reactions_ = reactions;
+    }
 
   private:
     static bool has_pressure(const SceneInput &input);

@@ -17,6 +17,14 @@ namespace nsfd
     double points() const { return length / spacing; }
   };
 
+  /** What a line of the energy balance gave that must not give any. */
+  struct GivenEnergy
+  {
+    std::string line;               ///< "friction"
+    double share = 0., bound = 0.;  ///< over the largest energy
+    std::string advice;             ///< what gives less; may be empty
+  };
+
   /** What a run knows of itself when it ends. */
   struct RunFacts
   {
@@ -29,8 +37,7 @@ namespace nsfd
     double residual = 0., tolerance = 0.; ///< worst one, of the steps in time
     double imbalance = 0., static_tolerance = 0.; ///< the same of equilibria
     double ledger_defect = 0.;
-    /// energy that the scheme has made, over the largest energy
-    double created = 0.;
+    std::vector<GivenEnergy> given; ///< by the lines that must not
     double penetration = 0., penetration_bound = 0.; ///< largest ones, m
     double penetration_excess = 0.; ///< of a point above its own bound, m
     double displacement = 0.;       ///< largest, m
@@ -89,8 +96,8 @@ namespace nsfd
    *                   released spring; beyond it, the tolerance times the
    *                   displacement and the round-off of positions
    *     ledger defect 1e-9 of the largest energy
-   *     created       1 % of it: what a scheme makes out of nothing is in the
-   *                   books, so that they close all the same
+   *     given by ...  by friction, damage, impacts and whatever else must not
+   *                   give energy, in any stretch of steps: GivenEnergy
    *     uniqueness    no step in which a softening face may have had several
    *                   solutions
    *     cohesive zone points_per_cohesive_length points

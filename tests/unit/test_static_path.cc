@@ -1,0 +1,145 @@
+#include "make_scene.h"
+
+#include "nsfd/interface/cohesive_law.h"
+#include "nsfd/time/quasi_static.h"
+#include "nsfd/time/step_control.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+// Bars that are too soft for the faces in them: what a step of the load must
+// not do is to land on an equilibrium that no path leads to. All by formulas.
+
+namespace nsfd
+{
+  namespace
+  {
+    constexpr double length = 60e-3, height = 2e-3;
+
+    /** @p entries as a law states its examples. */
+    std::string bar(const std::string &law, std::string entries,
+                    const bool extrinsic, const double young, const double pull)
+    {
+      for (std::size_t at; (at = entries.find(';')) != std::string::npos;)
+        entries.replace(at, 1, "\n  set");
+      if (extrinsic)
+        entries += "\n  set intact faces = rigid";
+      return fmt::format(R"(set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 60 mm, 2 mm
+  set cells        = 4, 1
+end
+subsection Material: bar
+  set Young modulus = {}
+  set Poisson ratio = 0
+  set density       = 1000
+end
+subsection Interface: faces
+  set law             = {}
+  set {}
+  set strength factor = if(abs(x - 30 mm) < 1 mm, 1, 1.05)
+end
+subsection Boundary: left
+  set displacement x = 0
+  set displacement y = 0
+end
+subsection Boundary: right
+  set displacement x = {} * t
+end
+subsection Time
+  set scheme = quasi-static
+  set end    = 1
+  set step   = 0.1 s
+end
+)",
+                         young, law, entries, pull);
+    }
+
+    struct Pull {
+      double peak = 0., end = 0., missing = 0., defect = 0.;
+      unsigned int jumps = 0;
+      bool refused = false;
+    };
+
+    /** Down the ladder, as a run does. */
+    Pull pull(const std::string &scene, const double step)
+    {
+      test::Scene<2> bar(scene);
+      QuasiStatic<2> statics(*bar.input, bar.communicator, *bar.discretization);
+      State state = statics.start(bar.state), next = state;
+      StepControl control(1., step, 10);
+      Pull result;
+      while (!control.finished()) {
+        StepControl after = control;
+        after.accept();
+        EquilibriumReport found;
+        bool exists = true;
+        try {
+          found = statics.advance(state, after.time(), next,
+                                  control.can_halve());
+        } catch (const StepRejected &) {
+          exists = false;
+        }
+        if (!exists || !found.accepted()) {
+          const double limit = found.share * control.step();
+          if (control.halve()) {
+            while (control.step() > limit && control.halve()) {
+            }
+            continue;
+          }
+          if (!exists || !found.may_follow()) {
+            result.refused = true;
+            return result;
+          }
+          ++result.jumps;
+        }
+        control.accept();
+        result.missing = std::max(
+            result.missing, state.energy.numerical - next.energy.numerical);
+        result.defect = std::max(result.defect, found.step.ledger_defect);
+        std::swap(state, next);
+        result.end = statics.reactions()[2];
+        result.peak = std::max(result.peak, result.end);
+      }
+      return result;
+    }
+
+    // The bar is elastic up to R_max. With r = R_max^2 L/(2 E G) it stores r G
+    // then. The middle face breaks; the two others have 1.05 R_max.
+    TEST(StaticPath, SoftBarsBreakAtTheirStrength)
+    {
+      for (const auto &[name, entry] :
+           CohesiveLawRegistry::instance().entries())
+        for (const std::string &entries : entry.examples) {
+          const auto input = test::make_input(bar(name, entries, true, 1e9, 1.));
+          const CohesiveLaw &law = *input->interfaces[0].law;
+          if (law.rate_dependent())
+            continue; // equilibria know no rates
+          const double R_max = law.strength();
+          unsigned int step = 0;
+          for (const double r : {1.01, 1.5, 5., 30., 1000.}) {
+            const double young =
+                R_max * R_max * length / (2. * law.toughness() * r);
+            const double at_peak =
+                R_max * length / young + 3. * law.peak_opening();
+            constexpr double steps[] = {2., 7., 50.};
+            const double n = steps[step++ % 3];
+            const Pull broken = pull(bar(name, entries, law.extrinsic(), young,
+                                         1.6 * at_peak),
+                                     1. / n);
+            const std::string what =
+                fmt::format("{}: {}, r = {}, {} steps", name, entries, r, n);
+            EXPECT_FALSE(broken.refused) << what;
+            EXPECT_NEAR(broken.peak / (R_max * height), 1., 0.01) << what;
+            EXPECT_LE(broken.missing, 0.) << what;
+            EXPECT_LT(broken.defect, 1e-9) << what;
+          }
+        }
+    }
+  } // namespace
+} // namespace nsfd
