@@ -185,7 +185,6 @@ namespace nsfd
                           input.statics->at_jump == SolutionJump::dynamic;
     facts.takes_jumps =
         input.statics && input.statics->at_jump == SolutionJump::relax;
-    facts.moreau_jean = input.time.scheme == Scheme::moreau_jean;
     facts.maximum_halvings = input.time.maximum_halvings;
     facts.automatic_steps = input.time.step_kind == StepKind::automatic;
     facts.beyond_unique = counter("steps_beyond_uniqueness");

@@ -236,6 +236,7 @@ namespace nsfd
         return false;
       }
       resumed_ = stored_ = true;
+      watched_energy_ = state_.energy;
       stored_at_ = state_.step;
       fragments_->update(state_);
       output_->message(fmt::format("goes on after step {}, t = {:.6g}",

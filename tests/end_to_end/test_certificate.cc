@@ -50,7 +50,8 @@ namespace end_to_end
         good_run(workspace, "ball", {scene("ball"), {}, 1, true});
     EXPECT_TRUE(result.summary.at("certificate").at("ok").get<bool>());
     for (const char *line : {"end", "residual", "penetration", "ledger defect",
-                             "created", "uniqueness", "taken again"})
+                             "given by impact", "given by time scheme",
+                             "uniqueness", "taken again"})
       EXPECT_EQ(verdict(result, line), "ok") << line;
     EXPECT_EQ(verdict(result, "cohesive zone"), "none");
     const auto &residual =
@@ -264,7 +265,8 @@ end
       const Result result =
           run(workspace, std::string("rest") + height, {file, {std::string("Constants/Y=") + height}});
       ASSERT_TRUE(result.completed()) << result.description();
-      for (const char *line : {"penetration", "ledger defect", "created"})
+      for (const char *line : {"penetration", "ledger defect", "given by friction",
+                               "given by impact", "given by time scheme"})
         EXPECT_EQ(verdict(result, line), "ok")
             << line << " at " << height << "\n"
             << result.outcome.out;

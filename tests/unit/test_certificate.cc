@@ -104,10 +104,17 @@ namespace nsfd
          Verdict::bad, "do not add up"},
         {"LedgerUnknown", "ledger defect",
          [](RunFacts &f) { f.ledger_defect = nan_value; }, Verdict::bad, ""},
-        {"Created", "created", [](RunFacts &f) { f.created = 0.02; },
-         Verdict::bad, "the scheme has made energy"},
-        {"CreatedUnknown", "created",
-         [](RunFacts &f) { f.created = nan_value; }, Verdict::bad, ""},
+        {"Given", "given by friction",
+         [](RunFacts &f) {
+           f.given = {{"friction", 2e-9, 1e-9, "set sliding = energy safe"}};
+         },
+         Verdict::bad, "out of nothing"},
+        {"NothingGiven", "given by friction",
+         [](RunFacts &f) { f.given = {{"friction", 0., 1e-9, ""}}; },
+         Verdict::ok, ""},
+        {"GivenUnknown", "given by friction",
+         [](RunFacts &f) { f.given = {{"friction", nan_value, 1e-9, ""}}; },
+         Verdict::bad, ""},
         {"Uniqueness", "uniqueness", [](RunFacts &f) { f.beyond_unique = 7; },
          Verdict::bad, "in 7 of 100 steps"},
         {"UniquenessOfJumps", "uniqueness",
@@ -211,21 +218,17 @@ namespace nsfd
     facts.static_steps = 3;
     facts.solution_jumps = 1;
     facts.penetration_excess = 1e-3;
-    facts.created = 1.;
     facts.rejected = 1000;
     facts.limits.stride->value = 2.;
     const Certificate certificate = certify(facts);
     EXPECT_EQ(line(certificate, "solution jumps").remark.find("set at"),
               std::string::npos);
-    for (const char *name : {"penetration", "created", "taken again"}) {
+    for (const char *name : {"penetration", "taken again"}) {
       const std::string &remark = line(certificate, name).remark;
       EXPECT_EQ(line(certificate, name).verdict, Verdict::bad);
       EXPECT_EQ(remark.find("shorten Time/step"), std::string::npos) << remark;
       EXPECT_EQ(remark.find("moreau-jean"), std::string::npos) << remark;
     }
-    facts.moreau_jean = false;
-    EXPECT_NE(line(certify(facts), "created").remark.find("moreau-jean"),
-              std::string::npos);
   }
 
   TEST(Certificate, TakesJointsOutAtOnceWithThetaOne)

@@ -47,7 +47,6 @@ namespace nsfd
     bool automatic_steps = false; ///< step = auto
     bool follows_jumps = false;   ///< at solution jump = dynamic
     bool takes_jumps = false;     ///< at solution jump = relax
-    bool moreau_jean = true;      ///< scheme = moreau-jean
     unsigned int maximum_halvings = 10;
     unsigned long long beyond_unique = 0, solution_jumps = 0;
     /// nothing: no point has softened; length 0: between rigid bodies
