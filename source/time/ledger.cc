@@ -305,7 +305,8 @@ namespace nsfd
     /**
      * Penetration against its bound: the overlap of the spring where it turned
      * into a contact, and h times the largest approach speed at an activation
-     * since the point was last open: earlier ones explain no overlap. A
+     * since the point was last open: earlier ones explain no overlap. In every
+     * step the solver leaves R (P - P*) of the velocity that the law asks for. A
      * point that was forecast to stay open may have come in during the last
      * step, with the speed of its end: then the longer of the two steps counts.
      */
@@ -329,6 +330,8 @@ namespace nsfd
       }
       else if (depth > 0.) // the forecast did not see it come
         approach = std::max(approach, -h * next_.relative_velocity[i * dim]);
+      approach +=
+          h * problem_.majorant_normal[i] * std::abs(evaluation_.defect[i * dim]);
       penetration = std::max(penetration, depth);
       // speeds change within a step: bounds hold to first order in its length
       excess = std::max(excess, depth - 1.001 * (released + approach));
