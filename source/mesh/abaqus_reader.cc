@@ -151,7 +151,7 @@ namespace nsfd
         if (!problems_.empty())
           return {};
         for (auto &[label, element] : elements_)
-          add(element);
+          add(label, element);
         for (const auto &[corners, groups] : surface_faces_)
           mesh_.faces.add(row_by_row(corners, mesh_.dimension - 1),
                           mesh_.set_of(groups));
@@ -362,12 +362,14 @@ namespace nsfd
         }
       }
 
-      void add(const Element &element)
+      void add(const long label, const Element &element)
       {
-        auto &elements =
-            element.dimension == mesh_.dimension ? mesh_.cells : mesh_.faces;
-        elements.add(row_by_row(element.corners, element.dimension),
-                     mesh_.set_of(element.groups));
+        const auto corners = row_by_row(element.corners, element.dimension);
+        const unsigned int set = mesh_.set_of(element.groups);
+        if (element.dimension == mesh_.dimension)
+          mesh_.cells.add(corners, set, std::size_t(label));
+        else
+          mesh_.faces.add(corners, set);
       }
 
       NamedMesh mesh_;

@@ -50,7 +50,8 @@ namespace nsfd
   template <typename Archive>
   void serialize(Archive &archive, NamedMesh::Elements &elements, unsigned int)
   {
-    archive &elements.first &elements.vertices &elements.set;
+    archive &elements.first &elements.vertices &elements.set
+        &elements.numbers;
   }
 
   template <typename Archive>

@@ -134,13 +134,14 @@ namespace nsfd
               if (is_cell)
                 n_left_out_ += tags[t].size();
             } else
-              collect_type(types[t], nodes[t], set, is_cell, elements,
+              collect_type(types[t], tags[t], nodes[t], set, is_cell, elements,
                            problems);
           }
         }
       }
 
-      void collect_type(const int type, const std::vector<std::size_t> &nodes,
+      void collect_type(const int type, const std::vector<std::size_t> &tags,
+                        const std::vector<std::size_t> &nodes,
                         const unsigned int set, const bool is_cell,
                         NamedMesh::Elements &elements,
                         std::vector<std::string> &problems)
@@ -164,7 +165,11 @@ namespace nsfd
         for (std::size_t e = 0; e < n; ++e) {
           for (std::size_t i = 0; i < corners.size(); ++i)
             corners[i] = number(nodes[e * std::size_t(n_nodes) + order_of[i]]);
-          elements.add(corners, set);
+          // cells of a geometry are in no file
+          if (leave_out_others_)
+            elements.add(corners, set);
+          else
+            elements.add(corners, set, tags[e]);
         }
         if (order > 1 && is_cell)
           n_higher_order_ += n;

@@ -16,6 +16,14 @@ namespace nsfd
     set.push_back(in_set);
   }
 
+  void NamedMesh::Elements::add(const std::vector<unsigned int> &corners,
+                                const unsigned int in_set,
+                                const std::size_t number)
+  {
+    add(corners, in_set);
+    numbers.push_back(number);
+  }
+
   std::string NamedMesh::Group::label() const
   {
     return name.empty() ? std::to_string(number) : name;

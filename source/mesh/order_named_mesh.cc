@@ -1,6 +1,7 @@
 #include "nsfd/mesh/named_mesh.h"
 
 #include "cell_shapes.h"
+#include "check_cells.h"
 #include "mix_bits.h"
 
 #include <fmt/format.h>
@@ -85,16 +86,22 @@ namespace nsfd
     {
       Elements result;
       for (const std::size_t e : kept)
-        result.add({all.begin(e), all.begin(e) + all.n_vertices(e)},
-                   all.set[e]);
+        if (all.numbers.empty())
+          result.add({all.begin(e), all.begin(e) + all.n_vertices(e)},
+                     all.set[e]);
+        else
+          result.add({all.begin(e), all.begin(e) + all.n_vertices(e)},
+                     all.set[e], all.numbers[e]);
       return result;
     }
 
     /**
      * Formats that know one group per element store one of two groups twice.
-     * Returns how many copies there were.
+     * Returns how many copies there were. A cell that is twice in the same
+     * group is two cells at one place.
      */
-    std::size_t join_copies(NamedMesh &mesh, Elements &elements)
+    std::size_t join_copies(NamedMesh &mesh, Elements &elements,
+                            std::vector<std::string> &problems)
     {
       std::vector<std::pair<Key, std::size_t>> keys;
       for (std::size_t e = 0; e < elements.size(); ++e)
@@ -108,6 +115,11 @@ namespace nsfd
           continue;
         }
         auto groups = mesh.sets[elements.set[kept.back()]];
+        if (&elements == &mesh.cells && groups.size() < 2 &&
+            elements.set[e] == elements.set[kept.back()] && problems.empty())
+          problems.push_back(fmt::format("{} is the same as {}",
+                                         cell_text(mesh, e),
+                                         cell_text(mesh, kept.back())));
         const auto &others = mesh.sets[elements.set[e]];
         groups.insert(groups.end(), others.begin(), others.end());
         elements.set[kept.back()] = mesh.set_of(groups);
@@ -357,8 +369,9 @@ namespace nsfd
       for (std::size_t i = 0; i + 2 < faces.size(); ++i)
         if (faces[i].key == faces[i + 2].key) {
           problems.push_back(fmt::format(
-              "three cells meet at one face of the cell at {}; cells overlap",
-              text(mesh, middle(mesh, mesh.cells, faces[i].cell))));
+              "three cells meet at one face: {}, {} and {}; cells overlap",
+              cell_text(mesh, faces[i].cell), cell_text(mesh, faces[i + 1].cell),
+              cell_text(mesh, faces[i + 2].cell)));
           return;
         }
       std::vector<std::size_t> kept;
@@ -393,9 +406,31 @@ namespace nsfd
 
     bool is_finite(const NamedMesh &mesh, std::vector<std::string> &problems)
     {
-      for (const double x : mesh.coordinates)
-        if (!std::isfinite(x)) {
-          problems.push_back("a coordinate of the mesh is not a finite number");
+      for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)
+        if (!std::isfinite(mesh.coordinates[i])) {
+          problems.push_back(fmt::format(
+              "a coordinate of the vertex that comes as number {} is not a "
+              "finite number",
+              i / 3 + 1));
+          return false;
+        }
+      return true;
+    }
+
+    bool has_vertices(const NamedMesh &mesh, std::vector<std::string> &problems)
+    {
+      for (const Elements *elements : {&mesh.cells, &mesh.faces})
+        for (const unsigned int v : elements->vertices)
+          if (v >= mesh.n_vertices()) {
+            problems.push_back("a cell has a vertex that is not there");
+            return false;
+          }
+      for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+        if (find_cell_shape(mesh.dimension, mesh.cells.n_vertices(c)) ==
+            nullptr) {
+          problems.push_back(fmt::format("{} has {} corners",
+                                         cell_text(mesh, c),
+                                         mesh.cells.n_vertices(c)));
           return false;
         }
       return true;
@@ -415,17 +450,19 @@ namespace nsfd
     const bool divide = unit < 1. && std::abs(parts * unit - 1.) < 1e-12;
     for (double &x : mesh.coordinates)
       x = divide ? x / parts : x * unit;
-    if (!is_finite(mesh, problems))
+    if (!has_vertices(mesh, problems) || !is_finite(mesh, problems))
       return;
     flatten(mesh, problems);
     treat_coincident(mesh, merge_vertices);
-    if (const std::size_t n = join_copies(mesh, mesh.cells))
+    if (const std::size_t n = join_copies(mesh, mesh.cells, problems))
       mesh.notes.push_back(fmt::format(
           "{} cells were there more than once and became one each", n));
-    join_copies(mesh, mesh.faces);
+    join_copies(mesh, mesh.faces, problems);
     turn_cells(mesh);
     drop_unused_vertices(mesh);
     match_faces(mesh, problems);
     count_groups(mesh);
+    if (problems.empty())
+      check_cells(mesh, problems);
   }
 } // namespace nsfd

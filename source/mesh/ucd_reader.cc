@@ -98,7 +98,7 @@ namespace nsfd
       if (is_new)
         mesh.groups.push_back({d, number, "", 0, 0});
       (d == dimension ? mesh.cells : mesh.faces)
-          .add(corners, mesh.set_of({entry->second}));
+          .add(corners, mesh.set_of({entry->second}), std::size_t(label));
     }
     if (!in || n_nodes == 0)
       problems.push_back("it ends early, or is no UCD mesh: numbers of nodes "

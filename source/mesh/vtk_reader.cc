@@ -189,7 +189,7 @@ namespace nsfd
         groups.push_back(entry->second);
       }
       (d == dimension ? mesh.cells : mesh.faces)
-          .add(corners, mesh.set_of(groups));
+          .add(corners, mesh.set_of(groups), c);
     }
     return mesh;
   }

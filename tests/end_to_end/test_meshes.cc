@@ -205,7 +205,7 @@ namespace end_to_end
       EXPECT_NE(outcome.err.find("bad.msh"), std::string::npos) << outcome.err;
       EXPECT_EQ(outcome.err.find("group"), std::string::npos) << outcome.err;
     }
-    write_text(workspace.path() / "bad.geo", "Point one is at the left.\n");
+    write_text(workspace.path() / "bad.geo", "Point(1) = {0, 0;\n");
     std::string script = text;
     script.replace(script.find("bad.msh"), 7, "bad.geo");
     const Outcome refused = check(workspace, script);
@@ -217,6 +217,44 @@ namespace end_to_end
     EXPECT_EQ(missing.exit_code, 1);
     EXPECT_NE(missing.err.find("there is no file"), std::string::npos)
         << missing.err;
+  }
+
+  TEST(Meshes, ScriptsOnlyDescribeGeometry)
+  {
+    const Workspace workspace;
+    const std::string acts = (workspace.path() / "acted").string();
+    write_text(workspace.path() / "beam.geo",
+               "Point(1) = {0, 0, 0, 1};\n"
+               "SystemCall \"touch " + acts + "\";\n"
+               "Printf(\"written\") > \"" + acts + "\";\n"
+               "Include \"more.geo\";\n");
+    write_text(workspace.path() / "more.geo",
+               "Field[1] = ExternalProcess;\n"
+               "Field[1].CommandLine = \"touch " + acts + "\";\n"
+               "Save \"" + acts + "\";\n");
+    write_text(workspace.path() / "beam.geo.opt",
+               "SystemCall \"touch " + acts + "\";\n");
+    write_text(workspace.path() / "beam.prm",
+               "set dimension = 2\nsubsection Mesh\n  set type = file\n"
+               "  set file = beam.geo\nend\n"
+               "subsection Material: m\n  set Young modulus = 1\n"
+               "  set Poisson ratio = 0.3\n  set density = 1\nend\n"
+               "subsection Interface: all\n  set law = rigid\nend\n"
+               "subsection Time\n  set end = 1\n  set step = 1\nend\n");
+    const auto before = files_below(workspace.path());
+    for (const char *option : {"--check", "--force"}) {
+      const Outcome outcome = nsfd(workspace, {"beam.prm", option});
+      EXPECT_EQ(outcome.exit_code, 1);
+      for (const char *part :
+           {"beam.prm:4: error: `beam.geo`: line 2: `SystemCall` runs a command",
+            "line 3: `Printf`", "line 1 of `more.geo`: a field of type",
+            "line 2 of `more.geo`: the option `CommandLine`",
+            "line 3 of `more.geo`: `Save` writes a file"})
+        EXPECT_NE(outcome.err.find(part), std::string::npos)
+            << part << "\n"
+            << outcome.err;
+      EXPECT_EQ(files_below(workspace.path()), before);
+    }
   }
 
   TEST(Meshes, GrainBoundariesCarryTheLaw)

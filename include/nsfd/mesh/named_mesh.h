@@ -18,6 +18,8 @@ namespace nsfd
       std::vector<std::size_t> first = {0};
       std::vector<unsigned int> vertices; ///< element e from first[e] on
       std::vector<unsigned int> set;      ///< per element, into `sets`
+      /// per element, in the file; empty if there they have none
+      std::vector<std::size_t> numbers;
 
       std::size_t size() const { return set.size(); }
       unsigned int n_vertices(const std::size_t e) const
@@ -29,6 +31,8 @@ namespace nsfd
         return vertices.data() + first[e];
       }
       void add(const std::vector<unsigned int> &corners, unsigned int in_set);
+      void add(const std::vector<unsigned int> &corners, unsigned int in_set,
+               std::size_t number);
     };
 
     struct Group {
@@ -69,8 +73,8 @@ namespace nsfd
 
   /**
    * Put a mesh as it comes out of a file in order: scaled by @p unit, plane in
-   * two dimensions, each cell and face once, cells of positive volume, no
-   * unused vertex; with @p merge_vertices those at one place become one. What
+   * two dimensions, each cell and face once, cells of positive volume that do
+   * not overlap, no unused vertex; with @p merge_vertices those at one place become one. What
    * was done goes into the notes, what cannot be repaired into @p problems.
    */
   void put_in_order(NamedMesh &mesh, double unit, bool merge_vertices,
