@@ -154,20 +154,18 @@ namespace nsfd
 
   const ParameterEntry *ParameterSection::find(const std::string &name) const
   {
-    for (const ParameterEntry &entry : entries_)
-      if (entry.name == name)
-        return &entry;
-    return nullptr;
+    const auto found = entry_of_.find(name);
+    return found == entry_of_.end() ? nullptr : &entries_[found->second];
   }
 
   void ParameterSection::assign(ParameterEntry entry)
   {
-    for (ParameterEntry &old : entries_)
-      if (old.name == entry.name) {
-        old = std::move(entry);
-        return;
-      }
-    entries_.push_back(std::move(entry));
+    const auto [place, is_new] =
+        entry_of_.emplace(entry.name, entries_.size());
+    if (is_new)
+      entries_.push_back(std::move(entry));
+    else
+      entries_[place->second] = std::move(entry);
   }
 
   void ParameterSection::declare(DeclaredParameter parameter)
@@ -216,12 +214,20 @@ namespace nsfd
       return names;
     };
 
+    std::size_t n_stray = 0;
+    constexpr std::size_t most_told = 100;
     for (const ParameterEntry &entry : entries_) {
       const bool is_declared = std::any_of(
           declared_.begin(), declared_.end(),
           [&](const DeclaredParameter &p) { return p.name == entry.name; });
       if (is_declared || refused_.count(entry.name) != 0)
         continue;
+      if (++n_stray > most_told)
+        return errors.error(location_,
+                            fmt::format("{} has further entries that do not "
+                                        "belong there",
+                                        description()),
+                            "the first of them are named");
       const std::vector<std::string> names = candidates(entry);
       const std::string meant = nearest_name(entry.name, names);
       if (missing_.count(meant) != 0)

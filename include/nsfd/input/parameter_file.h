@@ -3,6 +3,7 @@
 #include "nsfd/input/input_errors.h"
 #include "nsfd/input/quantity.h"
 
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -125,6 +126,7 @@ namespace nsfd
     SourceLocation location_;
     const Constants &constants_;
     std::vector<ParameterEntry> entries_;
+    std::map<std::string, std::size_t> entry_of_; ///< by name
     std::vector<DeclaredParameter> declared_;
     std::set<std::string> mentioned_, refused_, missing_;
     bool accepts_everything_ = false;
