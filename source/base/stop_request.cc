@@ -16,7 +16,7 @@ namespace nsfd::stop_request
     constexpr int exit_code = 4;
     /// s: steps that take no longer are finished, and can be gone on from to
     /// the last bit; `mpirun` leaves its ranks a second
-    constexpr double grace = 0.5;
+    constexpr double grace = 0.3;
     /// s: `timeout`, for one, sends its signal twice
     constexpr double patience = 1.;
     /// s between two looks at standard output
