@@ -169,6 +169,8 @@ int main(int argc, char **argv)
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   const unsigned int n_ranks =
       dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  // MPI has taken some of them
+  stop_request::end_at_signals(root);
   try {
     if (solve)
       return run_on_root(

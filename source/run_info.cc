@@ -125,6 +125,7 @@ namespace nsfd
       std::cout << fmt::format("  {:<24} {}\n", kind, name);
     for (const auto &[keyword, sentence] : short_group_report(input))
       std::cout << fmt::format("  {:<24} {}\n", keyword, sentence);
+    std::cout << std::flush; // a reader may wait for it
   }
 
   template RunInfo run_info(const SceneInput &, const RunOptions &,

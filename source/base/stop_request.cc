@@ -16,7 +16,7 @@ namespace nsfd::stop_request
     constexpr int exit_code = 4;
     /// s: steps that take no longer are finished, and can be gone on from to
     /// the last bit; `mpirun` leaves its ranks a second
-    constexpr double grace = 0.5;
+    constexpr double grace = 0.3;
     /// s: `timeout`, for one, sends its signal twice
     constexpr double patience = 1.;
     /// s between two looks at standard output
@@ -83,6 +83,20 @@ namespace nsfd::stop_request
       }
     }
 
+    void catch_all()
+    {
+      struct sigaction action = {}, before = {};
+      action.sa_handler = on_signal;
+      action.sa_flags = SA_RESTART;
+      sigemptyset(&action.sa_mask);
+      for (const Name &name : names) {
+        sigaction(name.signal, nullptr, &before);
+        if (name.signal != SIGHUP || before.sa_handler != SIG_IGN) // nohup
+          sigaction(name.signal, &action, nullptr);
+      }
+      std::signal(SIGXFSZ, SIG_IGN);
+    }
+
     /** The other end of a pipe or socket is gone. */
     bool has_no_reader(const int file)
     {
@@ -94,16 +108,7 @@ namespace nsfd::stop_request
   void end_at_signals(const bool first)
   {
     is_first = first;
-    struct sigaction action = {}, before = {};
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    for (const Name &name : names) {
-      sigaction(name.signal, nullptr, &before);
-      if (name.signal != SIGHUP || before.sa_handler != SIG_IGN)
-        sigaction(name.signal, &action, nullptr);
-    }
-    std::signal(SIGXFSZ, SIG_IGN);
+    catch_all();
   }
 
   void remember_signals(const bool watches_output)
@@ -112,6 +117,7 @@ namespace nsfd::stop_request
     watches = watches_output && fstat(STDOUT_FILENO, &status) == 0 &&
               (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
     remembers = true;
+    catch_all(); // libraries may have taken some
   }
 
   bool requested()

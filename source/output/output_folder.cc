@@ -245,20 +245,25 @@ namespace nsfd
       for (const std::string &name : listed(folder))
         files_.insert(name);
     } else if (!is_free(folder)) {
-      const bool stored = is_there(folder / "checkpoint.h5");
-      if (how == Claim::anew)
-        return refuse(fmt::format(
-            "the output directory `{}` exists already: nothing was run.\n"
-            "  write {}{}--output DIR",
-            directory,
-            listed(folder).empty() ? "" : "--force to replace it, ",
-            stored ? "--resume to go on, or " : "or "));
+      if (how == Claim::anew) {
+        const bool stored = is_there(folder / "checkpoint.h5");
+        return refuse(
+            fmt::format("the output directory `{}` exists already: nothing "
+                        "was run.\n  write {}--output DIR",
+                        directory,
+                        listed(folder).empty() ? ""
+                        : stored ? "--force to replace it, --resume to go on, "
+                                   "or "
+                                 : "--force to replace it, or "));
+      }
       if (!may_replace(directory))
         return false;
       std::set<fs::path> below; // may be empty afterwards
       for (const fs::path name : listed(folder)) {
         if (!is_reached_without_links(folder, name))
           continue; // what is there is elsewhere
+        if (name == list_name)
+          continue; // replaced below: a kill here leaves a list
         fs::remove(folder / (name.string() + ".part"), error); // cut off
         fs::remove(folder / name, error);
         if (error)
@@ -272,6 +277,8 @@ namespace nsfd
         fs::remove(folder / *part, error); // unless it holds other files
     }
     directory_ = directory;
+    if (how != Claim::go_on)
+      write_list();
     return true;
   }
 
@@ -288,6 +295,7 @@ namespace nsfd
   {
     const auto start = std::chrono::steady_clock::now();
     changed_ = false;
+    files_.insert(list_name);
     Json json = Json::parse(head_, nullptr, false);
     if (!json.is_object())
       json = Json::object();

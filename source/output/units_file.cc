@@ -39,8 +39,9 @@ namespace nsfd
     {
       Json units = Json::object();
       for (const char *name :
-           {"steps", "dofs", "cells", "interface_points", "ledger_defect_max",
-            "residual_max", "fragments", "counters", "errors"})
+           {"dimension", "steps", "dofs", "cells", "interface_points",
+            "ledger_defect_max", "residual_max", "fragments", "counters",
+            "errors"})
         units[name] = "";
       for (const char *name : {"final_time", "wall_seconds", "cpu_seconds",
                                "setup_seconds", "loop_cpu_seconds", "timings"})

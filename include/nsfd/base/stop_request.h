@@ -38,8 +38,8 @@ namespace nsfd
 
     /**
      * While one lives, reductions over as many ranks as the run has leave by
-     * StopRequested, on all of them in the same one, once the request is half a
-     * second old: steps that take no longer are finished. Collective.
+     * StopRequested, on all of them in the same one, once the request is 0.3 s
+     * old: steps that take no longer are finished. Collective.
      */
     class Interruptible
     {
