@@ -224,7 +224,7 @@ namespace nsfd
 
   template <int dim>
   std::pair<double, std::size_t>
-  Relaxation<dim>::least_passage(const State &next) const
+  Relaxation<dim>::least_passage(const State &next, const bool path) const
   {
     const auto &problem = this->problem_;
     std::pair<double, std::size_t> least(1., 0);
@@ -238,12 +238,20 @@ namespace nsfd
         continue; // carries its traction at any opening
       const Reach end = {next.opening_max[i],
                          next.slip_max.empty() ? 0. : next.slip_max[i]};
-      Passage way = passage(PointEnvelope(problem, i), history(i),
-                            reach_of<dim>(interaction, &old_->jump[i * dim]),
-                            end);
+      const PointEnvelope envelope(problem, i);
+      const Reach last = history(i);
+      Passage way =
+          passage(envelope, last,
+                  reach_of<dim>(interaction, &old_->jump[i * dim]), end);
       if (old_->kind[i] == PointKind::rigid)
         way.start = joint_loads_.empty() ? 0. : joint_loads_[i];
-      const double share = std::min(1., std::max(way.start, way.end));
+      double share = std::min(1., std::max(way.start, way.end));
+      if (path && share < 1. &&
+          (held_[i].opening > last.opening || held_[i].slip > last.slip)) {
+        const double seen = largest_on_the_way(envelope, last, held_[i]),
+                     all = largest_on_the_way(envelope, last, end);
+        share = std::max(share, std::min(1., seen / all));
+      }
       if (share < least.first)
         least = {share, i};
     }
@@ -258,7 +266,7 @@ namespace nsfd
   template Relaxation<dim>::Prediction Relaxation<dim>::prediction();          \
   template bool Relaxation<dim>::let_damage_grow(double &, double);            \
   template std::pair<double, std::size_t> Relaxation<dim>::least_passage(      \
-      const State &) const
+      const State &, bool) const
 
   INSTANTIATE(2);
   INSTANTIATE(3);

@@ -113,23 +113,27 @@ namespace nsfd
            l * history.opening <= law.elastic_limit();
   }
 
+  double largest_on_the_way(const PointEnvelope &point, const Reach &history,
+                            const Reach &end)
+  {
+    return point.law.mixed()
+               ? largest_along(point, history, end, length(end))
+               : largest(point, history.opening, end.opening);
+  }
+
   Passage passage(const PointEnvelope &point, const Reach &history,
                   const Reach &start, const Reach &end)
   {
     if (end.opening <= history.opening && end.slip <= history.slip)
       return {};
-    if (point.law.mixed()) {
-      const double carries = largest_along(point, history, end, length(end));
-      if (!(carries > 0.))
-        return {};
+    const double carries = largest_on_the_way(point, history, end);
+    if (!(carries > 0.))
+      return {};
+    if (point.law.mixed())
       // the direction may turn: what counts is its own ray, too
       return {std::max(traction_along(point, history, start) / carries,
                        std::min(1., point.load(history, start))),
               traction_along(point, history, end) / carries};
-    }
-    const double carries = largest(point, history.opening, end.opening);
-    if (!(carries > 0.))
-      return {};
     const double before =
         history.opening == 0. && point.law.extrinsic()
             ? 0.

@@ -43,6 +43,10 @@ namespace nsfd
     bool skips_peak() const { return std::max(start, end) < least_share; }
   };
 
+  /** The largest traction between the histories @p history and @p end, Pa. */
+  double largest_on_the_way(const PointEnvelope &point, const Reach &history,
+                            const Reach &end);
+
   /** From @p history, open as far as @p start, to the history @p end. */
   Passage passage(const PointEnvelope &point, const Reach &history,
                   const Reach &start, const Reach &end);

@@ -144,7 +144,7 @@ namespace nsfd
   template <int dim>
   EquilibriumReport QuasiStatic<dim>::try_way(const State &old,
                                               const double time, const Way way,
-                                              State &next)
+                                              const bool path, State &next)
   {
     EquilibriumReport report;
     std::vector<double> forces_old(old.velocity.size(), 0.);
@@ -157,7 +157,7 @@ namespace nsfd
     report.left_over = left.energy;
     report.jumps = !report.stable ||
                    std::abs(left.energy) > jump_share * left.turnover;
-    const auto [seen, point] = relaxation_->least_passage(next);
+    const auto [seen, point] = relaxation_->least_passage(next, path);
     report.peak_seen = -communicator_.max(-seen);
     report.skips_peak = report.peak_seen < Passage::least_share;
     if (report.skips_peak)
@@ -173,7 +173,7 @@ namespace nsfd
                                               const bool may_be_shortened)
   {
     if (!relaxation_->has_laws())
-      return try_way(old, time, Way::near, next);
+      return try_way(old, time, Way::near, false, next);
 
     // nothing damages: one equilibrium, and next to the last one
     relaxation_->begin(old, time, time - old.time);
@@ -182,8 +182,9 @@ namespace nsfd
     StepReport held;
     typename Relaxation<dim>::Prediction ahead;
     ahead.damages = true;
-    if (settle(held_, most_held_rounds, input_.statics->tolerance, held,
-               nullptr))
+    const bool predicted = settle(held_, most_held_rounds,
+                                  input_.statics->tolerance, held, nullptr);
+    if (predicted)
       ahead = relaxation_->prediction();
     EquilibriumReport best;
     if (may_be_shortened && ahead.certain) {
@@ -192,6 +193,8 @@ namespace nsfd
       return best;
     }
 
+    // what comes to its peak first is there; what follows is pulled there
+    const bool at_peak = predicted && ahead.share == 1.;
     std::string failure;
     bool found = false;
     State best_next;
@@ -201,7 +204,7 @@ namespace nsfd
         continue;
       EquilibriumReport report;
       try {
-        report = try_way(old, time, way, next);
+        report = try_way(old, time, way, at_peak && way == Way::damped, next);
       } catch (const StepRejected &rejected) {
         failure = rejected.what();
         continue;

@@ -80,9 +80,11 @@ namespace nsfd
     bool has_laws() const;
     /**
      * The point that has skipped the peak of its law furthest in the step from
-     * the last equilibrium to @p next, see Passage; 1 where none has.
+     * the last equilibrium to @p next, see Passage; 1 where none has. What was
+     * damaged on an overdamped @p path has seen what it carried on it.
      */
-    std::pair<double, std::size_t> least_passage(const State &next) const;
+    std::pair<double, std::size_t> least_passage(const State &next,
+                                                 bool path) const;
 
     /**
      * |F + H^T r - K q'| over the largest forces that were present so far: what

@@ -1,3 +1,4 @@
+#include "make_law.h"
 #include "make_scene.h"
 
 #include "nsfd/interface/cohesive_law.h"
@@ -40,6 +41,7 @@ subsection Material: bar
   set density       = 1000
 end
 subsection Interface: faces
+  set where           = x > 0
   set law             = {}
   set {}
   set strength factor = if(abs(x - 30 mm) < 1 mm, 1, 1.05)
@@ -116,8 +118,8 @@ end
       for (const auto &[name, entry] :
            CohesiveLawRegistry::instance().entries())
         for (const std::string &entries : entry.examples) {
-          const auto input = test::make_input(bar(name, entries, true, 1e9, 1.));
-          const CohesiveLaw &law = *input->interfaces[0].law;
+          const auto made = test::make_law(name, test::entries_of(entries));
+          const CohesiveLaw &law = *made;
           if (law.rate_dependent())
             continue; // equilibria know no rates
           const double R_max = law.strength();

@@ -18,8 +18,8 @@ namespace nsfd
     bool stable = true;    ///< softening leaves some stiffness everywhere
     bool jumps = false;    ///< not stable, or what is left over or missing is
                            ///< no small part of what the step has moved
-    /// a point is beyond the peak of its law, and neither end of the step has
-    /// seen that peak within a hundredth
+    /// a point is beyond the peak of its law, and was never pulled as far as a
+    /// hundredth below it
     bool skips_peak = false;
     double peak_seen = 1.; ///< the most that it has seen of it
     /// of the step to take instead, where that can be told
@@ -92,7 +92,7 @@ namespace nsfd
     enum class Way { held, near, damped };
     void find(const State &old, double time, Way way, State &next,
               StepReport &report);
-    EquilibriumReport try_way(const State &old, double time, Way way,
+    EquilibriumReport try_way(const State &old, double time, Way way, bool path,
                               State &next);
     bool settle(std::vector<double> &q, unsigned int rounds, double goal,
                 StepReport &report, const State *old);
