@@ -1,5 +1,6 @@
 #include "inelastic_motion.h"
 
+#include "../time/common_books.h"
 #include "../time/crack_pressure.h"
 #include "../time/driven_motion.h"
 #include "../time/ledger.h"
@@ -219,6 +220,7 @@ namespace nsfd
                         old, next, report);
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
+    relate_defect(energy_scale_, next, report);
     return report;
   }
 

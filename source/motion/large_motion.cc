@@ -523,6 +523,7 @@ namespace nsfd
     finish(h, *evaluation, next, report);
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
+    relate_defect(energy_scale_, next, report);
     if (contacts_) {
       remember_surfaces(old, next);
       contacts_->remember_facets(next);
