@@ -1,5 +1,6 @@
 #include "inelastic_motion.h"
 
+#include "../time/common_books.h"
 #include "../time/crack_pressure.h"
 #include "../time/driven_motion.h"
 #include "../time/energy_safe_sliding.h"
@@ -221,6 +222,7 @@ namespace nsfd
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
     this->watch_energy(energy_scale_, old, next, report);
+    relate_defect(energy_scale_, next, report);
     return report;
   }
 

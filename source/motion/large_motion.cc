@@ -525,6 +525,7 @@ namespace nsfd
     this->check_books(h, old.time, energy_scale_, next, report,
                       evaluation->worst_point);
     this->watch_energy(energy_scale_, old, next, report);
+    relate_defect(energy_scale_, next, report);
     if (contacts_) {
       remember_surfaces(old, next);
       contacts_->remember_facets(next);

@@ -32,8 +32,10 @@ namespace nsfd
 
     Line strain_of(const Peak &peak)
     {
-      Line line = line_of("strain", 100. * peak.value, 100. * largest_strain,
-                          within(peak.value <= largest_strain), "{:.2g} %");
+      Line line = line_of("strain", peak.value, largest_strain,
+                          within(peak.value <= largest_strain));
+      line.value = fmt::format("{:.3g} %", 100. * peak.value);
+      line.bound = fmt::format("at most {:.3g} %", 100. * largest_strain);
       if (line.verdict == Verdict::bad)
         line.remark = "a cell is strained " + at(peak) +
                       " by more than motion = small is right for: set motion "
@@ -65,9 +67,10 @@ namespace nsfd
     {
       // theta U + (1 - theta) U_k = 0 in a row of a joint
       const bool at_once = theta >= 1.;
-      Line line =
-          line_of("joints", 100. * speed, 100. * largest_joint_speed,
-                  within(speed <= largest_joint_speed || at_once), "{:.2g} %");
+      Line line = line_of("joints", speed, largest_joint_speed,
+                          within(speed <= largest_joint_speed || at_once));
+      line.value = fmt::format("{:.3g} %", 100. * speed);
+      line.bound = fmt::format("at most {:.3g} %", 100. * largest_joint_speed);
       if (line.verdict == Verdict::bad)
         line.remark = fmt::format(
             "what rigid joints join has different velocities at t = 0: the "
@@ -88,14 +91,27 @@ namespace nsfd
       Line line =
           line_of("front", front.share(), largest_front,
                   within(!(is_sharp && has_softened)), "{:.2g} strengths");
-      if (line.verdict == Verdict::bad)
+      if (line.verdict == Verdict::bad) {
         line.remark = fmt::format(
             "{} brings {} into the bodies within {}, one crossing of a cell, "
-            "at t = {}: the oscillation behind such a front breaks faces",
+            "at t = {}: the oscillation behind such a front may have broken "
+            "faces; ",
             front.name, engineering(front.stress, "Pa"),
             engineering(front.crossing, "s"), engineering(front.time, "s"));
-      else if (is_sharp)
+        if (front.can_rise)
+          line.remark += fmt::format(
+              "let it rise over {} or more, or ",
+              engineering(front.crossing * front.share() / largest_front, "s",
+                          2));
+        line.remark += fmt::format(
+            "set bulk viscosity of the material to {} Pa s or more: it spreads "
+            "the front over as many cells",
+            engineering(front.enough_viscosity(), "", 2));
+      } else if (is_sharp)
         line.remark = "no point has softened";
+      else if (front.damping() < 1.)
+        line.remark =
+            fmt::format("damping leaves {:.2g} of it", front.damping());
       return line;
     }
   } // namespace

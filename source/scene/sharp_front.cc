@@ -30,6 +30,48 @@ namespace nsfd
       return largest;
     }
 
+    /** Density c^2 of the stiffest body. */
+    template <int dim>
+    double wave_modulus(const SceneInput &input,
+                        const Discretization<dim> &discretization)
+    {
+      double largest = 0.;
+      for (unsigned int m = 0; m < input.materials.size(); ++m)
+        if (!input.materials[m].rigid) {
+          const auto &extremes = discretization.extremes(m);
+          largest = std::max(largest, extremes.densest * extremes.fastest *
+                                          extremes.fastest);
+        }
+      return largest;
+    }
+
+    /**
+     * Of stress per rate of a plane wave, over modulus times crossing, in the
+     * body that has least of it; theta > 1/2 is a viscosity of (theta - 1/2) h
+     * per modulus. Steps that shorten by themselves damp as they like.
+     */
+    template <int dim>
+    double relative_viscosity(const SceneInput &input,
+                              const Discretization<dim> &discretization,
+                              const double modulus, const double crossing)
+    {
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto &material : input.materials)
+        if (!material.rigid)
+          least = std::min(least, 4. / 3. * material.shear_viscosity +
+                                      material.bulk_viscosity);
+      const TimeInput &time = input.time;
+      const double step = time.step_kind == StepKind::time ? time.step
+                          : time.step_kind == StepKind::crossings
+                              ? time.step * discretization.crossing_time()
+                              : 0.;
+      const double numerical =
+          time.scheme == Scheme::moreau_jean
+              ? std::max(0., time.bulk_theta() - 0.5) * step / crossing
+              : 0.;
+      return least / (modulus * crossing) + numerical;
+    }
+
     template <int dim>
     double longest_crossing(const Discretization<dim> &discretization,
                             const Communicator &communicator)
@@ -280,6 +322,9 @@ namespace nsfd
                   "Boundary: " + boundary.name);
     }
     fronts.front.strength = strength;
+    fronts.front.modulus = wave_modulus(input, discretization);
+    fronts.front.viscosity = relative_viscosity(input, discretization,
+                                                fronts.front.modulus, crossing);
     return fronts.front;
   }
 
@@ -304,7 +349,8 @@ namespace nsfd
     if (stress > front.stress) {
       front.stress = stress;
       front.time = 0.;
-      front.name = "velocities at t = 0";
+      front.name = "what meets at t = 0";
+      front.can_rise = false;
     }
   }
 

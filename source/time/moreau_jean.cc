@@ -3,6 +3,7 @@
 #include "../nonsmooth/linear_spring.h"
 #include "activation.h"
 #include "bond_release.h"
+#include "common_books.h"
 #include "crack_pressure.h"
 #include "driven_motion.h"
 #include "elastic_forces.h"
@@ -173,6 +174,7 @@ namespace nsfd
       next, report);
     check_books(h, old.time, energy_scale, next, report,
                 evaluation.worst_point);
+    relate_defect(energy_scale, next, report);
     if (bulk_) {
       const BondReport bonds =
         release_bonds(problem_, *bulk_, old, next);

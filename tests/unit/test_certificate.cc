@@ -41,7 +41,7 @@ namespace nsfd
       facts.limits.thickness = 0.1;
       facts.limits.joints = 1e-15;
       facts.limits.joint_theta = 0.5;
-      facts.limits.front = SharpFront{1e5, 0., 1e6, 1e-6, "Boundary: left"};
+      facts.limits.front = SharpFront{1e5, 0., 1e6, 1e-6, "Boundary: left", true, 1e10, 0.};
       return facts;
     }
 
@@ -237,6 +237,24 @@ namespace nsfd
     facts.limits.joints = 1.;
     facts.limits.joint_theta = 1.;
     EXPECT_EQ(line(certify(facts), "joints").verdict, Verdict::ok);
+  }
+
+  // 0.016 / viscosity of 20 strengths
+  TEST(Certificate, NamesWhatTakesAFrontToItsBound)
+  {
+    RunFacts facts = good_facts();
+    SharpFront &front = *facts.limits.front;
+    front.stress = 2e7;
+    const std::string remark = line(certify(facts), "front").remark;
+    EXPECT_NE(remark.find("rise over 80 µs"), std::string::npos) << remark;
+    front.viscosity =
+        1.01 * front.enough_viscosity() / (front.modulus * front.crossing);
+    EXPECT_NEAR(front.viscosity, 1.01 * 1.28, 1e-12);
+    EXPECT_EQ(line(certify(facts), "front").verdict, Verdict::ok);
+    front.can_rise = false;
+    front.viscosity = 0.;
+    EXPECT_EQ(line(certify(facts), "front").remark.find("rise"),
+              std::string::npos);
   }
 
   TEST(Certificate, HasNoFrontToFearWhereNothingSoftens)
