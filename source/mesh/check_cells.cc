@@ -212,8 +212,8 @@ namespace nsfd
         double smallest = std::numeric_limits<double>::max();
         for (unsigned int i = 0; i < shape->n_corners; ++i) {
           const Vector origin = vertex(mesh, v[i]);
-          std::array<Vector, 3> edge = {{{{0., 0., 0.}}, {{0., 0., 0.}},
-                                         {{0., 0., 1.}}}};
+          std::array<Vector, 3> edge = {
+              {{{0., 0., 0.}}, {{0., 0., 0.}}, {{0., 0., 1.}}}};
           double lengths = 1.;
           for (unsigned int d = 0; d < mesh.dimension; ++d) {
             edge[d] = vertex(mesh, v[shape->edges[i][d]]) - origin;
@@ -325,9 +325,9 @@ namespace nsfd
                             const double v) {
         return std::min(s, t) - std::max(u, v);
       };
-      double common = std::min(
-          least(a1.get<0>(), b1.get<0>(), a0.get<0>(), b0.get<0>()),
-          least(a1.get<1>(), b1.get<1>(), a0.get<1>(), b0.get<1>()));
+      double common =
+          std::min(least(a1.get<0>(), b1.get<0>(), a0.get<0>(), b0.get<0>()),
+                   least(a1.get<1>(), b1.get<1>(), a0.get<1>(), b0.get<1>()));
       if (dimension == 3)
         common = std::min(
             common, least(a1.get<2>(), b1.get<2>(), a0.get<2>(), b0.get<2>()));

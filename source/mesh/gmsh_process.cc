@@ -71,8 +71,8 @@ namespace nsfd
     {
       std::size_t done = 0;
       while (done < bytes.size()) {
-        const ssize_t n = send(line, bytes.data() + done, bytes.size() - done,
-                               MSG_NOSIGNAL);
+        const ssize_t n =
+            send(line, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
         if (n < 0 && errno != EINTR)
           return false;
         done += n > 0 ? std::size_t(n) : 0;
@@ -210,13 +210,11 @@ namespace nsfd
 
     bool names_lack_of_memory(const std::vector<std::string> &problems)
     {
-      return std::any_of(problems.begin(), problems.end(),
-                         [](const std::string &problem) {
-                           return problem.find("bad_alloc") !=
-                                      std::string::npos ||
-                                  problem.find("Out of memory") !=
-                                      std::string::npos;
-                         });
+      return std::any_of(
+          problems.begin(), problems.end(), [](const std::string &problem) {
+            return problem.find("bad_alloc") != std::string::npos ||
+                   problem.find("Out of memory") != std::string::npos;
+          });
     }
 
     std::string took_too_long(const GmshJob &job)
@@ -257,8 +255,7 @@ namespace nsfd
     {
       // a mesher that makes cells at a steady rate fills both at once
       constexpr double gib = 0x1p30, base_time = 20., base_memory = 4. * gib;
-      job.memory =
-          base_memory * std::max(1., job.request.seconds / base_time);
+      job.memory = base_memory * std::max(1., job.request.seconds / base_time);
       const Outcome outcome = run(job);
       if (outcome.too_long || !WIFEXITED(outcome.status) ||
           WEXITSTATUS(outcome.status) != 0) {
@@ -323,9 +320,8 @@ namespace nsfd
     std::vector<std::string> found;
     NamedMesh mesh = mesh_of(job, found);
     for (const std::string &problem : found)
-      problems.push_back(
-          replaced(problem, script.name,
-                   fs::path(request.file).filename().string()));
+      problems.push_back(replaced(problem, script.name,
+                                  fs::path(request.file).filename().string()));
     return mesh;
   }
 

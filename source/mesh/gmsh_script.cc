@@ -40,8 +40,8 @@ namespace nsfd
     /// Gmsh's buffer of a string is 1024 long: what comes after it is a script
     constexpr std::size_t longest_string = 1000;
 
-    /// Gmsh reads 8192 at once, and takes up a loop behind what it has read: not
-    /// in the middle of a line, or of a string
+    /// Gmsh reads 8192 at once, and takes up a loop behind what it has read:
+    /// not in the middle of a line, or of a string
     constexpr std::size_t longest_line = 8000;
 
     /** The problems of one file, each with its line. */
@@ -55,7 +55,8 @@ namespace nsfd
 
       void add(const unsigned int line, const std::string &sentence)
       {
-        problems_.push_back(fmt::format("line {}{}: {}", line, where_, sentence));
+        problems_.push_back(
+            fmt::format("line {}{}: {}", line, where_, sentence));
       }
 
       void add_word(const Token &word, const std::string &deed)
@@ -159,7 +160,8 @@ namespace nsfd
           if (text_[at_] == '\n')
             line_end();
         if (end == std::string::npos)
-          complaints_.add(first_line, "the comment that begins here has no end");
+          complaints_.add(first_line,
+                          "the comment that begins here has no end");
         else
           at_ += 2;
       }
@@ -205,8 +207,7 @@ namespace nsfd
       void read_string(const char quote)
       {
         std::size_t end = at_ + 1;
-        while (end < text_.size() && text_[end] != quote &&
-               text_[end] != '\n')
+        while (end < text_.size() && text_[end] != quote && text_[end] != '\n')
           ++end;
         const std::string inside = text_.substr(at_ + 1, end - at_ - 1);
         const bool closed = end < text_.size() && text_[end] == quote;
@@ -407,8 +408,8 @@ namespace nsfd
           return complaints_.add(tokens_[i].line,
                                  "`Include` needs the name of a file in quotes "
                                  "and a semicolon");
-        const bool plain = std::all_of(
-            name.text.begin(), name.text.end(), [](const char c) {
+        const bool plain =
+            std::all_of(name.text.begin(), name.text.end(), [](const char c) {
               return is_letter(c) || is_digit(c) || c == '.' || c == '-' ||
                      c == '+' || c == ' ';
             });
@@ -423,8 +424,8 @@ namespace nsfd
       void check_printf(const std::size_t i)
       {
         if (!token(i + 1).is("(") || !token(behind_bracket(i + 1)).is(";"))
-          complaints_.add_word(tokens_[i],
-                               "with anything behind its bracket writes a file");
+          complaints_.add_word(
+              tokens_[i], "with anything behind its bracket writes a file");
       }
 
       void check_field(const std::size_t i)
@@ -478,9 +479,10 @@ namespace nsfd
         if (open_.count(name) > 0)
           problems_.push_back(fmt::format("`{}` includes itself", name));
         else if (!std::filesystem::is_regular_file(folder_ / name))
-          problems_.push_back(fmt::format("`Include \"{}\"`{}: there is no such "
-                                          "file in the folder of the script",
-                                          name, where));
+          problems_.push_back(
+              fmt::format("`Include \"{}\"`{}: there is no such "
+                          "file in the folder of the script",
+                          name, where));
         else if (script_.files.count(name) == 0)
           add(name, name, fmt::format(" of `{}`", name));
       }

@@ -20,11 +20,12 @@ namespace nsfd
 {
   namespace
   {
-    /** The upper limit, which ends a process without a word, is @p spare more. */
+    /** The upper limit, which ends a process without a word, is @p spare more.
+     */
     void set_limit(const decltype(RLIMIT_CPU) resource, const double value,
                    const rlim_t spare = 0)
     {
-      
+
       rlimit limit{};
       getrlimit(resource, &limit);
       const rlim_t most = rlim_t(value);
@@ -42,18 +43,18 @@ namespace nsfd
 
     /** Calls that start programs or change what is on the disk or the net. */
     const unsigned int forbidden_calls[] = {
-        SYS_execve,    SYS_execveat, SYS_unlinkat,  SYS_renameat2,
-        SYS_mkdirat,   SYS_linkat,   SYS_symlinkat, SYS_mknodat,
-        SYS_fchmodat,  SYS_fchmod,   SYS_fchownat,  SYS_truncate,
-        SYS_ftruncate, SYS_socket,   SYS_ptrace,    SYS_mount,
+        SYS_execve,         SYS_execveat, SYS_unlinkat,  SYS_renameat2,
+        SYS_mkdirat,        SYS_linkat,   SYS_symlinkat, SYS_mknodat,
+        SYS_fchmodat,       SYS_fchmod,   SYS_fchownat,  SYS_truncate,
+        SYS_ftruncate,      SYS_socket,   SYS_ptrace,    SYS_mount,
         SYS_kill,
 #ifdef SYS_renameat
         SYS_renameat,
 #endif
 #ifdef __x86_64__
-        SYS_fork,      SYS_vfork,    SYS_unlink,    SYS_rename,
-        SYS_mkdir,     SYS_rmdir,    SYS_link,      SYS_symlink,
-        SYS_mknod,     SYS_chmod,    SYS_chown,     SYS_lchown,
+        SYS_fork,           SYS_vfork,    SYS_unlink,    SYS_rename,
+        SYS_mkdir,          SYS_rmdir,    SYS_link,      SYS_symlink,
+        SYS_mknod,          SYS_chmod,    SYS_chown,     SYS_lchown,
         SYS_creat,
 #endif
 #ifdef SYS_openat2

@@ -29,8 +29,8 @@ namespace
                            std::to_string(nodes.size()) + "\n";
       for (std::size_t i = 0; i < nodes.size(); ++i)
         result += std::to_string(i + 1) + " " + nodes[i] + "\n";
-      result += "$EndNodes\n$Elements\n" + std::to_string(elements.size()) +
-                "\n";
+      result +=
+          "$EndNodes\n$Elements\n" + std::to_string(elements.size()) + "\n";
       // numbers that are not those of their order
       for (std::size_t i = 0; i < elements.size(); ++i)
         result += std::to_string(i + 11) + " " + elements[i] + "\n";
@@ -38,7 +38,7 @@ namespace
     }
   };
 
-  std::string errors_of(const unsigned int dimension, const File &file)
+  std::string errors_of_mesh(const unsigned int dimension, const File &file)
   {
     const TemporaryFile written("bad.msh", file.text());
     return errors_of(mesh_scene(dimension, written.entries()));
@@ -60,10 +60,10 @@ namespace
 TEST(BadMeshes, FoldedCells)
 {
   // the middle one is folded back onto the first
-  const std::string errors =
-      errors_of(2, {{"0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 .9 0", "1 .9 0",
-                     "0 2 0", "1 2 0"},
-                    {"3 2 1 1 1 2 3 4", "3 2 1 1 4 3 6 5", "3 2 1 1 5 6 8 7"}});
+  const std::string errors = errors_of_mesh(
+      2, {{"0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 .9 0", "1 .9 0", "0 2 0",
+           "1 2 0"},
+          {"3 2 1 1 1 2 3 4", "3 2 1 1 4 3 6 5", "3 2 1 1 5 6 8 7"}});
   expect_error(errors, "cell 11 at (0.5, 0.5) and cell 12 at (0.5, 0.95) are "
                        "on the same side of the face that they share");
 }
@@ -71,8 +71,8 @@ TEST(BadMeshes, FoldedCells)
 TEST(BadMeshes, FoldedTetrahedra)
 {
   const std::string errors =
-      errors_of(3, {{"0 0 0", "1 0 0", "0 1 0", "0 0 1", ".1 .1 .5"},
-                    {"4 2 1 1 1 2 3 4", "4 2 1 1 1 2 3 5"}});
+      errors_of_mesh(3, {{"0 0 0", "1 0 0", "0 1 0", "0 0 1", ".1 .1 .5"},
+                         {"4 2 1 1 1 2 3 4", "4 2 1 1 1 2 3 5"}});
   expect_error(errors, "cell 11 at (0.25, 0.25, 0.25) and cell 12");
 }
 
@@ -80,19 +80,20 @@ TEST(BadMeshes, DoubledCells)
 {
   const std::vector<std::string> square = {"0 0 0", "1 0 0", "1 1 0", "0 1 0"};
   expect_error(
-      errors_of(2, {square, {"3 2 1 1 1 2 3 4", "3 2 1 1 2 3 4 1"}}),
+      errors_of_mesh(2, {square, {"3 2 1 1 1 2 3 4", "3 2 1 1 2 3 4 1"}}),
       "cell 12 at (0.5, 0.5) is the same as cell 11 at (0.5, 0.5)");
   // one cell of two groups
-  EXPECT_EQ(errors_of(2, {square, {"3 2 1 1 1 2 3 4", "3 2 2 2 1 2 3 4"}}), "");
+  EXPECT_EQ(errors_of_mesh(2, {square, {"3 2 1 1 1 2 3 4", "3 2 2 2 1 2 3 4"}}),
+            "");
 }
 
 TEST(BadMeshes, OverlappingCellsWithoutACommonFace)
 {
   const auto two_squares = [](const double x) {
     const std::string a = std::to_string(x), b = std::to_string(x + 1.);
-    return errors_of(2, {{"0 0 0", "1 0 0", "1 1 0", "0 1 0", a + " .5 0",
-                          b + " .5 0", b + " 1.5 0", a + " 1.5 0"},
-                         {"3 2 1 1 1 2 3 4", "3 2 2 2 5 6 7 8"}});
+    return errors_of_mesh(2, {{"0 0 0", "1 0 0", "1 1 0", "0 1 0", a + " .5 0",
+                               b + " .5 0", b + " 1.5 0", a + " 1.5 0"},
+                              {"3 2 1 1 1 2 3 4", "3 2 2 2 5 6 7 8"}});
   };
   expect_error(two_squares(.5), "cell 11 at (0.5, 0.5) and cell 12 at (1, 1) "
                                 "overlap");
@@ -115,16 +116,16 @@ TEST(BadMeshes, OverlappingCellsWithoutACommonFace)
     auto nodes = cube("0", "1");
     const auto others = cube(lower, upper);
     nodes.insert(nodes.end(), others.begin(), others.end());
-    return errors_of(3, {nodes,
-                         {"5 2 1 1 1 2 3 4 5 6 7 8",
-                          "5 2 2 2 9 10 11 12 13 14 15 16"}});
+    return errors_of_mesh(
+        3,
+        {nodes, {"5 2 1 1 1 2 3 4 5 6 7 8", "5 2 2 2 9 10 11 12 13 14 15 16"}});
   };
   expect_error(two_cubes(".5", "1.5"), "overlap");
   EXPECT_EQ(two_cubes("1", "2"), "");
   const auto crossed = [](const std::string &z) {
-    return errors_of(3, {{"-1 0 0", "1 0 0", "0 -1 -1", "0 1 -1",
-                          "0 -1 " + z, "0 1 " + z, "-1 0 1.5", "1 0 1.5"},
-                         {"4 2 1 1 1 2 3 4", "4 2 2 2 5 6 7 8"}});
+    return errors_of_mesh(3, {{"-1 0 0", "1 0 0", "0 -1 -1", "0 1 -1",
+                               "0 -1 " + z, "0 1 " + z, "-1 0 1.5", "1 0 1.5"},
+                              {"4 2 1 1 1 2 3 4", "4 2 2 2 5 6 7 8"}});
   };
   expect_error(crossed("-.5"), "overlap");
   EXPECT_EQ(crossed(".1"), "");
@@ -132,15 +133,15 @@ TEST(BadMeshes, OverlappingCellsWithoutACommonFace)
 
 TEST(BadMeshes, InvertedFlatAndInfiniteCells)
 {
-  expect_error(errors_of(2, {{"0 0 0", "1 0 0", ".2 .2 0", "0 1 0"},
-                             {"3 2 1 1 1 2 3 4"}}),
+  expect_error(errors_of_mesh(2, {{"0 0 0", "1 0 0", ".2 .2 0", "0 1 0"},
+                                  {"3 2 1 1 1 2 3 4"}}),
                "cell 11 at (0.3, 0.3) is inverted");
-  expect_error(errors_of(3, {{"0 0 0", "1 0 0", "0 1 0", ".3 .3 0"},
-                             {"4 2 1 1 1 2 3 4"}}),
+  expect_error(errors_of_mesh(3, {{"0 0 0", "1 0 0", "0 1 0", ".3 .3 0"},
+                                  {"4 2 1 1 1 2 3 4"}}),
                "cell 11 at (0.325, 0.325, 0) is degenerate");
-  expect_error(errors_of(2, {{"0 0 0", "nan 0 0", "0 1 0"},
-                             {"2 2 1 1 1 2 3"}}),
-               "bad.msh");
+  expect_error(
+      errors_of_mesh(2, {{"0 0 0", "nan 0 0", "0 1 0"}, {"2 2 1 1 1 2 3"}}),
+      "bad.msh");
 }
 
 TEST(BadMeshes, WhatBreaksGmshIsSaid)
@@ -153,9 +154,8 @@ TEST(BadMeshes, WhatBreaksGmshIsSaid)
                                 "set meshing time = 1\n"),
                "Gmsh took more than 1 s");
   // an endless chain of calls overruns the stack or the time
-  const std::string calls =
-      errors_of_script("Macro a\nCall a;\nReturn\nCall a;",
-                       "set meshing time = 1\n");
+  const std::string calls = errors_of_script(
+      "Macro a\nCall a;\nReturn\nCall a;", "set meshing time = 1\n");
   expect_error(calls, "bad.geo");
   expect_error(errors_of_script("Point(1) = {0, 0, 0;"),
                "'nsfd_bad.geo', line 1");
@@ -225,6 +225,6 @@ TEST(BadMeshes, OptionsBesideAFileAreNotRead)
 {
   const TemporaryFile options("bad.msh.opt", "Mesh.ScalingFactor = 7;\n"
                                              "Error(\"read\");\n");
-  EXPECT_EQ(errors_of(2, {{"0 0 0", "1 0 0", "0 1 0"}, {"2 2 1 1 1 2 3"}}),
+  EXPECT_EQ(errors_of_mesh(2, {{"0 0 0", "1 0 0", "0 1 0"}, {"2 2 1 1 1 2 3"}}),
             "");
 }
