@@ -42,8 +42,7 @@ namespace nsfd
               ""};
           return result;
         }
-      }
-      else if (part.dimension.certainty == formula::Certainty::natural)
+      } else if (part.dimension.certainty == formula::Certainty::natural)
         result.likely_unit = part.dimension.unit;
       result.depends_on_time = parser.uses_time();
       result.compiled = compile_translated(

@@ -89,6 +89,7 @@ namespace nsfd::fuzz
         std::vector<std::string> command;
         fs::path folder;
         std::unique_ptr<Child> child;
+        bool is_second_try = false;
       };
       struct Count {
         std::size_t n = 0, n_faults = 0;
@@ -290,6 +291,15 @@ namespace nsfd::fuzz
           running.push_back(make(next++));
         for (std::size_t i = 0; i < running.size();)
           if (running[i].child->ended()) {
+            // the clock alone may speak of what else the machine does
+            const Outcome &outcome = running[i].child->outcome();
+            if (outcome.timed_out && !running[i].is_second_try &&
+                outcome.cpu_seconds < Limits().cpu_seconds) {
+              fs::remove_all(running[i].folder);
+              running[i] = make(running[i].number);
+              running[i].is_second_try = true;
+              continue;
+            }
             judge(running[i]);
             running.erase(running.begin() + std::ptrdiff_t(i));
           } else
