@@ -349,23 +349,26 @@ namespace nsfd
   void QuasiStatic<dim>::follow_damped(std::vector<double> &q,
                                        StepReport &report)
   {
-    // openings over G/R_max: what the laws find by themselves
-    constexpr double near = 1e-3, contracts = 0.7, faster = 4.;
-    double last = 0., growth, stretch = 1.;
+    // an opening over G/R_max: what the laws find by themselves
+    constexpr double near = 1e-4, faster = 4.,
+                     let_go = std::numeric_limits<double>::max();
+    double last = let_go, growth, stretch = 1.;
     relaxation_->hold_laws();
     for (unsigned int n = 0; n < most_bits; ++n) {
       settle(q, most_held_rounds, std::max(input_.statics->tolerance, 1e-6),
              report, nullptr);
       if (!solved_ || !relaxation_->let_damage_grow(growth, stretch))
         break;
-      if (n > 0) {
-        if (growth < near && growth < contracts * last)
-          break;
+      if (last < let_go && growth < let_go) {
         // growth goes by 1 - stretch (1 - x); half way to where x leads
         const double decay = (1. - growth / last) / stretch;
-        stretch = decay * faster * stretch > 0.5 ? std::max(1., 0.5 / decay)
-                                                 : faster * stretch;
-      }
+        if (growth < near * decay)
+          break;
+        stretch = 2. * faster * stretch * decay > 1.
+                      ? std::max(1., 0.5 / decay)
+                      : faster * stretch;
+      } else
+        stretch = 1.;
       last = growth;
     }
     relaxation_->free_laws();
