@@ -198,10 +198,16 @@ namespace nsfd
         has_broken[origins[i].block] =
             block.broken.at(discretization->position(i)) != 0.;
     }
+    // a mesh of single cells has no faces for anyone
+    const bool any_faces = communicator.any(
+        std::any_of(has_faces.begin(), has_faces.end(),
+                    [](const char has) { return has != 0; }));
     std::vector<std::string> warnings;
     for (std::size_t b = 0; b < n_blocks; ++b) {
       const InterfaceInput &block = input.interfaces[b];
       const std::string name = "Interface: " + block.name;
+      if (!any_faces && block.where.kind == Where::Kind::all)
+        continue;
       if (!communicator.any(has_faces[b]))
         warnings.push_back(name + ": no face; `where` holds nowhere, or only "
                                   "where an earlier section does" +

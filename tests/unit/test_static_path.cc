@@ -137,8 +137,9 @@ end
               fmt::format("{}: {}, r = {}, {} steps", name, entries, r, n);
           // what is refused has not been wrong so far
           EXPECT_LT(broken.peak / (R_max * height), 1.01) << what;
-          if (!broken.refused)
+          if (!broken.refused) {
             EXPECT_GT(broken.peak / (R_max * height), 0.99) << what;
+          }
           refused += broken.refused;
           EXPECT_LE(broken.missing, 0.) << what;
           EXPECT_LT(broken.defect, 1e-9) << what;
