@@ -198,6 +198,8 @@ namespace nsfd
         crack_impulse_ = this->crack_pressure_->impulse(next.pressure, h);
       }
       next.impulse = old.impulse;
+      if (this->starts_cold_)
+        std::fill(next.impulse.begin(), next.impulse.end(), 0.);
     }
     StepReport report;
     std::unique_ptr<LawEvaluation<dim>> evaluation;

@@ -391,6 +391,10 @@ namespace nsfd
   void LargeMotion<dim>::warm_start(const State &old)
   {
     impulse_ = old_.impulse;
+    if (this->starts_cold_) {
+      std::fill(impulse_.begin(), impulse_.end(), 0.);
+      return;
+    }
     const auto &rows = bodies_.rows();
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere;
@@ -594,7 +598,6 @@ namespace nsfd
     std::array<double, dim> impulse;
     double slip, overlap, approach, worn, wear_speed;
     std::uint8_t contact;
-    bool open; ///< bounds of earlier overlaps explain later ones no more
   };
 
   template <int dim>
@@ -620,7 +623,6 @@ namespace nsfd
       memory.overlap = next.released_overlap[i];
       memory.approach = next.approach[i];
       memory.contact = next.contact[i];
-      memory.open = next.jump[i * dim] >= 0.;
       if (!next.worn.empty()) {
         memory.worn = next.worn[i];
         memory.wear_speed = next.wear_speed[i];
@@ -650,10 +652,6 @@ namespace nsfd
     std::sort(rows.begin(), rows.end(), [](const auto &a, const auto &b) {
       return a.index < b.index;
     });
-    for (const SurfaceMemory &row : rows)
-      for (const std::size_t place : {row.place, row.twin})
-        if (row.open && place != MovingRow<dim>::nowhere)
-          next.surface_overlap[place] = next.surface_approach[place] = 0.;
     for (const SurfaceMemory &row : rows) {
       for (unsigned int d = 0; d < dim; ++d)
         next.surface_impulse[row.place * dim + d] += row.impulse[d];

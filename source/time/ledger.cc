@@ -26,6 +26,7 @@ namespace nsfd
       broken,
       joint,   ///< work of rows of joints, a part of impact or numerical
       support, ///< of supports beyond their prescribed velocity, of the work
+      impulses, ///< sum R P^2, R the majorants: what the residual relates to
       viscous ///< only where a point of the scene has_rates()
     };
 
@@ -140,6 +141,10 @@ namespace nsfd
         return; // its energy is one of the bodies, or of other points
       Vector U, U_theta;
       for (unsigned int c = 0; c < dim; ++c) {
+        const double P = next_.impulse[i * dim + c];
+        put(impulses, i,
+            (c == 0 ? problem_.majorant_normal : problem_.majorant_tangential)[i] *
+                P * P);
         U[c] = next_.relative_velocity[i * dim + c];
         U_theta[c] = work_theta_ * U[c] +
                      (1. - work_theta_) * old_.relative_velocity[i * dim + c];
@@ -335,8 +340,6 @@ namespace nsfd
       penetration = std::max(penetration, depth);
       // speeds change within a step: bounds hold to first order in its length
       excess = std::max(excess, depth - 1.001 * (released + approach));
-      if (depth <= 0.)
-        released = approach = 0.;
     }
   } // namespace
 
@@ -526,6 +529,7 @@ namespace nsfd
     report.active = unsigned(communicator.sum_integer(points.active));
     report.beyond_unique = communicator.any(points.beyond_unique);
 
+    report.changes.impulses = sums[impulses];
     const auto set = [&](const WatchedLine line, const double taken,
                          const std::size_t worst) {
       report.changes.taken[std::size_t(line)] = taken;

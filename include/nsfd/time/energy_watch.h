@@ -43,6 +43,7 @@ namespace nsfd
 
     std::array<double, n_watched_lines> taken{};
     std::array<std::size_t, n_watched_lines> worst{};
+    double impulses = 0.; ///< sum R P^2 over the points, see LawEvaluation, J
     double noise = 0.; ///< what the residual of the solver leaves open, J
     double scale = 0.; ///< the largest energy so far, or what the loads would
                        ///< give in this step without impulses, J

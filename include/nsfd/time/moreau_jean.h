@@ -171,6 +171,10 @@ namespace nsfd
     std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
     std::unique_ptr<EnergySafeSliding<dim>> sliding_;
     bool has_extrinsic_ = false;
+    /// The last attempt lost its digits or its energy: rows that ask for the
+    /// same share what no motion tells, warm starts carry it on, and it grows.
+    /// The next attempt starts without impulses.
+    mutable bool starts_cold_ = false;
     std::vector<double> forces_, v_free_, work_;
     bool forces_known_ = false;
     double forces_time_ = 0.;

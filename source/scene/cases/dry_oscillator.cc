@@ -49,8 +49,13 @@ namespace nsfd
       fastest_ = std::max(fastest_, std::abs(v));
       // still from this step on; a turning point is no rest
       if (std::abs(v) > 1e-9 * fastest_) {
-        turns_ += v * direction_ < 0.;
-        direction_ = v > 0. ? 1. : -1.;
+        // friction that holds the mass where it turns leaves it the speed of
+        // the step before for one step (mean velocity zero): not a half cycle
+        const double direction = v > 0. ? 1. : -1.;
+        turns_ += direction * direction_ < 0. && direction == last_direction_;
+        if (direction == last_direction_)
+          direction_ = direction;
+        last_direction_ = direction;
         moving_until_ = view.time;
         creep_ = 0.;
       } else
@@ -71,14 +76,14 @@ namespace nsfd
     void remember(Archive &archive) override
     {
       archive.numbers("found", position_, friction_, fastest_, direction_,
-                      turns_, moving_until_, creep_);
+                      last_direction_, turns_, moving_until_, creep_);
     }
 
   private:
     double delta_ = 0., start_ = 0., rest_ = 0., half_cycles_ = 0.,
            stop_time_ = 0., work_ = 0.;
     double position_ = 0., friction_ = 0., fastest_ = 0., direction_ = 0.,
-           turns_ = 0., moving_until_ = 0., creep_ = 0.;
+           last_direction_ = 0., turns_ = 0., moving_until_ = 0., creep_ = 0.;
   };
 
   NSFD_REGISTER(VerificationRegistry, DryOscillator, "dry oscillator",
