@@ -592,7 +592,6 @@ namespace nsfd
     std::array<double, dim> impulse;
     double slip, overlap, approach, worn, wear_speed;
     std::uint8_t contact;
-    bool open; ///< bounds of earlier overlaps explain later ones no more
   };
 
   template <int dim>
@@ -618,7 +617,6 @@ namespace nsfd
       memory.overlap = next.released_overlap[i];
       memory.approach = next.approach[i];
       memory.contact = next.contact[i];
-      memory.open = next.jump[i * dim] >= 0.;
       if (!next.worn.empty()) {
         memory.worn = next.worn[i];
         memory.wear_speed = next.wear_speed[i];
@@ -648,10 +646,6 @@ namespace nsfd
     std::sort(rows.begin(), rows.end(), [](const auto &a, const auto &b) {
       return a.index < b.index;
     });
-    for (const SurfaceMemory &row : rows)
-      for (const std::size_t place : {row.place, row.twin})
-        if (row.open && place != MovingRow<dim>::nowhere)
-          next.surface_overlap[place] = next.surface_approach[place] = 0.;
     for (const SurfaceMemory &row : rows) {
       for (unsigned int d = 0; d < dim; ++d)
         next.surface_impulse[row.place * dim + d] += row.impulse[d];
