@@ -43,7 +43,7 @@ namespace nsfd
       return line;
     }
 
-    Line stride_of(const MotionLimits &limits, const bool automatic)
+    Line stride_of(const MotionLimits &limits)
     {
       const Peak &peak = *limits.stride;
       Line line = line_of("way of a step", peak.value, largest_stride,
@@ -53,13 +53,9 @@ namespace nsfd
         line.remark = fmt::format(
             "at t = {} bodies pass each other by more in a step than the "
             "thinnest of them is thick, {}: one may fly through another "
-            "unseen; {} steps",
+            "unseen; take steps {:.2g} times shorter",
             engineering(peak.time, "s"), engineering(limits.thickness, "m"),
-            automatic ? "set Time/step to a time: it takes shorter"
-                      : "shorten Time/step: it takes");
-      if (line.verdict == Verdict::bad)
-        line.remark =
-            line.remark + fmt::format(" {:.2g} times shorter", 2. * peak.value);
+            2. * peak.value);
       return line;
     }
 
@@ -124,7 +120,7 @@ namespace nsfd
     if (limits.strain)
       lines.push_back(strain_of(*limits.strain));
     if (limits.stride)
-      lines.push_back(stride_of(limits, facts.automatic_steps));
+      lines.push_back(stride_of(limits));
     if (limits.joints)
       lines.push_back(joints_of(*limits.joints, limits.joint_theta));
     if (limits.front)

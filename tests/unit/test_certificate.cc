@@ -145,7 +145,7 @@ namespace nsfd
          ""},
         {"StepLength", "way of a step",
          [](RunFacts &f) { f.limits.stride->value = 1.5; }, Verdict::bad,
-         "shorten Time/step: it takes 3 times shorter"},
+         "take steps 3 times shorter"},
         {"Joints", "joints", [](RunFacts &f) { f.limits.joints = 1.; },
          Verdict::bad, "the same initial velocity"},
         {"Front", "front", [](RunFacts &f) { f.limits.front->stress = 2e7; },
