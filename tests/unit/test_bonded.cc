@@ -381,7 +381,7 @@ end
                    "density = 1\nend\nsubsection Interface: all\n  set law = "
                    "bonded\nend\nsubsection Time\n  set end = 1\n  set step = "
                    "0.1\nend\n")),
-                 std::runtime_error);
+                 std::invalid_argument); // by the reader
   }
 
   /** Halves that are apart at the start: the bond stores it, and knows it. */

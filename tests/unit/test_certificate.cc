@@ -28,6 +28,7 @@ namespace nsfd
       facts.residual = 3e-9;
       facts.tolerance = 1e-8;
       facts.ledger_defect = 2e-13;
+      facts.given = {{"time scheme", 0., 1e-9, ""}};
       facts.penetration = 1e-7;
       facts.penetration_bound = 3e-7;
       facts.displacement = 1e-3;
@@ -109,9 +110,6 @@ namespace nsfd
            f.given = {{"friction", 2e-9, 1e-9, "set sliding = energy safe"}};
          },
          Verdict::bad, "out of nothing"},
-        {"NothingGiven", "given by friction",
-         [](RunFacts &f) { f.given = {{"friction", 0., 1e-9, ""}}; },
-         Verdict::ok, ""},
         {"GivenUnknown", "given by friction",
          [](RunFacts &f) { f.given = {{"friction", nan_value, 1e-9, ""}}; },
          Verdict::bad, ""},

@@ -105,7 +105,8 @@ TEST(Checkpoint, FailsWithoutChangingAnything)
                std::runtime_error);
   const Folder folder;
   checkpoint_file::put(folder.path(), sealed(1.));
-  fs::create_directory(folder.path() / "checkpoint.h5.part"); // in its way
+  // in its way, with something in it
+  fs::create_directories(folder.path() / "checkpoint.h5.part" / "kept");
   EXPECT_THROW(checkpoint_file::put(folder.path(), sealed(2.)),
                std::runtime_error);
   EXPECT_TRUE(checkpoint_file::read(folder.path() / "checkpoint.h5") ==

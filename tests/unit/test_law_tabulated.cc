@@ -220,7 +220,7 @@ namespace
     }
     expect_error("tabulated", {{"curve", "no/such.csv"}},
                  "`no/such.csv` cannot be read");
-    expect_error("tabulated", {{"curve", "."}}, "cannot be read");
+    expect_error("tabulated", {{"curve", "."}}, "is a folder");
     expect_error("tabulated", {}, "needs `curve` or `points`");
   }
 } // namespace

@@ -1,4 +1,5 @@
 // Stored contact problems: what is read, what is refused.
+#include "nsfd/output/output_folder.h"
 #include "nsfd/stored/fclib.h"
 
 #include <gtest/gtest.h>
@@ -277,6 +278,6 @@ namespace nsfd
       refused(c.reason);
     }
     EXPECT_THROW(write_fclib("/no/such/folder/a.hdf5", two_contacts()),
-                 BadContactFile);
+                 OutputError);
   }
 } // namespace nsfd
