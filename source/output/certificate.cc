@@ -138,6 +138,11 @@ namespace nsfd
     void add_given(const RunFacts &facts, std::vector<Line> &lines)
     {
       for (const GivenEnergy &given : facts.given) {
+        if (accepted(facts) == 0) {
+          lines.push_back(unmeasured_line("given by " + given.line,
+                                          "no step was accepted"));
+          continue;
+        }
         Line line = line_of("given by " + given.line, given.share, given.bound,
                             within(given.share <= given.bound));
         if (line.verdict == Verdict::bad)

@@ -217,7 +217,8 @@ namespace nsfd
         "(relative defect {:.1e}): rows that ask for the same have made "
         "impulses too large; worst face {}",
         h, time, report.ledger_defect, describe(worst_point)));
-    starts_cold_ = false;
+    // well before that: impulses that no motion tells have taken over
+    starts_cold_ = report.ledger_defect > 1e-11;
   }
 
   template <int dim>

@@ -265,7 +265,9 @@ namespace nsfd
 
   TEST(Certificate, SaysOkToNothingThatWasNotMeasured)
   {
-    const Certificate nothing = certify(RunFacts());
+    RunFacts no_steps;
+    no_steps.given = {{"friction", 0., 1e-9, ""}};
+    const Certificate nothing = certify(no_steps);
     EXPECT_FALSE(nothing.is_ok());
     for (const CertificateLine &one : nothing.lines)
       EXPECT_NE(one.verdict, Verdict::ok) << one.name;
@@ -273,6 +275,7 @@ namespace nsfd
     RunFacts smooth;
     smooth.completed = true;
     smooth.smooth_steps = 10;
+    smooth.given = {{"time scheme", 0., 1e-9, ""}};
     const Certificate integrated = certify(smooth);
     EXPECT_EQ(line(integrated, "residual").verdict, Verdict::not_measured);
     EXPECT_EQ(line(integrated, "penetration").verdict, Verdict::none);
