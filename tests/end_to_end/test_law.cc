@@ -15,7 +15,7 @@ namespace end_to_end
   {
     const std::vector<std::string> all_files = {"curve.csv", "energies.svg",
                                                 "law.svg", "parameters.prm",
-                                                "summary.json"};
+                                                "run.json", "summary.json"};
 
     nlohmann::json summary_of(const fs::path &directory)
     {
