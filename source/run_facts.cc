@@ -114,8 +114,8 @@ namespace nsfd
                                           const EnergyWatch &watch,
                                           const State &state)
     {
-      // what the rules of explicit steps, end points and interior penalty make
-      // comes and goes: as well as curves can be read
+      // what the rules of explicit steps, end points, interior penalty and frames
+      // of large motions make comes and goes: as well as curves can be read
       constexpr double of_pure_rules = 1e-2;
       const double scale = std::max(watch.scale, state.largest_energy);
       const auto share = [scale](const double energy) {
