@@ -236,7 +236,10 @@ namespace nsfd
     changes.noise =
       report.solver.residual *
       std::max(energy_scale, std::sqrt(energy_scale * changes.impulses));
-    const double bound = energy_round_off * changes.scale + changes.noise;
+    const double bound =
+      energy_round_off * changes.scale + changes.noise +
+      // no line is known better than the balance closes
+      10. * report.ledger_defect * next.largest_energy;
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
       const bool two_sided =
@@ -248,7 +251,7 @@ namespace nsfd
       // in very long steps: the certificate holds their sum, a step is given up
       // where its digits are lost, as in check_books()
       const bool of_digits = two_sided || line == WatchedLine::scheme;
-      if (given <= (of_digits ? 1e-6 * changes.scale + changes.noise : bound) ||
+      if (given <= (of_digits ? 1e-6 * changes.scale + bound : bound) ||
           !never_gives(line, input_))
         continue;
       starts_cold_ = true;

@@ -231,7 +231,8 @@ end
           "Boundary: left/velocity x=if(abs(t - 6 ns) > 1 ns, -2 m/s, 1 m/s * "
           "log(-t / 1 ns))"}});
     EXPECT_EQ(result.outcome.exit_code, 3) << result.description();
-    ASSERT_GT(result.history.size(), 3u);
+    // the loads of the whole run are looked at before the first step
+    ASSERT_GE(result.history.size(), 1u);
     for (const std::string &name : result.history.names())
       for (const double value : result.history[name])
         EXPECT_TRUE(std::isfinite(value)) << name;

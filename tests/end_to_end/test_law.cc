@@ -188,7 +188,7 @@ namespace end_to_end
     const auto still = run("figure_06_static");
     EXPECT_EQ(files("figure_06_static"),
               (Files{"bar.svg", "curve.csv", "energies.svg", "grip.svg",
-                     "parameters.prm", "summary.json"}));
+                     "parameters.prm", "run.json", "summary.json"}));
     ASSERT_EQ(still["jumps"].size(), 1u);
     EXPECT_NEAR(still["jumps"][0]["grip"].get<double>(), u + 4. * T, 1e-13);
     EXPECT_NEAR(still["left_over"].get<double>(), excess, 1e-12);
@@ -198,7 +198,7 @@ namespace end_to_end
     const auto held = run("figure_08");
     EXPECT_EQ(files("figure_08"),
               (Files{"bar.svg", "curve.csv", "energies.svg", "floor.svg",
-                     "parameters.prm", "speeds.svg", "summary.json"}));
+                     "parameters.prm", "run.json", "speeds.svg", "summary.json"}));
     EXPECT_NEAR(held["viscous"].get<double>(), excess, 2e-9);
     const auto pulled = run("figure_06_viscous");
     EXPECT_GT(pulled["viscous"].get<double>(), excess);
@@ -207,7 +207,7 @@ namespace end_to_end
     const auto swings = run("figure_06_dynamic");
     EXPECT_EQ(files("figure_06_dynamic"),
               (Files{"bar.svg", "curve.csv", "energies.svg", "grip.svg",
-                     "parameters.prm", "slopes.svg", "summary.json"}));
+                     "parameters.prm", "run.json", "slopes.svg", "summary.json"}));
     // M/(S theta h^2) + theta k = 3/8 of the exact rule, theta = 1/2
     EXPECT_NEAR(swings["unique_step"].get<double>(), std::sqrt(8.), 1e-12);
     EXPECT_EQ(swings["ambiguous_steps"], 0);
