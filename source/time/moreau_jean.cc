@@ -217,8 +217,7 @@ namespace nsfd
         "(relative defect {:.1e}): rows that ask for the same have made "
         "impulses too large; worst face {}",
         h, time, report.ledger_defect, describe(worst_point)));
-    // well before that: impulses that no motion tells have taken over
-    starts_cold_ = report.ledger_defect > 1e-11;
+    starts_cold_ = false;
   }
 
   template <int dim>
@@ -249,9 +248,9 @@ namespace nsfd
       // velocities of rows are known to the tolerance, impulses of rows that ask
       // for the same to less, and `numerical` is a difference of large numbers
       // in very long steps: the certificate holds their sum, a step is given up
-      // where its digits are lost, as in check_books()
+      // only where hardly any digits are left
       const bool of_digits = two_sided || line == WatchedLine::scheme;
-      if (given <= (of_digits ? 1e-6 * changes.scale + bound : bound) ||
+      if (given <= (of_digits ? 1e-4 * changes.scale + bound : bound) ||
           !never_gives(line, input_))
         continue;
       starts_cold_ = true;
