@@ -309,11 +309,11 @@ namespace nsfd
 
     /**
      * Penetration against its bound: the overlap of the spring where it turned
-     * into a contact, and h times the largest approach speed at an activation
-     * since the point was last open: earlier ones explain no overlap. In every
-     * step the solver leaves R (P - P*) of the velocity that the law asks for. A
-     * point that was forecast to stay open may have come in during the last
-     * step, with the speed of its end: then the longer of the two steps counts.
+     * into a contact, and h times the largest approach speed at an activation.
+     * In every step the solver leaves R (P - P*) of the velocity that the law
+     * asks for. A point that was forecast to stay open may have come in during
+     * the last step, with the speed of its end: then the longer of the two steps
+     * counts.
      */
     template <int dim>
     void PointBook<dim>::book_penetration(const std::size_t i)

@@ -91,7 +91,7 @@ namespace nsfd
    *
    *     residual      of the contact problems, and of equilibria: tolerances
    *     penetration   at every point: h times the approach speed at which it
-   *                   closed since it was last open, and the overlap of its
+   *                   has closed fastest, and the overlap of its
    *                   released spring; beyond it, the tolerance times the
    *                   displacement and the round-off of positions
    *     ledger defect 1e-9 of the largest energy
