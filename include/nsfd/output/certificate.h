@@ -90,8 +90,8 @@ namespace nsfd
    * Every number against its bound: nothing is ok that was not measured.
    *
    *     residual      of the contact problems, and of equilibria: tolerances
-   *     penetration   at every point: h times the approach speed at which it
-   *                   has closed fastest, and the overlap of its
+   *     penetration   at every point: h times the largest speed at which it
+   *                   has closed, and the overlap of its
    *                   released spring; beyond it, the tolerance times the
    *                   displacement and the round-off of positions
    *     ledger defect 1e-9 of the largest energy
