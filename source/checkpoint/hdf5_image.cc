@@ -156,4 +156,5 @@ namespace nsfd
   NSFD_INSTANTIATE(std::uint32_t)
   NSFD_INSTANTIATE(std::uint64_t)
 #undef NSFD_INSTANTIATE
+#undef NSFD_INSTANTIATE
 } // namespace nsfd

@@ -53,7 +53,7 @@ namespace nsfd
       std::string html_;
     };
 
-    std::vector<std::string> head(const Comparison &comparison,
+    std::vector<std::string> page_head(const Comparison &comparison,
                                   const bool differences)
     {
       std::vector<std::string> row = {""};
@@ -155,7 +155,7 @@ namespace nsfd
 
     std::string parameters_html(const Comparison &comparison)
     {
-      WideTable table(head(comparison, false));
+      WideTable table(page_head(comparison, false));
       for (const ComparedParameter &entry : comparison.parameters) {
         std::vector<std::string> row = {
             entry.section + (entry.section.empty() ? "" : "/") + entry.name};
@@ -170,7 +170,7 @@ namespace nsfd
 
     std::string numbers_html(const Comparison &comparison)
     {
-      WideTable table(head(comparison, true));
+      WideTable table(page_head(comparison, true));
       for (const ComparedNumber &number : comparison.numbers) {
         if (!is_shown(number))
           continue;
@@ -187,7 +187,7 @@ namespace nsfd
     std::string certificates_html(const Comparison &comparison)
     {
       const auto rows = certificate_rows(comparison);
-      WideTable table(head(comparison, false));
+      WideTable table(page_head(comparison, false));
       for (const auto &row : rows)
         table.add(row);
       return rows.empty() ? "" : table.card("Certificates");

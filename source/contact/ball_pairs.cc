@@ -159,4 +159,5 @@ namespace nsfd
 
   INSTANTIATE(2);
   INSTANTIATE(3);
+#undef INSTANTIATE
 } // namespace nsfd

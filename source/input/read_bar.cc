@@ -13,7 +13,7 @@ namespace nsfd
 {
   namespace
   {
-    CohesionRule read_rule(SectionReader &reader)
+    CohesionRule read_rule_of_bar(SectionReader &reader)
     {
       const std::string name = reader.choice(
           "cohesion rule", "exact", {"end point", "end velocity", "exact"},
@@ -29,7 +29,7 @@ namespace nsfd
       bar.theta =
           reader.number("theta", "0.5", units::none, Range::closed(0.5, 1.),
                         "of the scheme; 1/2 dissipates nothing");
-      bar.rule = read_rule(reader);
+      bar.rule = read_rule_of_bar(reader);
     }
 
     void read_viscous(SectionReader &reader, LawInput &input, Bar &bar)

@@ -1,5 +1,7 @@
 #include "bar_charts.h"
 
+#include "curve_names.h"
+
 #include "nsfd/input/scene_input.h"
 #include "nsfd/interface/cohesive_law.h"
 #include "nsfd/law_path/drive_point.h"
@@ -22,13 +24,8 @@ namespace nsfd
 
     constexpr double gap = std::numeric_limits<double>::quiet_NaN();
 
-    const CohesiveLaw &law_of(const LawInput &input, const std::size_t i)
-    {
-      return *input.curves[i].interaction.law;
-    }
-
     /** Units and labels of the axes. */
-    struct Axes {
+    struct BarAxes {
       const LawInput &input;
 
       double opening(const std::size_t i) const
@@ -60,13 +57,6 @@ namespace nsfd
                                 : LineChart::Axis{"energy", "J/m²"};
       }
     };
-
-    std::string title(const LawInput &input, const std::string &what)
-    {
-      return input.curves.size() == 1
-                 ? fmt::format("{}: {}", input.curves[0].law_name, what)
-                 : what;
-    }
 
     Values over(Values values, const double unit)
     {
@@ -133,7 +123,7 @@ namespace nsfd
     /** T = slope (zero - u) where 0 <= T <= top. */
     void add_line_of(LineChart &chart, const std::string &name,
                      const double slope, const double zero, const double top,
-                     const Axes &axes, const Colour colour)
+                     const BarAxes &axes, const Colour colour)
     {
       const double high = std::min(top, slope * zero);
       chart.add_line(name,
@@ -160,11 +150,11 @@ namespace nsfd
 
   std::string bar_chart(const LawInput &input, const std::vector<BarRun> &runs)
   {
-    const Axes axes{input};
+    const BarAxes axes{input};
     const Bar &bar = *input.bar;
     const bool single = runs.size() == 1,
                is_static = bar.mode == BarMode::quasi_static;
-    LineChart chart(title(input, "law and bar"), axes.of_opening("opening u"),
+    LineChart chart(chart_title(input, "law and bar"), axes.of_opening("opening u"),
                     axes.of_traction());
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const CohesiveLaw &law = law_of(input, i);
@@ -197,10 +187,10 @@ namespace nsfd
 
   std::string grip_chart(const LawInput &input, const std::vector<BarRun> &runs)
   {
-    const Axes axes{input};
+    const BarAxes axes{input};
     const bool single = runs.size() == 1,
                is_static = input.bar->mode == BarMode::quasi_static;
-    LineChart chart(title(input, "pull of the bar"),
+    LineChart chart(chart_title(input, "pull of the bar"),
                     axes.of_opening("displacement U of the grip"),
                     axes.of_traction());
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -230,12 +220,12 @@ namespace nsfd
   std::string bar_energy_chart(const LawInput &input,
                                const std::vector<BarRun> &runs)
   {
-    const Axes axes{input};
+    const BarAxes axes{input};
     const Bar &bar = *input.bar;
     // a grip that is held leaves the opening to tell the places apart
     const bool held = bar.mode == BarMode::viscous && bar.speed == 0.;
     LineChart chart(
-        title(input, "energy"),
+        chart_title(input, "energy"),
         axes.of_opening(held ? "opening u" : "displacement U of the grip"),
         axes.of_energy());
     const bool single = runs.size() == 1;
@@ -276,10 +266,10 @@ namespace nsfd
 
   std::string floor_chart(const LawInput &input, const BarJump &jump)
   {
-    const Axes axes{input};
+    const BarAxes axes{input};
     const CohesiveLaw &law = law_of(input, 0);
     const double k = input.bar->stiffness;
-    LineChart chart(title(input, "least energy that viscosity takes"),
+    LineChart chart(chart_title(input, "least energy that viscosity takes"),
                     axes.of_opening("opening u"), axes.of_traction());
     Values u, T, x, lower, upper;
     sample(law, 1.1 * std::max(jump.opening_to, opening_scale(law)), u, T);
@@ -301,12 +291,12 @@ namespace nsfd
 
   std::string speed_chart(const LawInput &input, const SpeedSweep &sweep)
   {
-    const Axes axes{input};
+    const BarAxes axes{input};
     const CohesiveLaw &law = law_of(input, 0);
     const Bar &bar = *input.bar;
     const double G = axes.energy(0),
                  unit = input.normalised ? law.strength() / bar.viscosity : 1.;
-    LineChart chart(title(input, "energy that viscosity takes"),
+    LineChart chart(chart_title(input, "energy that viscosity takes"),
                     input.normalised
                         ? LineChart::Axis{"speed over strength / viscosity", ""}
                         : LineChart::Axis{"speed", "m/s"},
@@ -329,7 +319,7 @@ namespace nsfd
 
   std::string slope_chart(const LawInput &input)
   {
-    const Axes axes{input};
+    const BarAxes axes{input};
     const CohesiveLaw &law = law_of(input, 0);
     const Bar &bar = *input.bar;
     Values u, T;
@@ -344,7 +334,7 @@ namespace nsfd
         steepest = i;
     const double at = 0.5 * (u[steepest] + u[steepest - 1]),
                  traction = 0.5 * (T[steepest] + T[steepest - 1]);
-    LineChart chart(title(input, "slopes of law, bar and step"),
+    LineChart chart(chart_title(input, "slopes of law, bar and step"),
                     axes.of_opening("opening u"), axes.of_traction());
     chart.add_line("law", over(u, axes.opening(0)), over(T, axes.traction(0)),
                    Colour::blue);

@@ -1,5 +1,7 @@
 #include "law_charts.h"
 
+#include "curve_names.h"
+
 #include "nsfd/output/svg.h"
 
 #include <fmt/format.h>
@@ -119,13 +121,6 @@ namespace nsfd
                                       : input.curves[i].name + ": " + what;
     }
 
-    std::string title(const LawInput &input, const std::string &what)
-    {
-      return input.curves.size() == 1
-                 ? fmt::format("{}: {}", input.curves[0].law_name, what)
-                 : what;
-    }
-
     /** One law: what cohesion, contact and friction carry. */
     void add_parts(LineChart &chart, const Axes &axes, const Values &x,
                    const Curve &curve)
@@ -171,7 +166,7 @@ namespace nsfd
                              const std::vector<Curve> &curves)
   {
     const Axes axes(input, curves);
-    LineChart chart(title(input, "traction"), axes.jump_axis(),
+    LineChart chart(chart_title(input, "traction"), axes.jump_axis(),
                     axes.traction_axis());
     if (curves.size() == 1) {
       add_parts(chart, axes, axes.jumps(0, curves[0]), curves[0]);
@@ -201,7 +196,7 @@ namespace nsfd
     const Axes axes(input, curves);
     const bool rubs =
         is_nonzero(curves, [](auto &row) { return row.friction_work; });
-    LineChart chart(title(input, "energy"),
+    LineChart chart(chart_title(input, "energy"),
                     axes.forward ? axes.jump_axis()
                                  : LineChart::Axis{"mark of the path", ""},
                     axes.energy_axis());

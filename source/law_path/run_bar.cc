@@ -1,6 +1,7 @@
 #include "run_bar.h"
 
 #include "bar_charts.h"
+#include "curve_names.h"
 #include "law_table.h"
 
 #include "nsfd/interface/cohesive_law.h"
@@ -16,11 +17,6 @@ namespace nsfd
 {
   namespace
   {
-    const CohesiveLaw &law_of(const LawInput &input, const std::size_t i)
-    {
-      return *input.curves[i].interaction.law;
-    }
-
     std::string csv(const BarRun &run)
     {
       std::string text = "time,grip,opening,velocity,pull,cohesion,beta,bar,"
@@ -32,15 +28,6 @@ namespace nsfd
                             row.kinetic, row.stored, row.damage, row.viscous,
                             row.excess, row.work);
       return text;
-    }
-
-    std::string curve_file(const LawInput &input, const std::size_t i)
-    {
-      if (input.curves.size() == 1)
-        return "curve.csv";
-      std::string name = input.curves[i].name;
-      std::replace(name.begin(), name.end(), '/', '-');
-      return "curve_" + name + ".csv";
     }
 
     nlohmann::json jumps_of(const CohesiveLaw &law, const double stiffness)

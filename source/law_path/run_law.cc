@@ -1,6 +1,7 @@
 #include "nsfd/law_path/run_law.h"
 
 #include "law_charts.h"
+#include "curve_names.h"
 #include "law_table.h"
 #include "run_bar.h"
 
@@ -40,18 +41,6 @@ namespace nsfd
         largest = std::max(
             largest, std::hypot(std::max(row.normal(), 0.), row.tangential()));
       return largest;
-    }
-
-    /** curve.csv, or one per block: "curve_stiff joint.csv". */
-    std::string curve_file(const LawInput &input, const std::size_t i)
-    {
-      if (input.curves.size() == 1)
-        return "curve.csv";
-      std::string name = input.curves[i].name;
-      for (char &c : name)
-        if (c == '/')
-          c = '-';
-      return "curve_" + name + ".csv";
     }
 
     nlohmann::json summary(const LawInput &input,

@@ -163,4 +163,5 @@ namespace nsfd
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE
+#undef NSFD_INSTANTIATE
 } // namespace nsfd

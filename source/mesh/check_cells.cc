@@ -1,6 +1,7 @@
 #include "check_cells.h"
 
 #include "cell_shapes.h"
+#include "vectors.h"
 
 #include "nsfd/mesh/named_mesh.h"
 
@@ -18,32 +19,6 @@ namespace nsfd
 {
   namespace
   {
-    using Vector = std::array<double, 3>;
-
-    Vector operator-(const Vector &a, const Vector &b)
-    {
-      return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}};
-    }
-
-    double dot(const Vector &a, const Vector &b)
-    {
-      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    }
-
-    double norm(const Vector &a) { return std::sqrt(dot(a, a)); }
-
-    Vector cross(const Vector &a, const Vector &b)
-    {
-      return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-               a[0] * b[1] - a[1] * b[0]}};
-    }
-
-    Vector vertex(const NamedMesh &mesh, const unsigned int v)
-    {
-      const double *x = mesh.coordinates.data() + 3 * std::size_t(v);
-      return {{x[0], x[1], x[2]}};
-    }
-
     /** Says no more than three of a kind, and how many there are. */
     class Counted
     {
@@ -79,15 +54,15 @@ namespace nsfd
     class Vectors
     {
     public:
-      void push_back(const Vector &v) { values_[size_++] = v; }
+      void push_back(const MeshVector &v) { values_[size_++] = v; }
       std::size_t size() const { return size_; }
-      const Vector &operator[](const std::size_t i) const { return values_[i]; }
-      const Vector &back() const { return values_[size_ - 1]; }
-      const Vector *begin() const { return values_.data(); }
-      const Vector *end() const { return values_.data() + size_; }
+      const MeshVector &operator[](const std::size_t i) const { return values_[i]; }
+      const MeshVector &back() const { return values_[size_ - 1]; }
+      const MeshVector *begin() const { return values_.data(); }
+      const MeshVector *end() const { return values_.data() + size_; }
 
     private:
-      std::array<Vector, most> values_;
+      std::array<MeshVector, most> values_;
       std::size_t size_ = 0;
     };
 
@@ -95,7 +70,7 @@ namespace nsfd
     struct Body {
       Vectors<8> x;
       Vectors<6> normals; ///< of length 1
-      Vector centre{};
+      MeshVector centre{};
       double width = 0.; ///< the smallest along a normal
 
       Body(const NamedMesh &mesh, const std::size_t c)
@@ -103,7 +78,7 @@ namespace nsfd
         const unsigned int n = mesh.cells.n_vertices(c);
         const unsigned int *v = mesh.cells.begin(c);
         for (unsigned int i = 0; i < n; ++i) {
-          x.push_back(vertex(mesh, v[i]));
+          x.push_back(position(mesh, v[i]));
           for (unsigned int d = 0; d < 3; ++d)
             centre[d] += x.back()[d] / n;
         }
@@ -117,10 +92,10 @@ namespace nsfd
       }
 
       /** Not of length 1. */
-      Vector normal(const std::vector<unsigned int> &face) const
+      MeshVector normal(const std::vector<unsigned int> &face) const
       {
         if (face.size() == 2) {
-          const Vector along = x[face[1]] - x[face[0]];
+          const MeshVector along = x[face[1]] - x[face[0]];
           return {{along[1], -along[0], 0.}};
         }
         // corners of a quad go row by row
@@ -129,17 +104,17 @@ namespace nsfd
                    : cross(x[face[3]] - x[face[0]], x[face[2]] - x[face[1]]);
       }
 
-      void add_normal(const Vector &n)
+      void add_normal(const MeshVector &n)
       {
         const double length = norm(n);
         normals.push_back({{n[0] / length, n[1] / length, n[2] / length}});
       }
 
-      std::pair<double, double> range(const Vector &axis) const
+      std::pair<double, double> range(const MeshVector &axis) const
       {
         std::pair<double, double> result(std::numeric_limits<double>::max(),
                                          -std::numeric_limits<double>::max());
-        for (const Vector &p : x) {
+        for (const MeshVector &p : x) {
           const double s = dot(axis, p);
           result.first = std::min(result.first, s);
           result.second = std::max(result.second, s);
@@ -151,7 +126,7 @@ namespace nsfd
     /// of the thinner cell: by this much, two cells may overlap
     constexpr double tolerated_share = .1;
 
-    bool is_separated_by(const Body &a, const Body &b, const Vector &axis,
+    bool is_separated_by(const Body &a, const Body &b, const MeshVector &axis,
                          const double depth)
     {
       const auto of_a = a.range(axis), of_b = b.range(axis);
@@ -180,15 +155,15 @@ namespace nsfd
     {
       const double depth = tolerated_share * std::min(a.width, b.width);
       for (const Body *body : {&a, &b})
-        for (const Vector &axis : body->normals)
+        for (const MeshVector &axis : body->normals)
           if (is_separated_by(a, b, axis, depth))
             return false;
       if (mesh.dimension == 2)
         return true;
       const auto of_a = edges(mesh, a), of_b = edges(mesh, b);
-      for (const Vector &e : of_a)
-        for (const Vector &f : of_b) {
-          Vector axis = cross(e, f);
+      for (const MeshVector &e : of_a)
+        for (const MeshVector &f : of_b) {
+          MeshVector axis = cross(e, f);
           const double length = norm(axis);
           // parallel edges: the faces have said it
           if (!(length > 1e-8 * norm(e) * norm(f)))
@@ -211,12 +186,12 @@ namespace nsfd
             find_cell_shape(mesh.dimension, mesh.cells.n_vertices(c));
         double smallest = std::numeric_limits<double>::max();
         for (unsigned int i = 0; i < shape->n_corners; ++i) {
-          const Vector origin = vertex(mesh, v[i]);
-          std::array<Vector, 3> edge = {
+          const MeshVector origin = position(mesh, v[i]);
+          std::array<MeshVector, 3> edge = {
               {{{0., 0., 0.}}, {{0., 0., 0.}}, {{0., 0., 1.}}}};
           double lengths = 1.;
           for (unsigned int d = 0; d < mesh.dimension; ++d) {
-            edge[d] = vertex(mesh, v[shape->edges[i][d]]) - origin;
+            edge[d] = position(mesh, v[shape->edges[i][d]]) - origin;
             lengths *= norm(edge[d]);
           }
           const double volume = dot(cross(edge[0], edge[1]), edge[2]);
@@ -235,26 +210,26 @@ namespace nsfd
       }
     }
 
-    struct CellFace {
+    struct FaceOfCell {
       std::array<unsigned int, 4> vertices; ///< sorted
       std::size_t cell;
       unsigned int number;
 
-      bool operator<(const CellFace &other) const
+      bool operator<(const FaceOfCell &other) const
       {
         return vertices < other.vertices ||
                (vertices == other.vertices && cell < other.cell);
       }
     };
 
-    std::vector<CellFace> sorted_faces(const NamedMesh &mesh)
+    std::vector<FaceOfCell> faces_of_cells(const NamedMesh &mesh)
     {
-      std::vector<CellFace> faces;
+      std::vector<FaceOfCell> faces;
       for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
         const auto *shape =
             find_cell_shape(mesh.dimension, mesh.cells.n_vertices(c));
         for (unsigned int f = 0; f < shape->faces.size(); ++f) {
-          CellFace face;
+          FaceOfCell face;
           face.vertices.fill(std::numeric_limits<unsigned int>::max());
           for (unsigned int i = 0; i < shape->faces[f].size(); ++i)
             face.vertices[i] = mesh.cells.begin(c)[shape->faces[f][i]];
@@ -269,7 +244,7 @@ namespace nsfd
     }
 
     /** The two cells of a face must be on its two sides. */
-    void check_folds(const NamedMesh &mesh, const std::vector<CellFace> &faces,
+    void check_folds(const NamedMesh &mesh, const std::vector<FaceOfCell> &faces,
                      std::vector<std::string> &problems)
     {
       Counted folds("faces have both cells on one side", problems);
@@ -279,8 +254,8 @@ namespace nsfd
         const Body a(mesh, faces[i].cell), b(mesh, faces[i + 1].cell);
         const auto &face = find_cell_shape(mesh.dimension, unsigned(a.x.size()))
                                ->faces[faces[i].number];
-        const Vector &normal = a.normals[faces[i].number];
-        Vector middle{};
+        const MeshVector &normal = a.normals[faces[i].number];
+        MeshVector middle{};
         for (const unsigned int j : face)
           for (unsigned int d = 0; d < 3; ++d)
             middle[d] += a.x[j][d] / double(face.size());
@@ -306,8 +281,8 @@ namespace nsfd
 
     Box box_of(const Body &body)
     {
-      Vector lower = body.x[0], upper = body.x[0];
-      for (const Vector &p : body.x)
+      MeshVector lower = body.x[0], upper = body.x[0];
+      for (const MeshVector &p : body.x)
         for (unsigned int d = 0; d < 3; ++d) {
           lower[d] = std::min(lower[d], p[d]);
           upper[d] = std::max(upper[d], p[d]);
@@ -342,7 +317,7 @@ namespace nsfd
     }
 
     void check_overlaps(const NamedMesh &mesh,
-                        const std::vector<CellFace> &faces,
+                        const std::vector<FaceOfCell> &faces,
                         std::vector<std::string> &problems)
     {
       // on warped faces, cells that share one are no convex bodies
@@ -388,10 +363,10 @@ namespace nsfd
   std::string cell_text(const NamedMesh &mesh, const std::size_t cell)
   {
     const unsigned int n = mesh.cells.n_vertices(cell);
-    Vector centre{};
+    MeshVector centre{};
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int d = 0; d < 3; ++d)
-        centre[d] += vertex(mesh, mesh.cells.begin(cell)[i])[d] / n;
+        centre[d] += position(mesh, mesh.cells.begin(cell)[i])[d] / n;
     const std::string name =
         mesh.cells.numbers.empty()
             ? "the cell"
@@ -409,7 +384,7 @@ namespace nsfd
     // of inverted cells, nothing more can be said
     if (problems.size() > n_before)
       return;
-    const std::vector<CellFace> faces = sorted_faces(mesh);
+    const std::vector<FaceOfCell> faces = faces_of_cells(mesh);
     check_folds(mesh, faces, problems);
     check_overlaps(mesh, faces, problems);
   }

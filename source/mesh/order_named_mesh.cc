@@ -3,6 +3,7 @@
 #include "cell_shapes.h"
 #include "check_cells.h"
 #include "mix_bits.h"
+#include "vectors.h"
 
 #include <fmt/format.h>
 
@@ -18,44 +19,20 @@ namespace nsfd
 {
   namespace
   {
-    using Vector = std::array<double, 3>;
     using Elements = NamedMesh::Elements;
 
-    Vector operator-(const Vector &a, const Vector &b)
-    {
-      return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}};
-    }
-
-    double norm(const Vector &a)
-    {
-      return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    }
-
-    double determinant(const Vector &a, const Vector &b, const Vector &c)
-    {
-      return a[0] * (b[1] * c[2] - b[2] * c[1]) +
-             a[1] * (b[2] * c[0] - b[0] * c[2]) +
-             a[2] * (b[0] * c[1] - b[1] * c[0]);
-    }
-
-    Vector vertex(const NamedMesh &mesh, const unsigned int v)
-    {
-      const double *x = mesh.coordinates.data() + 3 * std::size_t(v);
-      return {{x[0], x[1], x[2]}};
-    }
-
-    Vector middle(const NamedMesh &mesh, const Elements &elements,
+    MeshVector middle(const NamedMesh &mesh, const Elements &elements,
                   const std::size_t e)
     {
-      Vector sum{};
+      MeshVector sum{};
       const unsigned int n = elements.n_vertices(e);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int d = 0; d < 3; ++d)
-          sum[d] += vertex(mesh, elements.begin(e)[i])[d] / n;
+          sum[d] += position(mesh, elements.begin(e)[i])[d] / n;
       return sum;
     }
 
-    std::string text(const NamedMesh &mesh, const Vector &p)
+    std::string text(const NamedMesh &mesh, const MeshVector &p)
     {
       return mesh.dimension == 2
                  ? fmt::format("({:g}, {:g})", p[0], p[1])
@@ -136,15 +113,15 @@ namespace nsfd
     {
       if (mesh.dimension == 3)
         return;
-      Vector lower, upper;
+      MeshVector lower, upper;
       lower.fill(std::numeric_limits<double>::max());
       upper.fill(-std::numeric_limits<double>::max());
       for (const unsigned int v : mesh.cells.vertices)
         for (unsigned int d = 0; d < 3; ++d) {
-          lower[d] = std::min(lower[d], vertex(mesh, v)[d]);
-          upper[d] = std::max(upper[d], vertex(mesh, v)[d]);
+          lower[d] = std::min(lower[d], position(mesh, v)[d]);
+          upper[d] = std::max(upper[d], position(mesh, v)[d]);
         }
-      const Vector extent = upper - lower;
+      const MeshVector extent = upper - lower;
       if (extent[2] > 1e-6 * std::max(extent[0], extent[1]))
         problems.push_back(fmt::format(
             "the mesh is not in a plane z = const: z goes from {:g} to {:g}; "
@@ -161,12 +138,12 @@ namespace nsfd
       const unsigned int *v = mesh.cells.begin(c);
       double sum = 0.;
       for (unsigned int i = 0; i < shape.n_corners; ++i) {
-        const Vector origin = vertex(mesh, v[i]);
+        const MeshVector origin = position(mesh, v[i]);
         const auto edge = [&](const unsigned int d) {
-          return vertex(mesh, v[shape.edges[i][d]]) - origin;
+          return position(mesh, v[shape.edges[i][d]]) - origin;
         };
         sum += determinant(edge(0), edge(1),
-                           mesh.dimension == 3 ? edge(2) : Vector{{0., 0., 1.}});
+                           mesh.dimension == 3 ? edge(2) : MeshVector{{0., 0., 1.}});
       }
       return sum;
     }
@@ -205,7 +182,7 @@ namespace nsfd
         for (unsigned int i = 0; i < shape->n_corners; ++i)
           for (const unsigned int j : shape->edges[i]) {
             const double length =
-                norm(vertex(mesh, v[j]) - vertex(mesh, v[i]));
+                norm(position(mesh, v[j]) - position(mesh, v[i]));
             if (length > 0.)
               shortest = std::min(shortest, length);
           }
@@ -224,11 +201,11 @@ namespace nsfd
       };
       std::unordered_map<Bin, std::vector<unsigned int>, decltype(hash)> bins(
           mesh.n_vertices(), hash);
-      const Vector origin = vertex(mesh, 0);
+      const MeshVector origin = position(mesh, 0);
       std::vector<unsigned int> number(mesh.n_vertices());
       for (unsigned int v = 0; v < number.size(); ++v) {
         number[v] = v;
-        const Vector x = vertex(mesh, v);
+        const MeshVector x = position(mesh, v);
         Bin bin{};
         for (unsigned int d = 0; d < mesh.dimension; ++d)
           bin[d] = std::llround((x[d] - origin[d]) / (2. * tolerance));
@@ -240,7 +217,7 @@ namespace nsfd
           const auto found = bins.find(near);
           if (found != bins.end())
             for (const unsigned int w : found->second)
-              if (norm(x - vertex(mesh, w)) <= tolerance)
+              if (norm(x - position(mesh, w)) <= tolerance)
                 number[v] = std::min(number[v], number[w]);
         }
         bins[bin].push_back(v);

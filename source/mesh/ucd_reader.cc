@@ -11,12 +11,12 @@ namespace nsfd
 {
   namespace
   {
-    struct Shape {
+    struct UcdShape {
       unsigned int dimension;
       std::vector<unsigned int> order; ///< from going round to row by row
     };
 
-    const std::map<std::string, Shape> shapes = {
+    const std::map<std::string, UcdShape> ucd_shapes = {
         {"line", {1, {0, 1}}},
         {"tri", {2, {0, 1, 2}}},
         {"quad", {2, {0, 1, 3, 2}}},
@@ -60,8 +60,8 @@ namespace nsfd
       int number = 0;
       std::string type;
       in >> label >> number >> type;
-      const auto shape = shapes.find(type);
-      if (in && shape == shapes.end()) {
+      const auto shape = ucd_shapes.find(type);
+      if (in && shape == ucd_shapes.end()) {
         problems.push_back(fmt::format(
             "cell {} is of the type `{}`; there are line, tri, quad, tet, "
             "prism and hex",

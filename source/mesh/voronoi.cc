@@ -13,36 +13,36 @@ namespace nsfd
 {
   namespace
   {
-    struct Vector {
+    struct PlaneVector {
       double x = 0., y = 0.;
     };
-    Vector operator+(const Vector a, const Vector b)
+    PlaneVector operator+(const PlaneVector a, const PlaneVector b)
     {
       return {a.x + b.x, a.y + b.y};
     }
-    Vector operator-(const Vector a, const Vector b)
+    PlaneVector operator-(const PlaneVector a, const PlaneVector b)
     {
       return {a.x - b.x, a.y - b.y};
     }
-    Vector operator*(const double s, const Vector a)
+    PlaneVector operator*(const double s, const PlaneVector a)
     {
       return {s * a.x, s * a.y};
     }
-    double dot(const Vector a, const Vector b) { return a.x * b.x + a.y * b.y; }
-    double cross(const Vector a, const Vector b)
+    double dot(const PlaneVector a, const PlaneVector b) { return a.x * b.x + a.y * b.y; }
+    double cross(const PlaneVector a, const PlaneVector b)
     {
       return a.x * b.y - a.y * b.x;
     }
-    double norm(const Vector a) { return std::sqrt(dot(a, a)); }
+    double norm(const PlaneVector a) { return std::sqrt(dot(a, a)); }
 
-    using Polygon = std::vector<Vector>;
+    using Polygon = std::vector<PlaneVector>;
 
     /** Sutherland and Hodgman: what has dot(x, n) <= c. */
-    Polygon clipped(const Polygon &polygon, const Vector n, const double c)
+    Polygon clipped(const Polygon &polygon, const PlaneVector n, const double c)
     {
       Polygon result;
       for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        const PlaneVector a = polygon[i], b = polygon[(i + 1) % polygon.size()];
         const double f_a = dot(a, n) - c, f_b = dot(b, n) - c;
         if (f_a <= 0.)
           result.push_back(a);
@@ -61,12 +61,12 @@ namespace nsfd
       return sum;
     }
 
-    Vector centroid(const Polygon &polygon)
+    PlaneVector centroid(const Polygon &polygon)
     {
-      Vector sum;
+      PlaneVector sum;
       double twice_area = 0.;
       for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-        const Vector a = polygon[i] - polygon[0],
+        const PlaneVector a = polygon[i] - polygon[0],
                      b = polygon[i + 1] - polygon[0];
         const double part = cross(a, b);
         twice_area += part;
@@ -76,7 +76,7 @@ namespace nsfd
     }
 
     /** The part of the box that is nearest to each seed. */
-    std::vector<Polygon> diagram(const std::vector<Vector> &seeds,
+    std::vector<Polygon> diagram(const std::vector<PlaneVector> &seeds,
                                  const Polygon &box)
     {
       std::vector<Polygon> grains;
@@ -90,7 +90,7 @@ namespace nsfd
         Polygon grain = box;
         for (const auto &[distance, t] : others) {
           double reach = 0.;
-          for (const Vector p : grain)
+          for (const PlaneVector p : grain)
             reach = std::max(reach, norm(p - seeds[s]));
           if (distance > 2. * reach)
             break; // the bisectors of all others are farther away
@@ -107,16 +107,16 @@ namespace nsfd
     class Network
     {
     public:
-      Network(const std::vector<Polygon> &grains, const Vector size)
+      Network(const std::vector<Polygon> &grains, const PlaneVector size)
           : size_(size)
       {
         // corners of different grains are the same point up to rounding
         constexpr double same = 1e-9;
         for (const Polygon &grain : grains) {
           auto &corners = corners_.emplace_back();
-          for (const Vector p : grain) {
+          for (const PlaneVector p : grain) {
             const auto near = std::find_if(
-                points_.begin(), points_.end(), [&](const Vector q) {
+                points_.begin(), points_.end(), [&](const PlaneVector q) {
                   return std::abs(p.x - q.x) < same &&
                          std::abs(p.y - q.y) < same;
                 });
@@ -126,7 +126,7 @@ namespace nsfd
           }
           drop_repeated(corners);
         }
-        for (Vector &p : points_)
+        for (PlaneVector &p : points_)
           sides_.push_back(sides_of(p));
       }
 
@@ -152,7 +152,7 @@ namespace nsfd
         }
       }
 
-      PlaneRegions regions(const Vector origin, const double scale,
+      PlaneRegions regions(const PlaneVector origin, const double scale,
                            std::vector<std::string> &problems) const
       {
         PlaneRegions result;
@@ -188,7 +188,7 @@ namespace nsfd
           std::numeric_limits<unsigned int>::max();
 
       /** Bits for left, right, bottom, top; puts the point exactly there. */
-      unsigned int sides_of(Vector &p) const
+      unsigned int sides_of(PlaneVector &p) const
       {
         unsigned int bits = 0;
         const auto touch = [&](double &x, const double side,
@@ -233,8 +233,8 @@ namespace nsfd
           corners.pop_back();
       }
 
-      Vector size_;
-      std::vector<Vector> points_;
+      PlaneVector size_;
+      std::vector<PlaneVector> points_;
       std::vector<unsigned int> sides_;
       std::vector<std::vector<unsigned int>> corners_; ///< of every grain
     };
@@ -256,10 +256,10 @@ namespace nsfd
                                     std::vector<std::string> &problems)
     {
       const double scale = grain_size(request);
-      const Vector size = {(request.upper[0] - request.lower[0]) / scale,
+      const PlaneVector size = {(request.upper[0] - request.lower[0]) / scale,
                            (request.upper[1] - request.lower[1]) / scale};
       const Polygon box = {{0., 0.}, {size.x, 0.}, size, {0., size.y}};
-      std::vector<Vector> seeds;
+      std::vector<PlaneVector> seeds;
       for (unsigned int s = 0; s < request.grains; ++s)
         seeds.push_back({random(request.seed, 2 * s) * size.x,
                          random(request.seed, 2 * s + 1) * size.y});
@@ -275,7 +275,7 @@ namespace nsfd
       return network.regions({0., 0.}, 1., problems);
     }
 
-    Vector in_units(const VoronoiRequest &request, const double x,
+    PlaneVector in_units(const VoronoiRequest &request, const double x,
                     const double y)
     {
       const double scale = grain_size(request);
@@ -288,7 +288,7 @@ namespace nsfd
   {
     PlaneRegions regions = grains_of_size_one(request, problems);
     for (std::size_t v = 0; v < regions.x.size(); ++v) {
-      const Vector p = in_units(request, regions.x[v], regions.y[v]);
+      const PlaneVector p = in_units(request, regions.x[v], regions.y[v]);
       regions.x[v] = p.x;
       regions.y[v] = p.y;
     }
@@ -307,7 +307,7 @@ namespace nsfd
                                   request.seconds, problems);
     for (std::size_t v = 0; v < mesh.n_vertices(); ++v) {
       double *p = mesh.coordinates.data() + 3 * v;
-      const Vector x = in_units(request, p[0], p[1]);
+      const PlaneVector x = in_units(request, p[0], p[1]);
       p[0] = x.x;
       p[1] = x.y;
     }

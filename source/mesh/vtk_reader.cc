@@ -9,13 +9,13 @@ namespace nsfd
 {
   namespace
   {
-    struct Shape {
+    struct VtkShape {
       unsigned int dimension;
       std::vector<unsigned int> order; ///< corners in deal.II's order
     };
 
     /** By the number of the type; those of higher order by their corners. */
-    const std::map<int, Shape> shapes = {
+    const std::map<int, VtkShape> vtk_shapes = {
         {3, {1, {0, 1}}},
         {5, {2, {0, 1, 2}}},
         {8, {2, {0, 1, 2, 3}}}, // pixel
@@ -157,8 +157,8 @@ namespace nsfd
     mesh.coordinates = vtk.coordinates;
     std::map<std::pair<unsigned int, int>, unsigned int> group;
     for (std::size_t c = 0; c < vtk.types.size(); ++c) {
-      const auto shape = shapes.find(vtk.types[c]);
-      if (shape == shapes.end())
+      const auto shape = vtk_shapes.find(vtk.types[c]);
+      if (shape == vtk_shapes.end())
         continue; // points, polygons, pyramids
       const auto &[d, order] = shape->second;
       if (d > dimension) {

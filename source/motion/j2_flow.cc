@@ -12,13 +12,13 @@ namespace nsfd
   {
     using Strain = J2Flow::Strain;
 
-    constexpr unsigned int n_entries = 6;
+    constexpr unsigned int n_stresses = 6;
 
     Strain combine(const double a, const Strain &A, const double b,
                    const Strain &B)
     {
       Strain sum;
-      for (unsigned int i = 0; i < n_entries; ++i)
+      for (unsigned int i = 0; i < n_stresses; ++i)
         sum[i] = a * A[i] + b * B[i];
       return sum;
     }
@@ -151,12 +151,12 @@ namespace nsfd
   J2Flow::Tangent J2Flow::elastic_tangent(const double theta) const
   {
     Tangent result{};
-    for (unsigned int j = 0; j < n_entries; ++j) {
+    for (unsigned int j = 0; j < n_stresses; ++j) {
       Strain unit{};
       unit[j] = 1. / voigt_weight<3>(j);
       const Strain column = times_modulus(unit);
-      for (unsigned int i = 0; i < n_entries; ++i)
-        result[i * n_entries + j] = theta * column[i];
+      for (unsigned int i = 0; i < n_stresses; ++i)
+        result[i * n_stresses + j] = theta * column[i];
     }
     return result;
   }
@@ -308,7 +308,7 @@ namespace nsfd
         with_chord ? (R_1 - mean) / dp - hardening_slope(p + dp) / 2. : 0.;
     const double way = contract<3>(direction, change);
     const double share = missing != 0. ? dp * missing / way : 0.;
-    for (unsigned int j = 0; j < n_entries; ++j) {
+    for (unsigned int j = 0; j < n_stresses; ++j) {
       Strain unit{};
       unit[j] = 1. / voigt_weight<3>(j);
       const Parts d_trial = split(times_modulus(unit));
@@ -338,8 +338,8 @@ namespace nsfd
             combine(1., d_stress, (d_work - share * d_way) / way, direction);
         d_stress = combine(1., d_stress, share, d_direction);
       }
-      for (unsigned int i = 0; i < n_entries; ++i)
-        result.tangent[i * n_entries + j] = d_stress[i];
+      for (unsigned int i = 0; i < n_stresses; ++i)
+        result.tangent[i * n_stresses + j] = d_stress[i];
     }
   }
 } // namespace nsfd

@@ -326,4 +326,5 @@ namespace nsfd
 
   INSTANTIATE(2);
   INSTANTIATE(3);
+#undef INSTANTIATE
 } // namespace nsfd

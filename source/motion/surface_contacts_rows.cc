@@ -439,7 +439,4 @@ namespace nsfd
     }
     return rows;
   }
-
-  template class SurfaceContacts<2>;
-  template class SurfaceContacts<3>;
 } // namespace nsfd

@@ -1,4 +1,5 @@
 #include "damage.h"
+#include "springs.h"
 
 #include "nsfd/input/scene_input.h"
 
@@ -9,7 +10,7 @@ namespace nsfd
 {
   namespace
   {
-    double square(const double x) { return x * x; }
+    using springs::square;
 
     /** Squares of the opening and of the slip of a jump. */
     template <int dim>

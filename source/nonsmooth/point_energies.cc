@@ -136,4 +136,5 @@ namespace nsfd
 
   INSTANTIATE(2);
   INSTANTIATE(3);
+#undef INSTANTIATE
 } // namespace nsfd

@@ -902,4 +902,5 @@ namespace nsfd
 
   INSTANTIATE(2);
   INSTANTIATE(3);
+#undef INSTANTIATE
 } // namespace nsfd

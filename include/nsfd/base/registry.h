@@ -85,5 +85,5 @@ namespace nsfd
  * all; `--list` and doc/parameters.md show the first.
  */
 #define NSFD_REGISTER(RegistryType, Class, ...)                                \
-  static const bool NSFD_CONCATENATE(registered_, __LINE__) =                  \
+  static const bool NSFD_CONCATENATE(registered_, __COUNTER__) =                  \
     RegistryType::instance().add<Class>(__VA_ARGS__)
