@@ -184,8 +184,10 @@ namespace nsfd
       const bool in_equilibrium =
           !model_.quasi_static || find_equilibrium(failure);
       build_smooth_motion();
-      start();
+      // all ranks do before anybody can see that the run has begun
       stop_request::remember_signals(watches);
+      communicator_.any(false);
+      start();
       return in_equilibrium ? step_to_the_end() : fail(failure);
     }
 
@@ -927,7 +929,8 @@ namespace nsfd
       const auto &output = input_.output;
       std::cout << run_end_text(
           summary_, certificate, state_.broken_area,
-          output.directory + (output.report ? "/report.html" : "/"), false);
+          output.directory + (output.report ? "/report.html" : "/"),
+          options_.verbose);
     }
   } // namespace
 
