@@ -19,6 +19,8 @@ namespace nsfd
 {
   namespace
   {
+    using namespace mesh_vectors;
+
     /** Says no more than three of a kind, and how many there are. */
     class Counted
     {

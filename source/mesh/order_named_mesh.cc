@@ -19,6 +19,8 @@ namespace nsfd
 {
   namespace
   {
+    using namespace mesh_vectors;
+
     using Elements = NamedMesh::Elements;
 
     MeshVector middle(const NamedMesh &mesh, const Elements &elements,

@@ -5,7 +5,8 @@
 #include <array>
 #include <cmath>
 
-namespace nsfd
+/** Of meshes of files. */
+namespace nsfd::mesh_vectors
 {
   /** Of the space that meshes of files live in, m. */
   using MeshVector = std::array<double, 3>;
@@ -41,4 +42,4 @@ namespace nsfd
     const double *x = mesh.coordinates.data() + 3 * std::size_t(v);
     return {{x[0], x[1], x[2]}};
   }
-} // namespace nsfd
+} // namespace nsfd::mesh_vectors

@@ -362,7 +362,7 @@ namespace nsfd
     std::string BodyPicture::colour_bar(const double y) const
     {
       const bool stress = options_.colouring == Colouring::stress;
-      const UnitScale unit =
+      const DisplayUnit unit =
           axis_scale(options_.colour_max, stress ? "Pa" : "m/s");
       const double bar = 170., x0 = options_.width - bar - 16.;
       const unsigned int n_parts = 50;

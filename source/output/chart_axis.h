@@ -30,7 +30,7 @@ namespace nsfd
     double lower = 0., upper = 1.; ///< log10 of the values if logarithmic
     double pixel_lower = 0., pixel_upper = 1.;
     bool logarithmic = false;
-    UnitScale scale;
+    DisplayUnit scale;
     std::vector<Tick> ticks;
 
     bool shows(const double value) const

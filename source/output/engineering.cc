@@ -56,14 +56,14 @@ namespace nsfd
     return !text.empty() && text[0] == '-' ? "−" + text.substr(1) : text;
   }
 
-  UnitScale engineering_scale(const double largest, const std::string &unit)
+  DisplayUnit engineering_scale(const double largest, const std::string &unit)
   {
     const int power = power_of(unit);
     const double size = std::abs(largest);
     if (unit.empty() || size == 0. || !std::isfinite(size))
       return {1., unit};
 
-    UnitScale scale{1., unit};
+    DisplayUnit scale{1., unit};
     for (const auto &prefix : prefixes) {
       const double factor = std::pow(10., power * prefix.exponent);
       if (unit == "s" && prefix.exponent > 0)
@@ -85,7 +85,7 @@ namespace nsfd
     if (value == 0.)
       return "0" + suffix;
 
-    const UnitScale scale = engineering_scale(value, unit);
+    const DisplayUnit scale = engineering_scale(value, unit);
     const double scaled = value / scale.factor;
     const double size = std::abs(scaled);
     const bool seconds = unit == "s";
@@ -103,9 +103,9 @@ namespace nsfd
            (scale.unit.empty() ? "" : " " + scale.unit);
   }
 
-  UnitScale axis_scale(const double largest, const std::string &unit)
+  DisplayUnit axis_scale(const double largest, const std::string &unit)
   {
-    UnitScale scale = engineering_scale(largest, unit);
+    DisplayUnit scale = engineering_scale(largest, unit);
     const double value = std::abs(largest) / scale.factor;
     if (value > 0. && std::isfinite(value) && (value < 1e-2 || value >= 1e5)) {
       const int exponent = 3 * int(std::floor(std::log10(value) / 3.));

@@ -23,7 +23,7 @@ using namespace nsfd;
 using nsfd::test::entries_of;
 using nsfd::test::make_law;
 
-namespace
+namespace test_laws_contract
 {
   /** Kinks of the envelope, in order. */
   std::vector<double> kinks(const CohesiveLaw &law)
@@ -597,4 +597,4 @@ namespace
   }
 
   TEST(LawsContract, RandomPaths) { expect_for_all_laws(random_paths); }
-} // namespace
+} // namespace test_laws_contract

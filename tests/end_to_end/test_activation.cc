@@ -8,7 +8,7 @@
 
 // Extrinsic laws are rigid until their strength is reached, and begin there.
 
-namespace end_to_end
+namespace end_to_end::test_activation
 {
   namespace
   {
@@ -255,4 +255,4 @@ end
 
   INSTANTIATE_TEST_SUITE_P(Laws, ActivationTest, testing::ValuesIn(laws),
                            [](const auto &info) { return info.param.name; });
-} // namespace end_to_end
+} // namespace end_to_end::test_activation

@@ -10,7 +10,7 @@
 
 // The modulus of a bar whose faces are springs, on meshes that are refined.
 
-namespace end_to_end
+namespace end_to_end::test_adaptive_springs
 {
   namespace
   {
@@ -161,4 +161,4 @@ end
                    energy_difference(one.history, more.history), 1e-9);
     }
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_adaptive_springs

@@ -9,7 +9,7 @@
 
 // Meshes that follow the motion: orders on hanging faces, books, ranks.
 
-namespace end_to_end
+namespace end_to_end::test_adaptivity
 {
   namespace
   {
@@ -145,4 +145,4 @@ end
                    degree + 1. - std::log2(error[1] / error[2]), 0.2);
     }
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_adaptivity

@@ -11,7 +11,7 @@
 // Faces joined through the bulk against exact values: the same scenes as with
 // rigid rows, and what rigid rows cannot do.
 
-namespace end_to_end
+namespace end_to_end::test_bonded
 {
   namespace
   {
@@ -138,4 +138,4 @@ namespace end_to_end
                           1.),
                  0.1);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_bonded

@@ -7,7 +7,7 @@
 
 // What a run says of itself when it ends.
 
-namespace end_to_end
+namespace end_to_end::test_certificate
 {
   namespace
   {
@@ -376,4 +376,4 @@ end
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(outcome.out, "");
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_certificate

@@ -10,7 +10,7 @@
 
 // What the shell sees: exit codes, messages, and which files appear.
 
-namespace end_to_end
+namespace end_to_end::test_command_line
 {
   namespace fs = std::filesystem;
 
@@ -439,4 +439,4 @@ end
 
   INSTANTIATE_TEST_SUITE_P(Table, CheckTest, testing::ValuesIn(not_finite),
                            [](const auto &info) { return info.param.name; });
-} // namespace end_to_end
+} // namespace end_to_end::test_command_line

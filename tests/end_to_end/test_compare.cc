@@ -7,7 +7,7 @@
 
 // `nsfd compare`: what differs between runs.
 
-namespace end_to_end
+namespace end_to_end::test_compare
 {
   namespace fs = std::filesystem;
 
@@ -233,4 +233,4 @@ namespace end_to_end
     EXPECT_NE(nsfd(workspace, {"--help"}).out.find("nsfd compare"),
               std::string::npos);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_compare

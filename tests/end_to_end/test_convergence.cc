@@ -7,7 +7,7 @@
 
 // Errors of verification scenes fall with mesh and step as they should.
 
-namespace end_to_end
+namespace end_to_end::test_convergence
 {
   namespace
   {
@@ -69,4 +69,4 @@ namespace end_to_end
                                c = c == '-' ? '_' : c;
                              return name;
                            });
-} // namespace end_to_end
+} // namespace end_to_end::test_convergence

@@ -7,7 +7,7 @@
 
 // A scene does not pay for parts that it does not name.
 
-namespace end_to_end
+namespace end_to_end::test_cost
 {
   namespace
   {
@@ -80,4 +80,4 @@ namespace end_to_end
 
   INSTANTIATE_TEST_SUITE_P(Table, CostTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
-} // namespace end_to_end
+} // namespace end_to_end::test_cost

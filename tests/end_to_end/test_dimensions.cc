@@ -6,7 +6,7 @@
 
 // What is exact in one dimension is so in a plane strip and in a column.
 
-namespace end_to_end
+namespace end_to_end::test_dimensions
 {
   namespace
   {
@@ -72,4 +72,4 @@ namespace end_to_end
                  "solver tolerance 1e-12 at steps of 40 crossings");
     expect_below("stress", result.error("stress"), 5e-8);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_dimensions

@@ -7,7 +7,7 @@
 
 // Extreme scenes: hardly anything in them, or more than a step can solve.
 
-namespace end_to_end
+namespace end_to_end::test_extremes
 {
   namespace fs = std::filesystem;
 
@@ -323,4 +323,4 @@ end
     EXPECT_LT(shortest, 0.26 * steps[1]);
     EXPECT_EQ(steps.back(), steps[1]);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_extremes

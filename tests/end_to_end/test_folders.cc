@@ -8,7 +8,7 @@
 // Folders of results: whose files are replaced, who writes to them, and what is
 // said when that is not possible.
 
-namespace end_to_end
+namespace end_to_end::test_folders
 {
   namespace fs = std::filesystem;
 
@@ -233,4 +233,4 @@ namespace end_to_end
             .exit_code,
         7);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_folders

@@ -8,7 +8,7 @@
 
 // Faces that break at once, hardly cost anything, or never break.
 
-namespace end_to_end
+namespace end_to_end::test_fracture_extremes
 {
   namespace
   {
@@ -198,4 +198,4 @@ end
     EXPECT_GT(n_broken, 0u);
     EXPECT_GT(n_held, 0u);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_fracture_extremes

@@ -9,7 +9,7 @@
 
 // fragments.csv: what the pieces of a run are, whoever computed it.
 
-namespace end_to_end
+namespace end_to_end::test_fragments
 {
   namespace
   {
@@ -107,4 +107,4 @@ namespace end_to_end
     EXPECT_EQ(rows["fragment"][0], 0.);
     EXPECT_EQ(rows["fragment"][1], 1.);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_fragments

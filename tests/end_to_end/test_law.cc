@@ -7,7 +7,7 @@
 
 // `nsfd law`: the files it writes, and when it refuses.
 
-namespace end_to_end
+namespace end_to_end::test_law
 {
   namespace fs = std::filesystem;
 
@@ -328,4 +328,4 @@ namespace end_to_end
               all_files);
     EXPECT_EQ(run("tvergard").exit_code, 1);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_law

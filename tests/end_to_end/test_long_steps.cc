@@ -6,7 +6,7 @@
 // depends neither on stiffness nor on step, the same result from both solvers
 // and on any number of ranks.
 
-namespace end_to_end
+namespace end_to_end::test_long_steps
 {
   namespace
   {
@@ -111,4 +111,4 @@ namespace end_to_end
                      "100 times the tolerance");
       }
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_long_steps

@@ -12,7 +12,7 @@
 // and used as the scene means it, and the first steps in space keep momentum
 // and energy.
 
-namespace end_to_end
+namespace end_to_end::test_mesh_scenes
 {
   namespace
   {
@@ -139,4 +139,4 @@ namespace end_to_end
     EXPECT_EQ(result.dissipated("damage"), 0.);
     EXPECT_GT(result.number("work"), 0.);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_mesh_scenes

@@ -10,7 +10,7 @@
 // Meshes of files in whole runs: exact uniform stress, open cracks by group,
 // any number of ranks, what a user reads about his mesh, and bad files.
 
-namespace end_to_end
+namespace end_to_end::test_meshes
 {
   namespace
   {
@@ -293,4 +293,4 @@ namespace end_to_end
     // nothing breaks inside a grain
     EXPECT_LE(result.number("fragments"), 6);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_meshes

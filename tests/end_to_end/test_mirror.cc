@@ -8,7 +8,7 @@
 // A scene and its copy in the mirror, x -> L - x, behave alike: nothing in the
 // program prefers a side.
 
-namespace end_to_end
+namespace end_to_end::test_mirror
 {
   namespace
   {
@@ -138,4 +138,4 @@ namespace end_to_end
 
   INSTANTIATE_TEST_SUITE_P(Table, MirrorTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
-} // namespace end_to_end
+} // namespace end_to_end::test_mirror

@@ -9,7 +9,7 @@
 // Files of observables: the same on any number of ranks, continued by a
 // resumed run, and in agreement with what else a run writes.
 
-namespace end_to_end
+namespace end_to_end::test_observables
 {
   namespace fs = std::filesystem;
 
@@ -318,4 +318,4 @@ end
     EXPECT_NE(unknown.err.find("on = topp"), std::string::npos) << unknown.err;
     EXPECT_NE(unknown.err.find("`top`"), std::string::npos) << unknown.err;
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_observables

@@ -10,7 +10,7 @@
 // Orders of convergence on smooth solutions: p + 1 for the displacement, p for
 // the stress, 2 in the step for theta = 1/2 and 1 beyond, with bonded faces.
 
-namespace end_to_end
+namespace end_to_end::test_orders
 {
   namespace
   {
@@ -218,4 +218,4 @@ namespace end_to_end
       EXPECT_NEAR(rate(coarse, fine), row.order, 0.15);
     }
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_orders

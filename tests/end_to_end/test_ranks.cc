@@ -9,7 +9,7 @@
 // One, two and four ranks give the same files: bit for bit on the element-wise
 // path, to 1e-9 with global solves. What is wrong is said once.
 
-namespace end_to_end
+namespace end_to_end::test_ranks
 {
   namespace
   {
@@ -386,4 +386,4 @@ namespace end_to_end
   INSTANTIATE_TEST_SUITE_P(Table, BadInputRanksTest,
                            testing::ValuesIn(bad_inputs),
                            [](const auto &info) { return info.param.name; });
-} // namespace end_to_end
+} // namespace end_to_end::test_ranks

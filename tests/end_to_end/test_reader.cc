@@ -4,7 +4,7 @@
 
 // What is found out when the mesh is there: with file and line, exit code 1.
 
-namespace end_to_end
+namespace end_to_end::test_reader
 {
   namespace
   {
@@ -122,4 +122,4 @@ end
     expect(check(bodies + rigid + long_time), 1,
            "a.prm:19: error: Time/end: 1e+17 s in steps of 0.1 s are 1e+18");
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_reader

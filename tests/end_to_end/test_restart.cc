@@ -15,7 +15,7 @@
 // Runs that end in the middle of things and go on: their histories are those
 // of runs that were never interrupted, to the last bit.
 
-namespace end_to_end
+namespace end_to_end::test_restart
 {
   namespace fs = std::filesystem;
 
@@ -386,4 +386,4 @@ namespace end_to_end
     std::cout << "  " << done << " kills, " << fresh << " runs from the start, "
               << finished + 1 << " completed\n";
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_restart

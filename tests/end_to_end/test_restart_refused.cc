@@ -8,7 +8,7 @@
 // Checkpoints that cannot be read or written: what is said, and that nothing
 // is lost.
 
-namespace end_to_end
+namespace end_to_end::test_restart_refused
 {
   namespace fs = std::filesystem;
 
@@ -220,4 +220,4 @@ namespace end_to_end
         << outcome.err;
     EXPECT_TRUE(before == contents(directory));
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_restart_refused

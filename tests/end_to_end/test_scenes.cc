@@ -11,7 +11,7 @@
 // Every scene of prm/verification runs as it is, writes what a user is
 // promised, and meets its exact solution.
 
-namespace end_to_end
+namespace end_to_end::test_scenes
 {
   namespace
   {
@@ -1014,4 +1014,4 @@ end
     for (std::size_t i = 0; i < stress.size(); ++i)
       ASSERT_NEAR(stress[i], exact[i % 6], 1e-9) << "component " << i % 6;
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_scenes

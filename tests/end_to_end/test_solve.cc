@@ -8,7 +8,7 @@
 // `nsfd solve`: exit codes, the committed problems with every solver, the
 // public ones where they are at hand.
 
-namespace end_to_end
+namespace end_to_end::test_solve
 {
   namespace fs = std::filesystem;
 
@@ -136,4 +136,4 @@ namespace end_to_end
         << outcome.out << outcome.err;
     EXPECT_EQ(outcome.exit_code, 0);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_solve

@@ -9,7 +9,7 @@
 // (Impulses and tractions need not agree: rigid rows around a vertex and
 // several contacts of a rigid block are hyperstatic.)
 
-namespace end_to_end
+namespace end_to_end::test_solvers
 {
   namespace
   {
@@ -239,4 +239,4 @@ namespace end_to_end
     ASSERT_TRUE(result.completed());
     expect_below("damage", result.error("damage"), 1e-4);
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_solvers

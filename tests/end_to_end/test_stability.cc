@@ -8,7 +8,7 @@
 
 // Stiff and extreme scenes of prm/stability: doc/stability.md is their table.
 
-namespace end_to_end
+namespace end_to_end::test_stability
 {
   namespace
   {
@@ -501,4 +501,4 @@ namespace end_to_end
                      (2e-3 * std::sqrt(2. * 9.81 * n * gap)),
                  1., "seen within the last half of a step");
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_stability

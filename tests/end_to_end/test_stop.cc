@@ -10,7 +10,7 @@
 
 // Signals that ask a run to end, at moments when no step is about to.
 
-namespace end_to_end
+namespace end_to_end::test_stop
 {
   namespace fs = std::filesystem;
 
@@ -168,4 +168,4 @@ namespace end_to_end
       EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
     EXPECT_TRUE(fs::is_directory(newest(directory) / "mine"));
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_stop

@@ -11,7 +11,7 @@
 
 // `nsfd study`: folders, tables, orders, what happens when something fails.
 
-namespace end_to_end
+namespace end_to_end::test_study
 {
   namespace fs = std::filesystem;
 
@@ -334,4 +334,4 @@ namespace end_to_end
       EXPECT_EQ(one["reproducible"], true);
     }
   }
-} // namespace end_to_end
+} // namespace end_to_end::test_study

@@ -11,7 +11,7 @@
 // Copies of a scene in bare numbers of other units give the same dimensionless
 // results: there is no absolute tolerance in the program.
 
-namespace end_to_end
+namespace end_to_end::test_units
 {
   namespace
   {
@@ -192,4 +192,4 @@ namespace end_to_end
 
   INSTANTIATE_TEST_SUITE_P(Table, UnitsTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
-} // namespace end_to_end
+} // namespace end_to_end::test_units

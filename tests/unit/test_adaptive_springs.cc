@@ -11,7 +11,7 @@
 // Springs that become stiffer with smaller cells, so that the modulus of a body
 // stays: states of uniform stress by hand, and damage over changes by chance.
 
-namespace nsfd
+namespace nsfd::test_adaptive_springs
 {
   using namespace test;
 
@@ -366,4 +366,4 @@ subsection Indicator: any
           make_input(text(2, 1, law, "  set springs = constant stiffness\n")));
     }
   }
-} // namespace nsfd
+} // namespace nsfd::test_adaptive_springs

@@ -8,7 +8,7 @@
 
 // Meshes that change by chance: what a change keeps, and what it may not do.
 
-namespace nsfd
+namespace nsfd::test_adaptivity
 {
   using namespace test;
 
@@ -158,4 +158,4 @@ end
         ASSERT_NEAR(mesh.state.velocity[i], mesh.state.displacement[i], 1e-12);
     }
   }
-} // namespace nsfd
+} // namespace nsfd::test_adaptivity

@@ -14,7 +14,7 @@ using namespace nsfd::test;
 // What --check computes, against closed forms of Acary and Monerie, 3.1-3.2,
 // and of the moduli of regular meshes.
 
-namespace
+namespace test_advice
 {
   std::string mesh_text(const std::string &type, const unsigned int dim,
                         const unsigned int p)
@@ -52,7 +52,6 @@ end
     return face_families(*scene.input, *scene.discretization,
                          std::pow(double(p), dim), scene.communicator)[0];
   }
-} // namespace
 
 // Cells of side 1: Z per mesh, and the compliance that patch tests measure,
 // 1/E_eff = 1/E + (1 - 1/p)/C_N + k (1/C_N + 1/C_T), C_N = 5, C_T = 2. The
@@ -225,3 +224,4 @@ TEST(Advice, BoundByBodiesIsOnTheSafeSide)
       EXPECT_GE(number, 0.3) << type << " " << degree;
     }
 }
+} // namespace test_advice

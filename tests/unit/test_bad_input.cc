@@ -11,7 +11,7 @@
 // message that names parameter and value. Every case changes one place of a
 // scene that is right.
 
-namespace nsfd
+namespace nsfd::test_bad_input
 {
   namespace
   {
@@ -552,4 +552,4 @@ end
                            [](const testing::TestParamInfo<BadInput> &info) {
                              return info.param.name;
                            });
-} // namespace nsfd
+} // namespace nsfd::test_bad_input

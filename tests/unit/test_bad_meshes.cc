@@ -17,7 +17,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_bad_meshes
 {
   struct File {
     std::vector<std::string> nodes;
@@ -55,7 +55,6 @@ namespace
     const TemporaryFile written("bad.geo", text);
     return errors_of(mesh_scene(2, written.entries(more)));
   }
-} // namespace
 
 TEST(BadMeshes, FoldedCells)
 {
@@ -228,3 +227,4 @@ TEST(BadMeshes, OptionsBesideAFileAreNotRead)
   EXPECT_EQ(errors_of_mesh(2, {{"0 0 0", "1 0 0", "0 1 0"}, {"2 2 1 1 1 2 3"}}),
             "");
 }
+} // namespace test_bad_meshes

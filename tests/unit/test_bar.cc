@@ -15,7 +15,7 @@
 
 using namespace nsfd;
 
-namespace
+namespace test_bar
 {
   /** A law by its name, with the bar of the given entries. */
   std::unique_ptr<LawInput> read(const std::string &law,
@@ -75,7 +75,6 @@ namespace
     };
     return 0.5 + F(u) - F(1.);
   }
-} // namespace
 
 // U falls where |T'| = 4/(1+u)^2 - 1 exceeds k.
 TEST(BarJump, MichelSuquet)
@@ -324,8 +323,6 @@ TEST(Bar, MassTakesWhatTheJumpLeaves)
     EXPECT_NEAR(std::log10(errors[i] / errors[i + 1]), 0.8, 0.05);
 }
 
-namespace
-{
   /** States and ends at which the law falls most steeply. */
   struct Scan {
     Interaction interaction;
@@ -393,7 +390,6 @@ namespace
       }
     return ends;
   }
-} // namespace
 
 // M / (S theta h^2) + theta k > chi max |T'|: below that step one opening
 // solves it, found from every start; 1 % above it there are several.
@@ -463,3 +459,4 @@ TEST(Bar, UniqueStepOfACell)
   EXPECT_TRUE(std::isinf(unique_step(*law, bar)));
   EXPECT_EQ(unique_step(*gate().law, bar), 0.);
 }
+} // namespace test_bar

@@ -17,7 +17,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_body_system
 {
   /**
    * Four bodies of one node each that meet at a vertex:
@@ -228,4 +228,4 @@ namespace
     compare<2>();
     compare<3>();
   }
-} // namespace
+} // namespace test_body_system

@@ -16,7 +16,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_body_table
 {
   TEST(BodyTable, NumbersBodiesByTheirFirstCells)
   {
@@ -80,4 +80,4 @@ namespace
 
   INSTANTIATE_TEST_SUITE_P(Ranks, PartitionTest,
                            testing::Values(1, 2, 3, 5, 8));
-} // namespace
+} // namespace test_body_table

@@ -15,7 +15,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_bonded
 {
   using Vector = std::vector<double>;
 
@@ -449,4 +449,4 @@ end
     // what bonds had stored is little against what breaking takes
     EXPECT_LE(std::abs(e.numerical), 0.05 * e.damage);
   }
-} // namespace
+} // namespace test_bonded

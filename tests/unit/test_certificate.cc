@@ -12,7 +12,7 @@
 
 // What a run may say of itself.
 
-namespace nsfd
+namespace nsfd::test_certificate
 {
   namespace
   {
@@ -363,4 +363,4 @@ namespace nsfd
     ASSERT_TRUE(both);
     EXPECT_NEAR(both->length, length / (1.5 * 1.5), 1e-12 * length);
   }
-} // namespace nsfd
+} // namespace nsfd::test_certificate

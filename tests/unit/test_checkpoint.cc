@@ -12,7 +12,7 @@
 #include <limits>
 #include <numeric>
 
-namespace
+namespace test_checkpoint
 {
   using namespace nsfd;
   namespace fs = std::filesystem;
@@ -43,7 +43,6 @@ namespace
     checkpoint_file::seal(bytes);
     return bytes;
   }
-} // namespace
 
 TEST(Checkpoint, HoldsTheBitsOfItsNumbers)
 {
@@ -202,3 +201,4 @@ TEST(Checkpoint, OrdersByKeys)
   }
   EXPECT_EQ(order.scatter(all, 2), values);
 }
+} // namespace test_checkpoint

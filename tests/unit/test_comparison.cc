@@ -8,7 +8,7 @@
 // Numbers and curves of runs that are made up, so that their differences are
 // known.
 
-namespace nsfd
+namespace nsfd::test_comparison
 {
   namespace
   {
@@ -119,4 +119,4 @@ namespace nsfd
     EXPECT_EQ(found[4], 0.);
     EXPECT_TRUE(std::isnan(found[5]));
   }
-} // namespace nsfd
+} // namespace nsfd::test_comparison

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace test_condense
 {
   using namespace nsfd;
   using nsfd::test::Scene;
@@ -108,4 +108,4 @@ end
     EXPECT_EQ(contacts.n_contacts(), 0u);
     EXPECT_TRUE(contacts.value.empty());
   }
-} // namespace
+} // namespace test_condense

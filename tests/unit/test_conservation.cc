@@ -17,7 +17,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_conservation
 {
   using Vector = std::vector<double>;
 
@@ -646,4 +646,4 @@ end
     close_books(old, next, report);
     EXPECT_TRUE(std::isnan(report.ledger_defect));
   }
-} // namespace
+} // namespace test_conservation

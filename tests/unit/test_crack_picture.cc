@@ -11,7 +11,7 @@
 
 // Pictures of cracks inside a body in space.
 
-namespace nsfd
+namespace nsfd::test_crack_picture
 {
   namespace
   {
@@ -144,4 +144,4 @@ namespace nsfd
     EXPECT_EQ(cells(whole).find("<path"), std::string::npos);
     EXPECT_NE(cells(cracked).find("<path"), std::string::npos);
   }
-} // namespace nsfd
+} // namespace nsfd::test_crack_picture

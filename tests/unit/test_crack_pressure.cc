@@ -12,7 +12,7 @@
 // next to each other: accelerations are numbers by hand, and 1e-12 is the
 // round-off of some hundred steps.
 
-namespace nsfd
+namespace nsfd::test_crack_pressure
 {
   namespace
   {
@@ -229,4 +229,4 @@ end
         }
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_crack_pressure

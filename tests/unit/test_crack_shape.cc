@@ -8,7 +8,7 @@
 
 // Length, direction and extent of cracks whose faces are known.
 
-namespace nsfd
+namespace nsfd::test_crack_shape
 {
   namespace
   {
@@ -189,4 +189,4 @@ namespace nsfd
     EXPECT_NEAR(angle_between(0., 90.), 90., round_off);
     EXPECT_NEAR(angle_between(-30., 45.), 75., round_off);
   }
-} // namespace nsfd
+} // namespace nsfd::test_crack_shape

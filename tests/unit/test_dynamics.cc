@@ -21,7 +21,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_dynamics
 {
   using Vector = std::vector<double>;
 
@@ -811,4 +811,4 @@ end
                   1e-12 * std::sqrt(dot(r, z) * dot(s, y)));
     }
   }
-} // namespace
+} // namespace test_dynamics

@@ -18,7 +18,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_elasticity
 {
   using Stress = std::array<double, 6>;
   using Gradient3 = std::array<double, 9>;
@@ -518,4 +518,4 @@ end
                                      "  set Poisson ratio = 0.3")),
                  {"depends on t"});
   }
-} // namespace
+} // namespace test_elasticity

@@ -16,7 +16,7 @@
 
 using namespace nsfd;
 
-namespace
+namespace test_explained_cost
 {
   void burn(const double seconds)
   {
@@ -148,4 +148,4 @@ end
     EXPECT_NE(text.find("80 % of the nearer limit (copy)"), std::string::npos)
         << text;
   }
-} // namespace
+} // namespace test_explained_cost

@@ -14,7 +14,7 @@
 
 // Mass, place, momentum, spin and energy of fragments whose motion is known.
 
-namespace nsfd
+namespace nsfd::test_fragment_motion
 {
   using namespace space;
   using test::Scene;
@@ -500,4 +500,4 @@ end
                                       "Interface: cut/strength=1",
                                       "Interface: cut/toughness=1"}));
   }
-} // namespace nsfd
+} // namespace nsfd::test_fragment_motion

@@ -10,7 +10,7 @@
 
 using namespace nsfd;
 
-namespace
+namespace test_gmsh_script
 {
   struct Filtered {
     std::string text;
@@ -43,7 +43,6 @@ namespace
     for (const std::string &problem : filtered(text).problems)
       ADD_FAILURE() << text << "\n" << problem;
   }
-} // namespace
 
 TEST(GmshScript, CommandsAreRefusedByNameAndLine)
 {
@@ -207,3 +206,4 @@ TEST(GmshScript, ListedWordsAreOneThingOnly)
   EXPECT_EQ(classify_gmsh_word("my_length"), GmshWord::free);
   EXPECT_EQ(deed_of_gmsh_word("Save"), "writes a file");
 }
+} // namespace test_gmsh_script

@@ -14,7 +14,7 @@
 
 using namespace nsfd;
 
-namespace
+namespace test_history_material
 {
   constexpr double young = 70e9, poisson = 0.3, yield = 300e6;
 
@@ -511,4 +511,4 @@ namespace
       EXPECT_GT(seen, 5u);
     }
   }
-} // namespace
+} // namespace test_history_material

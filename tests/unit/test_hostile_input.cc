@@ -22,7 +22,7 @@
 // Input that nobody means well with: it is refused in a moment, whatever its
 // size, and what is refused names its file and line.
 
-namespace nsfd
+namespace nsfd::test_hostile_input
 {
   namespace
   {
@@ -298,4 +298,4 @@ end
     EXPECT_EQ(n_steps(840., 1. + 2e-9), 840u);
     EXPECT_EQ(n_steps(840., 1. - 1e-4), 841u);
   }
-} // namespace nsfd
+} // namespace nsfd::test_hostile_input

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace
+namespace test_hyperelastic
 {
   using namespace nsfd;
 
@@ -888,4 +888,4 @@ namespace
       EXPECT_EQ(v, flight.v);
     });
   }
-} // namespace
+} // namespace test_hyperelastic

@@ -15,7 +15,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_inelastic_motion
 {
   /** A block that strains and turns, and flows soon. */
   const std::string block = R"(
@@ -319,4 +319,4 @@ end
       EXPECT_LT(norm(difference(momenta(scene)[0], start[0])), 1e-10);
     }
   }
-} // namespace
+} // namespace test_inelastic_motion

@@ -15,7 +15,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace nsfd
+namespace nsfd::test_input
 {
   namespace
   {
@@ -851,4 +851,4 @@ end
     fails({"--resume"}, "no parameter file is named");
     fails({"a.prm", "--force=maybe"}, "--force");
   }
-} // namespace nsfd
+} // namespace nsfd::test_input

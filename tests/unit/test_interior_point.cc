@@ -14,7 +14,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_interior_point
 {
   /** A square hit by a pulse, a share of its faces broken and closed. */
   std::string square(const std::string &interface, const std::string &more = "")
@@ -217,4 +217,4 @@ namespace
     for (unsigned int k = 0; k < 4; ++k)
       EXPECT_NO_THROW(scene.advance()) << k;
   }
-} // namespace
+} // namespace test_interior_point

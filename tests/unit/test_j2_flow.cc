@@ -14,7 +14,7 @@
 
 using namespace nsfd;
 
-namespace
+namespace test_j2_flow
 {
   using Strain = J2Flow::Strain;
 
@@ -418,4 +418,4 @@ namespace
       EXPECT_GT(flowing, 100u);
     }
   }
-} // namespace
+} // namespace test_j2_flow

@@ -16,7 +16,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_large_motion
 {
   /** With bodies that do not strain. */
   std::string rigid(std::string text, const std::string &entries)
@@ -814,4 +814,4 @@ end
     RecordProperty("deepest", std::to_string(deepest));
     RecordProperty("bound", std::to_string(fastest * scene.time_step));
   }
-} // namespace
+} // namespace test_large_motion

@@ -13,7 +13,7 @@
 // it. Every wrong case changes one place of a scene that is right, and gives
 // one error, at its line.
 
-namespace nsfd
+namespace nsfd::test_large_motion_input
 {
   namespace
   {
@@ -808,4 +808,4 @@ end
     EXPECT_FALSE(scene->boundaries[1].velocity[0]->depends_on_position());
     EXPECT_FALSE(Expression(3.).depends_on_position());
   }
-} // namespace nsfd
+} // namespace nsfd::test_large_motion_input

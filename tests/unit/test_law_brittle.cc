@@ -3,7 +3,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_law_brittle
 {
   TEST(Brittle, ClosedForms)
   {
@@ -84,4 +84,4 @@ namespace
     expect_error("brittle", {{"stiffness", "0"}, {"strength", "10 MPa"}},
                  "stiffness = 0");
   }
-} // namespace
+} // namespace test_law_brittle

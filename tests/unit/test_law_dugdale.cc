@@ -3,7 +3,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_law_dugdale
 {
   TEST(Dugdale, ClosedForms)
   {
@@ -73,4 +73,4 @@ namespace
     expect_error("dugdale", {{"strength", "-1"}, {"toughness", "1"}},
                  "strength = -1");
   }
-} // namespace
+} // namespace test_law_dugdale

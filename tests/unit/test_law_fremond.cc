@@ -9,7 +9,7 @@ using namespace nsfd::test;
 
 // The thermodynamic form (7)-(11), and adhesion with viscosity.
 
-namespace
+namespace test_law_fremond
 {
   using Entries = LawEntries;
 
@@ -232,4 +232,4 @@ end
                 std::sqrt(rest->beta(rest->elastic_limit() + 1.)), 1e-6);
     EXPECT_NEAR(fast.viscous, 0., 1e-4);
   }
-} // namespace
+} // namespace test_law_fremond

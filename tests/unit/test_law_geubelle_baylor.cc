@@ -3,7 +3,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_law_geubelle_baylor
 {
   // d_c = 2 um, S_i = 0.98, hence d_0 = 0.04 um
   std::unique_ptr<CohesiveLaw> geubelle_baylor(const std::string &strength)
@@ -145,4 +145,4 @@ namespace
                   {"initial strength parameter", "1"}},
                  "initial strength parameter = 1");
   }
-} // namespace
+} // namespace test_law_geubelle_baylor

@@ -16,7 +16,7 @@
 
 using namespace nsfd;
 
-namespace
+namespace test_law_path
 {
   using Curve = std::vector<CurveRow>;
 
@@ -89,7 +89,6 @@ namespace
   {
     return CohesiveLawRegistry::instance().names();
   }
-} // namespace
 
 // Figure 5, left: marks of the report, in units of d_c and R_max.
 TEST(LawPath, NormalCycle)
@@ -492,3 +491,4 @@ end
   EXPECT_NE(ambiguous.report().find("Interface: first/"), std::string::npos)
       << ambiguous.report();
 }
+} // namespace test_law_path

@@ -3,7 +3,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_law_ppr_extrinsic
 {
   // sigma = 40 MPa, phi = 100 J/m^2
   std::unique_ptr<CohesiveLaw> ppr(const std::string &alpha)
@@ -131,4 +131,4 @@ namespace
                   {"critical opening", "2 um"}},
                  "alpha at most 1");
   }
-} // namespace
+} // namespace test_law_ppr_extrinsic

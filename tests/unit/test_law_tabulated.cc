@@ -8,7 +8,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_law_tabulated
 {
   namespace fs = std::filesystem;
 
@@ -223,4 +223,4 @@ namespace
     expect_error("tabulated", {{"curve", "."}}, "is a folder");
     expect_error("tabulated", {}, "needs `curve` or `points`");
   }
-} // namespace
+} // namespace test_law_tabulated

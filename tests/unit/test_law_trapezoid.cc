@@ -3,7 +3,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_law_trapezoid
 {
   // l1 = 0.15, l2 = 0.5 by default
   std::unique_ptr<CohesiveLaw> trapezoid()
@@ -123,4 +123,4 @@ namespace
         {{"strength", "3 MPa"}, {"critical opening", "2 um"}, {"l1", "0"}},
         "l1 = 0");
   }
-} // namespace
+} // namespace test_law_trapezoid

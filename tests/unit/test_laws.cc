@@ -25,7 +25,7 @@ using namespace nsfd;
 using nsfd::test::law_errors;
 using nsfd::test::make_law;
 
-namespace
+namespace test_laws
 {
   const double infinity = std::numeric_limits<double>::infinity();
 
@@ -782,4 +782,4 @@ namespace
       EXPECT_TRUE(std::isfinite(weibull.factor(1. - 0x1p-53)));
     }
   }
-} // namespace
+} // namespace test_laws

@@ -10,7 +10,7 @@ using namespace nsfd::test;
 
 // Laws with a damage scalar for each direction: xu-needleman and ppr.
 
-namespace
+namespace test_laws_two_scalars
 {
   const double e = std::exp(1.);
 
@@ -331,4 +331,4 @@ namespace
                       1e-9);
     }
   }
-} // namespace
+} // namespace test_laws_two_scalars

@@ -11,7 +11,7 @@
 // balance, traction of the springs, continuity of the traction; derivatives by
 // central differences of fourth order.
 
-namespace nsfd
+namespace nsfd::test_manufactured
 {
   namespace
   {
@@ -209,4 +209,4 @@ end
           << errors.report();
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_manufactured

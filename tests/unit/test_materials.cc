@@ -18,7 +18,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_materials
 {
   using Vector = std::vector<double>;
   using Operator = Dynamics<2>::Operator;
@@ -426,4 +426,4 @@ end
       EXPECT_GT(scene.state.energy.elastic, 0.);
     }
   }
-} // namespace
+} // namespace test_materials

@@ -17,7 +17,7 @@
 using namespace nsfd;
 using namespace dealii;
 
-namespace
+namespace test_mesh
 {
   MeshInput box(const std::string &type, const std::vector<double> &lower,
                 const std::vector<double> &upper,
@@ -182,7 +182,6 @@ namespace
     result.where = where;
     return result;
   }
-} // namespace
 
 TEST(Mesh, RectangleAndBrick)
 {
@@ -431,8 +430,6 @@ TEST(Mesh, GeneratorsByName)
   EXPECT_NEAR(report<2>(mesh).inner_face_area, 14. - .5, 1e-12);
 }
 
-namespace
-{
   /** Arguments in two and in three dimensions; empty: there is no such mesh. */
   struct GeneratorRow {
     const char *name, *plane, *space;
@@ -501,7 +498,6 @@ namespace
                    "`" + std::string(row.name) + "` does not accept `one`"));
     }
   }
-} // namespace
 
 TEST(Mesh, EveryListedGeneratorMakesAMeshOrIsRefused)
 {
@@ -788,3 +784,4 @@ TEST(Mesh, PartsOfAllRanksTouchFewNeighbours)
   EXPECT_LT(n_ghosts, n_ranks == 1 ? 1u : 300u);
   EXPECT_EQ(vertices(*mesh), vertices(*again));
 }
+} // namespace test_mesh

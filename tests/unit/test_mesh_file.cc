@@ -9,7 +9,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_mesh_file
 {
   const std::string meshes = std::string(NSFD_SOURCE_DIR) + "/tests/meshes/";
 
@@ -50,7 +50,6 @@ namespace
   {
     return mesh.boundary_area("all");
   }
-} // namespace
 
 class PlateTest : public testing::TestWithParam<std::string>
 {
@@ -89,8 +88,6 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-namespace
-{
   /** Sorted, the numbers of vertices do not matter. */
   std::vector<std::array<double, 2>> places(const NamedMesh &mesh)
   {
@@ -100,7 +97,6 @@ namespace
     std::sort(result.begin(), result.end());
     return result;
   }
-} // namespace
 
 TEST(MeshFile, FourGmshFormatsAreTheSameMesh)
 {
@@ -261,3 +257,4 @@ TEST(MeshFile, ForeignAndTruncatedFilesAreRefused)
     EXPECT_NE(error.message.find(name), std::string::npos) << error.message;
   }
 }
+} // namespace test_mesh_file

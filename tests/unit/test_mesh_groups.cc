@@ -8,7 +8,7 @@
 using namespace nsfd;
 using namespace nsfd::test;
 
-namespace
+namespace test_mesh_groups
 {
   const std::string plate = "set type = file\nset file = " +
                             std::string(NSFD_SOURCE_DIR) +
@@ -55,7 +55,6 @@ namespace
     return "subsection Boundary: first\n  set where = " + where +
            "\n  set velocity x = 1\nend\n";
   }
-} // namespace
 
 TEST(NamedMesh, ClockwiseCellsAreTurned)
 {
@@ -241,15 +240,12 @@ TEST(NamedMesh, DegreesBeyondTwoNeedTheSplit)
             "");
 }
 
-namespace
-{
   std::string crystal(const std::string &grains, const std::string &size,
                       const std::string &more = "")
   {
     return "set type = voronoi\nset upper corner = 2 um, 1 um\nset grains = " +
            grains + "\nset element size = " + size + "\n" + more;
   }
-} // namespace
 
 TEST(Voronoi, GrainsFillTheRectangleWithGoodQuads)
 {
@@ -332,3 +328,4 @@ TEST(Voronoi, RelaxationMakesEqualGrains)
   EXPECT_GT(spread("0"), .25);
   EXPECT_LT(spread("50"), .1);
 }
+} // namespace test_mesh_groups

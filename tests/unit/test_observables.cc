@@ -17,7 +17,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_observables
 {
   const double pi = std::acos(-1.);
 
@@ -303,4 +303,4 @@ end
                 std::string::npos);
     }
   }
-} // namespace
+} // namespace test_observables

@@ -10,7 +10,7 @@
 
 // Viscous traction against the opening of points that are not broken.
 
-namespace nsfd
+namespace nsfd::test_opening_viscosity
 {
   namespace
   {
@@ -132,4 +132,4 @@ end
           }
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_opening_viscosity

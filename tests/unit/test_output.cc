@@ -19,7 +19,7 @@
 #include <limits>
 #include <sstream>
 
-namespace
+namespace test_output
 {
   using namespace nsfd;
 
@@ -543,4 +543,4 @@ namespace
     EXPECT_EQ(Progress::duration(12300.), "3 h 25 min");
     EXPECT_EQ(Progress::duration(nan_value), "?");
   }
-} // namespace
+} // namespace test_output

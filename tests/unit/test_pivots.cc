@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace
+namespace test_pivots
 {
   using Vector = std::vector<double>;
 
@@ -27,7 +27,6 @@ namespace
     }
     return worst;
   }
-} // namespace
 
 // One contact: open, stick and slide by hand. W = I, mu = 1/2.
 TEST(Pivots, OneContact)
@@ -83,3 +82,4 @@ TEST(Pivots, RandomRankDeficient)
   }
   EXPECT_GE(solved, 8u);
 }
+} // namespace test_pivots

@@ -8,7 +8,7 @@
 
 // Entries of materials that flow, and everything that does not fit to them.
 
-namespace nsfd
+namespace nsfd::test_plastic_input
 {
   namespace
   {
@@ -122,4 +122,4 @@ end
       EXPECT_EQ(elastic.n_errors(), 8u) << elastic.report();
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_plastic_input

@@ -13,7 +13,7 @@
 
 // Strength and toughness from point to point of a scene.
 
-namespace nsfd
+namespace nsfd::test_point_factors
 {
   namespace
   {
@@ -130,4 +130,4 @@ end
       EXPECT_NE(falls[1].find("is not a number"), std::string::npos);
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_point_factors

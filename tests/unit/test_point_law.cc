@@ -25,7 +25,7 @@ using namespace nsfd;
 using nsfd::test::LawEntries;
 using nsfd::test::make_law;
 
-namespace
+namespace test_point_law
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr CohesionRule rules[] = {
@@ -1393,4 +1393,4 @@ namespace
     EXPECT_EQ(slopes[1], 0.);
     EXPECT_DOUBLE_EQ(slopes[2], 1. / R_T);
   }
-} // namespace
+} // namespace test_point_law

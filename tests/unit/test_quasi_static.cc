@@ -10,7 +10,7 @@
 // Equilibria by formulas. Balance is found to 1e-10 of the forces; over N cells
 // in a row the stress is right to N times that.
 
-namespace nsfd
+namespace nsfd::test_quasi_static
 {
   namespace
   {
@@ -288,4 +288,4 @@ end
       }
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_quasi_static

@@ -9,7 +9,7 @@
 
 using namespace nsfd;
 
-namespace
+namespace test_random_expression
 {
   Expression broken_where(const std::string &condition)
   {
@@ -71,4 +71,4 @@ namespace
     EXPECT_EQ(f(-0., 3., 0.), f(0., 3., 0.));
     EXPECT_NE(f(1., 3., 0.), f(3., 1., 0.));
   }
-} // namespace
+} // namespace test_random_expression

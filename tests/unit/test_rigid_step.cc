@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace
+namespace test_rigid_step
 {
   using namespace nsfd;
   using namespace nsfd::space;
@@ -558,4 +558,4 @@ namespace
     EXPECT_NEAR(end.centre[1], -2. * n * h, 1e-10 * n * h);
     EXPECT_EQ(end.centre[2], 0.);
   }
-} // namespace
+} // namespace test_rigid_step

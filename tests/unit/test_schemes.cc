@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace nsfd
+namespace nsfd::test_schemes
 {
   namespace
   {
@@ -267,4 +267,4 @@ end
           << errors.report();
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_schemes

@@ -7,7 +7,7 @@
 #include <string>
 
 // Coulomb friction against the velocity that `sliding` names.
-namespace nsfd
+namespace nsfd::test_sliding
 {
   namespace
   {
@@ -125,4 +125,4 @@ end
     // friction takes all it can, 0.03 N s, and the mass goes back
     EXPECT_NEAR(velocity_after_a_step("increment"), 0.01, 1e-12);
   }
-} // namespace nsfd
+} // namespace nsfd::test_sliding

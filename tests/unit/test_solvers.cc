@@ -24,7 +24,7 @@ using namespace nsfd;
 using nsfd::test::make_law;
 using nsfd::test::Scene;
 
-namespace
+namespace test_solvers
 {
   using Vector = std::vector<double>;
 
@@ -768,4 +768,4 @@ end
       }
     }
   }
-} // namespace
+} // namespace test_solvers

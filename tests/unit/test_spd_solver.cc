@@ -18,7 +18,7 @@
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace
+namespace test_spd_solver
 {
   using Vector = std::vector<double>;
 
@@ -333,4 +333,4 @@ end
       make_cholesky_solver(communicator)->prepare(A, CoarseSpace(), true),
       std::runtime_error);
   }
-} // namespace
+} // namespace test_spd_solver

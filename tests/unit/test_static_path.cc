@@ -15,7 +15,7 @@
 // Bars that are too soft for the faces in them: what a step of the load must
 // not do is to land on an equilibrium that no path leads to. All by formulas.
 
-namespace nsfd
+namespace nsfd::test_static_path
 {
   namespace
   {
@@ -149,4 +149,4 @@ end
       EXPECT_LE(refused, CohesiveLawRegistry::instance().names().size());
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_static_path

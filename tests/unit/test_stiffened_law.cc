@@ -11,7 +11,7 @@
 
 // Intrinsic laws with stiffer springs: the same strength, toughness and damage.
 
-namespace nsfd
+namespace nsfd::test_stiffened_law
 {
   namespace
   {
@@ -156,4 +156,4 @@ namespace nsfd
                           {"damage viscosity", "0.01"}}),
               "has a damage that takes time");
   }
-} // namespace nsfd
+} // namespace nsfd::test_stiffened_law

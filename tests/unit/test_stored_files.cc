@@ -11,7 +11,7 @@
 #include <functional>
 #include <limits>
 
-namespace nsfd
+namespace nsfd::test_stored_files
 {
   namespace
   {
@@ -280,4 +280,4 @@ namespace nsfd
     EXPECT_THROW(write_fclib("/no/such/folder/a.hdf5", two_contacts()),
                  OutputError);
   }
-} // namespace nsfd
+} // namespace nsfd::test_stored_files

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace nsfd
+namespace nsfd::test_stored_solvers
 {
   namespace
   {
@@ -360,4 +360,4 @@ namespace nsfd
       EXPECT_TRUE(report.solved) << "problem " << k << ", " << report.error;
     }
   }
-} // namespace nsfd
+} // namespace nsfd::test_stored_solvers

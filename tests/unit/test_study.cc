@@ -14,7 +14,7 @@
 
 // Studies: what varies, how errors fall, what they cost.
 
-namespace nsfd
+namespace nsfd::test_study
 {
   namespace
   {
@@ -349,4 +349,4 @@ namespace nsfd
     EXPECT_NE(cases[3].scene.find("output/study/theta=1_cells=4-1"),
               std::string::npos);
   }
-} // namespace nsfd
+} // namespace nsfd::test_study

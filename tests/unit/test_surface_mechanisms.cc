@@ -11,7 +11,7 @@ using namespace nsfd::test;
 
 // Plateau unloading, limited viscosity, dilatancy and wear at one point.
 
-namespace
+namespace test_surface_mechanisms
 {
   std::vector<CurveRow> open_and_close(const CohesiveLaw &law,
                                        const bool plateau, const double d,
@@ -293,4 +293,4 @@ end
     EXPECT_GT(slip, 0.1);
     EXPECT_TRUE(Scene<2>(slider).state.worn.empty());
   }
-} // namespace
+} // namespace test_surface_mechanisms

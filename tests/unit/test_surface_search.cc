@@ -16,7 +16,7 @@
 #include <set>
 #include <type_traits>
 
-namespace
+namespace test_surface_search
 {
   using namespace nsfd;
 
@@ -489,7 +489,6 @@ namespace
                   1., 1e-14);
     }
   }
-} // namespace
 
 TEST(SurfaceSearch, PointOverAnEdge)
 {
@@ -1005,8 +1004,6 @@ TEST(SurfaceSearch, PlacesOnTrianglesAndWarpedQuadrilaterals)
   }
 }
 
-namespace
-{
   /** A body of its own: moved by hand. */
   struct Solid
   {
@@ -1107,7 +1104,6 @@ namespace
     high.shift({aside, 0., std::sqrt(2.) + gap});
     return together(low, high);
   }
-} // namespace
 
 TEST(SurfaceSearch, CrossedEdges)
 {
@@ -1199,7 +1195,7 @@ TEST(SurfaceSearch, EdgesOfACubeAndOfAPlate)
       const auto plane = plane_of<3>(scene.surfaces.facets[edge.facet[0]], x),
                  next = plane_of<3>(scene.surfaces.facets[edge.facet[1]], x);
       const Place<3> way = segment_of(edge, x).way;
-      EXPECT_NEAR(dot(cross(plane.normal, next.normal), way), 1., 1e-14);
+      EXPECT_NEAR(nsfd::dot(nsfd::cross(plane.normal, next.normal), way), 1., 1e-14);
     }
   }
 }
@@ -1252,3 +1248,4 @@ TEST(SurfaceSearch, ShortestWayOutOfRandomSolids)
   EXPECT_LE(n_lost, 2u);
   EXPECT_LE(n_wrong, 2u);
 }
+} // namespace test_surface_search

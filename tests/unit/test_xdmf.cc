@@ -11,7 +11,7 @@
 #include <regex>
 #include <sstream>
 
-namespace
+namespace test_xdmf
 {
   using namespace nsfd;
   namespace fs = std::filesystem;
@@ -90,7 +90,6 @@ namespace
 
     fs::path folder_;
   };
-} // namespace
 
 // What the XDMF file says of a data set is what the HDF5 file holds.
 TEST_F(XdmfTest, NamesWhatIsThere)
@@ -160,3 +159,4 @@ TEST_F(XdmfTest, GathersThePieces)
     EXPECT_EQ(all.cell_data[0].values[c + 1], double(r));
   }
 }
+} // namespace test_xdmf

@@ -5,7 +5,7 @@
 namespace nsfd
 {
   /** Values are divided by `factor` and then read in `unit` ("µJ/m"). */
-  struct UnitScale {
+  struct DisplayUnit {
     double factor = 1.;
     std::string unit;
   };
@@ -15,10 +15,10 @@ namespace nsfd
    * that start with a power ("m²", "m^3") get the power of the prefix, times
    * ("s") no prefix above 1, "" none at all.
    */
-  UnitScale engineering_scale(double largest, const std::string &unit);
+  DisplayUnit engineering_scale(double largest, const std::string &unit);
 
   /** Also where there is no prefix: "10⁻²¹ J/m", "10⁻⁶". */
-  UnitScale axis_scale(double largest, const std::string &unit);
+  DisplayUnit axis_scale(double largest, const std::string &unit);
 
   /** "5.00 µJ/m": @p digits significant digits; "n/a" for NaN. */
   std::string engineering(double value, const std::string &unit,
