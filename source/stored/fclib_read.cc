@@ -1,3 +1,4 @@
+#include "../base/trial_process.h"
 #include "hdf5_file.h"
 #include "nsfd/stored/fclib.h"
 
@@ -246,52 +247,80 @@ namespace nsfd
           if (!std::isfinite(value))
             reader.fail("W or q has an entry that is no finite number");
     }
+
+    ContactProblem read_undamaged(const std::string &file);
+
+    /** HDF5 follows the addresses in a file wherever they lead. */
+    void refuse_what_crashes_hdf5(const std::string &file)
+    {
+      const double bytes = double(std::filesystem::file_size(file));
+      constexpr double gib = 0x1p30, bytes_per_second = 1e6;
+      const std::string end = try_in_a_copy(
+          [&] { read_undamaged(file); },
+          {20. + bytes / bytes_per_second, 4. * gib + 20. * bytes});
+      if (!end.empty())
+        throw BadContactFile(fmt::format(
+            "{}: the file is damaged: HDF5 cannot read it ({})", file, end));
+    }
   } // namespace
 
   ContactProblem read_fclib(const std::string &file)
   {
     if (!std::filesystem::is_regular_file(file))
       throw BadContactFile(fmt::format("{}: there is no such file", file));
-    const stored::QuietHdf5 quiet;
-    const Reader reader(file);
-    if (!reader.has("/fclib_local"))
-      reader.fail(reader.has("/fclib_global")
-                      ? "it holds a problem with bodies (fclib_global); write "
-                        "the condensed one (fclib_local)"
-                      : "there is no group /fclib_local: it holds no contact "
-                        "problem in the layout of FCLIB");
-    if (reader.has("/fclib_local/V") || reader.has("/fclib_local/R"))
-      reader.fail("it has equality constraints (V, R); eliminate them first");
-
-    ContactProblem problem;
-    const int dimension = reader.integer("/fclib_local/spacedim");
-    if (dimension != 2 && dimension != 3)
-      reader.fail(fmt::format("spacedim is {}; 2 or 3 is possible", dimension));
-    problem.dimension = dimension;
-    problem.q = reader.numbers("/fclib_local/vectors/q");
-    problem.friction = reader.numbers("/fclib_local/vectors/mu");
-    if (problem.q.size() != problem.friction.size() * problem.dimension)
-      reader.fail(fmt::format("q has {} values and mu {}; with spacedim = {} q "
-                              "must have {}",
-                              problem.q.size(), problem.friction.size(),
-                              dimension, problem.friction.size() * dimension));
-    Triplets w = read_matrix(reader, problem.q.size());
-    set_rows(w, problem);
-    check(reader, problem);
-    problem.solution = read_impulse(reader, "/solution/r", problem.q.size());
-    problem.guess = read_impulse(reader, "/guesses/1/r", problem.q.size());
-    problem.title = reader.text("/fclib_local/info/title");
-    problem.description = reader.text("/fclib_local/info/description");
-    problem.math_info = reader.text("/fclib_local/info/math_info");
-
-    if (reader.integer("/fclib_local/W/nz") >= 0 && !problem.solution.empty()) {
-      const double error = natural_map_error(problem, problem.solution);
-      ContactProblem other = problem;
-      std::swap(w.row, w.column);
-      set_rows(w, other);
-      if (natural_map_error(other, other.solution) < error)
-        return other;
-    }
-    return problem;
+    refuse_what_crashes_hdf5(file);
+    return read_undamaged(file);
   }
+
+  namespace
+  {
+    ContactProblem read_undamaged(const std::string &file)
+    {
+      const stored::QuietHdf5 quiet;
+      const Reader reader(file);
+      if (!reader.has("/fclib_local"))
+        reader.fail(
+            reader.has("/fclib_global")
+                ? "it holds a problem with bodies (fclib_global); write "
+                  "the condensed one (fclib_local)"
+                : "there is no group /fclib_local: it holds no contact "
+                  "problem in the layout of FCLIB");
+      if (reader.has("/fclib_local/V") || reader.has("/fclib_local/R"))
+        reader.fail("it has equality constraints (V, R); eliminate them first");
+
+      ContactProblem problem;
+      const int dimension = reader.integer("/fclib_local/spacedim");
+      if (dimension != 2 && dimension != 3)
+        reader.fail(
+            fmt::format("spacedim is {}; 2 or 3 is possible", dimension));
+      problem.dimension = dimension;
+      problem.q = reader.numbers("/fclib_local/vectors/q");
+      problem.friction = reader.numbers("/fclib_local/vectors/mu");
+      if (problem.q.size() != problem.friction.size() * problem.dimension)
+        reader.fail(
+            fmt::format("q has {} values and mu {}; with spacedim = {} q "
+                        "must have {}",
+                        problem.q.size(), problem.friction.size(), dimension,
+                        problem.friction.size() * dimension));
+      Triplets w = read_matrix(reader, problem.q.size());
+      set_rows(w, problem);
+      check(reader, problem);
+      problem.solution = read_impulse(reader, "/solution/r", problem.q.size());
+      problem.guess = read_impulse(reader, "/guesses/1/r", problem.q.size());
+      problem.title = reader.text("/fclib_local/info/title");
+      problem.description = reader.text("/fclib_local/info/description");
+      problem.math_info = reader.text("/fclib_local/info/math_info");
+
+      if (reader.integer("/fclib_local/W/nz") >= 0 &&
+          !problem.solution.empty()) {
+        const double error = natural_map_error(problem, problem.solution);
+        ContactProblem other = problem;
+        std::swap(w.row, w.column);
+        set_rows(w, other);
+        if (natural_map_error(other, other.solution) < error)
+          return other;
+      }
+      return problem;
+    }
+  } // namespace
 } // namespace nsfd

@@ -215,6 +215,29 @@ namespace nsfd::test_stored_files
     refused("no group /fclib_local");
   }
 
+  // HDF5 1.10 follows some of these addresses, out of its own memory.
+  TEST_F(StoredFile, NoAddressCrashesTheReader)
+  {
+    write_fclib(file_, two_contacts());
+    unsigned int refused = 0;
+    for (std::streamoff at = 0; at < 2048; at += 8) {
+      std::fstream file(file_, std::ios::in | std::ios::out | std::ios::binary);
+      std::string word(8, '\0'), ones(8, '\xff');
+      file.seekg(at).read(word.data(), 8);
+      if (word == std::string(8, '\0') || word == ones)
+        continue;
+      file.seekp(at).write(ones.data(), 8).flush();
+      try {
+        read_fclib(file_);
+      } catch (const BadContactFile &) {
+        ++refused;
+      }
+      file.seekp(at).write(word.data(), 8).flush();
+    }
+    EXPECT_GT(refused, 10u);
+    expect_equal(read_fclib(file_), two_contacts());
+  }
+
   TEST_F(StoredFile, WrongContentsAreRefusedWithThePlace)
   {
     const double nan = std::numeric_limits<double>::quiet_NaN();
