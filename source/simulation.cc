@@ -15,7 +15,7 @@
 #include "nsfd/base/cost.h"
 #include "nsfd/base/stop_request.h"
 #include "nsfd/base/stopwatch.h"
-#include "nsfd/input/command_line.h"
+#include "nsfd/base/exit_code.h"
 #include "nsfd/output/fragment_output.h"
 #include "nsfd/output/fragments.h"
 #include "nsfd/output/output_folder.h"

@@ -1,21 +1,12 @@
 #pragma once
 
-#include <mpi.h>
+#include "nsfd/run_options.h"
 
-#include <string>
+#include <mpi.h>
 
 namespace nsfd
 {
   struct SceneInput;
-
-  struct RunOptions
-  {
-    std::string command_line;
-    /// the same for a shell, to go on after a stop
-    std::string resume_line;
-    bool force = false, quiet = false, check = false, resume = false,
-         strict = false, verbose = false;
-  };
 
   /**
    * Build what the scene names, run it, write the output directory. Messages

@@ -2,7 +2,6 @@
 
 #include "nsfd/base/cost.h"
 #include "nsfd/base/stop_request.h"
-#include "nsfd/dynamics/block_kernels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "nsfd/base/stopwatch.h"
 #include "nsfd/input/scene_input.h"
-#include "nsfd/simulation.h"
+#include "nsfd/run_options.h"
 
 #include <fstream>
 #include <sstream>

@@ -4,7 +4,7 @@
 #include "../output/report_html.h"
 #include "shown_numbers.h"
 
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/svg.h"
 
 #include <fmt/format.h>

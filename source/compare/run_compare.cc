@@ -3,7 +3,6 @@
 
 #include "nsfd/input/command_line.h"
 #include "nsfd/output/output_folder.h"
-#include "nsfd/output/summary_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

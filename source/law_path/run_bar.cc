@@ -6,7 +6,7 @@
 
 #include "nsfd/interface/cohesive_law.h"
 #include "nsfd/law_path/drive_point.h"
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>

@@ -6,7 +6,6 @@
 #include "run_bar.h"
 
 #include "nsfd/output/output_folder.h"
-#include "nsfd/output/summary_file.h"
 #include "nsfd/output/svg.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "nsfd/mesh/discretization.h"
+#include "nsfd/mesh/material_extremes.h"
+
+#include <deal.II/base/point.h>
 
 #include <array>
 

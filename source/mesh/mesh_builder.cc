@@ -3,7 +3,6 @@
 #include "deal_ii_message.h"
 #include "mesh_topology.h"
 #include "mix_bits.h"
-#include "nsfd/mesh/body_table.h"
 #include "nsfd/mesh/mesh_types.h"
 #include "nsfd/mesh/named_mesh.h"
 

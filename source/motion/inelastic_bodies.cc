@@ -1,6 +1,6 @@
 #include "inelastic_bodies.h"
 
-#include "../time/ledger.h"
+#include "body_energies.h"
 
 #include <algorithm>
 

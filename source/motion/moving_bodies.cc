@@ -2,7 +2,7 @@
 
 #include "../base/gather.h"
 #include "../mesh/body_shape.h"
-#include "../time/ledger.h"
+#include "body_energies.h"
 
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/cell_geometry.h"

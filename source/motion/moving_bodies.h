@@ -1,12 +1,13 @@
 #pragma once
 
 #include "deformable_cells.h"
-#include "../time/step_data.h"
 #include "row_geometry.h"
 
 #include "nsfd/base/neighbor_messages.h"
+#include "nsfd/dynamics/dynamics.h"
 #include "nsfd/mesh/discretization.h"
 #include "nsfd/motion/rigid_step.h"
+#include "nsfd/nonsmooth/one_step_problem.h"
 #include "nsfd/time/state.h"
 
 #include <array>

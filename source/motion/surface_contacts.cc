@@ -1,7 +1,6 @@
 #include "surface_contacts.h"
 
 #include "../base/gather.h"
-#include "../time/step_data.h"
 
 #include "nsfd/input/scene_input.h"
 

@@ -13,12 +13,6 @@ namespace nsfd
 {
   using namespace space;
 
-  double FragmentRecord::size(const unsigned int dimension) const
-  {
-    return dimension == 2 ? std::sqrt(4. * volume / M_PI)
-                          : std::cbrt(6. * volume / M_PI);
-  }
-
   /** A cell, or a rigid body of large motions, about its own centre. */
   template <int dim>
   struct FragmentMotion<dim>::Body

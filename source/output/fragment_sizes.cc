@@ -72,4 +72,10 @@ namespace nsfd
     fill_histogram(result);
     return result;
   }
+
+  double FragmentRecord::size(const unsigned int dimension) const
+  {
+    return dimension == 2 ? std::sqrt(4. * volume / M_PI)
+                          : std::cbrt(6. * volume / M_PI);
+  }
 } // namespace nsfd

@@ -1,7 +1,5 @@
 #include "nsfd/output/output_folder.h"
 
-#include "nsfd/output/summary_file.h"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +11,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -354,5 +353,36 @@ namespace nsfd
     return OutputFolder::instance().claim(
         directory, force ? OutputFolder::Claim::replace
                          : OutputFolder::Claim::anew);
+  }
+
+  void write_file_atomically(const std::string &path, const std::string &text)
+  {
+    const std::string temporary = path + ".part";
+    const auto fail = [&]() {
+      const std::string reason = std::strerror(errno);
+      std::remove(temporary.c_str());
+      throw OutputError("Cannot write '" + path + "': " + reason + '.');
+    };
+
+    OutputFolder::instance().note(path);
+    std::remove(temporary.c_str()); // a link would be followed
+    const int file =
+        open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0)
+      fail();
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t n = write(file, text.data() + done, text.size() - done);
+      if (n < 0 && errno == EINTR)
+        continue;
+      if (n <= 0) {
+        const int reason = errno;
+        close(file);
+        errno = reason;
+        fail();
+      }
+      done += std::size_t(n);
+    }
+    if (close(file) != 0 || std::rename(temporary.c_str(), path.c_str()) != 0)
+      fail();
   }
 } // namespace nsfd

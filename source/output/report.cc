@@ -6,7 +6,7 @@
 #include "report_html.h"
 
 #include "nsfd/output/progress.h"
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 
 #include <fmt/format.h>
 

@@ -149,37 +149,6 @@ namespace nsfd
     }
   } // namespace
 
-  void write_file_atomically(const std::string &path, const std::string &text)
-  {
-    const std::string temporary = path + ".part";
-    const auto fail = [&]() {
-      const std::string reason = std::strerror(errno);
-      std::remove(temporary.c_str());
-      throw OutputError("Cannot write '" + path + "': " + reason + '.');
-    };
-
-    OutputFolder::instance().note(path);
-    std::remove(temporary.c_str()); // a link would be followed
-    const int file =
-        open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file < 0)
-      fail();
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t n = write(file, text.data() + done, text.size() - done);
-      if (n < 0 && errno == EINTR)
-        continue;
-      if (n <= 0) {
-        const int reason = errno;
-        close(file);
-        errno = reason;
-        fail();
-      }
-      done += std::size_t(n);
-    }
-    if (close(file) != 0 || std::rename(temporary.c_str(), path.c_str()) != 0)
-      fail();
-  }
-
   void write_summary(const std::string &path, const Summary &summary,
                      const RunFindings &findings)
   {

@@ -2,7 +2,7 @@
 
 #include "nsfd/base/archive.h"
 #include "nsfd/output/markup.h"
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 #include "nsfd/base/archive.h"
 #include "nsfd/output/markup.h"
 #include "nsfd/output/output_folder.h"
-#include "nsfd/output/summary_file.h"
 
 #include <fmt/format.h>
 

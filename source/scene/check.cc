@@ -3,7 +3,7 @@
 #include "group_report.h"
 #include "motion_report.h"
 
-#include "nsfd/input/command_line.h"
+#include "nsfd/base/exit_code.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/mesh/mesh_builder.h"
 #include "nsfd/output/certificate.h"

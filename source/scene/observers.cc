@@ -5,7 +5,6 @@
 #include "nsfd/base/archive.h"
 #include "nsfd/input/scene_input.h"
 #include "nsfd/output/table_file.h"
-#include "nsfd/scene/verification_case.h"
 
 #include <fmt/format.h>
 

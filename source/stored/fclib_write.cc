@@ -1,5 +1,5 @@
 #include "hdf5_file.h"
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/stored/fclib.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "nsfd/study/case_result.h"
 
 #include "nsfd/base/cost.h"
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 #include "nsfd/study/run_case.h"
 
 #include "nsfd/input/command_line.h"
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 
 #include <fcntl.h>
 #include <signal.h>

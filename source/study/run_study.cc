@@ -6,7 +6,6 @@
 #include "nsfd/input/command_line.h"
 #include "nsfd/input/input_errors.h"
 #include "nsfd/output/output_folder.h"
-#include "nsfd/output/summary_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

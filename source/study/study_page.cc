@@ -5,7 +5,7 @@
 #include "../output/report_html.h"
 
 #include "nsfd/output/engineering.h"
-#include "nsfd/output/summary_file.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/svg.h"
 #include "nsfd/study/study_results.h"
 

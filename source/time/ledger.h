@@ -3,6 +3,8 @@
 #include "elastic_forces.h"
 #include "uniqueness.h"
 
+#include "../motion/body_energies.h"
+
 #include "nsfd/mesh/discretization.h"
 #include "nsfd/nonsmooth/solver.h"
 #include "nsfd/time/state.h"
@@ -12,19 +14,6 @@
 namespace nsfd
 {
   struct StepReport;
-
-  /** What the bodies store, lose and take from loads in a step, in J. */
-  struct BodyEnergies
-  {
-    double kinetic = 0., elastic = 0.; ///< after the step
-    double of_mass = 0., of_strain = 0.; ///< what theta > 1/2 takes
-    double work = 0.;                    ///< of the loads
-    double plastic = 0., viscous = 0.; ///< what the bodies dissipate
-  };
-
-  /** Of the bodies of all ranks, whatever their order. Collective. */
-  BodyEnergies sum(const Communicator &all,
-                   const std::vector<BodyEnergies> &bodies);
 
   /**
    * The books of a step that has been solved: every energy line on its own

@@ -16,23 +16,6 @@ namespace nsfd
   double intact_stiffness(const OneStepProblem<dim> &problem,
                           std::size_t point);
 
-  /** Somewhere, on whatever rank: dilatancy or wear, and the like. */
-  bool has_sliding_lift(const SceneInput &input);
-  bool has_opening_viscosity(const SceneInput &input);
-  bool has_crack_pressure(const SceneInput &input);
-
-  /**
-   * Where point @p i of a discretization is among the points of a step: the
-   * @p n_of_step points of the step alone are behind the first @p n_owned, see
-   * MovingBodies.
-   */
-  inline std::size_t point_of_step(const std::size_t i,
-                                   const std::size_t n_owned,
-                                   const std::size_t n_of_step)
-  {
-    return i < n_owned ? i : i + n_of_step;
-  }
-
   /** The part of the data that no step changes. */
   template <int dim>
   OneStepProblem<dim> constant_data(const SceneInput &input,

@@ -4,6 +4,7 @@
 #include "nsfd/output/history_file.h"
 #include "nsfd/output/progress.h"
 #include "nsfd/output/report.h"
+#include "nsfd/output/output_folder.h"
 #include "nsfd/output/summary_file.h"
 #include "nsfd/output/svg.h"
 #include "nsfd/output/vtu.h"

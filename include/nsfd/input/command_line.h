@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/base/exit_code.h"
+
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -7,15 +9,6 @@
 
 namespace nsfd
 {
-  /** What the program ends with. */
-  namespace exit_code
-  {
-    constexpr int done = 0, bad_input = 1, wrong_usage = 2, step_failed = 3,
-                  stopped = 4, internal_error = 5,
-                  differs = 6,       ///< of `nsfd compare --tolerance`
-                  not_certified = 7; ///< --strict: done, certificate not ok
-  }
-
   /** What was asked for: `nsfd FILE.prm` or `nsfd law NAME`, and options. */
   struct CommandLine {
     bool law = false; ///< `file` is a law, or the file of one

@@ -485,4 +485,9 @@ namespace nsfd
              statics->at_jump == SolutionJump::dynamic;
     }
   };
+
+  /** Somewhere, on whatever rank: dilatancy or wear, and the like. */
+  bool has_sliding_lift(const SceneInput &input);
+  bool has_opening_viscosity(const SceneInput &input);
+  bool has_crack_pressure(const SceneInput &input);
 } // namespace nsfd

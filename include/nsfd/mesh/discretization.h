@@ -3,6 +3,7 @@
 #include "nsfd/base/communicator.h"
 #include "nsfd/dynamics/bodies.h"
 #include "nsfd/mesh/body_table.h"
+#include "nsfd/mesh/material_extremes.h"
 
 #include <deal.II/base/point.h>
 
@@ -55,18 +56,6 @@ namespace nsfd
   struct InnerFace
   {
     std::array<unsigned int, 2> bodies, faces;
-  };
-
-  /** Over all places of a material, in the units of the scene. */
-  struct MaterialExtremes
-  {
-    struct Moduli
-    {
-      double young = 0., poisson = 0.;
-    };
-    Moduli stiffest, softest; ///< places or directions
-    double fastest = 0., slowest = 0.; ///< speeds of plane waves
-    double densest = 0.;
   };
 
   /**

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "nsfd/interface/cohesive_law.h"
+#include "nsfd/nonsmooth/point_kind.h"
 
 #include <array>
 #include <cstdint>
@@ -28,19 +29,6 @@ namespace nsfd
     double viscous_limit =
       std::numeric_limits<double>::infinity(); ///< of viscous traction, Pa
     double wear = 0.; ///< k of d(gap)/dt = k p_N |U_T|, 1/Pa
-  };
-
-  /** What a point is during one step: decided before it, data afterwards. */
-  enum class PointKind : std::uint8_t
-  {
-    prescribed, ///< U = U_given in the components of the mask (rigid joints,
-                ///< supports); the other components carry nothing
-    elastic,    ///< two-sided spring, no damage
-    cohesive,   ///< intrinsic, or extrinsic after activation
-    rigid,      ///< extrinsic before activation: U = 0 up to the strength
-    free,       ///< contact and friction only, beta = 0
-    bonded,     ///< carries through the bulk, not by an impulse
-    parted      ///< broken, its lips are left to the search for contacts
   };
 
   /**
@@ -127,4 +115,16 @@ namespace nsfd
       converged = next.converged;
     }
   };
+
+  /**
+   * Where point @p i of a discretization is among the points of a step: the
+   * @p n_of_step points of the step alone are behind the first @p n_owned, see
+   * MovingBodies.
+   */
+  inline std::size_t point_of_step(const std::size_t i,
+                                   const std::size_t n_owned,
+                                   const std::size_t n_of_step)
+  {
+    return i < n_owned ? i : i + n_of_step;
+  }
 } // namespace nsfd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/output/fragment_motion.h"
+#include "nsfd/output/fragment_record.h"
 
 #include <optional>
 #include <vector>

@@ -88,4 +88,11 @@ namespace nsfd
    * unless @p force replaces the run in it.
    */
   bool claim_directory(const std::string &directory, bool force);
+
+  /**
+   * Replaces the file at @p path in one go: readers see the old or the new
+   * text, never a part of it. Links are replaced, not followed.
+   * @throws OutputError with the reason
+   */
+  void write_file_atomically(const std::string &path, const std::string &text);
 } // namespace nsfd

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "nsfd/output/run_findings.h"
 #include "nsfd/output/run_record.h"
-#include "nsfd/output/summary_file.h"
 
 #include <string>
 #include <vector>

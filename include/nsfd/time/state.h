@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "nsfd/nonsmooth/point_kind.h"
 #include "nsfd/output/run_record.h"
 
 #include <array>

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+namespace nsfd
+{
+  /** What a point is during one step: decided before it, data afterwards. */
+  enum class PointKind : std::uint8_t
+  {
+    prescribed, ///< U = U_given in the components of the mask (rigid joints,
+                ///< supports); the other components carry nothing
+    elastic,    ///< two-sided spring, no damage
+    cohesive,   ///< intrinsic, or extrinsic after activation
+    rigid,      ///< extrinsic before activation: U = 0 up to the strength
+    free,       ///< contact and friction only, beta = 0
+    bonded,     ///< carries through the bulk, not by an impulse
+    parted      ///< broken, its lips are left to the search for contacts
+  };
+} // namespace nsfd

@@ -1,0 +1,31 @@
+#include "nsfd/input/scene_input.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  bool has_sliding_lift(const SceneInput &input)
+  {
+    const auto lifts = [](const auto &block) { return block.sliding.lifts(); };
+    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                       lifts) ||
+           std::any_of(input.obstacles.begin(), input.obstacles.end(), lifts) ||
+           std::any_of(input.contacts.begin(), input.contacts.end(), lifts);
+  }
+
+  bool has_opening_viscosity(const SceneInput &input)
+  {
+    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                       [](const InterfaceInput &block) {
+                         return block.opening_viscosity > 0.;
+                       });
+  }
+
+  bool has_crack_pressure(const SceneInput &input)
+  {
+    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
+                       [](const InterfaceInput &block) {
+                         return bool(block.crack_pressure);
+                       });
+  }
+} // namespace nsfd
