@@ -176,7 +176,8 @@ int main(int argc, char **argv)
       return run_on_root(
           root, [&] { return run_solve(stored, std::cout, std::cerr); });
     if (command.law)
-      return run_on_root(root, [&] { return run_law(command); });
+      return run_on_root(root, [&] { return run_law({command.file, command.overrides(), command.check,
+                        command.quiet, command.force}); });
     RunOptions options;
     for (int i = 0; i < argc; ++i)
       options.command_line += std::string(i ? " " : "") + argv[i];

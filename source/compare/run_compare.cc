@@ -1,7 +1,7 @@
 #include "nsfd/compare/compare_command.h"
 #include "nsfd/compare/comparison.h"
 
-#include "nsfd/input/command_line.h"
+#include "nsfd/base/exit_code.h"
 #include "nsfd/output/output_folder.h"
 
 #include <fmt/format.h>

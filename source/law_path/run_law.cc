@@ -5,6 +5,7 @@
 #include "law_table.h"
 #include "run_bar.h"
 
+#include "nsfd/base/exit_code.h"
 #include "nsfd/output/output_folder.h"
 #include "nsfd/output/svg.h"
 
@@ -115,10 +116,10 @@ namespace nsfd
     }
   } // namespace
 
-  int run_law(const CommandLine &command)
+  int run_law(const LawCommand &command)
   {
     InputErrors errors;
-    const auto input = read_law(command.file, command.overrides(), errors);
+    const auto input = read_law(command.file, command.overrides, errors);
     std::cerr << errors.report();
     if (!input)
       return exit_code::bad_input;

@@ -1,6 +1,6 @@
 #include "nsfd/study/run_case.h"
 
-#include "nsfd/input/command_line.h"
+#include "nsfd/base/exit_code.h"
 #include "nsfd/output/output_folder.h"
 
 #include <fcntl.h>

@@ -3,7 +3,7 @@
 #include "nsfd/study/study_results.h"
 
 #include "nsfd/base/version.h"
-#include "nsfd/input/command_line.h"
+#include "nsfd/base/exit_code.h"
 #include "nsfd/input/input_errors.h"
 #include "nsfd/output/output_folder.h"
 
