@@ -1,4 +1,4 @@
-#include "nsfd/mesh/gmsh_process.h"
+#include "mesh/gmsh_process.h"
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>

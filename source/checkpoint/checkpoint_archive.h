@@ -3,8 +3,8 @@
 #include "hdf5_image.h"
 #include "rank_order.h"
 
-#include "nsfd/base/archive.h"
-#include "nsfd/mesh/discretization.h"
+#include "core/archive.h"
+#include "nsfd/discretization/discretization.h"
 
 #include <memory>
 

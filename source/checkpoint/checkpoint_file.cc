@@ -1,9 +1,9 @@
 #include "checkpoint_file.h"
 
-#include "../mesh/mix_bits.h"
+#include "core/mix_bits.h"
 
-#include "nsfd/base/version.h"
-#include "nsfd/output/output_folder.h"
+#include "core/version.h"
+#include "core/output_folder.h"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 
 #include "checkpoint_file.h"
 
-#include "nsfd/base/stopwatch.h"
-#include "nsfd/input/scene_input.h"
-#include "nsfd/run_options.h"
+#include "core/stopwatch.h"
+#include "nsfd/scene/scene_input.h"
+#include "records/run_options.h"
 
 #include <fstream>
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "checkpoint_file.h"
 #include "checkpoints.h"
 
-#include "nsfd/input/scene_input.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 

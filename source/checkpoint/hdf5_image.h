@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../stored/hdf5_file.h"
+#include "core/hdf5_file.h"
 
 #include <cstdint>
 #include <string>

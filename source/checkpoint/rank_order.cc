@@ -1,6 +1,6 @@
 #include "rank_order.h"
 
-#include "../base/gather.h"
+#include "core/gather.h"
 
 #include <stdexcept>
 

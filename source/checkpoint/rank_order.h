@@ -1,8 +1,8 @@
 #pragma once
 
-#include "../base/bytes_type.h"
+#include "core/bytes_type.h"
 
-#include "nsfd/base/communicator.h"
+#include "nsfd/core/communicator.h"
 
 #include <mpi.h>
 

@@ -1,6 +1,6 @@
-#include "nsfd/compare/comparison.h"
+#include "comparison.h"
 
-#include "../checkpoint/parameter_changes.h"
+#include "checkpoint/parameter_changes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "nsfd/compare/comparison.h"
+#include "comparison.h"
 
-#include "../output/energy_lines.h"
-#include "../output/report_html.h"
+#include "visualization/energy_lines.h"
+#include "postprocess/report_html.h"
 #include "shown_numbers.h"
 
-#include "nsfd/output/output_folder.h"
-#include "nsfd/output/svg.h"
+#include "core/output_folder.h"
+#include "visualization/svg.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "nsfd/compare/comparison.h"
+#include "comparison.h"
 
 #include "shown_numbers.h"
 

@@ -1,8 +1,8 @@
-#include "nsfd/compare/compare_command.h"
-#include "nsfd/compare/comparison.h"
+#include "compare_command.h"
+#include "comparison.h"
 
-#include "nsfd/base/exit_code.h"
-#include "nsfd/output/output_folder.h"
+#include "core/exit_code.h"
+#include "core/output_folder.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
-#include "nsfd/compare/run_folder.h"
+#include "run_folder.h"
 
-#include "nsfd/output/row_file.h"
+#include "postprocess/row_file.h"
 
 #include <nlohmann/json.hpp>
 

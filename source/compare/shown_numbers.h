@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/compare/comparison.h"
+#include "comparison.h"
 
 #include <string>
 #include <vector>

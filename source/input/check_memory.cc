@@ -1,6 +1,6 @@
-#include "nsfd/base/machine_memory.h"
-#include "nsfd/mesh/mesh_types.h"
-#include "nsfd/mesh/named_mesh.h"
+#include "core/machine_memory.h"
+#include "mesh/mesh_types.h"
+#include "mesh/named_mesh.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "read_sections.h"
 
-#include "formula.h"
-#include "nsfd/input/text_file.h"
+#include "parameters/formula.h"
+#include "parameters/text_file.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-#include "../interface/stiffened_law.h"
-#include "nsfd/adapt/indicator.h"
+#include "cohesive_laws/stiffened_law.h"
+#include "nsfd/adaptivity/indicator.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>

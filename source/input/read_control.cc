@@ -1,7 +1,7 @@
 #include "read_sections.h"
 
-#include "nsfd/nonsmooth/solver.h"
-#include "nsfd/scene/verification_case.h"
+#include "nonsmooth/solver.h"
+#include "nsfd/verification/verification_case.h"
 
 #include <fmt/format.h>
 

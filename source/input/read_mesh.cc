@@ -1,5 +1,5 @@
-#include "nsfd/mesh/mesh_types.h"
-#include "nsfd/mesh/named_mesh.h"
+#include "mesh/mesh_types.h"
+#include "mesh/named_mesh.h"
 #include "read_named_mesh.h"
 #include "read_sections.h"
 

@@ -1,8 +1,8 @@
 #include "read_named_mesh.h"
 
-#include "../mesh/mesh_file.h"
-#include "../mesh/voronoi.h"
-#include "nsfd/input/quantity.h"
+#include "mesh/mesh_file.h"
+#include "mesh/voronoi.h"
+#include "parameters/quantity.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "read_sections.h"
 
-#include "nsfd/scene/observable.h"
+#include "nsfd/postprocess/observable.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "nsfd/input/read_scene.h"
+#include "read_scene.h"
 
-#include "nsfd/adapt/indicator.h"
-#include "nsfd/interface/cohesive_law.h"
-#include "nsfd/mesh/mesh_types.h"
-#include "nsfd/scene/observable.h"
-#include "nsfd/scene/verification_case.h"
-#include "nsfd/stored/contact_solver.h"
+#include "nsfd/adaptivity/indicator.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "mesh/mesh_types.h"
+#include "nsfd/postprocess/observable.h"
+#include "nsfd/verification/verification_case.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>

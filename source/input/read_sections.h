@@ -1,9 +1,9 @@
 #pragma once
 
-#include "nsfd/input/input_errors.h"
-#include "nsfd/input/parameter_file.h"
-#include "nsfd/input/scene_input.h"
-#include "nsfd/input/section_reader.h"
+#include "parameters/input_errors.h"
+#include "parameters/parameter_file.h"
+#include "nsfd/scene/scene_input.h"
+#include "nsfd/parameters/section_reader.h"
 
 #include <array>
 #include <string>

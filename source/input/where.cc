@@ -1,7 +1,7 @@
 #include "read_sections.h"
 
-#include "formula.h"
-#include "nsfd/mesh/named_mesh.h"
+#include "parameters/formula.h"
+#include "mesh/named_mesh.h"
 
 #include <fmt/format.h>
 

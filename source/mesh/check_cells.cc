@@ -3,7 +3,7 @@
 #include "cell_shapes.h"
 #include "vectors.h"
 
-#include "nsfd/mesh/named_mesh.h"
+#include "named_mesh.h"
 
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/input/scene_input.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/base/point.h>
 #include <deal.II/grid/tria_description.h>

@@ -1,7 +1,7 @@
-#include "nsfd/mesh/gmsh_process.h"
+#include "gmsh_process.h"
 
 #include "gmsh_job.h"
-#include "../base/lock_process.h"
+#include "core/lock_process.h"
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>

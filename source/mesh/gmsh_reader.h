@@ -2,7 +2,7 @@
 
 #include "gmsh_script.h"
 
-#include "nsfd/mesh/named_mesh.h"
+#include "named_mesh.h"
 
 #include <string>
 #include <vector>

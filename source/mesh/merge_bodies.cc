@@ -1,5 +1,5 @@
 #include "mesh_topology.h"
-#include "mix_bits.h"
+#include "core/mix_bits.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "nsfd/mesh/mesh_builder.h"
+#include "mesh_builder.h"
 
 #include "deal_ii_message.h"
 #include "mesh_topology.h"
-#include "mix_bits.h"
-#include "nsfd/mesh/mesh_types.h"
-#include "nsfd/mesh/named_mesh.h"
+#include "core/mix_bits.h"
+#include "mesh_types.h"
+#include "named_mesh.h"
 
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>

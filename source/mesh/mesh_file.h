@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/mesh/named_mesh.h"
+#include "named_mesh.h"
 
 #include <optional>
 #include <string>

@@ -1,9 +1,9 @@
-#include "nsfd/mesh/mesh_builder.h"
+#include "mesh_builder.h"
 
-#include "nsfd/base/communicator.h"
+#include "nsfd/core/communicator.h"
 
 #include "coarse_mesh.h"
-#include "nsfd/mesh/named_mesh.h"
+#include "named_mesh.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/tria.h>

@@ -1,6 +1,6 @@
-#include "nsfd/mesh/mesh_builder.h"
+#include "mesh_builder.h"
 
-#include "nsfd/base/communicator.h"
+#include "nsfd/core/communicator.h"
 
 #include "coarse_mesh.h"
 

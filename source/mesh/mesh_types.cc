@@ -1,4 +1,4 @@
-#include "nsfd/mesh/mesh_types.h"
+#include "mesh_types.h"
 
 namespace nsfd
 {

@@ -1,4 +1,4 @@
-#include "nsfd/mesh/named_mesh.h"
+#include "named_mesh.h"
 
 #include "cell_shapes.h"
 

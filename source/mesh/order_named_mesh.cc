@@ -1,8 +1,8 @@
-#include "nsfd/mesh/named_mesh.h"
+#include "named_mesh.h"
 
 #include "cell_shapes.h"
 #include "check_cells.h"
-#include "mix_bits.h"
+#include "core/mix_bits.h"
 #include "vectors.h"
 
 #include <fmt/format.h>

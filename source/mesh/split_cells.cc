@@ -2,7 +2,7 @@
 
 #include "cell_shapes.h"
 #include "mesh_topology.h"
-#include "nsfd/mesh/named_mesh.h"
+#include "named_mesh.h"
 
 #include <algorithm>
 #include <map>

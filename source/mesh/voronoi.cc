@@ -1,7 +1,7 @@
 #include "voronoi.h"
 
 #include "gmsh_reader.h"
-#include "mix_bits.h"
+#include "core/mix_bits.h"
 
 #include <fmt/format.h>
 

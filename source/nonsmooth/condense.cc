@@ -1,6 +1,6 @@
-#include "nsfd/nonsmooth/condense.h"
+#include "condense.h"
 
-#include "nsfd/interface/friction_weight.h"
+#include "cohesive_laws/friction_weight.h"
 #include "springs.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "damage.h"
 #include "springs.h"
 
-#include "nsfd/input/scene_input.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>

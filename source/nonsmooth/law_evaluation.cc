@@ -1,6 +1,6 @@
-#include "nsfd/nonsmooth/solver.h"
+#include "solver.h"
 
-#include "nsfd/base/cost.h"
+#include "core/cost.h"
 
 #include <algorithm>
 #include <cmath>

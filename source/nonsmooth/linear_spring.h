@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/nonsmooth/point_law.h"
+#include "point_law.h"
 
 namespace nsfd
 {

@@ -1,4 +1,4 @@
-#include "nsfd/nonsmooth/point_law.h"
+#include "point_law.h"
 
 #include "damage.h"
 #include "springs.h"

@@ -1,10 +1,10 @@
-#include "nsfd/nonsmooth/point_law.h"
+#include "point_law.h"
 
 #include "damage.h"
 #include "springs.h"
 
-#include "nsfd/interface/friction_weight.h"
-#include "nsfd/nonsmooth/pull_and_shear.h"
+#include "cohesive_laws/friction_weight.h"
+#include "pull_and_shear.h"
 
 #include <algorithm>
 #include <cmath>

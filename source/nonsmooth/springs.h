@@ -1,8 +1,8 @@
 #pragma once
 
-#include "bracketed_root.h"
+#include "core/bracketed_root.h"
 
-#include "nsfd/input/scene_input.h"
+#include "nsfd/scene/scene_input.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
 
 #include <algorithm>

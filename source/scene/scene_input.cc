@@ -1,4 +1,4 @@
-#include "nsfd/input/scene_input.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 

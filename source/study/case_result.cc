@@ -1,7 +1,7 @@
-#include "nsfd/study/case_result.h"
+#include "case_result.h"
 
-#include "nsfd/base/cost.h"
-#include "nsfd/output/output_folder.h"
+#include "core/cost.h"
+#include "core/output_folder.h"
 
 #include <nlohmann/json.hpp>
 

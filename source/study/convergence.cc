@@ -1,6 +1,6 @@
-#include "nsfd/study/convergence.h"
+#include "convergence.h"
 
-#include "nsfd/study/case_result.h"
+#include "case_result.h"
 
 #include <algorithm>
 #include <cmath>

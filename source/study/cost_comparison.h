@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/study/study_results.h"
+#include "study_results.h"
 
 #include <string>
 #include <vector>

@@ -1,10 +1,10 @@
-#include "nsfd/study/study_input.h"
+#include "study_input.h"
 
 #include "study_numbers.h"
 
-#include "nsfd/input/parameter_file.h"
-#include "nsfd/input/read_scene.h"
-#include "nsfd/scene/verification_case.h"
+#include "parameters/parameter_file.h"
+#include "input/read_scene.h"
+#include "nsfd/verification/verification_case.h"
 
 #include <fmt/format.h>
 

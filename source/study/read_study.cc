@@ -1,7 +1,7 @@
-#include "nsfd/study/study_input.h"
+#include "study_input.h"
 
-#include "nsfd/input/parameter_file.h"
-#include "nsfd/input/section_reader.h"
+#include "parameters/parameter_file.h"
+#include "nsfd/parameters/section_reader.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
-#include "nsfd/study/run_case.h"
+#include "run_case.h"
 
-#include "nsfd/base/exit_code.h"
-#include "nsfd/output/output_folder.h"
+#include "core/exit_code.h"
+#include "core/output_folder.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -1,11 +1,11 @@
-#include "nsfd/study/run_case.h"
-#include "nsfd/study/study_command.h"
-#include "nsfd/study/study_results.h"
+#include "run_case.h"
+#include "study_command.h"
+#include "study_results.h"
 
-#include "nsfd/base/version.h"
-#include "nsfd/base/exit_code.h"
-#include "nsfd/input/input_errors.h"
-#include "nsfd/output/output_folder.h"
+#include "core/version.h"
+#include "core/exit_code.h"
+#include "parameters/input_errors.h"
+#include "core/output_folder.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

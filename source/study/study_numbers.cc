@@ -1,7 +1,7 @@
 #include "study_numbers.h"
 
-#include "nsfd/input/quantity.h"
-#include "nsfd/study/study_input.h"
+#include "parameters/quantity.h"
+#include "study_input.h"
 
 #include <fmt/format.h>
 #include <muParser.h>

@@ -2,12 +2,12 @@
 #include "rank_scaling.h"
 #include "study_means.h"
 
-#include "../output/report_html.h"
+#include "postprocess/report_html.h"
 
-#include "nsfd/output/engineering.h"
-#include "nsfd/output/output_folder.h"
-#include "nsfd/output/svg.h"
-#include "nsfd/study/study_results.h"
+#include "records/engineering.h"
+#include "core/output_folder.h"
+#include "visualization/svg.h"
+#include "study_results.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "nsfd/study/study_results.h"
+#include "study_results.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "rank_scaling.h"
 #include "study_means.h"
 
-#include "nsfd/study/study_results.h"
+#include "study_results.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "nsfd/study/variation.h"
+#include "variation.h"
 
 #include <fmt/format.h>
 

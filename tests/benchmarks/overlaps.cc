@@ -7,7 +7,7 @@
 // Prints one line per time and, last, the deepest of all.
 #include "../unit/separating_axes.h"
 
-#include "../../source/stored/hdf5_file.h"
+#include "core/hdf5_file.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 // The first column names the curve of a row. Curves whose names agree up to
 // their first semicolon share a colour; the first is solid, others are dashed.
 
-#include "nsfd/output/svg.h"
+#include "visualization/svg.h"
 
 #include <algorithm>
 #include <cstdio>

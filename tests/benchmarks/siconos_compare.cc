@@ -6,8 +6,8 @@
 // Every solver and storage of Siconos runs in a process of its own with a time
 // limit; one counts if its impulses are a solution in the measure of
 // natural_map_error(). Times are of the solve alone, the best of several runs.
-#include "nsfd/stored/contact_solver.h"
-#include "nsfd/stored/fclib.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nonsmooth/frictional_contact/fclib.h"
 
 extern "C" {
 #include <siconos/numerics/CSparseMatrix.h>

@@ -2,8 +2,8 @@
 // in microseconds per facet: all candidates searched, and a step that keeps
 // them. Cells are numbered row by row or at random.
 
-#include "nsfd/contact/surface_search.h"
-#include "nsfd/base/stopwatch.h"
+#include "contact_detection/surface_search.h"
+#include "core/stopwatch.h"
 
 #include <fmt/format.h>
 

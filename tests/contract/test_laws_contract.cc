@@ -1,8 +1,8 @@
 #include "../unit/make_law.h"
 
-#include "nsfd/input/scene_input.h"
-#include "nsfd/interface/cohesive_law.h"
-#include "nsfd/nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nonsmooth/point_law.h"
 
 #include <gtest/gtest.h>
 

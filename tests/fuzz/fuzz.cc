@@ -27,7 +27,7 @@
 #include <sstream>
 #include <thread>
 
-int nsfd_main(int argc, char **argv); // of source/main.cc, see CMakeLists.txt
+int nsfd_main(int argc, char **argv); // of source/app/main.cc, see CMakeLists.txt
 
 namespace nsfd::fuzz
 {

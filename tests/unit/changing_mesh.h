@@ -1,10 +1,10 @@
 #pragma once
 
-#include "../../source/adapt/adaptive_mesh.h"
+#include "simulation/adaptive_mesh.h"
 #include "make_scene.h"
 
-#include "nsfd/adapt/indicator.h"
-#include "nsfd/input/section_reader.h"
+#include "nsfd/adaptivity/indicator.h"
+#include "nsfd/parameters/section_reader.h"
 
 #include <algorithm>
 #include <array>

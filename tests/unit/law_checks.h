@@ -2,7 +2,7 @@
 
 #include "make_law.h"
 
-#include "nsfd/interface/cohesive_law.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "nsfd/input/input_errors.h"
-#include "nsfd/input/parameter_file.h"
-#include "nsfd/input/section_reader.h"
-#include "nsfd/interface/cohesive_law.h"
+#include "parameters/input_errors.h"
+#include "parameters/parameter_file.h"
+#include "nsfd/parameters/section_reader.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <memory>
 #include <sstream>

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "../../source/motion/inelastic_motion.h"
-#include "../../source/motion/large_motion.h"
+#include "time_integration/inelastic_motion.h"
+#include "time_integration/large_motion.h"
 
-#include "nsfd/dynamics/bonded.h"
-#include "nsfd/input/read_scene.h"
-#include "nsfd/mesh/discretization.h"
-#include "nsfd/mesh/mesh_builder.h"
-#include "nsfd/mesh/node_coordinates.h"
-#include "nsfd/nonsmooth/solver.h"
-#include "nsfd/time/moreau_jean.h"
+#include "delassus/bonded.h"
+#include "input/read_scene.h"
+#include "nsfd/discretization/discretization.h"
+#include "mesh/mesh_builder.h"
+#include "discretization/node_coordinates.h"
+#include "nonsmooth/solver.h"
+#include "time_integration/moreau_jean.h"
 
 #include <memory>
 #include <stdexcept>

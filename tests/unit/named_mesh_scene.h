@@ -1,8 +1,8 @@
 #pragma once
 
-#include "nsfd/input/read_scene.h"
-#include "nsfd/mesh/mesh_builder.h"
-#include "nsfd/mesh/named_mesh.h"
+#include "input/read_scene.h"
+#include "mesh/mesh_builder.h"
+#include "mesh/named_mesh.h"
 
 #include <gtest/gtest.h>
 

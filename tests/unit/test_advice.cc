@@ -2,7 +2,7 @@
 #include "make_scene.h"
 #include "relaxation_scene.h"
 
-#include "nsfd/scene/advice.h"
+#include "simulation/advice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "nsfd/input/read_scene.h"
+#include "input/read_scene.h"
 
 #include <gtest/gtest.h>
 

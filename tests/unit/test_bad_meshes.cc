@@ -1,6 +1,6 @@
 // Files of meshes that are no meshes, or that break what reads them.
 
-#include "../../source/base/lock_process.h"
+#include "core/lock_process.h"
 #include "named_mesh_scene.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "nsfd/input/read_law.h"
-#include "nsfd/interface/cohesive_law.h"
-#include "nsfd/law_path/bar.h"
-#include "nsfd/law_path/drive_point.h"
+#include "material_point/read_law.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "material_point/bar.h"
+#include "material_point/drive_point.h"
 
 #include <gtest/gtest.h>
 

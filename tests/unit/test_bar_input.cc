@@ -1,4 +1,4 @@
-#include "nsfd/input/read_law.h"
+#include "material_point/read_law.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "../../source/nonsmooth/solvers/body_system.h"
-#include "../../source/nonsmooth/solvers/soft_space.h"
+#include "nonsmooth/solvers/body_system.h"
+#include "nonsmooth/solvers/soft_space.h"
 
 #include "make_scene.h"
 

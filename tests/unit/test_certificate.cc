@@ -1,9 +1,9 @@
 #include "breaking_plate.h"
 #include "make_scene.h"
 
-#include "nsfd/output/certificate.h"
-#include "nsfd/scene/advice.h"
-#include "nsfd/scene/zone_resolution.h"
+#include "records/certificate.h"
+#include "simulation/advice.h"
+#include "simulation/zone_resolution.h"
 
 #include <gtest/gtest.h>
 

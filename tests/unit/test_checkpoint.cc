@@ -1,8 +1,8 @@
-#include "../../source/checkpoint/checkpoint_file.h"
-#include "../../source/checkpoint/hdf5_image.h"
-#include "../../source/checkpoint/parameter_changes.h"
-#include "../../source/checkpoint/rank_order.h"
-#include "nsfd/output/history_file.h"
+#include "checkpoint/checkpoint_file.h"
+#include "checkpoint/hdf5_image.h"
+#include "checkpoint/parameter_changes.h"
+#include "checkpoint/rank_order.h"
+#include "postprocess/history_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "nsfd/compare/comparison.h"
+#include "compare/comparison.h"
 
 #include <gtest/gtest.h>
 

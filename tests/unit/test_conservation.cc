@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "../../source/time/common_books.h"
+#include "time_integration/common_books.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "../../source/output/body_view.h"
+#include "visualization/body_view.h"
 
-#include "nsfd/output/svg.h"
+#include "visualization/svg.h"
 
 #include <gtest/gtest.h>
 

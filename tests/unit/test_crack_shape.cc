@@ -1,4 +1,4 @@
-#include "nsfd/scene/crack_shape.h"
+#include "postprocess/crack_shape.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "../../source/dynamics/block_inverse.h"
+#include "delassus/block_inverse.h"
 #include "make_scene.h"
 
-#include "nsfd/dynamics/block_kernels.h"
-#include "nsfd/dynamics/inner_solver.h"
+#include "nsfd/linear_algebra/block_kernels.h"
+#include "delassus/inner_solver.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "../../source/mesh/elasticity.h"
+#include "materials/elasticity.h"
 
 #include "make_scene.h"
 
-#include "nsfd/input/scene_input.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

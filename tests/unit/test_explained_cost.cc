@@ -1,9 +1,9 @@
 #include "make_scene.h"
 
-#include "nsfd/base/cost.h"
-#include "nsfd/base/stopwatch.h"
-#include "nsfd/dynamics/delassus_cost.h"
-#include "nsfd/output/cost_record.h"
+#include "core/cost.h"
+#include "core/stopwatch.h"
+#include "delassus/delassus_cost.h"
+#include "nsfd/records/cost_record.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "breaking_plate.h"
 #include "make_scene.h"
 
-#include "nsfd/base/order_free_sum.h"
-#include "nsfd/output/fragment_output.h"
-#include "nsfd/output/fragment_sizes.h"
+#include "core/order_free_sum.h"
+#include "postprocess/fragment_output.h"
+#include "records/fragment_sizes.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

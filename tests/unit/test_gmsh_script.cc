@@ -1,7 +1,7 @@
 // Scripts of Gmsh: what may stand in them.
 
-#include "../../source/mesh/gmsh_script.h"
-#include "../../source/mesh/gmsh_words.h"
+#include "mesh/gmsh_script.h"
+#include "mesh/gmsh_words.h"
 
 #include <gtest/gtest.h>
 

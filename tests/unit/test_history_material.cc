@@ -1,7 +1,7 @@
-#include "../../source/motion/matrix_log.h"
+#include "materials/matrix_log.h"
 
-#include "nsfd/input/scene_input.h"
-#include "nsfd/motion/history_cell.h"
+#include "nsfd/scene/scene_input.h"
+#include "bodies/history_cell.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "nsfd/base/machine_memory.h"
-#include "nsfd/input/bad_values.h"
-#include "nsfd/input/place_of.h"
-#include "nsfd/input/read_scene.h"
-#include "nsfd/input/text_file.h"
-#include "nsfd/time/step_control.h"
+#include "core/machine_memory.h"
+#include "parameters/bad_values.h"
+#include "parameters/place_of.h"
+#include "input/read_scene.h"
+#include "parameters/text_file.h"
+#include "time_integration/step_control.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Energies of finite strain and cells that store them.
-#include "nsfd/input/scene_input.h"
-#include "nsfd/motion/finite_cell.h"
+#include "nsfd/scene/scene_input.h"
+#include "bodies/finite_cell.h"
 
 #include <gtest/gtest.h>
 

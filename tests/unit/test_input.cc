@@ -1,8 +1,8 @@
-#include "nsfd/input/command_line.h"
-#include "nsfd/input/parameter_file.h"
-#include "nsfd/input/read_scene.h"
-#include "nsfd/interface/cohesive_law.h"
-#include "nsfd/nonsmooth/solver.h"
+#include "app/command_line.h"
+#include "parameters/parameter_file.h"
+#include "input/read_scene.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nonsmooth/solver.h"
 
 #include <gtest/gtest.h>
 

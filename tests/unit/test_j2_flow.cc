@@ -1,5 +1,5 @@
-#include "nsfd/input/scene_input.h"
-#include "nsfd/motion/j2_flow.h"
+#include "nsfd/scene/scene_input.h"
+#include "materials/j2_flow.h"
 
 #include <gtest/gtest.h>
 

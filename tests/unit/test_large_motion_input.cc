@@ -1,7 +1,7 @@
-#include "nsfd/input/read_scene.h"
-#include "nsfd/interface/cohesive_law.h"
+#include "input/read_scene.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 
-#include "../../source/scene/motion_report.h"
+#include "simulation/motion_report.h"
 
 #include <gtest/gtest.h>
 

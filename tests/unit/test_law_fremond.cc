@@ -1,8 +1,8 @@
 #include "law_checks.h"
 #include "make_scene.h"
 
-#include "nsfd/input/scene_input.h"
-#include "nsfd/nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
+#include "nonsmooth/point_law.h"
 
 using namespace nsfd;
 using namespace nsfd::test;

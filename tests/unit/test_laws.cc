@@ -1,8 +1,8 @@
 #include "make_law.h"
 
-#include "nsfd/interface/cohesive_law.h"
-#include "nsfd/interface/friction_weight.h"
-#include "nsfd/interface/scatter.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "cohesive_laws/friction_weight.h"
+#include "nsfd/cohesive_laws/scatter.h"
 
 #include <gtest/gtest.h>
 

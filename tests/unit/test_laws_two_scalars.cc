@@ -1,7 +1,7 @@
 #include "law_checks.h"
 
-#include "nsfd/input/scene_input.h"
-#include "nsfd/nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
+#include "nonsmooth/point_law.h"
 
 #include <optional>
 

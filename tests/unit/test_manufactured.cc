@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "nsfd/scene/verification_case.h"
+#include "nsfd/verification/verification_case.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "nsfd/input/scene_input.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

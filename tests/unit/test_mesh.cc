@@ -1,5 +1,5 @@
-#include "nsfd/mesh/mesh_builder.h"
-#include "nsfd/mesh/mesh_types.h"
+#include "mesh/mesh_builder.h"
+#include "mesh/mesh_types.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/shared_tria.h>

@@ -1,8 +1,8 @@
-#include "../../source/scene/run_view.h"
+#include "postprocess/run_view.h"
 #include "make_scene.h"
 
-#include "nsfd/output/table_file.h"
-#include "nsfd/scene/running_crack.h"
+#include "postprocess/table_file.h"
+#include "nsfd/postprocess/running_crack.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // What a run leaves behind: history.csv, JSON, pictures, the report, VTU files
 // and the lines on the terminal.
 
-#include "nsfd/output/history_file.h"
-#include "nsfd/output/progress.h"
-#include "nsfd/output/report.h"
-#include "nsfd/output/output_folder.h"
-#include "nsfd/output/summary_file.h"
-#include "nsfd/output/svg.h"
-#include "nsfd/output/vtu.h"
+#include "postprocess/history_file.h"
+#include "postprocess/progress.h"
+#include "postprocess/report.h"
+#include "core/output_folder.h"
+#include "postprocess/summary_file.h"
+#include "visualization/svg.h"
+#include "postprocess/vtu.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "../../source/nonsmooth/solvers/pivots.h"
+#include "nonsmooth/solvers/pivots.h"
 
 #include <gtest/gtest.h>
 

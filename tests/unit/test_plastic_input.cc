@@ -1,5 +1,5 @@
-#include "nsfd/input/read_scene.h"
-#include "nsfd/interface/cohesive_law.h"
+#include "input/read_scene.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "nsfd/interface/point_factors.h"
+#include "discretization/point_factors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "../../source/nonsmooth/linear_spring.h"
+#include "nonsmooth/linear_spring.h"
 #include "make_law.h"
 
-#include "nsfd/input/scene_input.h"
-#include "nsfd/interface/friction_weight.h"
-#include "nsfd/nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
+#include "cohesive_laws/friction_weight.h"
+#include "nonsmooth/point_law.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "nsfd/time/quasi_static.h"
+#include "time_integration/quasi_static.h"
 
 #include <gtest/gtest.h>
 

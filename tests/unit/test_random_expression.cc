@@ -1,5 +1,5 @@
-#include "nsfd/input/read_scene.h"
-#include "nsfd/input/scene_input.h"
+#include "input/read_scene.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

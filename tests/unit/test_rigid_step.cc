@@ -1,5 +1,5 @@
 // Rotations of rigid bodies against formulas and conservation.
-#include "nsfd/motion/rigid_step.h"
+#include "nsfd/bodies/rigid_step.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "../../source/time/stable_step.h"
+#include "time_integration/stable_step.h"
 #include "breaking_plate.h"
 #include "make_scene.h"
 

@@ -2,8 +2,8 @@
 #include "make_scene.h"
 #include "rigid_in_rubber.h"
 
-#include "nsfd/input/scene_input.h"
-#include "nsfd/interface/friction_weight.h"
+#include "nsfd/scene/scene_input.h"
+#include "cohesive_laws/friction_weight.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "../../source/dynamics/sparse_assembly.h"
+#include "delassus/sparse_assembly.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "make_law.h"
 #include "make_scene.h"
 
-#include "nsfd/interface/cohesive_law.h"
-#include "nsfd/time/quasi_static.h"
-#include "nsfd/time/step_control.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "time_integration/quasi_static.h"
+#include "time_integration/step_control.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "make_scene.h"
 #include "relaxation_scene.h"
 
-#include "nsfd/time/step_control.h"
+#include "time_integration/step_control.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "../../source/interface/stiffened_law.h"
+#include "cohesive_laws/stiffened_law.h"
 #include "make_law.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Stored contact problems: what is read, what is refused.
-#include "nsfd/output/output_folder.h"
-#include "nsfd/stored/fclib.h"
+#include "core/output_folder.h"
+#include "nonsmooth/frictional_contact/fclib.h"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -1,7 +1,7 @@
 // Stored contact problems: error measure, one contact, every solver.
-#include "nsfd/stored/contact_solver.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
 
-#include "../../source/stored/one_contact.h"
+#include "nonsmooth/frictional_contact/one_contact.h"
 
 #include <gtest/gtest.h>
 

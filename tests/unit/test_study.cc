@@ -1,9 +1,9 @@
-#include "nsfd/input/input_errors.h"
-#include "nsfd/study/case_result.h"
-#include "nsfd/study/convergence.h"
-#include "nsfd/study/study_input.h"
-#include "nsfd/study/study_results.h"
-#include "nsfd/study/variation.h"
+#include "parameters/input_errors.h"
+#include "study/case_result.h"
+#include "study/convergence.h"
+#include "study/study_input.h"
+#include "study/study_results.h"
+#include "study/variation.h"
 
 #include <gtest/gtest.h>
 

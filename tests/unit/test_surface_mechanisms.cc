@@ -1,8 +1,8 @@
 #include "law_checks.h"
 #include "make_scene.h"
 
-#include "nsfd/law_path/drive_point.h"
-#include "nsfd/nonsmooth/point_law.h"
+#include "material_point/drive_point.h"
+#include "nonsmooth/point_law.h"
 
 #include <random>
 

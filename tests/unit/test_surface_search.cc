@@ -1,11 +1,11 @@
-#include "nsfd/contact/surface_search.h"
+#include "contact_detection/surface_search.h"
 
 #include "separating_axes.h"
 
-#include "../../source/contact/ball_pairs.h"
-#include "../../source/contact/edge_pairs.h"
-#include "../../source/contact/near_candidates.h"
-#include "../../source/contact/point_pairs.h"
+#include "contact_detection/ball_pairs.h"
+#include "contact_detection/edge_pairs.h"
+#include "contact_detection/near_candidates.h"
+#include "contact_detection/point_pairs.h"
 
 #include <gtest/gtest.h>
 

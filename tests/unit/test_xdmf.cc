@@ -1,6 +1,6 @@
-#include "../../source/output/xdmf_series.h"
-#include "../../source/stored/hdf5_file.h"
-#include "nsfd/base/communicator.h"
+#include "postprocess/xdmf_series.h"
+#include "core/hdf5_file.h"
+#include "nsfd/core/communicator.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/interface/cohesive_law.h"
-#include "nsfd/nonsmooth/point_kind.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/state/point_kind.h"
 
 #include <array>
 #include <cstdint>

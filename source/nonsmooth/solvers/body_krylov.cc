@@ -1,6 +1,6 @@
 #include "body_krylov.h"
 
-#include "nsfd/base/stop_request.h"
+#include "core/stop_request.h"
 
 #include <deal.II/lac/lapack_templates.h>
 

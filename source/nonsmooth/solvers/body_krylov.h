@@ -1,7 +1,7 @@
 #pragma once
 
 #include "soft_space.h"
-#include "sparse_lu.h"
+#include "linear_algebra/sparse_lu.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include "body_system.h"
 
-#include "nsfd/base/cost.h"
-#include "nsfd/dynamics/point_places.h"
+#include "core/cost.h"
+#include "discretization/point_places.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "body_krylov.h"
-#include "sparse_lu.h"
+#include "linear_algebra/sparse_lu.h"
 
-#include "../../dynamics/factor_limits.h"
+#include "linear_algebra/factor_limits.h"
 
-#include "nsfd/dynamics/dynamics.h"
-#include "nsfd/dynamics/spd_solver.h"
+#include "delassus/dynamics.h"
+#include "linear_algebra/spd_solver.h"
 
 #include <memory>
 #include <vector>

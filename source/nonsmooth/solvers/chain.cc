@@ -1,6 +1,6 @@
-#include "nsfd/nonsmooth/solver.h"
+#include "nonsmooth/solver.h"
 
-#include "../../dynamics/factor_limits.h"
+#include "linear_algebra/factor_limits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "contact_path.h"
 #include "pivots.h"
 
-#include "../springs.h"
+#include "nonsmooth/springs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "contact_path.h"
 
-#include "../springs.h"
+#include "nonsmooth/springs.h"
 
-#include "nsfd/base/stop_request.h"
+#include "core/stop_request.h"
 
 #include <algorithm>
 #include <cmath>

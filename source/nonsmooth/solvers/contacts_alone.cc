@@ -1,7 +1,7 @@
-#include "../../base/gather.h"
+#include "core/gather.h"
 
-#include "nsfd/nonsmooth/solver.h"
-#include "nsfd/stored/contact_solver.h"
+#include "nonsmooth/solver.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/dynamics/inner_solver.h"
-#include "nsfd/nonsmooth/solver.h"
+#include "delassus/inner_solver.h"
+#include "nonsmooth/solver.h"
 
 namespace nsfd
 {

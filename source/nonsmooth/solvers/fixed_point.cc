@@ -1,6 +1,6 @@
-#include "nsfd/nonsmooth/solver.h"
+#include "nonsmooth/solver.h"
 
-#include "nsfd/base/accelerated_rounds.h"
+#include "core/accelerated_rounds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/nonsmooth/solver.h"
+#include "nonsmooth/solver.h"
 
 #include <memory>
 #include <vector>

@@ -1,7 +1,7 @@
-#include "nsfd/nonsmooth/solver.h"
+#include "nonsmooth/solver.h"
 
-#include "nsfd/base/cost.h"
-#include "nsfd/dynamics/point_places.h"
+#include "core/cost.h"
+#include "discretization/point_places.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 #include "contact_path.h"
 #include "gathered.h"
 
-#include "nsfd/base/archive.h"
+#include "core/archive.h"
 
 namespace nsfd
 {

@@ -1,6 +1,6 @@
 #include "linearised_laws.h"
 
-#include "nsfd/base/stop_request.h"
+#include "core/stop_request.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "body_system.h"
 
-#include "nsfd/nonsmooth/solver.h"
+#include "nonsmooth/solver.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "../linear_spring.h"
+#include "nonsmooth/linear_spring.h"
 #include "dual_newton.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "face_rows.h"
 
-#include "nsfd/dynamics/spd_solver.h"
+#include "linear_algebra/spd_solver.h"
 
 namespace nsfd
 {

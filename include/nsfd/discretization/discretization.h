@@ -1,0 +1,228 @@
+#pragma once
+
+#include "nsfd/core/communicator.h"
+#include "nsfd/discretization/bodies.h"
+#include "nsfd/discretization/body_table.h"
+#include "nsfd/materials/material_extremes.h"
+
+#include <deal.II/base/point.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dealii
+{
+  template <int dim, int spacedim>
+  class FiniteElement;
+} // namespace dealii
+
+namespace nsfd
+{
+  struct SceneInput;
+  template <int dim>
+  class MeshGroups;
+  template <int dim>
+  struct Cells;
+  template <int dim>
+  struct BodyShape;
+  template <int dim>
+  class Loads;
+
+  /** Where a point of InterfacePoints comes from. */
+  struct PointOrigin {
+    enum class Kind : unsigned char {
+      interface, ///< between two cells, `block` of SceneInput::interfaces
+      motion,    ///< prescribed motion, `block` of boundaries
+      obstacle,  ///< `block` of obstacles
+      surface,   ///< of large motions, for one step: `block` of contacts
+      pin        ///< of large motions: `block` of pins
+    };
+    Kind kind = Kind::interface;
+    unsigned int block = 0;
+    /// of the springs of an interface over that of its law, in (0, 1]: less on
+    /// faces of refined cells where springs keep the modulus of the body
+    double compliance = 1.;
+  };
+
+  /** Where an obstacle may be touched, in scenes with large motions. */
+  struct ObstacleFace
+  {
+    unsigned int body = 0, face = 0, obstacle = 0;
+  };
+
+  /** Between two cells of one rigid body, in scenes with large motions. */
+  struct InnerFace
+  {
+    std::array<unsigned int, 2> bodies, faces;
+  };
+
+  /**
+   * The cells of this rank as bodies, and the points on their faces: matrices,
+   * traces, frames, weights. Straight-sided cells; cells of the same shape and
+   * material share their blocks, built from the shape rounded to 2^-42 of its
+   * size, so that they are the same on every rank. Units of the scene. With
+   * large motions rigid cells have nodal unknowns too, without stiffness, and
+   * obstacles no points: see bodies/moving_bodies.h.
+   */
+  template <int dim>
+  class Discretization
+  {
+  public:
+    /** @throws std::runtime_error with a sentence for the user. */
+    Discretization(const Communicator &communicator,
+                   const dealii::Triangulation<dim, dim> &triangulation,
+                   const MeshGroups<dim> &groups,
+                   const std::vector<unsigned int> &materials,
+                   const SceneInput &input);
+    ~Discretization();
+    Discretization(Discretization &&) noexcept;
+    /** For a mesh that has changed; what refers to bodies() is void then. */
+    Discretization &operator=(Discretization &&) noexcept;
+
+    const SceneInput &input() const { return *input_; }
+    const Bodies &bodies() const;
+    const InterfacePoints<dim> &points() const { return points_; }
+    const std::vector<PointOrigin> &origins() const { return origins_; }
+    /** Place of a face point. */
+    dealii::Point<dim> position(const std::size_t point) const
+    {
+      dealii::Point<dim> x;
+      for (unsigned int c = 0; c < dim; ++c)
+        x[c] = points_.position[point * dim + c];
+      return x;
+    }
+    const dealii::FiniteElement<dim, dim> &element() const;
+
+    unsigned int material_of(unsigned int body) const;
+
+    /**
+     * The interface block with springs that new faces inside a cell would have
+     * and that are to keep the modulus of the body; -1: none.
+     */
+    int springs_inside(unsigned int body) const
+    {
+      return springs_inside_.empty() ? -1 : springs_inside_[body];
+    }
+
+    /** Tables of the cell of a body, relative to its corner 0. */
+    const BodyShape<dim> &shape(unsigned int body) const;
+
+    /** Empty but in scenes with large motions. */
+    const std::vector<ObstacleFace> &obstacle_faces() const
+    {
+      return obstacle_faces_;
+    }
+
+    /** The same; such faces have no points. */
+    const std::vector<InnerFace> &inner_faces() const { return inner_faces_; }
+
+    /** Of all ranks; of scenes with large motions only. */
+    const BodyTable &body_table() const { return *body_table_; }
+
+    /** Which face of its cell a slot of a body is on. */
+    unsigned int face_of_slot(unsigned int body, unsigned int slot) const;
+
+    /** Nodal vectors: node-major, dim components, all cells of this rank. */
+    std::size_t n_nodal() const;
+    std::size_t first_node(unsigned int body) const;
+    /** Unknowns of the bodies to nodal values (rigid modes are expanded). */
+    std::vector<double> to_nodal(const std::vector<double> &unknowns) const;
+
+    using Field = std::function<void(const dealii::Point<dim> &,
+                                     unsigned int body, double *values)>;
+
+    /**
+     * Interpolate at the nodes; rigid bodies take the rigid motion nearest in
+     * the norm of their mass.
+     */
+    std::vector<double> interpolate(const Field &field) const;
+
+    /**
+     * Generalised forces at time @p t of gravity, body forces, tractions and
+     * pressures, in N (N per metre of depth in two dimensions).
+     */
+    void add_loads(double t, std::vector<double> &forces) const;
+    bool loads_depend_on_time() const;
+    bool has_loads() const;
+
+    /**
+     * Call @p visit at every quadrature point of every cell of this rank:
+     * (body, position, JxW, values of @p nodal, its gradient [component][dir]).
+     */
+    using Visitor = std::function<void(
+        unsigned int body, const dealii::Point<dim> &position, double JxW,
+        const double *value, const double *gradient)>;
+    void visit_quadrature(const std::vector<double> &nodal,
+                          const Visitor &visit) const;
+
+    /**
+     * Stress xx, yy, zz, xy, xz, yz from a displacement gradient at @p x, of a
+     * material that remembers nothing; see bodies/cell_stresses.h for others.
+     */
+    std::array<double, 6> stress(unsigned int body,
+                                 const dealii::Point<dim> &x,
+                                 const double *gradient) const;
+
+    /** What a velocity gradient adds to it in a viscous material. */
+    std::array<double, 6> viscous_stress(unsigned int body,
+                                         const double *rate) const;
+    bool is_viscous() const;
+
+    /** Corners of a cell in deal.II's order, and values of a nodal vector. */
+    std::vector<dealii::Point<dim>> corners(unsigned int body) const;
+    std::vector<double> at_corners(unsigned int body,
+                                   const std::vector<double> &nodal) const;
+    double volume(unsigned int body) const;
+    dealii::Point<dim> centre(unsigned int body) const;
+    unsigned long long global_cell(unsigned int body) const;
+    /** CellId::to_binary(): the same on every number of ranks. */
+    const std::array<unsigned int, 4> &cell_id(unsigned int body) const;
+    unsigned long long n_global_cells() const { return n_global_cells_; }
+    bool simplices() const;
+
+    /** Of a material, and of the cell of a body alone. */
+    const MaterialExtremes &extremes(const unsigned int material) const
+    {
+      return extremes_[material];
+    }
+    const MaterialExtremes &extremes_of(unsigned int body) const;
+
+    /** Speeds of the fastest and the slowest plane waves in a material. */
+    double pressure_wave_speed(const unsigned int material) const
+    {
+      return extremes_[material].fastest;
+    }
+    double shear_wave_speed(const unsigned int material) const
+    {
+      return extremes_[material].slowest;
+    }
+    /** The shortest crossing time of the fastest wave over all cells. */
+    double crossing_time() const { return crossing_time_; }
+    double cell_size() const { return cell_size_; }
+    /** Diagonal of the bounding box: a length that no mesh changes. */
+    double extent() const { return extent_; }
+
+    /** Driven boundaries in the order of the reactions of a history row. */
+    const std::vector<unsigned int> &driven_boundaries() const
+    {
+      return driven_;
+    }
+
+  private:
+    const SceneInput *input_;
+    std::unique_ptr<const Cells<dim>> cells_;
+    InterfacePoints<dim> points_;
+    std::vector<PointOrigin> origins_;
+    std::vector<int> springs_inside_; ///< by body; empty: none anywhere
+    std::vector<ObstacleFace> obstacle_faces_;
+    std::vector<InnerFace> inner_faces_;
+    std::unique_ptr<const BodyTable> body_table_; ///< of large motions
+    std::unique_ptr<const Loads<dim>> loads_;
+    unsigned long long n_global_cells_ = 0;
+    double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;
+    std::vector<unsigned int> driven_;
+    std::vector<MaterialExtremes> extremes_; ///< by material
+  };
+} // namespace nsfd

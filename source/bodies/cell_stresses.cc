@@ -1,0 +1,185 @@
+#include "cell_stresses.h"
+
+#include "discretization/body_shape.h"
+#include "discretization/cell_sampler.h"
+#include "deformable_cells.h"
+
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  CellStresses<dim>::CellStresses(const Discretization<dim> &discretization,
+                                  const State &state)
+      : discretization_(discretization), state_(state)
+  {
+    const SceneInput &input = discretization.input();
+    if (!input.has_history())
+      return;
+    for (const MaterialInput &material : input.materials)
+      materials_.push_back(material.plastic
+                               ? make_history_material<dim>(
+                                     material.young, material.poisson,
+                                     *material.plastic, input.large_motion,
+                                     input.plane_stress)
+                               : nullptr);
+    first_ = first_histories(discretization);
+  }
+
+  template <int dim>
+  CellStresses<dim>::~CellStresses() = default;
+
+  template <int dim>
+  bool CellStresses<dim>::remembers(const unsigned int body) const
+  {
+    return any_memory() &&
+           materials_[discretization_.material_of(body)] != nullptr;
+  }
+
+  template <int dim>
+  const double *CellStresses<dim>::history(const unsigned int body,
+                                           const unsigned int q) const
+  {
+    return state_.material_history.data() + first_[body] +
+           q * materials_[discretization_.material_of(body)]->n_history();
+  }
+
+  template <int dim>
+  typename CellStresses<dim>::Stress
+  CellStresses<dim>::visit(const unsigned int body, const dealii::Point<dim> &x,
+                           const double *gradient)
+  {
+    if (!remembers(body))
+      return discretization_.stress(body, x, gradient);
+    if (body != body_)
+      point_ = 0;
+    body_ = body;
+    const unsigned int q = point_++;
+    if (point_ == discretization_.shape(body).JxW.size())
+      point_ = 0; // the next visit of all may begin here
+    return materials_[discretization_.material_of(body)]->stress(
+        gradient, history(body, q));
+  }
+
+  template <int dim>
+  void CellStresses<dim>::visit_all(const std::vector<double> &displacement,
+                                    const std::vector<double> &velocity,
+                                    const Visitor &visitor)
+  {
+    std::vector<Stress> viscous; // in the order of the visits
+    if (discretization_.is_viscous())
+      discretization_.visit_quadrature(
+          velocity, [&](const unsigned int body, const dealii::Point<dim> &,
+                        double, const double *, const double *rate) {
+            viscous.push_back(discretization_.viscous_stress(body, rate));
+          });
+    std::size_t k = 0;
+    discretization_.visit_quadrature(
+        displacement, [&](const unsigned int body, const dealii::Point<dim> &x,
+                          const double JxW, const double *,
+                          const double *gradient) {
+          Stress sigma = visit(body, x, gradient);
+          if (!viscous.empty())
+            for (unsigned int c = 0; c < 6; ++c)
+              sigma[c] += viscous[k][c];
+          ++k;
+          visitor(body, x, JxW, sigma);
+        });
+  }
+
+  template <int dim>
+  std::vector<double>
+  CellStresses<dim>::at_nodes(const unsigned int body,
+                              const std::vector<double> &nodal) const
+  {
+    constexpr unsigned int width = 7;
+    const auto &shape = discretization_.shape(body);
+    const auto &material = *materials_[discretization_.material_of(body)];
+    const unsigned int n = shape.n_nodes;
+    const double *u = nodal.data() + discretization_.first_node(body) * dim;
+    Block mass(n, n), moments(n, width);
+    for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
+      double gradient[dim * dim] = {};
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            gradient[c * dim + d] +=
+                u[i * dim + c] * shape.gradients[q * n + i][d];
+      const Stress stress = material.stress(gradient, history(body, q));
+      for (unsigned int i = 0; i < n; ++i) {
+        const double N = shape.JxW[q] * shape.values[q * n + i];
+        for (unsigned int j = 0; j < n; ++j)
+          mass(i, j) += N * shape.values[q * n + j];
+        for (unsigned int k = 0; k < 6; ++k)
+          moments(i, k) += N * stress[k];
+        moments(i, 6) += N * material.equivalent_strain(history(body, q));
+      }
+    }
+    Block identity(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      identity(i, i) = 1.;
+    const Block values =
+        product(gram(forward_solve(cholesky(mass), identity)), moments);
+    std::vector<double> result;
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int k = 0; k < width; ++k)
+        result.push_back(values(i, k));
+    return result;
+  }
+
+  template <int dim>
+  typename CellStresses<dim>::Sample
+  CellStresses<dim>::from_nodes(const Sampler<dim> &sampler,
+                                const unsigned int q) const
+  {
+    constexpr unsigned int width = 7;
+    const std::size_t n = nodes_.size() / width;
+    std::array<double, width> value{};
+    std::vector<double> part(n * dim);
+    for (unsigned int k = 0; k < width; k += dim) { // it takes dim at a time
+      for (std::size_t i = 0; i < n; ++i)
+        for (unsigned int c = 0; c < dim && k + c < width; ++c)
+          part[i * dim + c] = nodes_[i * width + k + c];
+      const auto x = sampler.value(q, part.data());
+      for (unsigned int c = 0; c < dim && k + c < width; ++c)
+        value[k + c] = x[c];
+    }
+    Sample result;
+    std::copy_n(value.begin(), 6, result.stress.begin());
+    result.plastic_strain = std::max(0., value[6]);
+    return result;
+  }
+
+  template <int dim>
+  typename CellStresses<dim>::Sample
+  CellStresses<dim>::at(const unsigned int body, const Sampler<dim> &sampler,
+                        const unsigned int q,
+                        const std::vector<double> &displacement,
+                        const std::vector<double> &velocity)
+  {
+    if (remembers(body)) {
+      if (nodes_.empty() || body != sampled_)
+        nodes_ = at_nodes(body, displacement);
+      sampled_ = body;
+      return from_nodes(sampler, q);
+    }
+    const auto corners = discretization_.corners(body);
+    const std::size_t node = discretization_.first_node(body) * dim;
+    const auto gradient = sampler.gradient(q, corners, &displacement[node]);
+    Sample result;
+    result.stress = discretization_.stress(
+        body, sampler.position(q, corners), gradient.data());
+    if (discretization_.is_viscous()) {
+      const auto viscous = discretization_.viscous_stress(
+          body, sampler.gradient(q, corners, &velocity[node]).data());
+      for (unsigned int c = 0; c < 6; ++c)
+        result.stress[c] += viscous[c];
+    }
+    return result;
+  }
+
+  template class CellStresses<2>;
+  template class CellStresses<3>;
+} // namespace nsfd

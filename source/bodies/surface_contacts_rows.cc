@@ -1,0 +1,442 @@
+#include "surface_contacts.h"
+
+#include "core/gather.h"
+#include "obstacle_shape.h"
+
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+// SurfaceContacts: which contacts there are in a step.
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Interfaces, obstacles, the support, contacts: see constant_data(). */
+    unsigned int interaction_of_contact(const SceneInput &input,
+                                        const unsigned int block)
+    {
+      return unsigned(input.interfaces.size() + input.obstacles.size()) + 1 +
+             block;
+    }
+  } // namespace
+
+  template <int dim>
+  std::vector<MovingRow<dim>>
+  SurfaceContacts<dim>::rows(const State &old, const double h)
+  {
+    if (follow(old))
+      search_.topology_changed();
+    // twice the speed of two bodies that meet, and what rests
+    const double reach = 2. * h * bodies_.largest_speed(old) +
+                         1e-9 * discretization_.extent();
+    std::vector<Row> result;
+    if (!input_.contacts.empty())
+      add_surface_rows(old, reach, result);
+    if (!input_.obstacles.empty()) {
+      auto rows = gather_all(all_, own_obstacle_rows(old, reach));
+      std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) {
+        return a.index < b.index;
+      });
+      result.insert(result.end(), rows.begin(), rows.end());
+    }
+    // an explicit forecast is known already; the overlap of springs that let
+    // go has to be remembered even if it is about to open
+    const auto &time = input_.time;
+    if (time.forecast_gamma2 == 0. && old.surface_worn.empty())
+      result.erase(std::remove_if(result.begin(), result.end(),
+                                  [&](const Row &row) {
+                                    return !(row.released && row.gap < 0.) &&
+                                           row.gap + h * time.forecast_gamma1 *
+                                                         row.rate >
+                                               1e-9 * discretization_.extent();
+                                  }),
+                   result.end());
+    std::unordered_map<std::size_t, unsigned int> rows_of_edges;
+    for (const Row &row : result)
+      if (row.partner == Row::Partner::edge)
+        ++rows_of_edges[row.place];
+    for (Row &row : result)
+      if (row.partner == Row::Partner::edge) {
+        row.share = 1. / rows_of_edges[row.place];
+        ++counters_.edge_rows;
+      }
+    counters_.rows += result.size();
+    counters_.searches = search_.n_searches();
+    for (const Row &row : result)
+      counters_.largest_overlap =
+          std::max(counters_.largest_overlap, -row.gap);
+    return result;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  SurfaceContacts<dim>::velocity(const std::size_t node) const
+  {
+    Vector v;
+    for (unsigned int d = 0; d < dim; ++d)
+      v[d] = v_[node * dim + d];
+    return v;
+  }
+
+  template <int dim>
+  Tensor<1, dim>
+  SurfaceContacts<dim>::centre_velocity(const State &old,
+                                        const unsigned int body) const
+  {
+    const auto r = std::size_t(table_.bodies[body].rigid);
+    Vector v;
+    for (unsigned int d = 0; d < dim; ++d)
+      v[d] = old.rigid[13 * r + 3 + d];
+    return v;
+  }
+
+  /** Of the face that a facet belongs to. */
+  template <int dim>
+  std::uint8_t SurfaceContacts<dim>::mark_of(const State &old,
+                                             const unsigned int facet) const
+  {
+    return old.surface_contact[surfaces_.facets[facet].key / pieces_per_face];
+  }
+
+  /** Of a facet with this key; none of Surfaces::no_key. */
+  template <int dim>
+  int SurfaceContacts<dim>::body_of_key(const std::uint64_t key) const
+  {
+    const auto next = std::upper_bound(first_place_.begin(), first_place_.end(),
+                                       key / pieces_per_face);
+    return next == first_place_.end()
+               ? -1
+               : int(table_.body_of_cell[next - first_place_.begin() - 1]);
+  }
+
+  /** Those of the face that a facet belongs to: first and behind the last. */
+  template <int dim>
+  std::array<std::size_t, 2>
+  SurfaceContacts<dim>::places_of_face(const unsigned int facet) const
+  {
+    const unsigned int cell = facet_cells_[facet];
+    const std::size_t first = surfaces_.facets[facet].key / pieces_per_face;
+    unsigned int face = 0;
+    while (place_of(cell, face, 0) != first)
+      ++face;
+    return {first, first + cells_.faces(cell)[face].nodes.size()};
+  }
+
+  /**
+   * Where two faces slide past each other's ends, other points go on with the
+   * overlap that they have, and so does another point of the same corner when
+   * its body turns: they know the bounds of those that were over the same body.
+   */
+  template <int dim>
+  void SurfaceContacts<dim>::take_over(const FacetPair<dim> &pair,
+                                       const State &old, Row &row) const
+  {
+    const auto &point = surfaces_.points[pair.index];
+    const auto take = [&](const std::size_t place, const int over) {
+      if (body_of_key(old.surface_facet[place]) != over)
+        return;
+      row.approach = std::max(row.approach, old.surface_approach[place]);
+      row.overlap = std::max(row.overlap, old.surface_overlap[place]);
+    };
+    for (const bool own : {true, false}) {
+      const auto places = places_of_face(own ? point.facet : pair.facet);
+      for (std::size_t k = places[0]; k < places[1]; ++k)
+        take(k, own ? row.body_1 : int(row.body_2));
+    }
+    const auto first = std::lower_bound(
+        points_by_vertex_.begin(), points_by_vertex_.end(),
+        std::pair(point.vertex, 0u));
+    for (auto p = first;
+         p != points_by_vertex_.end() && p->first == point.vertex; ++p)
+      take(point_places_[p->second], row.body_1);
+  }
+
+  /** Facet and gap, and its rate with the velocities at the start. */
+  template <int dim>
+  void SurfaceContacts<dim>::set_partner(const FacetPair<dim> &pair,
+                                         const State &old, Row &row) const
+  {
+    const auto &facet = surfaces_.facets[pair.facet];
+    row.partner = Row::Partner::facet;
+    row.body_1 = int(facet.body);
+    row.facet_cell = facet_cells_[pair.facet];
+    row.n_facet = facet.n_vertices;
+    for (unsigned int v = 0; v < row.n_facet; ++v)
+      row.facet[v] = facet.vertex[v];
+    row.weights = pair.weights;
+    row.gap = pair.gap;
+    Vector away = row.node == Row::nowhere ? centre_velocity(old, row.body_2)
+                                           : velocity(row.node);
+    for (unsigned int v = 0; v < row.n_facet; ++v)
+      away -= row.weights[v] * velocity(row.facet[v]);
+    for (unsigned int d = 0; d < dim; ++d)
+      row.rate += pair.normal[d] * away[d];
+    if (row.gap < 0. && row.node != Row::nowhere) {
+      if (old.surface_facet[row.place] == facet.key) {
+        const double before = old.surface_gap[row.place];
+        row.approach = before > 0. ? before - row.gap : 0.;
+      } else {
+        // it may have come in from any side in the last step, or has not been
+        // seen while only a corner of it overlapped
+        row.approach = old.last_step * away.norm();
+        row.overlap = std::min(-row.gap, pair.inset);
+        take_over(pair, old, row);
+      }
+    }
+    row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+    row.interaction = interaction_of_contact(input_, row.block);
+    row.released =
+        ((old.surface_contact[row.place] | mark_of(old, pair.facet)) &
+         released) != 0;
+  }
+
+  /** A point of an edge of body 2 on the edge of body 1 that it crosses. */
+  template <int dim>
+  MovingRow<dim>
+  SurfaceContacts<dim>::edge_row(const EdgePair<dim> &pair,
+                                 const State &old) const
+  {
+    const auto &edge = surfaces_.edges[pair.edge],
+               &other = surfaces_.edges[pair.other];
+    Row row;
+    row.partner = Row::Partner::edge;
+    row.body_1 = int(surfaces_.facets[other.facet[0]].body);
+    row.body_2 = surfaces_.facets[edge.facet[0]].body;
+    row.cell = facet_cells_[edge.facet[0]];
+    row.facet_cell = facet_cells_[other.facet[0]];
+    row.n_facet = 2;
+    row.edge_weights = {1. - pair.place, pair.place};
+    row.weights = {1. - pair.other_place, pair.other_place};
+    std::array<Vector, 2> way;
+    Vector normal, away;
+    for (unsigned int v = 0; v < 2; ++v) {
+      row.edge[v] = edge.vertex[v];
+      row.facet[v] = other.vertex[v];
+      away += row.edge_weights[v] * velocity(row.edge[v]) -
+              row.weights[v] * velocity(row.facet[v]);
+      const double sign = v == 0 ? -1. : 1.;
+      for (unsigned int d = 0; d < dim; ++d) {
+        way[0][d] += sign * x_[row.edge[v] * dim + d];
+        way[1][d] += sign * x_[row.facet[v] * dim + d];
+      }
+    }
+    for (unsigned int d = 0; d < dim; ++d)
+      normal[d] = pair.normal[d];
+    if constexpr (dim == 3)
+      if (cross_product_3d(way[0], way[1]) * normal < 0.) {
+        std::swap(row.edge[0], row.edge[1]);
+        std::swap(row.edge_weights[0], row.edge_weights[1]);
+      }
+    row.gap = pair.gap;
+    row.rate = normal * away;
+    // as of a corner of a facet with these sides
+    row.weight = way[0].norm() * way[1].norm() / 4.;
+    row.place = place_of_edge(edge.vertex[0], edge.vertex[1]);
+    row.released = ((mark_of(old, edge.facet[0]) |
+                     mark_of(old, other.facet[0])) &
+                    released) != 0;
+    row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+    row.interaction = interaction_of_contact(input_, row.block);
+    return row;
+  }
+
+  /**
+   * Two corners of flat sides that face each other, as those of a face that has
+   * just broken, meet once: each would ask for nearly the same, and rows that
+   * almost depend on each other are what repeated steps come from. Within a
+   * tenth of a side and eight degrees.
+   */
+  template <int dim>
+  std::size_t
+  SurfaceContacts<dim>::seen_from_there(const FacetPair<dim> &pair,
+                                        const Row &row, const std::size_t index)
+  {
+    constexpr double at_corner = 0.9, opposed = -0.99;
+    for (unsigned int v = 0; v < row.n_facet; ++v) {
+      if (row.weights[v] < at_corner)
+        continue;
+      Vector normal;
+      for (unsigned int d = 0; d < dim; ++d)
+        normal[d] = pair.normal[d];
+      const unsigned int own = cells_.merged(row.node),
+                         other = unsigned(row.facet[v]);
+      const auto known = seen_.find(Pair(other) << 32 | own);
+      if (known != seen_.end() && known->second.normal * normal < opposed)
+        return known->second.row;
+      seen_.emplace(Pair(own) << 32 | other, Seen{normal, index});
+    }
+    return unseen;
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::add_surface_rows(const State &old,
+                                              const double reach,
+                                              std::vector<Row> &rows)
+  {
+    for (std::size_t p = 0; p < surfaces_.points.size(); ++p)
+      surfaces_.points[p].last_key = old.surface_facet[point_places_[p]];
+    search_.find(
+        surfaces_, x_.data(), reach,
+        [this](const unsigned int a, const unsigned int b) {
+          return block_of(a, b) < 0 || joined_.count(pair_of(a, b)) > 0;
+        },
+        pairs_);
+    seen_.clear();
+    for (const auto &pair : pairs_.points) {
+      const Origin &origin = point_origins_[pair.index];
+      const auto &face = cells_.faces(origin.cell)[origin.face];
+      Row row;
+      row.body_2 = table_.body_of_cell[origin.cell];
+      row.cell = origin.cell;
+      row.node = cells_.first_node(origin.cell) + face.nodes[origin.node];
+      row.weight = face.weights[origin.node];
+      row.place = point_places_[pair.index];
+      set_partner(pair, old, row);
+      const std::size_t other = seen_from_there(pair, row, rows.size());
+      if (other == unseen) {
+        rows.push_back(row);
+        continue;
+      }
+      // the deeper one is the contact
+      if (row.gap < rows[other].gap)
+        std::swap(rows[other], row);
+      rows[other].twin = row.place;
+    }
+    for (const auto &pair : pairs_.balls) {
+      Row row = ball_row(surfaces_.balls[pair.index].body);
+      set_partner(pair, old, row);
+      rows.push_back(row);
+    }
+    for (const auto &pair : pairs_.ball_balls) {
+      Row row = ball_row(surfaces_.balls[pair.ball].body);
+      row.partner = Row::Partner::ball;
+      row.body_1 = int(surfaces_.balls[pair.other].body);
+      row.gap = pair.gap;
+      const Vector away = centre_velocity(old, row.body_2) -
+                          centre_velocity(old, unsigned(row.body_1));
+      for (unsigned int d = 0; d < dim; ++d)
+        row.rate += pair.normal[d] * away[d];
+      row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+      row.interaction = interaction_of_contact(input_, row.block);
+      rows.push_back(row);
+    }
+    for (const auto &pair : pairs_.edges)
+      rows.push_back(edge_row(pair, old));
+  }
+
+  /** Which facets points were over at the start of the step. */
+  template <int dim>
+  void SurfaceContacts<dim>::remember_facets(State &next) const
+  {
+    next.surface_facet.assign(first_place_.back(), Surfaces<dim>::no_key);
+    next.surface_gap.assign(first_place_.back(), 0.);
+    for (const auto &pair : pairs_.points) {
+      const std::size_t place = point_places_[pair.index];
+      next.surface_facet[place] = surfaces_.facets[pair.facet].key;
+      next.surface_gap[place] = pair.gap;
+    }
+  }
+
+  template <int dim>
+  MovingRow<dim> SurfaceContacts<dim>::ball_row(const unsigned int body) const
+  {
+    Row row;
+    row.body_2 = body;
+    row.radius = cells_.ball_radius(body);
+    row.place = first_place_.back() + body;
+    row.weight = dim == 2 ? row.radius : row.radius * row.radius;
+    return row;
+  }
+
+  /** One row per node and obstacle: that of its largest face. Their indices
+      are in the order of the faces of all ranks. */
+  template <int dim>
+  std::vector<MovingRow<dim>>
+  SurfaceContacts<dim>::own_obstacle_rows(const State &old,
+                                          const double reach) const
+  {
+    std::vector<Row> rows;
+    const auto node_place = [&](const std::size_t node) {
+      return bodies_.place(old, bodies_.own_node(node));
+    };
+    const auto centre = [&](const unsigned int body) {
+      Point<dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = old.rigid[13 * std::size_t(table_.bodies[body].rigid) + d];
+      return result;
+    };
+    const auto node_velocity = [&](const std::size_t node) {
+      Vector v;
+      for (unsigned int d = 0; d < dim; ++d)
+        v[d] = old.velocity[bodies_.own_node(node) * dim + d];
+      return v;
+    };
+    const auto geometry = [&](const unsigned int o) {
+      return ObstacleGeometry<dim>(
+          input_.obstacles[o],
+          old.obstacle_shift.empty() ? nullptr : &old.obstacle_shift[3 * o]);
+    };
+    std::map<std::pair<std::size_t, unsigned int>, std::size_t> known;
+    const auto add = [&](Row row, const unsigned int o) {
+      const bool is_ball = row.node == Row::nowhere;
+      Vector away = is_ball ? centre_velocity(old, row.body_2)
+                            : node_velocity(row.node);
+      for (unsigned int d = 0; d < dim; ++d)
+        if (const auto &own = input_.obstacles[o].velocity[d])
+          away[d] -= own->at(Point<dim>(), old.time);
+      row.rate = away * geometry(o).normal(is_ball ? centre(row.body_2)
+                                                   : node_place(row.node));
+      row.partner = Row::Partner::obstacle;
+      row.obstacle = row.block = o;
+      row.interaction = unsigned(input_.interfaces.size()) + o;
+      rows.push_back(row);
+    };
+    for (std::size_t k = 0; k < obstacle_faces_.size(); ++k) {
+      const auto &[c, f, o] = obstacle_faces_[k];
+      const unsigned int b = table_.body_of_cell[c];
+      if (!bodies_.is_own(b))
+        continue;
+      if (cells_.ball_radius(b) > 0.) {
+        Row row = ball_row(b);
+        row.index = k * cells_.nodes_per_cell();
+        row.gap = geometry(o).gap(centre(b)) - row.radius;
+        if (row.gap <= reach &&
+            known.emplace(std::pair(cells_.n_nodes() + b, o), 0).second)
+          add(row, o);
+        continue;
+      }
+      const FaceNodes<dim> &face = cells_.faces(c)[f];
+      for (unsigned int j = 0; j < face.nodes.size(); ++j) {
+        if (!is_corner(c, f, face.nodes[j]))
+          continue;
+        Row row;
+        row.index = k * cells_.nodes_per_cell() + j;
+        row.node = cells_.first_node(c) + face.nodes[j];
+        row.gap = geometry(o).gap(node_place(row.node));
+        if (row.gap > reach)
+          continue;
+        row.body_2 = b;
+        row.cell = c;
+        row.place = place_of(c, f, j);
+        row.weight = face.weights[j];
+        const auto [entry, is_new] = known.emplace(
+            std::pair(std::size_t(cells_.merged(row.node)), o), rows.size());
+        if (is_new)
+          add(row, o);
+        else if (row.weight > rows[entry->second].weight) {
+          rows[entry->second].place = row.place; // the rest is that of the node
+          rows[entry->second].weight = row.weight;
+          rows[entry->second].cell = row.cell;
+          rows[entry->second].node = row.node;
+        }
+      }
+    }
+    return rows;
+  }
+} // namespace nsfd

@@ -1,0 +1,429 @@
+#include "bonded.h"
+
+#include "body_matrix.h"
+#include "condensed.h"
+#include "linear_algebra/factor_limits.h"
+#include "sparse_assembly.h"
+
+#include "core/archive.h"
+#include "core/cost.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace nsfd
+{
+  namespace
+  {
+    /// of iterations: the ledger shows what a product with W leaves
+    constexpr double tight = 1e-12;
+
+    template <int dim>
+    class Bonded final : public BondedDynamics<dim>
+    {
+    public:
+      using typename BondedDynamics<dim>::Operator;
+
+      Bonded(const Communicator &communicator,
+             const Bodies &bodies,
+             const InterfacePoints<dim> &points,
+             const std::string &solver,
+             const std::vector<double> &coordinates);
+
+      void reinit(double time_step, double theta) override;
+      bool bodies_are_apart() const override { return false; }
+      void apply_delassus(const double *impulse,
+                          double *velocity) const override;
+      void add_velocity_change(const double *impulse,
+                               double *velocity) const override;
+      void apply(Operator op, const double *x, double *y) const override;
+      void prepare_preconditioner(const std::vector<double> &D) override;
+      void precondition(const double *r, double *z) const override;
+      void remember(Archive &archive) override;
+
+    private:
+      void bonds_changed() override
+      {
+        valid_ = joined_valid_ = is_glued_ = false;
+      }
+      void solve(const double *b, double *x) const;
+      void solve(SpdSolver &solver, const double *b, double *x) const;
+      void glue() const;
+      void prepare(SpdSolver &solver, const SparseRows &matrix,
+                   SparseRows &kept) const;
+      void update() const;
+      bool is_row(const std::size_t k) const
+      {
+        return !this->bonded_[k / dim];
+      }
+      double least_compliance(std::size_t row, double W) const;
+      bool condense() const;
+      void set_diagonal();
+      void prepare_joined();
+
+      mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
+      std::unique_ptr<GluedSpace> glued_; ///< null: factors need none
+      std::unique_ptr<SpdSolver> factor_; ///< of M_hat
+      std::unique_ptr<SpdSolver> joined_; ///< of A = M_hat + H^T D^{-1} H
+      mutable SparseRows factor_matrix_, joined_matrix_;
+      mutable bool is_glued_ = false; ///< for the step and the bonds
+      mutable bool valid_ = false;        ///< factor_
+      bool joined_valid_ = false;
+      /// the system was factored as a dense one: W may be condensed later,
+      /// within the iterations of a system prepared without
+      bool dense_system_ = false;
+      mutable std::size_t n_solves_ = 0; ///< with the present factor
+      mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
+      std::vector<double> D_;         ///< of the system to precondition
+      std::vector<double> inverse_D_; ///< of the one that was factored
+      std::vector<double> inverse_D_coarse_; ///< of the glued space (`cg`)
+      unsigned long long coarse_version_ = 0;
+      std::vector<double> diagonal_;  ///< of W, from above
+      /// applications after which a new factor is cheaper than going on
+      static constexpr unsigned int patience = 12;
+      mutable unsigned int n_applied_ = 0; ///< since the last system
+      mutable std::vector<double> rows_, columns_, point_work_;
+    };
+
+    template <int dim>
+    Bonded<dim>::Bonded(const Communicator &communicator,
+                        const Bodies &bodies,
+                        const InterfacePoints<dim> &points,
+                        const std::string &solver,
+                        const std::vector<double> &coordinates)
+      : BondedDynamics<dim>(communicator, bodies, points)
+    {
+      // K >= so much of the bodies' own: their blocks bound W from above
+      this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
+      const long long mine = static_cast<long long>(bodies.n_dofs());
+      long long sum = 0;
+      MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
+      matrix_ = std::make_unique<BodyMatrix<dim>>(
+        bodies, points, point_traces(*this, sum - mine, true), this->bulk_.bonds(),
+        sum - mine);
+      const auto n = communicator.sum_integer(bodies.n_dofs());
+      const bool direct =
+        solver == "direct" ||
+        (solver == "auto" && static_cast<long long>(n) <= largest_factor<dim>);
+      if (!direct) {
+        const SparseAssembly<dim> nodes(communicator, bodies, points,
+                                        coordinates);
+        glued_ = std::make_unique<GluedSpace>(
+          communicator, dim, nodes.unknowns(), nodes.node_pairs());
+      }
+      for (auto *one : {&factor_, &joined_})
+        *one = direct ? make_cholesky_solver(communicator)
+                      : make_glued_cg_solver(communicator, bodies.first_dof,
+                                             largest_coarse_factor<dim>);
+    }
+
+    /**
+     * Nodes are one across faces that are bonded all over. The coarse matrix
+     * stays as long as the step and the bonds do.
+     */
+    template <int dim>
+    void Bonded<dim>::glue() const
+    {
+      if (is_glued_)
+        return;
+      std::vector<char> faces;
+      for (const auto &face : this->points_.faces)
+        faces.push_back(std::all_of(
+          this->bonded_.begin() + face.first,
+          this->bonded_.begin() + face.first + face.count,
+          [](const std::uint8_t bonded) { return bonded != 0; }));
+      glued_->glue(faces);
+      glued_->touch();
+      is_glued_ = true;
+    }
+
+    template <int dim>
+    void Bonded<dim>::prepare(SpdSolver &solver, const SparseRows &matrix,
+                              SparseRows &kept) const
+    {
+      const Charge charge(Cost::preconditioner);
+      const bool first = solver.counters().factorisations == 0;
+      if (glued_) { // iterations go on looking at their matrix
+        glue();
+        kept = matrix;
+        solver.prepare(kept, glued_->space(), first);
+      } else
+        solver.prepare(matrix, CoarseSpace(), first);
+      ++this->counters_.global_factorisations;
+    }
+
+    template <int dim>
+    void Bonded<dim>::reinit(const double time_step, const double theta)
+    {
+      if (time_step != this->time_step_ || theta != this->theta_)
+        valid_ = joined_valid_ = is_glued_ = false;
+      Dynamics<dim>::reinit(time_step, theta);
+    }
+
+    /** Factor M_hat if the step or the bonds have changed. */
+    template <int dim>
+    void Bonded<dim>::update() const
+    {
+      if (valid_)
+        return;
+      prepare(*factor_,
+              matrix_->assemble(this->shares(this->time_step_, this->theta_),
+                                this->bonded_, nullptr),
+              factor_matrix_);
+      valid_ = true;
+      n_solves_ = 0;
+      condensed_.clear();
+    }
+
+    template <int dim>
+    void Bonded<dim>::solve(const double *b, double *x) const
+    {
+      update();
+      solve(*factor_, b, x);
+      ++n_solves_;
+    }
+
+    template <int dim>
+    void Bonded<dim>::solve(SpdSolver &solver, const double *b,
+                            double *x) const
+    {
+      std::fill(x, x + this->bodies_.n_dofs(), 0.);
+      this->counters_.inner_iterations += solver.solve(b, x, tight);
+      ++this->counters_.global_solves;
+    }
+
+    template <int dim>
+    void Bonded<dim>::apply(const Operator op, const double *x,
+                            double *y) const
+    {
+      if (op == Operator::inverse) {
+        solve(x, y);
+        return;
+      }
+      BondedDynamics<dim>::apply(op, x, y);
+    }
+
+    template <int dim>
+    void Bonded<dim>::apply_delassus(const double *impulse,
+                                     double *velocity) const
+    {
+      const Charge charge(Cost::delassus);
+      ++this->counters_.delassus;
+      if (condense()) {
+        condensed_.apply(impulse, velocity);
+        return;
+      }
+      rows_.resize(this->bodies_.n_dofs());
+      columns_.resize(rows_.size());
+      this->generalised_impulse(impulse, rows_.data());
+      solve(rows_.data(), columns_.data());
+      this->relative_velocity(columns_.data(), velocity);
+    }
+
+    template <int dim>
+    void Bonded<dim>::add_velocity_change(const double *impulse,
+                                          double *velocity) const
+    {
+      rows_.resize(this->bodies_.n_dofs());
+      columns_.resize(rows_.size());
+      this->generalised_impulse(impulse, rows_.data());
+      solve(rows_.data(), columns_.data());
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        velocity[k] += columns_[k];
+    }
+
+    /**
+     * W of the rows as a dense matrix, on one rank: once as many systems have
+     * been solved as its columns cost, and if it fits.
+     */
+    template <int dim>
+    bool Bonded<dim>::condense() const
+    {
+      if (this->communicator_.size() > 1)
+        return false;
+      update();
+      if (!condensed_.empty())
+        return true;
+      std::vector<std::size_t> rows;
+      for (std::size_t k = 0; k < this->bonded_.size() * dim; ++k)
+        if (is_row(k))
+          rows.push_back(k);
+      // many columns at once cost a quarter of as many single ones
+      if (rows.empty() || rows.size() > CondensedDelassus::largest ||
+          (rows.size() > 64 && 4 * n_solves_ < rows.size()))
+        return false;
+      const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
+      constexpr std::size_t batch = 64; // columns fill the caches
+      std::vector<double> B(n * batch), X(n * batch),
+        impulse(this->bonded_.size() * dim, 0.), velocity(impulse.size());
+      condensed_.reset(impulse.size(), rows);
+      for (std::size_t first = 0; first < m; first += batch) {
+        const std::size_t count = std::min(batch, m - first);
+        for (std::size_t c = 0; c < count; ++c) {
+          impulse[rows[first + c]] = 1.;
+          this->generalised_impulse(impulse.data(), &B[c * n]);
+          impulse[rows[first + c]] = 0.;
+        }
+        factor_->solve_columns(B.data(), X.data(), n, count, tight);
+        for (std::size_t c = 0; c < count; ++c) {
+          this->relative_velocity(&X[c * n], velocity.data());
+          condensed_.set_column(first + c, velocity.data());
+        }
+      }
+      this->counters_.global_solves += m;
+      return true;
+    }
+
+    template <int dim>
+    double Bonded<dim>::least_compliance(const std::size_t row,
+                                         const double W) const
+    {
+      return this->least_compliance_.empty() ? 1e-2 * W
+                                             : this->least_compliance_[row];
+    }
+
+    template <int dim>
+    void Bonded<dim>::prepare_preconditioner(const std::vector<double> &D)
+    {
+      const Charge charge(Cost::preconditioner);
+      dense_system_ = condense() && condensed_.can_factor();
+      if (dense_system_) {
+        condensed_.factor(D);
+        return;
+      }
+      // all ranks take the same way: a factor is made by all of them
+      if (!this->communicator_.any(!joined_valid_ || D != D_))
+        return;
+      D_ = D;
+      // an old factor is a good preconditioner until iterations say otherwise
+      const unsigned int applied = std::exchange(n_applied_, 0);
+      if (joined_valid_ && applied <= patience)
+        return;
+      set_diagonal();
+      inverse_D_.assign(D.size(), 0.);
+      for (std::size_t row = 0; row < D.size(); ++row)
+        if (D[row] >= 0. && is_row(row))
+          inverse_D_[row] =
+            1. / std::max(D[row], least_compliance(row, diagonal_[row]));
+      prepare_joined();
+    }
+
+    template <int dim>
+    void Bonded<dim>::set_diagonal()
+    {
+      diagonal_.assign(this->bonded_.size() * dim, 0.);
+      for (std::size_t f = 0; f < this->points_.faces.size(); ++f) {
+        const auto &face = this->points_.faces[f];
+        const unsigned int n = face.count * dim;
+        const double *W = this->face_block(f);
+        for (unsigned int k = 0; k < n; ++k)
+          diagonal_[std::size_t(face.first) * dim + k] = W[k * n + k];
+      }
+    }
+
+    template <int dim>
+    void Bonded<dim>::prepare_joined()
+    {
+      prepare(*joined_,
+              matrix_->assemble(this->shares(this->time_step_, this->theta_),
+                                this->bonded_, inverse_D_.data()),
+              joined_matrix_);
+      joined_valid_ = true;
+      if (glued_ && coarse_version_ != glued_->space().version) {
+        coarse_version_ = glued_->space().version;
+        inverse_D_coarse_ = inverse_D_;
+      }
+    }
+
+    /**
+     * Factors are made again; whether W was condensed depends on how many
+     * systems had been solved, and how good an old factor is on its springs.
+     */
+    template <int dim>
+    void Bonded<dim>::remember(Archive &archive)
+    {
+      BondedDynamics<dim>::remember(archive);
+      bool factored = valid_, joined = joined_valid_,
+           condensed = !condensed_.empty();
+      std::size_t n_solves = n_solves_;
+      unsigned int n_applied = n_applied_;
+      archive.numbers("solver", factored, joined, condensed, n_solves,
+                      n_applied);
+      archive.points("D", D_);
+      archive.points("springs", inverse_D_);
+      archive.points("springs_of_glued_space", inverse_D_coarse_);
+      if (!archive.reads())
+        return;
+      bonds_changed();
+      condensed_.clear();
+      if (factored)
+        update();
+      if (condensed) {
+        n_solves_ = CondensedDelassus::largest; // enough for any
+        condense();
+      }
+      if (joined) {
+        const std::vector<double> springs(inverse_D_);
+        set_diagonal();
+        if (glued_) { // and with it inverse_D_coarse_
+          inverse_D_ = inverse_D_coarse_;
+          prepare_joined();
+          inverse_D_ = springs;
+        }
+        prepare_joined();
+      }
+      n_solves_ = n_solves;
+      n_applied_ = n_applied;
+    }
+
+    template <int dim>
+    void Bonded<dim>::precondition(const double *r, double *z) const
+    {
+      const Charge charge(Cost::precondition);
+      if (dense_system_) {
+        condensed_.solve(r, z);
+        return;
+      }
+      ++n_applied_;
+      const std::size_t n = inverse_D_.size();
+      point_work_.resize(n);
+      rows_.resize(this->bodies_.n_dofs());
+      columns_.resize(rows_.size());
+      for (std::size_t k = 0; k < n; ++k)
+        point_work_[k] = D_[k] >= 0. ? inverse_D_[k] * r[k] : 0.;
+      this->generalised_impulse(point_work_.data(), rows_.data());
+      solve(*joined_, rows_.data(), columns_.data());
+      this->relative_velocity(columns_.data(), z);
+      // a principal part of the inverse where the factor knows the row, and the
+      // bound of the diagonal where it does not: positive definite together
+      for (std::size_t k = 0; k < n; ++k)
+        if (D_[k] < 0.)
+          z[k] = 0.;
+        else if (inverse_D_[k] > 0.)
+          z[k] = inverse_D_[k] * (r[k] - z[k]);
+        else
+          z[k] = r[k] / (diagonal_[k] + D_[k]);
+    }
+  } // namespace
+
+  template <int dim>
+  std::unique_ptr<BondedDynamics<dim>>
+  make_bonded_dynamics(const Communicator &communicator,
+                       const Bodies &bodies,
+                       const InterfacePoints<dim> &points,
+                       const std::string &solver,
+                       const std::vector<double> &coordinates)
+  {
+    return std::make_unique<Bonded<dim>>(communicator, bodies, points, solver,
+                                         coordinates);
+  }
+
+  template std::unique_ptr<BondedDynamics<2>>
+  make_bonded_dynamics<2>(const Communicator &, const Bodies &,
+                          const InterfacePoints<2> &, const std::string &,
+                          const std::vector<double> &);
+  template std::unique_ptr<BondedDynamics<3>>
+  make_bonded_dynamics<3>(const Communicator &, const Bodies &,
+                          const InterfacePoints<3> &, const std::string &,
+                          const std::vector<double> &);
+} // namespace nsfd

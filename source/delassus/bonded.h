@@ -1,0 +1,80 @@
+#pragma once
+
+#include "bulk_traction.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Bodies joined through the bulk at bonded points by the symmetric interior
+   * penalty method: these points have no row in W; instead
+   *
+   *     K = sum of body stiffnesses
+   *         + sum over bonded points w ( t.[v] + [u].t(v) + eta [u].[v] ),
+   *
+   * [u] the jump, t and eta those of BulkTraction. K is at least 31/32 of the
+   * sum of body stiffnesses on every mesh, at every degree and contrast,
+   * whichever points are bonded (theory.md). The damping of viscous bodies is
+   * joined in the same way by their viscous stress.
+   */
+  template <int dim>
+  class BondedDynamics : public Dynamics<dim>
+  {
+  public:
+    using Operator = typename Dynamics<dim>::Operator;
+
+    BondedDynamics(const Communicator &communicator, const Bodies &bodies,
+                   const InterfacePoints<dim> &points);
+
+    /**
+     * From now on these points are bonded (one per point, not zero: bonded).
+     * Nothing happens if they were, and false is returned. Collective. @throws
+     * std::runtime_error if two rigid bodies share one.
+     */
+    bool set_bonds(const std::vector<std::uint8_t> &bonded);
+
+    void apply(Operator op, const double *x, double *y) const override;
+
+    void remember(Archive &archive) override;
+
+  protected:
+    /** Other points are bonded now. */
+    virtual void bonds_changed() {}
+
+    const BulkTraction<dim> bulk_;
+    std::vector<std::uint8_t> bonded_; ///< per point
+
+  private:
+    void add_bonds(bool viscous, const double *x, double *y) const;
+
+    std::vector<Block> traction_transposed_; ///< per class
+    std::vector<Block> viscous_transposed_;  ///< the same of the viscous stress
+    mutable std::vector<double> jump_, traction_, force_;
+  };
+
+  /**
+   * For implicit steps: M_hat with the bonds in it has a factor or is inverted
+   * by iterations. @p solver and @p coordinates as in make_sparse_dynamics().
+   */
+  template <int dim>
+  std::unique_ptr<BondedDynamics<dim>>
+  make_bonded_dynamics(const Communicator &communicator,
+                       const Bodies &bodies,
+                       const InterfacePoints<dim> &points,
+                       const std::string &solver,
+                       const std::vector<double> &coordinates);
+
+  /**
+   * For explicit bodies, theta = 0, where bonds are forces of the last
+   * displacement and M_hat = M: the element-wise path.
+   */
+  template <int dim>
+  std::unique_ptr<BondedDynamics<dim>>
+  make_explicit_bonded_dynamics(const Communicator &communicator,
+                                const Bodies &bodies,
+                                const InterfacePoints<dim> &points);
+} // namespace nsfd

@@ -1,0 +1,287 @@
+#include "dynamics.h"
+
+#include "block_inverse.h"
+#include "body_loops.h"
+
+#include "core/archive.h"
+#include "core/cost.h"
+#include "discretization/point_places.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  Dynamics<dim>::Dynamics(const Communicator &communicator,
+                          const Bodies &bodies,
+                          const InterfacePoints<dim> &points)
+    : communicator_(communicator)
+    , bodies_(bodies)
+    , points_(points)
+  {
+    set_layout();
+  }
+
+  template <int dim>
+  void Dynamics<dim>::set_layout()
+  {
+    order_ = shared_first(bodies_, points_);
+    for (auto *vector : {&cartesian_, &side_1_, &side_2_})
+      vector->assign((points_.n_points + 1) * dim, 0.);
+    blocks_.clear();
+    for (const BodyClass &body : bodies_.classes)
+      blocks_.emplace_back().trace_transposed = body.trace.transposed();
+    face_offset_.assign(1, 0);
+    for (const auto &face : points_.faces)
+      face_offset_.push_back(face_offset_.back() +
+                             std::size_t(face.count) * dim * face.count * dim);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::renew(const double time_step, const double theta)
+  {
+    set_layout();
+    time_step_ = theta_ = 0.;
+    reinit(time_step, theta);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::reinit(const double time_step, const double theta)
+  {
+    if (time_step == time_step_ && theta == theta_)
+      return;
+    const Charge charge(Cost::blocks);
+    time_step_ = time_step;
+    theta_ = theta;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const BodyClass &body = bodies_.classes[k];
+      const BlockInverse inverse(
+        body, {stiffness_share_ * time_step * time_step * theta * theta,
+               stiffness_share_ * time_step * viscous_theta_});
+      ++counters_.factorisations;
+      Block identity(body.n_dofs, body.n_dofs);
+      for (unsigned int i = 0; i < body.n_dofs; ++i)
+        identity(i, i) = 1.;
+      blocks_[k].inverse = inverse.form(identity);
+      blocks_[k].delassus = inverse.form(blocks_[k].trace_transposed);
+      blocks_[k].velocity_change =
+        product(blocks_[k].inverse, blocks_[k].trace_transposed);
+    }
+    build_face_blocks();
+  }
+
+  template <int dim>
+  void Dynamics<dim>::remember(Archive &archive)
+  {
+    double h = time_step_, theta = theta_;
+    archive.numbers("step", h, theta);
+    if (archive.reads())
+      reinit(h, theta);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::to_cartesian(const double *local) const
+  {
+    for (std::size_t i = 0; i < points_.n_points; ++i) {
+      const double *Q = points_.frame.data() + i * dim * dim;
+      for (unsigned int c = 0; c < dim; ++c) {
+        double value = 0.;
+        for (unsigned int k = 0; k < dim; ++k)
+          value += Q[k * dim + c] * local[i * dim + k];
+        cartesian_[i * dim + c] = value;
+      }
+    }
+  }
+
+  template <int dim>
+  void Dynamics<dim>::add_sides(double *local) const
+  {
+    for (std::size_t i = 0; i < points_.n_points; ++i) {
+      const double *Q = points_.frame.data() + i * dim * dim;
+      double jump[dim];
+      for (unsigned int c = 0; c < dim; ++c)
+        jump[c] = side_2_[i * dim + c] + side_1_[i * dim + c];
+      for (unsigned int k = 0; k < dim; ++k) {
+        double value = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          value += Q[k * dim + c] * jump[c];
+        local[i * dim + k] = value;
+      }
+    }
+  }
+
+  template <int dim>
+  void Dynamics<dim>::apply_delassus(const double *impulse,
+                                     double *velocity) const
+  {
+    const Charge charge(Cost::delassus);
+    ++counters_.delassus;
+    to_cartesian(impulse);
+    values_of_both_sides(
+      *this, [this](const std::size_t k) -> const Block & {
+        return blocks_[k].delassus;
+      },
+      slot_gather<dim>(bodies_, cartesian_), side_1_, side_2_);
+    add_sides(velocity);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::delassus_sides(
+    const double *impulse, std::array<std::vector<double>, 2> &side) const
+  {
+    std::vector<double> sum(points_.n_points * dim);
+    apply_delassus(impulse, sum.data());
+    side = {{side_1_, side_2_}};
+  }
+
+  template <int dim>
+  void Dynamics<dim>::relative_velocity(const double *velocity,
+                                        double *result) const
+  {
+    values_of_both_sides(
+      *this, [this](const std::size_t k) -> const Block & {
+        return bodies_.classes[k].trace;
+      },
+      dof_gather(bodies_, velocity), side_1_, side_2_);
+    add_sides(result);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::generalised_impulse(const double *impulse,
+                                          double *result) const
+  {
+    to_cartesian(impulse);
+    for_all_bodies(
+      bodies_, [this](const std::size_t k) -> const Block & {
+        return blocks_[k].trace_transposed;
+      },
+      slot_gather<dim>(bodies_, cartesian_),
+      dof_scatter<false>(bodies_, result));
+  }
+
+  template <int dim>
+  void Dynamics<dim>::add_velocity_change(const double *impulse,
+                                          double *velocity) const
+  {
+    to_cartesian(impulse);
+    for_all_bodies(
+      bodies_, [this](const std::size_t k) -> const Block & {
+        return blocks_[k].velocity_change;
+      },
+      slot_gather<dim>(bodies_, cartesian_),
+      dof_scatter<true>(bodies_, velocity));
+  }
+
+  template <int dim>
+  void
+  Dynamics<dim>::apply(const Operator op, const double *x, double *y) const
+  {
+    if (op == Operator::stiffness || op == Operator::damping)
+      std::fill(y, y + bodies_.n_dofs(), 0.);
+    for_all_bodies(
+      bodies_,
+      [this, op](const std::size_t k) -> const Block & {
+        return op == Operator::mass        ? bodies_.classes[k].mass
+               : op == Operator::stiffness ? bodies_.classes[k].stiffness
+               : op == Operator::damping   ? bodies_.classes[k].damping
+                                           : blocks_[k].inverse;
+      },
+      dof_gather(bodies_, x), dof_scatter<false>(bodies_, y));
+  }
+
+  template <int dim>
+  void Dynamics<dim>::start_exchange(const std::array<double *, 2> side,
+                                     const unsigned int stride) const
+  {
+    auto &messages = messages_.messages;
+    messages.resize(points_.neighbors.size());
+    for (std::size_t k = 0; k < messages.size(); ++k) {
+      const auto &neighbor = points_.neighbors[k];
+      messages[k].rank = neighbor.rank;
+      messages[k].in.resize(neighbor.points.size() * stride);
+      messages[k].out.resize(neighbor.points.size() * stride);
+      for (std::size_t j = 0; j < neighbor.points.size(); ++j)
+        std::copy_n(side[neighbor.side[j]] +
+                      std::size_t(neighbor.points[j]) * stride,
+                    stride, messages[k].out.data() + j * stride);
+    }
+    messages_.start(communicator_.mpi(), 7);
+  }
+
+  template <int dim>
+  void Dynamics<dim>::finish_exchange(const std::array<double *, 2> side,
+                                      const unsigned int stride) const
+  {
+    messages_.finish();
+    for (std::size_t k = 0; k < points_.neighbors.size(); ++k) {
+      const auto &neighbor = points_.neighbors[k];
+      for (std::size_t j = 0; j < neighbor.points.size(); ++j)
+        std::copy_n(messages_.messages[k].in.data() + j * stride, stride,
+                    side[1 - neighbor.side[j]] +
+                      std::size_t(neighbor.points[j]) * stride);
+    }
+  }
+
+  template <int dim>
+  void Dynamics<dim>::build_face_blocks()
+  {
+    // Cartesian blocks of both sides, row by row of a point of the face, so
+    // that shared faces can be completed by the point exchange.
+    std::size_t width = 0;
+    for (const auto &face : points_.faces)
+      width = std::max<std::size_t>(width, face.count);
+    width = std::size_t(
+      communicator_.max(static_cast<double>(width))); // same stride everywhere
+    const std::size_t row = width * dim, stride = dim * row;
+    std::array<std::vector<double>, 2> sides;
+    for (auto &side : sides)
+      side.assign(points_.n_points * stride, 0.);
+
+    const auto place = point_places(bodies_, points_.n_points);
+    for (const auto &face : points_.faces)
+      for (unsigned int side = 0; side < 2; ++side)
+        for (unsigned int p = 0; p < face.count; ++p) {
+          const PointPlace mine = place[side][face.first + p];
+          if (mine.body < 0)
+            continue;
+          const Block &W = blocks_[bodies_.class_of[mine.body]].delassus;
+          for (unsigned int q = 0; q < face.count; ++q) {
+            const PointPlace other = place[side][face.first + q];
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int d = 0; d < dim; ++d)
+                sides[side][(face.first + p) * stride + c * row + q * dim + d] =
+                  W(mine.slot * dim + c, other.slot * dim + d);
+          }
+        }
+    exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
+
+    face_blocks_.assign(face_offset_.back(), 0.);
+    for (std::size_t f = 0; f < points_.faces.size(); ++f) {
+      const auto &face = points_.faces[f];
+      const unsigned int n = face.count * dim;
+      double *block = face_blocks_.data() + face_offset_[f];
+      for (unsigned int p = 0; p < face.count; ++p)
+        for (unsigned int q = 0; q < face.count; ++q) {
+          const double *Qp =
+            points_.frame.data() + (face.first + p) * dim * dim;
+          const double *Qq =
+            points_.frame.data() + (face.first + q) * dim * dim;
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int j = 0; j < dim; ++j) {
+              double value = 0.;
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d) {
+                  const std::size_t k =
+                    (face.first + p) * stride + c * row + q * dim + d;
+                  value += Qp[i * dim + c] * (sides[1][k] + sides[0][k]) *
+                           Qq[j * dim + d];
+                }
+              block[(p * dim + i) * n + q * dim + j] = value;
+            }
+        }
+    }
+  }
+
+  template class Dynamics<2>;
+  template class Dynamics<3>;
+} // namespace nsfd

@@ -1,0 +1,287 @@
+#pragma once
+
+#include "nsfd/core/communicator.h"
+#include "core/neighbor_messages.h"
+#include "nsfd/discretization/bodies.h"
+
+#include <memory>
+#include <string>
+
+namespace nsfd
+{
+  class Archive;
+
+  /**
+   * The bodies seen from the faces: H, M_hat^{-1} and W = H M_hat^{-1} H^T,
+   * with M_hat = M + h^2 theta^2 K, and + h theta C where bodies are viscous,
+   * block diagonal by body. Vectors over points
+   * are in the local frames, dim entries per point; vectors over bodies have
+   * Bodies::n_dofs() entries.
+   *
+   * Both paths share this operator. They differ in how a Newton system
+   * (W + D) x = r is preconditioned: element-wise by face blocks, globally by a
+   * sparse factor or multigrid of A = M_hat + H^T D^{-1} H (Woodbury).
+   */
+  template <int dim>
+  class Dynamics
+  {
+  public:
+    Dynamics(const Communicator &communicator,
+             const Bodies &bodies,
+             const InterfacePoints<dim> &points);
+    virtual ~Dynamics() = default;
+
+    /** Build what depends on the step; nothing if it has not changed. */
+    virtual void reinit(double time_step, double theta);
+
+    /** Bodies or points are others than before: everything anew. Collective. */
+    void renew(double time_step, double theta);
+
+    /**
+     * U = W P over all points. One exchange with the neighbouring ranks, behind
+     * the work for bodies that share no point with them.
+     */
+    virtual void apply_delassus(const double *impulse, double *velocity) const;
+
+    /**
+     * The Cartesian contributions of both bodies to W P at every point (body 1
+     * with its sign), each of size (n_points + 1) dim, complete at shared
+     * points: what Gauss-Seidel keeps up to date.
+     */
+    void delassus_sides(const double *impulse,
+                        std::array<std::vector<double>, 2> &side) const;
+
+    /** U = H v. */
+    void relative_velocity(const double *velocity, double *result) const;
+
+    /** r = H^T P. */
+    void generalised_impulse(const double *impulse, double *result) const;
+
+    /** dv += M_hat^{-1} H^T P. */
+    virtual void add_velocity_change(const double *impulse,
+                                     double *velocity) const;
+
+    enum class Operator
+    {
+      mass,
+      stiffness,
+      inverse, ///< M_hat^{-1}
+      damping  ///< of viscous bodies
+    };
+    /** y = A x. */
+    virtual void apply(Operator op, const double *x, double *y) const;
+
+    /** Gauss-Seidel can work: what one body does no other one feels. */
+    virtual bool bodies_are_apart() const { return true; }
+
+    /**
+     * Diagonal blocks of W per face in the local frames, row-major of size
+     * (count dim)^2, at face_block(f); at least these where bonded faces make
+     * the bodies stiffer.
+     */
+    const double *face_block(const std::size_t face) const
+    {
+      return face_blocks_.data() + face_offset_[face];
+    }
+
+    /**
+     * Prepare the preconditioner for W + diag(D) on the components with
+     * D >= 0; negative D marks a component that does not take part.
+     */
+    virtual void prepare_preconditioner(const std::vector<double> &D) = 0;
+    /** z = approximation of (W + D)^{-1} r on the components that take part. */
+    virtual void precondition(const double *r, double *z) const = 0;
+
+    /**
+     * Whether precondition() inverts the whole matrix it was prepared for, up
+     * to the inner tolerance: no component without compliance, no face left
+     * out.
+     */
+    virtual bool inverts() const { return false; }
+
+    /**
+     * One Newton step in velocities: impulses P* with
+     *
+     *     M_hat v = M_hat v_free + H^T P*,
+     *     D (P* - P) + H v - U + r = 0     where D > 0 takes part,
+     *
+     * and the D of the preconditioner where D = 0, a proximal step; @p next
+     * holds P* of the components that do not take part and all of them on
+     * return. A null @p U is zero: laws that know r - U by themselves, not from
+     * the U at hand, put it into @p r. The right-hand side is a momentum of the order of P*, whatever
+     * the step and the stiffness, while (W + D) dP = -r loses the digits of
+     * W/D on its way through D^{-1} r. @p tolerance is that of an iterative
+     * solve, relative to its start, the velocities of the last one. Returns
+     * false where there is no such solver or no v_free.
+     */
+    virtual bool solve_springs(const double * /*P*/, const double * /*U*/,
+                               const double * /*r*/, double /*tolerance*/,
+                               double * /*next*/)
+    {
+      return false;
+    }
+
+    /** v_free behind the U_free of the problems to come; it stays the owner's. */
+    void set_free_velocity(const std::vector<double> *v_free)
+    {
+      free_velocity_ = v_free;
+    }
+
+    /**
+     * Relative tolerance of the iterative solve inside precondition(), in the
+     * norm of its own preconditioner; a factor knows nothing of it.
+     */
+    void set_inner_tolerance(const double tolerance)
+    {
+      inner_tolerance_ = tolerance;
+    }
+
+    /**
+     * What stands for D = 0 in the preconditioner of the global path, one per
+     * component; empty: a share of the diagonal of W, which at long steps is
+     * far more than the bodies' own compliance.
+     */
+    void set_least_compliance(std::vector<double> compliance)
+    {
+      least_compliance_ = std::move(compliance);
+    }
+
+    /** theta of M_hat = M + h^2 theta^2 K; that of the positions may differ. */
+    double bulk_theta() const { return theta_; }
+
+    /**
+     * Bodies are viscous, and h @p theta C is a part of M_hat from the next
+     * reinit() on: theta is that of the velocity whose power is dissipated.
+     */
+    void set_viscous_theta(const double theta)
+    {
+      if (theta != viscous_theta_)
+        time_step_ = 0.; // another M_hat
+      viscous_theta_ = theta;
+    }
+    double viscous_theta() const { return viscous_theta_; }
+    bool is_viscous() const { return viscous_theta_ > 0.; }
+
+    /** What M_hat of a step consists of. */
+    StepShares shares(const double time_step, const double theta) const
+    {
+      return {time_step * time_step * theta * theta,
+              time_step * viscous_theta_};
+    }
+
+    const InterfacePoints<dim> &points() const { return points_; }
+    const Bodies &bodies() const { return bodies_; }
+    const Communicator &communicator() const { return communicator_; }
+
+    struct Counters
+    {
+      unsigned long long factorisations = 0; ///< of body blocks
+      /// matrices of all bodies that were assembled and made ready to solve
+      unsigned long long global_factorisations = 0;
+      /// glued spaces that were built again (`cg`)
+      unsigned long long coarse_spaces = 0;
+      /// iterations inside precondition(), each one product with A (`cg`)
+      unsigned long long inner_iterations = 0;
+      unsigned long long global_solves = 0; ///< with one right-hand side each
+      unsigned long long delassus = 0;
+    };
+    const Counters &counters() const { return counters_; }
+    /** Counts go on where those of another mesh have ended. */
+    void continue_counters(const Counters &counters) { counters_ = counters; }
+
+    /**
+     * What changes the bits of later steps: the step, and what is kept of
+     * earlier solves. Factors are made again from it.
+     */
+    virtual void remember(Archive &archive);
+
+    /** Contribution of each body to W P, used by Gauss-Seidel. */
+    struct ClassBlocks
+    {
+      Block inverse, delassus, velocity_change; ///< M^-1, T M^-1 T^T, M^-1 T^T
+      Block trace_transposed;
+    };
+    const std::vector<ClassBlocks> &class_blocks() const { return blocks_; }
+
+    /**
+     * Complete contributions of both sides at shared points: @p side holds
+     * `stride` values per point for body 1 and body 2.
+     */
+    void exchange(std::array<double *, 2> side, unsigned int stride) const
+    {
+      start_exchange(side, stride);
+      finish_exchange(side, stride);
+    }
+
+    /** In two parts: what this rank computes is read by the first one only. */
+    void start_exchange(std::array<double *, 2> side,
+                        unsigned int stride) const;
+    void finish_exchange(std::array<double *, 2> side,
+                         unsigned int stride) const;
+
+    /** Per class, those whose points other ranks wait for first. */
+    const BodyOrder &order() const { return order_; }
+
+  protected:
+    void set_layout();
+    void build_face_blocks();
+
+    const Communicator &communicator_;
+    const Bodies &bodies_;
+    const InterfacePoints<dim> &points_;
+    BodyOrder order_;
+    double time_step_ = 0., theta_ = 0.;
+    /// of stiffness and damping of the bodies that the blocks below are built
+    /// with
+    double stiffness_share_ = 1.;
+    std::vector<ClassBlocks> blocks_;
+    std::vector<double> face_blocks_;
+    std::vector<std::size_t> face_offset_;
+    mutable Counters counters_;
+
+    /** Into cartesian_. */
+    void to_cartesian(const double *local) const;
+    /** The sum of both sides, complete, in the local frames. */
+    void add_sides(double *local) const;
+    mutable std::vector<double> cartesian_, side_1_, side_2_;
+    std::vector<double> least_compliance_;
+    double inner_tolerance_ = 1e-11;
+    const std::vector<double> *free_velocity_ = nullptr;
+
+  private:
+    mutable NeighborMessages<double> messages_;
+    double viscous_theta_ = 0.; ///< 0: nothing is viscous
+  };
+
+  /**
+   * The same operator for bodies and points that change: renew() is cheap,
+   * nothing is kept in another form.
+   */
+  template <int dim>
+  std::unique_ptr<Dynamics<dim>>
+  make_moving_dynamics(const Communicator &communicator, const Bodies &bodies,
+                       const InterfacePoints<dim> &points);
+
+  /** Preconditioned by the face blocks of W: for steps up to some crossings. */
+  template <int dim>
+  std::unique_ptr<Dynamics<dim>>
+  make_elementwise_dynamics(const Communicator &communicator,
+                            const Bodies &bodies,
+                            const InterfacePoints<dim> &points);
+
+  /**
+   * Preconditioned by the sparse matrix A of all bodies: for long steps.
+   * @p solver is `direct` (Cholesky factor) or `cg` (conjugate gradients
+   * preconditioned by body blocks and the glued space); `auto` takes the
+   * factor while it is the cheaper one. @p coordinates holds, per unknown of a
+   * deformable body, the coordinate of its node along its own component:
+   * nodes at the same place on a face can be glued. Empty: nothing is glued.
+   */
+  template <int dim>
+  std::unique_ptr<Dynamics<dim>>
+  make_sparse_dynamics(const Communicator &communicator,
+                       const Bodies &bodies,
+                       const InterfacePoints<dim> &points,
+                       const std::string &solver,
+                       const std::vector<double> &coordinates = {});
+} // namespace nsfd

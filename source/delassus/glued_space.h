@@ -1,0 +1,77 @@
+#pragma once
+
+#include "linear_algebra/ghost_values.h"
+
+#include "linear_algebra/spd_solver.h"
+
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Nodes at the same place on the two sides of a face, named by the first of
+   * their unknowns. A face between two ranks is listed on both.
+   */
+  struct NodePairs
+  {
+    std::vector<std::size_t> start{0}; ///< per face and one more
+    std::vector<int> own;              ///< on this rank
+    std::vector<long long> other;      ///< global number, of any rank
+    /// per face: every node on either side has its partner, so that there is
+    /// no jump once it is glued
+    std::vector<char> complete;
+  };
+
+  /** Where an unknown of a deformable body sits. */
+  struct Unknowns
+  {
+    long long first = 0;                ///< global number of the first one
+    std::vector<double> coordinates;    ///< of its node, along its component
+    std::vector<signed char> component; ///< -1: not a nodal value
+  };
+
+  /**
+   * The space in which nodes are one wherever the faces between them are
+   * glued: continuous across glued faces, free to jump elsewhere.
+   */
+  class GluedSpace
+  {
+  public:
+    GluedSpace(const Communicator &communicator,
+               unsigned int dim,
+               Unknowns unknowns,
+               NodePairs pairs);
+
+    /**
+     * Glue the faces that are marked, alike on both ranks of a shared face.
+     * The space is numbered again if one differs from last time.
+     */
+    void glue(const std::vector<char> &faces);
+
+    /** Something else than the faces made its matrix outdated. */
+    void touch() { ++space_.version; }
+
+    const CoarseSpace &space() const { return space_; }
+
+    /** Glued faces across which functions of the space do not jump. */
+    std::vector<char> without_jump() const;
+
+  private:
+    int root(int unknown);
+    void join(const std::vector<char> &faces);
+    void agree(std::vector<double> &value, bool smallest);
+    void set_modes();
+
+    const Communicator &communicator_;
+    const unsigned int dim_;
+    const Unknowns unknowns_;
+    const NodePairs pairs_;
+    std::vector<char> glued_;
+    std::vector<int> parent_;
+    /// own roots and the ghosts they are glued to
+    std::vector<std::pair<int, int>> across_;
+    std::vector<long long> ghosts_;
+    GhostValues exchange_;
+    CoarseSpace space_;
+  };
+} // namespace nsfd

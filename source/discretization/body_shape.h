@@ -1,0 +1,125 @@
+#pragma once
+
+#include "materials/elasticity.h"
+
+#include "nsfd/discretization/bodies.h"
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/grid/reference_cell.h>
+
+#include <vector>
+
+namespace dealii
+{
+  template <int dim, int spacedim>
+  class FiniteElement;
+} // namespace dealii
+
+namespace nsfd
+{
+  struct SceneInput;
+
+  /**
+   * What the bodies of one class share besides their blocks: tables of the
+   * cell with its corner 0 at the origin.
+   */
+  template <int dim>
+  struct BodyShape {
+    dealii::ReferenceCell reference;
+    std::vector<dealii::Point<dim>> corners;
+    unsigned int divided = 0; ///< bit f: there are smaller cells behind face f
+    unsigned int n_nodes = 0;
+    std::vector<dealii::Point<dim>> nodes;
+    // cell quadrature: positions, JxW, values and gradients (point x node)
+    std::vector<dealii::Point<dim>> positions;
+    std::vector<double> JxW;
+    std::vector<double> values;
+    std::vector<dealii::Tensor<1, dim>> gradients;
+    std::vector<dealii::Point<dim>> slot_positions;
+    std::vector<dealii::Tensor<1, dim>> slot_normals; ///< outward, times w
+    std::vector<dealii::Point<dim>> slot_places; ///< in the reference cell
+    std::vector<unsigned int> slot_faces;
+    std::vector<double> corner_values; ///< corner x node
+    double volume = 0.;
+    dealii::Point<dim> centre;
+    double height = 0.; ///< way of a wave through the cell
+    /// of a graded material, at the positions of the quadrature and, in scenes
+    /// with bonded faces, at the slots; else one for all of them
+    std::vector<LocalModuli> moduli;
+    std::vector<LinearElasticity<dim>> elasticity; ///< the same; rigid: none
+    MaterialExtremes extremes; ///< of a rigid body only the density
+    Block modes;        ///< rigid: nodal values = modes * unknowns
+    Block projection;   ///< rigid: unknowns = projection * nodal values
+    Block nodal_mass;   ///< rigid: of the nodal values
+  };
+
+  /** Of the places of a class: one for all, or one for each. */
+  template <typename T>
+  const T &at_place(const std::vector<T> &values, const std::size_t place)
+  {
+    return values.size() == 1 ? values[0] : values[place];
+  }
+
+  /** From a place on the surface of a body, a billionth of the way inwards. */
+  template <int dim>
+  dealii::Point<dim> a_little_inside(const dealii::Point<dim> &x,
+                                     const dealii::Point<dim> &centre)
+  {
+    return x + 0x1p-30 * (centre - x);
+  }
+
+  /**
+   * Shape and blocks of a class from its corners: mass, stiffness, traces at
+   * the interface points of every face, face by face; of a divided face
+   * (hypercubes only) those of its halves or quarters, one after the other.
+   * @p size scales the rotations of a rigid body. Bodies of a graded material
+   * are of one class if their moduli are the same everywhere.
+   */
+  template <int dim>
+  class ClassBuilder
+  {
+  public:
+    ClassBuilder(const dealii::FiniteElement<dim, dim> &element,
+                 const SceneInput &input)
+        : element_(element), input_(input)
+    {
+    }
+
+    void build(const dealii::ReferenceCell &reference,
+               const std::vector<dealii::Point<dim>> &corners, double size,
+               unsigned int material, unsigned int divided,
+               const std::vector<LocalModuli> &moduli, BodyShape<dim> &shape,
+               BodyClass &body) const;
+
+    /**
+     * Where the moduli of a cell are needed, relative to its corner 0: the
+     * positions of its quadrature, then its slots if there are bonded faces, a
+     * little inside: a layer may end at the face.
+     */
+    std::vector<dealii::Point<dim>>
+    moduli_places(const dealii::ReferenceCell &reference,
+                  const std::vector<dealii::Point<dim>> &corners,
+                  unsigned int divided) const;
+
+  private:
+    void set_tables(BodyShape<dim> &shape) const;
+    void set_elasticity(BodyShape<dim> &shape, unsigned int material) const;
+    Block mass(const BodyShape<dim> &shape) const;
+    /** Of @p local at the positions of the quadrature. */
+    Block stiffness(const BodyShape<dim> &shape,
+                    const std::vector<LinearElasticity<dim>> &local) const;
+    /** Also the slots. */
+    Block trace(BodyShape<dim> &shape) const;
+    /**
+     * The traction of @p local at the slots, and its bound against @p K; needs
+     * motions and slots.
+     */
+    double set_traction(const BodyShape<dim> &shape, const BodyClass &body,
+                        const std::vector<LinearElasticity<dim>> &local,
+                        const Block &K, Block &traction) const;
+
+    const dealii::FiniteElement<dim, dim> &element_;
+    const SceneInput &input_;
+  };
+} // namespace nsfd

@@ -1,0 +1,192 @@
+#include "cells.h"
+
+#include "owned_cells.h"
+
+#include "nsfd/scene/scene_input.h"
+
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Corners relative to the first one, as multiples of a power of two. */
+    template <int dim>
+    struct RoundedCorners {
+      explicit RoundedCorners(const std::vector<Point<dim>> &corners)
+          : relative(corners.size())
+      {
+        for (const auto &corner : corners)
+          for (unsigned int c = 0; c < dim; ++c)
+            size = std::max(size, std::abs(corner[c] - corners[0][c]));
+        int exponent;
+        std::frexp(size, &exponent);
+        const double unit = std::ldexp(1., exponent - 42);
+        key = {static_cast<long long>(corners.size()), exponent};
+        for (unsigned int v = 0; v < corners.size(); ++v)
+          for (unsigned int c = 0; c < dim; ++c) {
+            const long long n =
+                std::llround((corners[v][c] - corners[0][c]) / unit);
+            key.push_back(n);
+            relative[v][c] = double(n) * unit;
+          }
+      }
+
+      double size = 0.;
+      std::vector<long long> key; ///< equal for congruent cells
+      std::vector<Point<dim>> relative;
+    };
+
+    using GradedRange = std::array<LocalModuli, 2>;
+
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr GradedRange no_range = {
+        {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}}};
+
+    /** The constants of a cell are used; false if they cannot be. */
+    bool take(const MaterialInput &material, const LocalModuli &local,
+              GradedRange &range)
+    {
+      bool possible = true;
+      for (const auto member : {&LocalModuli::young, &LocalModuli::poisson,
+                                &LocalModuli::density}) {
+        const bool finite = std::isfinite(local.*member);
+        const double value =
+            finite ? local.*member : -infinity;
+        range[0].*member = std::min(range[0].*member, value);
+        range[1].*member = std::max(range[1].*member, value);
+        possible = possible && finite;
+      }
+      return possible && local.density > 0. &&
+             (material.rigid || material.transverse || local.young > 0.) &&
+             local.poisson > -1. && local.poisson < 0.5;
+    }
+
+    /** What stands in for constants that end the run. */
+    constexpr LocalModuli harmless = {1., 0., 1.};
+
+    /** One entry if they are the same at all places. */
+    template <int dim>
+    std::vector<LocalModuli>
+    moduli_of_cell(const MaterialInput &material,
+                   const std::vector<Point<dim>> &places,
+                   const Point<dim> &origin, GradedRange &range)
+    {
+      std::vector<LocalModuli> moduli;
+      for (const auto &place : places) {
+        const LocalModuli local =
+            local_moduli<dim>(material, origin + Tensor<1, dim>(place));
+        moduli.push_back(take(material, local, range) ? local : harmless);
+      }
+      const LocalModuli &first = moduli.front();
+      if (std::all_of(moduli.begin(), moduli.end(),
+                      [&](const LocalModuli &local) {
+                        return local.young == first.young &&
+                               local.poisson == first.poisson &&
+                               local.density == first.density;
+                      }))
+        moduli.resize(1);
+      return moduli;
+    }
+
+    /** Of cells that share their blocks. */
+    std::vector<double> as_numbers(const std::vector<LocalModuli> &moduli)
+    {
+      std::vector<double> numbers;
+      for (const LocalModuli &local : moduli)
+        numbers.insert(numbers.end(),
+                       {local.young, local.poisson, local.density});
+      return numbers;
+    }
+
+    /** Bit f: the cells behind face f are smaller. */
+    template <typename Cell>
+    unsigned int divided_faces(const Cell &cell)
+    {
+      unsigned int bits = 0;
+      for (const unsigned int f : cell->face_indices())
+        if (!cell->face(f)->at_boundary() && cell->face(f)->has_children())
+          bits |= 1u << f;
+      return bits;
+    }
+  } // namespace
+
+  template <int dim>
+  Cells<dim>::Cells(const Triangulation<dim> &triangulation,
+                    const std::vector<unsigned int> &materials,
+                    const SceneInput &input)
+  {
+    const unsigned int degree = input.discretization.degree;
+    if (triangulation.all_reference_cells_are_hyper_cube())
+      element = std::make_unique<FE_DGQ<dim>>(degree);
+    else
+      element = std::make_unique<FE_SimplexDGP<dim>>(degree);
+    const ClassBuilder<dim> builder(*element, input);
+
+    using Form = std::pair<unsigned int, std::vector<long long>>;
+    using Key = std::tuple<unsigned int, Form, std::vector<double>>;
+    std::map<Key, unsigned int> class_by_key;
+    std::map<Form, std::vector<Point<dim>>> places; // of graded materials
+    std::vector<std::vector<LocalModuli>> constants;
+    for (unsigned int m = 0; m < input.materials.size(); ++m) {
+      const MaterialInput &material = input.materials[m];
+      constants.push_back(
+          {{material.young, material.poisson, material.density}});
+      if (material.graded)
+        graded.emplace(m, no_range);
+    }
+    first_node.push_back(0);
+    bodies.first_dof.push_back(0);
+    bodies.first_slot.push_back(0);
+    for (const auto &cell : owned_cells(triangulation)) {
+      const unsigned int material = materials[cell->active_cell_index()];
+      auto &own_corners = corners.emplace_back();
+      for (const unsigned int v : cell->vertex_indices())
+        own_corners.push_back(cell->vertex(v));
+      const RoundedCorners<dim> rounded(own_corners);
+      const unsigned int divided = divided_faces(cell);
+      const Form form(divided, rounded.key);
+      std::vector<double> local; // empty where the material is not graded
+      std::vector<LocalModuli> moduli;
+      if (input.materials[material].graded) {
+        auto &of_form = places[form];
+        if (of_form.empty())
+          of_form = builder.moduli_places(cell->reference_cell(),
+                                          rounded.relative, divided);
+        moduli = moduli_of_cell<dim>(input.materials[material], of_form,
+                                     own_corners[0], graded[material]);
+        local = as_numbers(moduli);
+      }
+      const auto [entry, is_new] = class_by_key.emplace(
+          Key(material, form, local), unsigned(shapes.size()));
+      const unsigned int k = entry->second;
+      if (is_new)
+        builder.build(cell->reference_cell(), rounded.relative, rounded.size,
+                      material, divided,
+                      moduli.empty() ? constants[material] : moduli,
+                      shapes.emplace_back(), bodies.classes.emplace_back());
+
+      BodyClass &body = bodies.classes[k];
+      body.bodies.push_back(unsigned(bodies.class_of.size()));
+      bodies.class_of.push_back(k);
+      bodies.first_dof.push_back(bodies.first_dof.back() + body.n_dofs);
+      bodies.first_slot.push_back(bodies.first_slot.back() + body.n_slots);
+      first_node.push_back(first_node.back() + shapes[k].n_nodes);
+      global_cell.push_back(cell->global_active_cell_index());
+      cell_id.push_back(cell->id().template to_binary<dim>());
+    }
+  }
+
+  template struct Cells<2>;
+  template struct Cells<3>;
+} // namespace nsfd

@@ -1,0 +1,434 @@
+#include "nsfd/discretization/discretization.h"
+
+#include "cells.h"
+#include "materials/elasticity.h"
+#include "face_points.h"
+#include "loads.h"
+
+#include "materials/cauchy_stress.h"
+
+#include "nsfd/scene/scene_input.h"
+#include "mesh/mesh_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    bool is_driven(const BoundaryInput &boundary)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (boundary.velocity[c] || boundary.displacement[c])
+          return true;
+      return false;
+    }
+
+    /** Nodal forces of a body as generalised ones: R^T for a rigid body. */
+    void add_to_unknowns(const BodyClass &body, const Block &modes,
+                         const double *in, double *out)
+    {
+      if (!body.rigid)
+        for (unsigned int i = 0; i < body.n_dofs; ++i)
+          out[i] += in[i];
+      else
+        for (unsigned int j = 0; j < modes.cols; ++j)
+          for (unsigned int i = 0; i < modes.rows; ++i)
+            out[j] += modes(i, j) * in[i];
+    }
+    /**
+     * A graded constant of @p material lies in @p range, without its ends, over
+     * all its cells. @throws std::runtime_error on all ranks if not.
+     */
+    void check_range(const MaterialInput &material, const char *name,
+                     const Expression &field, double lowest, double highest,
+                     const std::array<double, 2> &range,
+                     const Communicator &communicator)
+    {
+      lowest = communicator.min(lowest);
+      highest = communicator.max(highest);
+      const bool no_cells = lowest > highest;
+      if (no_cells || (lowest > range[0] && highest < range[1]))
+        return;
+      std::string what;
+      if (std::isinf(lowest))
+        what = "it is not a number in a cell of the block";
+      else if (lowest <= range[0])
+        what = fmt::format("it falls to {:.4g} in its cells", lowest);
+      else
+        what = fmt::format("it rises to {:.4g} in its cells", highest);
+      throw std::runtime_error(fmt::format(
+          "Material: {}/{} = {} must be {}, but {}", material.name, name,
+          field.text(),
+          std::isinf(range[1])
+              ? "positive"
+              : fmt::format("above {:g} and below {:g}", range[0],
+                            range[1]),
+          what));
+    }
+
+    template <int dim>
+    void check_graded(const SceneInput &input, const Cells<dim> &cells,
+                      const Communicator &communicator)
+    {
+      const std::array<double, 2> positive = {
+          {0., std::numeric_limits<double>::infinity()}};
+      for (const auto &[m, range] : cells.graded) {
+        const MaterialInput &material = input.materials[m];
+        check_range(material, "density", material.graded->density,
+                    range[0].density, range[1].density, positive,
+                    communicator);
+        if (material.rigid || material.transverse)
+          continue;
+        check_range(material, "Young modulus", material.graded->young,
+                    range[0].young, range[1].young, positive,
+                    communicator);
+        check_range(material, "Poisson ratio", material.graded->poisson,
+                    range[0].poisson, range[1].poisson, {-1., 0.5},
+                    communicator);
+      }
+    }
+
+    /** Of all ranks. */
+    void share(const Communicator &communicator, MaterialExtremes &all)
+    {
+      const bool none = all.fastest == 0.;
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      const auto share_moduli = [&](MaterialExtremes::Moduli &mine,
+                                    const double sign) {
+        const double young =
+            sign * communicator.max(none ? -infinity : sign * mine.young);
+        mine.poisson =
+            communicator.max(none || mine.young != young ? -1. : mine.poisson);
+        mine.young = young;
+      };
+      share_moduli(all.stiffest, 1.);
+      share_moduli(all.softest, -1.);
+      all.slowest = communicator.min(none ? infinity : all.slowest);
+      all.fastest = communicator.max(all.fastest);
+      all.densest = communicator.max(all.densest);
+    }
+
+    /** Rigid ones, and graded ones of no cell, have none. */
+    template <int dim>
+    std::vector<MaterialExtremes>
+    material_extremes(const SceneInput &input, const Cells<dim> &cells,
+                      const Communicator &communicator)
+    {
+      std::vector<MaterialExtremes> result(input.materials.size());
+      for (unsigned int m = 0; m < result.size(); ++m) {
+        const MaterialInput &material = input.materials[m];
+        if (!material.rigid && !material.graded)
+          result[m] =
+              LinearElasticity<dim>(material, input.plane_stress).extremes();
+        if (material.rigid || !material.graded)
+          continue;
+        for (std::size_t k = 0; k < cells.shapes.size(); ++k)
+          if (cells.bodies.classes[k].material == m)
+            widen(cells.shapes[k].extremes, result[m]);
+        share(communicator, result[m]);
+      }
+      return result;
+    }
+  } // namespace
+
+  template <int dim>
+  Discretization<dim>::~Discretization() = default;
+
+  template <int dim>
+  Discretization<dim>::Discretization(Discretization &&) noexcept = default;
+
+  template <int dim>
+  Discretization<dim> &
+  Discretization<dim>::operator=(Discretization &&) noexcept = default;
+
+  template <int dim>
+  Discretization<dim>::Discretization(
+      const Communicator &communicator, const Triangulation<dim> &triangulation,
+      const MeshGroups<dim> &groups, const std::vector<unsigned int> &materials,
+      const SceneInput &input)
+      : input_(&input),
+        loads_(std::make_unique<Loads<dim>>(triangulation, groups, input)),
+        extent_((groups.upper() - groups.lower()).norm())
+  {
+    for (unsigned int b = 0; b < input.boundaries.size(); ++b)
+      if (is_driven<dim>(input.boundaries[b]))
+        driven_.push_back(b);
+    auto cells = std::make_unique<Cells<dim>>(triangulation, materials, input);
+    auto faces = make_face_points(communicator, triangulation, groups,
+                                  materials, driven_, input);
+    points_ = std::move(faces.points);
+    origins_ = std::move(faces.origins);
+    springs_inside_ = std::move(faces.springs_inside);
+    obstacle_faces_ = std::move(faces.obstacle_faces);
+    inner_faces_ = std::move(faces.inner_faces);
+    fill_slots(points_, *cells);
+    cells_ = std::move(cells);
+    check_graded(input, *cells_, communicator);
+    extremes_ = material_extremes(input, *cells_, communicator);
+
+    double size = std::numeric_limits<double>::max(), crossing = size;
+    for (std::size_t k = 0; k < cells_->shapes.size(); ++k) {
+      const BodyClass &body = bodies().classes[k];
+      const double height = cells_->shapes[k].height;
+      size = std::min(size, height);
+      if (!input.materials[body.material].rigid)
+        crossing =
+            std::min(crossing, height / cells_->shapes[k].extremes.fastest);
+    }
+    cell_size_ = communicator.min(size);
+    crossing_time_ = communicator.min(crossing);
+    if (crossing_time_ == std::numeric_limits<double>::max())
+      crossing_time_ = 0.;
+    n_global_cells_ = communicator.sum_integer(bodies().size());
+    if (input.large_motion)
+      body_table_ = std::make_unique<BodyTable>(
+          make_body_table(input, triangulation, materials));
+  }
+
+  template <int dim>
+  const Bodies &Discretization<dim>::bodies() const
+  {
+    return cells_->bodies;
+  }
+
+  template <int dim>
+  const FiniteElement<dim, dim> &Discretization<dim>::element() const
+  {
+    return *cells_->element;
+  }
+
+  template <int dim>
+  bool Discretization<dim>::simplices() const
+  {
+    return element().reference_cell().is_simplex();
+  }
+
+  template <int dim>
+  unsigned int Discretization<dim>::material_of(const unsigned int body) const
+  {
+    return cells_->body_class(body).material;
+  }
+
+  template <int dim>
+  const BodyShape<dim> &
+  Discretization<dim>::shape(const unsigned int body) const
+  {
+    return cells_->shape(body);
+  }
+
+  template <int dim>
+  unsigned int
+  Discretization<dim>::face_of_slot(const unsigned int body,
+                                    const unsigned int slot) const
+  {
+    return cells_->shape(body).slot_faces[slot];
+  }
+
+  template <int dim>
+  std::size_t Discretization<dim>::n_nodal() const
+  {
+    return cells_->n_nodal();
+  }
+
+  template <int dim>
+  std::size_t Discretization<dim>::first_node(const unsigned int body) const
+  {
+    return cells_->first_node[body];
+  }
+
+  template <int dim>
+  const std::array<unsigned int, 4> &
+  Discretization<dim>::cell_id(const unsigned int body) const
+  {
+    return cells_->cell_id[body];
+  }
+
+  template <int dim>
+  unsigned long long
+  Discretization<dim>::global_cell(const unsigned int body) const
+  {
+    return cells_->global_cell[body];
+  }
+
+  template <int dim>
+  std::vector<Point<dim>>
+  Discretization<dim>::corners(const unsigned int body) const
+  {
+    return cells_->corners[body];
+  }
+
+  template <int dim>
+  double Discretization<dim>::volume(const unsigned int body) const
+  {
+    return cells_->shape(body).volume;
+  }
+
+  template <int dim>
+  Point<dim> Discretization<dim>::centre(const unsigned int body) const
+  {
+    return cells_->place(body, cells_->shape(body).centre);
+  }
+
+  template <int dim>
+  const MaterialExtremes &
+  Discretization<dim>::extremes_of(const unsigned int body) const
+  {
+    return cells_->shape(body).extremes;
+  }
+
+  template <int dim>
+  std::array<double, 6>
+  Discretization<dim>::stress(const unsigned int body, const Point<dim> &x,
+                              const double *gradient) const
+  {
+    const auto &material = input_->materials[material_of(body)];
+    if (material.rigid)
+      return {};
+    if (is_finite_strain(material.model))
+      return cauchy_stress<dim>(material, input_->plane_stress, gradient);
+    const auto &of_cell = cells_->shape(body).elasticity;
+    if (of_cell.size() == 1)
+      return of_cell[0].stress(gradient);
+    return LinearElasticity<dim>(
+               material,
+               local_moduli<dim>(material, a_little_inside(x, centre(body))),
+               input_->plane_stress)
+        .stress(gradient);
+  }
+
+  template <int dim>
+  std::array<double, 6>
+  Discretization<dim>::viscous_stress(const unsigned int body,
+                                      const double *rate) const
+  {
+    return LinearElasticity<dim>::viscous(input_->materials[material_of(body)])
+        .stress(rate);
+  }
+
+  template <int dim>
+  bool Discretization<dim>::is_viscous() const
+  {
+    return input_->has_viscous_bodies();
+  }
+
+  template <int dim>
+  bool Discretization<dim>::has_loads() const
+  {
+    return loads_->any();
+  }
+
+  template <int dim>
+  bool Discretization<dim>::loads_depend_on_time() const
+  {
+    return loads_->depend_on_time();
+  }
+
+  template <int dim>
+  void Discretization<dim>::add_loads(const double t,
+                                      std::vector<double> &forces) const
+  {
+    std::vector<double> nodal(n_nodal(), 0.);
+    loads_->add(*cells_, t, nodal);
+    for (std::size_t b = 0; b < bodies().size(); ++b)
+      add_to_unknowns(cells_->body_class(b), cells_->shape(b).modes,
+                      nodal.data() + cells_->first_node[b] * dim,
+                      forces.data() + bodies().first_dof[b]);
+  }
+
+  template <int dim>
+  std::vector<double>
+  Discretization<dim>::to_nodal(const std::vector<double> &unknowns) const
+  {
+    std::vector<double> nodal(n_nodal(), 0.);
+    for (std::size_t b = 0; b < bodies().size(); ++b) {
+      const auto &body = cells_->body_class(b);
+      const double *z = unknowns.data() + bodies().first_dof[b];
+      double *out = nodal.data() + cells_->first_node[b] * dim;
+      if (!body.rigid) {
+        std::copy_n(z, body.n_dofs, out);
+        continue;
+      }
+      const Block &R = cells_->shape(b).modes;
+      for (unsigned int i = 0; i < R.rows; ++i)
+        for (unsigned int j = 0; j < R.cols; ++j)
+          out[i] += R(i, j) * z[j];
+    }
+    return nodal;
+  }
+
+  template <int dim>
+  std::vector<double> Discretization<dim>::interpolate(const Field &field) const
+  {
+    std::vector<double> unknowns(bodies().n_dofs(), 0.);
+    for (std::size_t b = 0; b < bodies().size(); ++b) {
+      const auto &body = cells_->body_class(b);
+      const auto &shape = cells_->shape(b);
+      std::vector<double> nodal(shape.n_nodes * dim);
+      for (unsigned int i = 0; i < shape.n_nodes; ++i)
+        field(cells_->place(b, shape.nodes[i]), unsigned(b),
+              nodal.data() + i * dim);
+      double *out = unknowns.data() + bodies().first_dof[b];
+      if (!body.rigid)
+        std::copy(nodal.begin(), nodal.end(), out);
+      else
+        for (unsigned int j = 0; j < body.n_dofs; ++j)
+          for (std::size_t i = 0; i < nodal.size(); ++i)
+            out[j] += shape.projection(j, unsigned(i)) * nodal[i];
+    }
+    return unknowns;
+  }
+
+  template <int dim>
+  void Discretization<dim>::visit_quadrature(const std::vector<double> &nodal,
+                                             const Visitor &visit) const
+  {
+    double value[dim], gradient[dim * dim];
+    for (std::size_t b = 0; b < bodies().size(); ++b) {
+      const auto &shape = cells_->shape(b);
+      const double *u = nodal.data() + cells_->first_node[b] * dim;
+      for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
+        std::fill(value, value + dim, 0.);
+        std::fill(gradient, gradient + dim * dim, 0.);
+        for (unsigned int i = 0; i < shape.n_nodes; ++i) {
+          const double N = shape.values[q * shape.n_nodes + i];
+          const auto &g = shape.gradients[q * shape.n_nodes + i];
+          for (unsigned int c = 0; c < dim; ++c) {
+            value[c] += N * u[i * dim + c];
+            for (unsigned int d = 0; d < dim; ++d)
+              gradient[c * dim + d] += g[d] * u[i * dim + c];
+          }
+        }
+        visit(unsigned(b), cells_->place(b, shape.positions[q]), shape.JxW[q],
+              value, gradient);
+      }
+    }
+  }
+
+  template <int dim>
+  std::vector<double>
+  Discretization<dim>::at_corners(const unsigned int body,
+                                  const std::vector<double> &nodal) const
+  {
+    const auto &shape = cells_->shape(body);
+    const double *u = nodal.data() + cells_->first_node[body] * dim;
+    std::vector<double> result(shape.corners.size() * dim, 0.);
+    for (std::size_t v = 0; v < shape.corners.size(); ++v)
+      for (unsigned int i = 0; i < shape.n_nodes; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          result[v * dim + c] +=
+              shape.corner_values[v * shape.n_nodes + i] * u[i * dim + c];
+    return result;
+  }
+
+  template class Discretization<2>;
+  template class Discretization<3>;
+} // namespace nsfd

@@ -1,0 +1,468 @@
+#include "face_points.h"
+
+#include "interface_quadrature.h"
+#include "owned_cells.h"
+#include "spring_shares.h"
+
+#include "nsfd/core/communicator.h"
+#include "nsfd/scene/scene_input.h"
+#include "cell_geometry.h"
+#include "mesh/mesh_builder.h"
+
+#include <deal.II/grid/cell_id.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    std::uint64_t hash(const std::string &text)
+    {
+      std::uint64_t value = 1469598103934665603ull;
+      for (const unsigned char c : text)
+        value = (value ^ c) * 1099511628211ull;
+      // spread: neighbouring cells differ in a few characters only
+      value ^= value >> 31;
+      value *= 0x9e3779b97f4a7c15ull;
+      value ^= value >> 29;
+      return value;
+    }
+
+    /** A face with its points, before all of them are put into flat arrays. */
+    template <int dim>
+    struct NewFace {
+      using Frame = std::array<Tensor<1, dim>, dim>;
+
+      typename InterfacePoints<dim>::Face face;
+      PointOrigin origin;
+      std::vector<Point<dim>> positions;
+      std::vector<Frame> frames;
+      std::vector<double> weights;
+      bool owned = true;
+
+      void set_frame(const Frame &frame)
+      {
+        std::fill(frames.begin(), frames.end(), frame);
+      }
+    };
+
+    /** Goes through the faces of the cells of this rank. */
+    template <int dim>
+    class FaceCollector
+    {
+    public:
+      using Cell = typename Triangulation<dim>::active_cell_iterator;
+
+      FaceCollector(const Triangulation<dim> &triangulation,
+                    const MeshGroups<dim> &groups,
+                    const std::vector<unsigned int> &materials,
+                    const std::vector<unsigned int> &driven,
+                    const SceneInput &input);
+
+      std::vector<NewFace<dim>> faces; ///< those of this rank first
+      std::vector<int> springs_inside; ///< per body, or empty: none
+      std::vector<ObstacleFace> obstacle_faces;
+      std::vector<InnerFace> inner_faces;
+      /// centre of the first face, by its coordinates, that no block holds for
+      std::optional<Point<dim>> without_block;
+
+    private:
+      NewFace<dim> make_face(const Cell &cell, unsigned int face_no,
+                             PointOrigin origin) const;
+      void add_boundary(const Cell &cell, unsigned int face_no);
+      bool is_inner(const Cell &cell, const Cell &neighbor) const;
+      void add_interior(const Cell &cell, unsigned int face_no);
+      void add_between(const Cell &cell_1, unsigned int face_no_1,
+                       const Cell &cell_2);
+      unsigned int block_of(const Cell &first, const Cell &second,
+                            const Point<dim> &centre,
+                            types::manifold_id face_id);
+
+      const MeshGroups<dim> &groups_;
+      const std::vector<unsigned int> &materials_, &driven_;
+      const SceneInput &input_;
+      const SpringShares<dim> shares_;
+      std::vector<int> body_of_; ///< by active cell index, -1 if not ours
+    };
+
+    template <int dim>
+    FaceCollector<dim>::FaceCollector(
+        const Triangulation<dim> &triangulation, const MeshGroups<dim> &groups,
+        const std::vector<unsigned int> &materials,
+        const std::vector<unsigned int> &driven, const SceneInput &input)
+        : groups_(groups), materials_(materials), driven_(driven),
+          input_(input), shares_(input, groups, materials),
+          body_of_(bodies_of_cells(triangulation))
+    {
+      for (const auto &cell : owned_cells(triangulation)) {
+        if (shares_.any())
+          springs_inside.push_back(shares_.inside(cell));
+        for (const unsigned int f : cell->face_indices()) {
+          if (cell->face(f)->at_boundary())
+            add_boundary(cell, f);
+          else
+            add_interior(cell, f);
+        }
+      }
+      std::stable_partition(faces.begin(), faces.end(),
+                            [](const auto &face) { return face.owned; });
+    }
+
+    template <int dim>
+    NewFace<dim> FaceCollector<dim>::make_face(const Cell &cell,
+                                               const unsigned int f,
+                                               const PointOrigin origin) const
+    {
+      std::vector<Point<dim>> corners;
+      for (const unsigned int v : cell->vertex_indices())
+        corners.push_back(cell->vertex(v));
+      const FaceGeometry<dim> geometry(cell->reference_cell(), corners, f);
+      const auto quadrature = interface_quadrature<dim>(input_.discretization,
+                                                        geometry.is_triangle());
+      NewFace<dim> result;
+      result.origin = origin;
+      result.face.key = hash(
+          cell->id().to_string() + "/" + std::to_string(f) + "/" +
+          std::to_string(int(origin.kind)) + "/" +
+          std::to_string(
+              origin.kind == PointOrigin::Kind::interface ? 0 : origin.block));
+      const Point<dim> centre = mean(geometry.corners());
+      for (unsigned int c = 0; c < dim; ++c)
+        result.face.centre[c] = centre[c];
+      for (unsigned int q = 0; q < quadrature.size(); ++q) {
+        const auto xi = quadrature.point(q);
+        Tensor<1, dim> n = geometry.normal(xi);
+        const double measure = n.norm();
+        n /= measure;
+        result.positions.push_back(geometry.position(xi));
+        result.frames.push_back(local_frame<dim>(n));
+        result.weights.push_back(measure * quadrature.weight(q));
+      }
+      return result;
+    }
+
+    template <int dim>
+    void FaceCollector<dim>::add_boundary(const Cell &cell,
+                                          const unsigned int f)
+    {
+      const auto add = [&](NewFace<dim> face) {
+        face.face.boundary = true;
+        face.face.bodies = {{-1, body_of_[cell->active_cell_index()]}};
+        faces.push_back(std::move(face));
+      };
+      for (const unsigned int b : driven_) {
+        if (!groups_.holds_boundary_face(input_.boundaries[b].where, cell, f))
+          continue;
+        auto face = make_face(cell, f, {PointOrigin::Kind::motion, b});
+        typename NewFace<dim>::Frame axes; // rows of a support are x, y, z
+        for (unsigned int i = 0; i < dim; ++i)
+          axes[i][i] = 1.;
+        face.set_frame(axes);
+        add(std::move(face));
+      }
+      for (unsigned int b = 0; b < input_.obstacles.size(); ++b) {
+        const auto &obstacle = input_.obstacles[b];
+        if (!groups_.holds_boundary_face(obstacle.where, cell, f))
+          continue;
+        if (input_.large_motion) {
+          obstacle_faces.push_back(
+              {unsigned(body_of_[cell->active_cell_index()]), f, b});
+          continue;
+        }
+        auto face = make_face(cell, f, {PointOrigin::Kind::obstacle, b});
+        Tensor<1, dim> n;
+        for (unsigned int c = 0; c < dim; ++c)
+          n[c] = obstacle.normal[c];
+        face.set_frame(local_frame<dim>(n / n.norm()));
+        add(std::move(face));
+      }
+    }
+
+    /** Both cells belong to one rigid body, which is whole on its rank. */
+    template <int dim>
+    bool FaceCollector<dim>::is_inner(const Cell &cell,
+                                      const Cell &neighbor) const
+    {
+      const unsigned int m = materials_[cell->active_cell_index()];
+      return input_.large_motion && cell->is_locally_owned() &&
+             m == materials_[neighbor->active_cell_index()] &&
+             input_.materials[m].rigid_bodies.connected;
+    }
+
+    /**
+     * Body 1 is the cell with the smaller id; of two sizes the smaller cell,
+     * whose face it is. A face is made once on a rank: from its body 1 if that
+     * is ours.
+     */
+    template <int dim>
+    void FaceCollector<dim>::add_interior(const Cell &cell,
+                                          const unsigned int f)
+    {
+      if (cell->face(f)->has_children()) {
+        const unsigned int face_no = cell->neighbor_of_neighbor(f);
+        for (unsigned int c = 0; c < cell->face(f)->n_children(); ++c) {
+          const Cell small(cell->neighbor_child_on_subface(f, c));
+          if (!small->is_locally_owned())
+            add_between(small, face_no, cell);
+        }
+        return;
+      }
+      const Cell neighbor(cell->neighbor(f));
+      if (is_inner(cell, neighbor)) {
+        if (cell->id() < neighbor->id())
+          inner_faces.push_back(
+              {{{unsigned(body_of_[cell->active_cell_index()]),
+                 unsigned(body_of_[neighbor->active_cell_index()])}},
+               {{f, cell->neighbor_face_no(f)}}});
+        return;
+      }
+      if (cell->neighbor_is_coarser(f) || cell->id() < neighbor->id())
+        add_between(cell, f, neighbor);
+      else if (!neighbor->is_locally_owned())
+        add_between(neighbor, cell->neighbor_face_no(f), cell);
+    }
+
+    /**
+     * The face of the first mesh that a face of an adaptive one is a part of: a
+     * block that holds for it holds for all its parts.
+     */
+    template <int dim>
+    typename Triangulation<dim>::face_iterator
+    first_face(typename Triangulation<dim>::cell_iterator cell,
+               const unsigned int face_no)
+    {
+      while (cell->level() > 0) {
+        const auto parent = cell->parent();
+        bool is_part = false;
+        for (unsigned int c = 0; c < parent->face(face_no)->n_children(); ++c)
+          is_part = is_part ||
+                    parent->face(face_no)->child(c) == cell->face(face_no);
+        if (!is_part)
+          break;
+        cell = parent;
+      }
+      return cell->face(face_no);
+    }
+
+    /** One of the cells is ours. */
+    template <int dim>
+    void FaceCollector<dim>::add_between(const Cell &cell_1,
+                                         const unsigned int face_no_1,
+                                         const Cell &cell_2)
+    {
+      const auto at = input_.adaptivity ? first_face<dim>(cell_1, face_no_1)
+                                        : cell_1->face(face_no_1);
+      Point<dim> centre;
+      for (const unsigned int v : at->vertex_indices())
+        centre += at->vertex(v) / double(at->n_vertices());
+      const unsigned int block =
+          block_of(cell_1, cell_2, centre, at->manifold_id());
+      auto face = make_face(cell_1, face_no_1,
+                            {PointOrigin::Kind::interface, block,
+                             shares_.of_face(cell_1, cell_2, block)});
+      face.face.bodies = {{body_of_[cell_1->active_cell_index()],
+                           body_of_[cell_2->active_cell_index()]}};
+      face.face.cells = {{cell_1->global_active_cell_index(),
+                          cell_2->global_active_cell_index()}};
+      face.owned = cell_1->is_locally_owned();
+      for (const Cell *one : {&cell_1, &cell_2})
+        if (!(*one)->is_locally_owned())
+          face.face.neighbor_rank = int((*one)->subdomain_id());
+      faces.push_back(std::move(face));
+    }
+
+    template <int dim>
+    bool comes_before(const Point<dim> &a, const Point<dim> &b)
+    {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (a[c] != b[c])
+          return a[c] < b[c];
+      return false;
+    }
+
+    /** The first one that holds; a face without one is remembered. */
+    template <int dim>
+    unsigned int FaceCollector<dim>::block_of(const Cell &first,
+                                              const Cell &second,
+                                              const Point<dim> &centre,
+                                              const types::manifold_id face_id)
+    {
+      const auto material = [&](const Cell &cell) -> const std::string & {
+        return input_.materials[materials_[cell->active_cell_index()]].name;
+      };
+      for (unsigned int b = 0; b < input_.interfaces.size(); ++b)
+        if (groups_.holds_interior_face(
+                input_.interfaces[b].where, centre, material(first),
+                material(second),
+                {{first->material_id(), second->material_id()}}, face_id))
+          return b;
+      if (!without_block || comes_before(centre, *without_block))
+        without_block = centre;
+      return 0;
+    }
+
+    /** All ranks throw, and name the same face, if one of them has such one. */
+    template <int dim>
+    void demand_blocks(const Communicator &communicator,
+                       const std::optional<Point<dim>> &without_block)
+    {
+      bool here = without_block.has_value();
+      if (!communicator.any(here))
+        return;
+      Point<dim> first;
+      for (unsigned int c = 0; c < dim; ++c) {
+        first[c] = communicator.min(here ? (*without_block)[c]
+                                         : std::numeric_limits<double>::max());
+        here = here && (*without_block)[c] == first[c];
+      }
+      throw std::runtime_error(
+          "no Interface block holds for the face at (" +
+          std::to_string(first[0]) + ", " + std::to_string(first[1]) +
+          (dim == 3 ? ", " + std::to_string(first[dim - 1]) : "") +
+          "): add a last block with `set where = all`");
+    }
+
+    /** Points of shared faces by rank, in an order that both ranks know. */
+    template <int dim>
+    void set_neighbors(InterfacePoints<dim> &points)
+    {
+      std::map<int, std::vector<std::size_t>> shared; // rank -> faces
+      for (std::size_t f = 0; f < points.faces.size(); ++f)
+        if (points.faces[f].neighbor_rank >= 0)
+          shared[points.faces[f].neighbor_rank].push_back(f);
+      for (auto &[rank, list] : shared) {
+        std::sort(list.begin(), list.end(),
+                  [&](const std::size_t a, const std::size_t b) {
+                    return points.faces[a].key < points.faces[b].key;
+                  });
+        typename InterfacePoints<dim>::Neighbor neighbor;
+        neighbor.rank = rank;
+        for (const std::size_t f : list)
+          for (unsigned int q = 0; q < points.faces[f].count; ++q) {
+            neighbor.points.push_back(points.faces[f].first + q);
+            neighbor.side.push_back(points.faces[f].bodies[0] >= 0 ? 0 : 1);
+          }
+        points.neighbors.push_back(std::move(neighbor));
+      }
+    }
+  } // namespace
+
+  template <int dim>
+  FacePoints<dim> make_face_points(const Communicator &communicator,
+                                   const Triangulation<dim> &triangulation,
+                                   const MeshGroups<dim> &groups,
+                                   const std::vector<unsigned int> &materials,
+                                   const std::vector<unsigned int> &driven,
+                                   const SceneInput &input)
+  {
+    FaceCollector<dim> collector(triangulation, groups, materials, driven,
+                                 input);
+    demand_blocks(communicator, collector.without_block);
+    FacePoints<dim> result;
+    result.springs_inside = std::move(collector.springs_inside);
+    result.obstacle_faces = std::move(collector.obstacle_faces);
+    result.inner_faces = std::move(collector.inner_faces);
+    auto &points = result.points;
+    std::size_t n = 0;
+    for (const auto &face : collector.faces)
+      n += face.positions.size();
+    points.position.reserve(n * dim);
+    points.frame.reserve(n * dim * dim);
+    points.weight.reserve(n);
+    points.face_of.reserve(n);
+    points.faces.reserve(collector.faces.size());
+    result.origins.reserve(n);
+    for (auto &face : collector.faces) {
+      const unsigned int f = unsigned(points.faces.size());
+      face.face.first = unsigned(points.n_points);
+      face.face.count = unsigned(face.positions.size());
+      points.n_points += face.positions.size();
+      if (face.owned)
+        points.n_owned = points.n_points;
+      for (unsigned int q = 0; q < face.positions.size(); ++q) {
+        for (unsigned int c = 0; c < dim; ++c)
+          points.position.push_back(face.positions[q][c]);
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int c = 0; c < dim; ++c)
+            points.frame.push_back(face.frames[q][i][c]);
+        points.weight.push_back(face.weights[q]);
+        points.face_of.push_back(f);
+        result.origins.push_back(face.origin);
+      }
+      points.faces.push_back(face.face);
+    }
+    set_neighbors(points);
+    return result;
+  }
+
+  template <int dim>
+  void fill_slots(const InterfacePoints<dim> &points, Cells<dim> &cells)
+  {
+    Bodies &bodies = cells.bodies;
+    const auto n = unsigned(points.n_points);
+    bodies.slot_point.assign(bodies.first_slot.back(), n);
+    bodies.slot_sign.assign(bodies.first_slot.back(), 1);
+    // the nearest one; a slot at a corner belongs to two faces: take a free one
+    const auto slot_of = [&](const std::size_t b, const unsigned int i) {
+      const auto &shape = cells.shape(b);
+      const double tolerance = 1e-7 * shape.corners.back().norm();
+      std::size_t best = 0;
+      double distance = std::numeric_limits<double>::max();
+      for (std::size_t s = 0; s < shape.slot_positions.size(); ++s) {
+        double d = 0.;
+        for (unsigned int c = 0; c < dim; ++c) {
+          const double x = cells.corners[b][0][c] + shape.slot_positions[s][c] -
+                           points.position[i * dim + c];
+          d += x * x;
+        }
+        const bool taken = bodies.slot_point[bodies.first_slot[b] + s] < n;
+        if (d < distance - tolerance * tolerance ||
+            (d < distance + tolerance * tolerance && !taken &&
+             bodies.slot_point[bodies.first_slot[b] + best] < n)) {
+          distance = d;
+          best = s;
+        }
+      }
+      AssertThrow(std::sqrt(distance) < 100. * tolerance,
+                  ExcMessage("a face point has no place on its cell"));
+      return bodies.first_slot[b] + best;
+    };
+
+    for (const auto &face : points.faces)
+      for (unsigned int side = 0; side < 2; ++side) {
+        if (face.bodies[side] < 0)
+          continue;
+        for (unsigned int i = face.first; i < face.first + face.count; ++i) {
+          const std::size_t slot = slot_of(face.bodies[side], i);
+          if (bodies.slot_point[slot] < n) {
+            bodies.extra_points.emplace_back(slot, i);
+            AssertThrow(side == 1 && face.boundary,
+                        ExcMessage("two interface points on one slot"));
+          } else {
+            bodies.slot_point[slot] = i;
+            bodies.slot_sign[slot] = side == 1 ? 1 : -1;
+          }
+        }
+      }
+    std::sort(bodies.extra_points.begin(), bodies.extra_points.end());
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template FacePoints<dim> make_face_points(                                   \
+      const Communicator &, const Triangulation<dim> &,                        \
+      const MeshGroups<dim> &, const std::vector<unsigned int> &,              \
+      const std::vector<unsigned int> &, const SceneInput &);                  \
+  template void fill_slots(const InterfacePoints<dim> &, Cells<dim> &)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
+#undef NSFD_INSTANTIATE
+} // namespace nsfd

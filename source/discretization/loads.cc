@@ -1,0 +1,105 @@
+#include "loads.h"
+
+#include "owned_cells.h"
+
+#include "nsfd/scene/scene_input.h"
+#include "cell_geometry.h"
+#include "mesh/mesh_builder.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/grid/tria.h>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  template <int dim>
+  Loads<dim>::Loads(const Triangulation<dim> &triangulation,
+                    const MeshGroups<dim> &groups, const SceneInput &input)
+      : input_(input)
+  {
+    for (unsigned int c = 0; c < dim; ++c)
+      any_ |= input.gravity[c] != 0.;
+    for (const auto &material : input.materials)
+      for (unsigned int c = 0; c < dim; ++c) {
+        any_ |= !material.body_force[c].is_zero();
+        depend_on_time_ |= material.body_force[c].depends_on_time();
+      }
+    for (const auto &boundary : input.boundaries) {
+      any_ |= boundary.has_traction || boundary.has_pressure;
+      depend_on_time_ |= boundary.pressure.depends_on_time();
+      for (unsigned int c = 0; c < dim; ++c)
+        depend_on_time_ |= boundary.traction[c].depends_on_time();
+    }
+
+    unsigned int body = 0;
+    for (const auto &cell : owned_cells(triangulation)) {
+      for (const unsigned int f : cell->face_indices())
+        for (unsigned int b = 0; b < input.boundaries.size(); ++b) {
+          const auto &boundary = input.boundaries[b];
+          if ((boundary.has_traction || boundary.has_pressure) &&
+              groups.holds_boundary_face(boundary.where, cell, f))
+            faces_.push_back({body, f, b});
+        }
+      ++body;
+    }
+  }
+
+  template <int dim>
+  void Loads<dim>::add(const Cells<dim> &cells, const double t,
+                       std::vector<double> &nodal) const
+  {
+    add_volume(cells, t, nodal);
+    for (const auto &load : faces_) {
+      const auto &boundary = input_.boundaries[load.boundary];
+      const auto &shape = cells.shape(load.body);
+      const FaceGeometry<dim> face(shape.reference, shape.corners, load.face);
+      Quadrature<dim - 1> quadrature;
+      if (face.is_triangle())
+        quadrature = QGaussSimplex<dim - 1>(3);
+      else
+        quadrature = QGauss<dim - 1>(input_.discretization.degree + 2);
+      for (unsigned int q = 0; q < quadrature.size(); ++q) {
+        const auto xi = quadrature.point(q);
+        const Tensor<1, dim> n = face.normal(xi); // times the measure
+        const double JxW = n.norm() * quadrature.weight(q);
+        const Point<dim> x = cells.place(load.body, face.position(xi));
+        const double p =
+            boundary.has_pressure ? boundary.pressure.at(x, t) : 0.;
+        for (unsigned int c = 0; c < dim; ++c) {
+          double f = -p * n[c] * quadrature.weight(q);
+          if (boundary.has_traction)
+            f += JxW * boundary.traction[c].at(x, t);
+          for (unsigned int i = 0; i < shape.n_nodes; ++i)
+            nodal[(cells.first_node[load.body] + i) * dim + c] +=
+                f * cells.element->shape_value(i, face.in_reference_cell(xi));
+        }
+      }
+    }
+  }
+
+  template <int dim>
+  void Loads<dim>::add_volume(const Cells<dim> &cells, const double t,
+                              std::vector<double> &nodal) const
+  {
+    for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+      const auto &shape = cells.shape(b);
+      const auto &material = input_.materials[cells.body_class(b).material];
+      for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
+        const Point<dim> x = cells.place(b, shape.positions[q]);
+        for (unsigned int c = 0; c < dim; ++c) {
+          double f = at_place(shape.moduli, q).density * input_.gravity[c];
+          if (!material.body_force[c].is_zero())
+            f += material.body_force[c].at(x, t);
+          if (f != 0.)
+            for (unsigned int i = 0; i < shape.n_nodes; ++i)
+              nodal[(cells.first_node[b] + i) * dim + c] +=
+                  shape.JxW[q] * f * shape.values[q * shape.n_nodes + i];
+        }
+      }
+    }
+  }
+
+  template class Loads<2>;
+  template class Loads<3>;
+} // namespace nsfd

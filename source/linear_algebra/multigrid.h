@@ -1,0 +1,27 @@
+#pragma once
+
+#include "spd_solver.h"
+
+#include <memory>
+
+namespace nsfd
+{
+  /** One V-cycle of smoothed aggregation (ML of Trilinos). */
+  class Multigrid
+  {
+  public:
+    explicit Multigrid(const Communicator &communicator);
+    ~Multigrid();
+
+    /** @p modes: the near null space, one value per own row each. */
+    void prepare(const SparseRows &matrix,
+                 const std::vector<std::vector<double>> &modes,
+                 unsigned int equations_per_node);
+    void apply(const double *b, double *x);
+
+  private:
+    struct Library;
+    std::unique_ptr<Library> library_;
+    const Communicator &communicator_;
+  };
+} // namespace nsfd

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "ghost_values.h"
+
+#include "spd_solver.h"
+
+namespace nsfd
+{
+  /** y = A x; @p x holds the own values, then room for the ghosts. */
+  void multiply(const SparseRows &A, const GhostValues &exchange, double *x,
+                double *y);
+
+  /**
+   * P^T A P for the space @p coarse. @p ghost_numbers are the coarse numbers
+   * of the ghosts of A. Rows that belong to other ranks are sent there.
+   */
+  SparseRows coarse_rows(const Communicator &communicator,
+                         const SparseRows &A,
+                         const CoarseSpace &coarse,
+                         const std::vector<long long> &ghost_numbers);
+} // namespace nsfd

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "read_law.h"
+#include "nsfd/parameters/section_reader.h"
+
+namespace nsfd
+{
+  /** Section `Bar` of `nsfd law`; the laws have been read. */
+  void read_bar(SectionReader &reader, LawInput &input);
+} // namespace nsfd

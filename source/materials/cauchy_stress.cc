@@ -1,0 +1,65 @@
+#include "cauchy_stress.h"
+
+#include "elasticity.h"
+
+#include "nsfd/scene/scene_input.h"
+#include "hyperelastic.h"
+
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** S_33 in plane strain, where C_33 = 1. */
+    double out_of_plane(const BulkModel model, const double lambda,
+                        const Voigt<2> &C)
+    {
+      return model == BulkModel::neo_hookean
+                 ? lambda / 2. * std::log(determinant(C))
+                 : lambda * (C[0] + C[1] - 2.) / 2.;
+    }
+  } // namespace
+
+  template <int dim>
+  std::array<double, 6> cauchy_stress(const MaterialInput &material,
+                                      const bool plane_stress,
+                                      const double *gradient)
+  {
+    double F[dim][dim];
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = 0; b < dim; ++b)
+        F[a][b] = gradient[a * dim + b] + (a == b ? 1. : 0.);
+    Voigt<dim> C{}, S{};
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        for (unsigned int c = 0; c < dim; ++c)
+          C[voigt_place<dim>(a, b)] += F[c][a] * F[c][b];
+    std::array<double, 6> sigma{};
+    const auto elastic =
+        make_hyperelastic<dim>(material.model, material.young,
+                               material.poisson, plane_stress && dim == 2);
+    if (!elastic->stress(C, S))
+      return sigma;
+    const double J = std::sqrt(determinant(C));
+    constexpr unsigned int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    for (unsigned int a = 0; a < dim; ++a)
+      for (unsigned int b = a; b < dim; ++b)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            sigma[at[a][b]] +=
+                F[a][c] * S[voigt_place<dim>(c, d)] * F[b][d] / J;
+    if constexpr (dim == 2)
+      if (!plane_stress)
+        sigma[2] =
+            out_of_plane(material.model,
+                         LinearElasticity<dim>(material, false).lambda, C) /
+            J;
+    return sigma;
+  }
+
+  template std::array<double, 6> cauchy_stress<2>(const MaterialInput &, bool,
+                                                  const double *);
+  template std::array<double, 6> cauchy_stress<3>(const MaterialInput &, bool,
+                                                  const double *);
+} // namespace nsfd

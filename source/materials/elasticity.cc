@@ -1,0 +1,219 @@
+#include "elasticity.h"
+
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  template <int dim>
+  LocalModuli local_moduli(const MaterialInput &material,
+                           const dealii::Point<dim> &x)
+  {
+    if (!material.graded)
+      return {material.young, material.poisson, material.density};
+    const GradedInput &graded = *material.graded;
+    return {graded.young.at(x), graded.poisson.at(x), graded.density.at(x)};
+  }
+
+  template <int dim>
+  LinearElasticity<dim>::LinearElasticity(const MaterialInput &material,
+                                          const bool plane_stress)
+      : LinearElasticity(material,
+                         {material.young, material.poisson, material.density},
+                         plane_stress)
+  {
+  }
+
+  template <int dim>
+  LinearElasticity<dim>::LinearElasticity(const MaterialInput &material,
+                                          const LocalModuli &local,
+                                          const bool plane_stress)
+      : plane_stress_(dim == 2 && plane_stress), density_(local.density)
+  {
+    if (material.transverse)
+      set_transverse(material);
+    else
+      set_isotropic(local.young, local.poisson);
+  }
+
+  template <int dim>
+  LinearElasticity<dim>
+  LinearElasticity<dim>::viscous(const MaterialInput &material)
+  {
+    LinearElasticity result;
+    result.mu = material.shear_viscosity;
+    result.lambda = result.lambda_zz_ =
+        material.bulk_viscosity - 2. / 3. * material.shear_viscosity;
+    return result;
+  }
+
+  template <int dim>
+  void LinearElasticity<dim>::set_isotropic(const double E, const double nu)
+  {
+    mu = E / (2. * (1. + nu));
+    lambda = plane_stress_ ? E * nu / (1. - nu * nu)
+                           : E * nu / ((1. + nu) * (1. - 2. * nu));
+    lambda_zz_ = lambda;
+    const double modulus = plane_stress_
+                               ? E / (1. - nu * nu)
+                               : E * (1. - nu) / ((1. + nu) * (1. - 2. * nu));
+    speeds_ = {{std::sqrt(E / (2. * (1. + nu)) / density_),
+                std::sqrt(modulus / density_)}};
+    stiffest_ = softest_ = {E, nu};
+  }
+
+  /**
+   * The five constants to those of the class: with the axis along 1, the
+   * entries C_11, C_12, C_22, C_23 of Hooke's matrix; in plane stress the
+   * strain normal to the plane is what makes its stress zero.
+   */
+  template <int dim>
+  void LinearElasticity<dim>::set_transverse(const MaterialInput &material)
+  {
+    const TransverseInput &input = *material.transverse;
+    const double E_A = input.axial_young, E_T = input.transverse_young,
+                 nu_A = input.axial_poisson, nu_T = input.transverse_poisson,
+                 n = nu_A * nu_A * E_T / E_A, D = 1. - nu_T - 2. * n;
+    const double C_11 = E_A * (1. - nu_T) / D, C_12 = nu_A * E_T / D,
+                 C_22 = E_T * (1. - n) / ((1. + nu_T) * D),
+                 C_23 = E_T * (nu_T + n) / ((1. + nu_T) * D);
+    mu = E_T / (2. * (1. + nu_T));
+    stiffest_ = {E_A, std::abs(nu_A) * std::sqrt(E_T / E_A)};
+    softest_ = {E_T, nu_T};
+    if (E_A < E_T)
+      std::swap(stiffest_, softest_);
+    if (dim == 2 && input.axis[2] != 0.) {
+      lambda = plane_stress_ ? C_23 - C_12 * C_12 / C_11 : C_23;
+      lambda_zz_ = C_12;
+      speeds_ = {{std::sqrt(mu / density_),
+                  std::sqrt((lambda + 2. * mu) / density_)}};
+      return;
+    }
+    has_axis_ = true;
+    for (unsigned int c = 0; c < dim; ++c)
+      axis_[c] = input.axis[c];
+    lambda = lambda_zz_ = C_23;
+    alpha_ = C_12 - C_23;
+    delta_ = input.axial_shear - mu;
+    beta_ = C_11 + C_22 - 2. * C_12 - 4. * input.axial_shear;
+    if (plane_stress_) {
+      const double before = lambda;
+      lambda -= before * before / C_22;
+      beta_ -= alpha_ * alpha_ / C_22;
+      alpha_ -= before * alpha_ / C_22;
+    }
+    set_speeds_about_axis();
+  }
+
+  /**
+   * Waves that run at the angle phi to the axis: in the plane of both their
+   * speeds are the roots of a matrix of 2 x 2, across it (in space) the shear
+   * moduli add up. The extremes over phi by a scan and golden sections.
+   */
+  template <int dim>
+  void LinearElasticity<dim>::set_speeds_about_axis()
+  {
+    const double shear = mu + delta_,
+                 C_11 = lambda + 2. * mu + 2. * alpha_ + 4. * delta_ + beta_,
+                 C_22 = lambda + 2. * mu, C_12 = lambda + alpha_;
+    const auto roots = [&](const double phi) {
+      const double c = std::cos(phi), s = std::sin(phi);
+      const double a = C_11 * c * c + shear * s * s,
+                   b = shear * c * c + C_22 * s * s, d = (C_12 + shear) * c * s;
+      const double mean = (a + b) / 2., radius = std::hypot((a - b) / 2., d);
+      return std::array<double, 2>{{mean - radius, mean + radius}};
+    };
+    constexpr unsigned int n = 180;
+    const double pi = std::acos(-1.), spacing = pi / 2. / n;
+    // the largest value of sign * root k
+    const auto extreme = [&](const unsigned int k, const double sign) {
+      const auto value = [&](const double phi) { return sign * roots(phi)[k]; };
+      double best = 0.;
+      for (unsigned int i = 1; i <= n; ++i)
+        if (value(i * spacing) > value(best))
+          best = i * spacing;
+      const double section = (std::sqrt(5.) - 1.) / 2.;
+      double low = best - spacing, high = best + spacing;
+      for (unsigned int i = 0; i < 60; ++i) {
+        const double width = section * (high - low);
+        if (value(high - width) > value(low + width))
+          high = low + width;
+        else
+          low = high - width;
+      }
+      return sign * std::max(value(best), value((low + high) / 2.));
+    };
+    double slowest = extreme(0, -1.);
+    if (dim == 3)
+      slowest = std::min({slowest, mu, shear});
+    speeds_ = {{std::sqrt(slowest / density_),
+                std::sqrt(extreme(1, 1.) / density_)}};
+  }
+
+  template <int dim>
+  std::array<double, 6>
+  LinearElasticity<dim>::stress(const double *gradient) const
+  {
+    std::array<double, 6> sigma{};
+    double trace = 0.;
+    for (unsigned int c = 0; c < dim; ++c)
+      trace += gradient[c * dim + c];
+    for (unsigned int c = 0; c < dim; ++c)
+      sigma[c] = lambda * trace + 2. * mu * gradient[c * dim + c];
+    if (dim == 2 && !plane_stress_)
+      sigma[2] = lambda_zz_ * trace;
+    sigma[3] = mu * (gradient[1] + gradient[dim]);
+    if (dim == 3) {
+      sigma[4] = mu * (gradient[2] + gradient[2 * dim]);
+      sigma[5] = mu * (gradient[dim + 2] + gradient[2 * dim + 1]);
+    }
+    if (!has_axis_)
+      return sigma;
+    std::array<double, dim> across{}; // e a
+    double along = 0.;
+    for (unsigned int c = 0; c < dim; ++c) {
+      for (unsigned int d = 0; d < dim; ++d)
+        across[c] +=
+            (gradient[c * dim + d] + gradient[d * dim + c]) / 2. * axis_[d];
+      along += axis_[c] * across[c];
+    }
+    constexpr unsigned int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    for (unsigned int c = 0; c < dim; ++c) {
+      sigma[c] += alpha_ * along;
+      for (unsigned int d = c; d < dim; ++d)
+        sigma[at[c][d]] +=
+            (alpha_ * trace + beta_ * along) * axis_[c] * axis_[d] +
+            2. * delta_ * (axis_[c] * across[d] + across[c] * axis_[d]);
+    }
+    if (dim == 2 && !plane_stress_)
+      sigma[2] += alpha_ * along;
+    return sigma;
+  }
+
+  template <int dim>
+  MaterialExtremes LinearElasticity<dim>::extremes() const
+  {
+    return {stiffest_, softest_, speeds_[1], speeds_[0], density_};
+  }
+
+  void widen(const MaterialExtremes &one, MaterialExtremes &all)
+  {
+    const bool first = all.fastest == 0.;
+    if (first || one.stiffest.young > all.stiffest.young)
+      all.stiffest = one.stiffest;
+    if (first || one.softest.young < all.softest.young)
+      all.softest = one.softest;
+    all.slowest = first ? one.slowest : std::min(all.slowest, one.slowest);
+    all.fastest = std::max(all.fastest, one.fastest);
+    all.densest = std::max(all.densest, one.densest);
+  }
+
+  template LocalModuli local_moduli<2>(const MaterialInput &,
+                                       const dealii::Point<2> &);
+  template LocalModuli local_moduli<3>(const MaterialInput &,
+                                       const dealii::Point<3> &);
+  template class LinearElasticity<2>;
+  template class LinearElasticity<3>;
+} // namespace nsfd

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "nsfd/discretization/discretization.h"
+#include "records/fragment_record.h"
+#include "bodies/fragments.h"
+#include "state/state.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  template <int dim>
+  class MovingBodies;
+
+  /**
+   * Mass, place, momentum, spin and energy of every fragment, with the mass
+   * matrices of the bodies, so that the momenta of the fragments add up to that
+   * of the scene and their kinetic energies to that of the ledger. Sums do not
+   * depend on the ranks.
+   */
+  template <int dim>
+  class FragmentMotion
+  {
+  public:
+    /**
+     * @p start is the state at t = 0: what is broken there is no new surface.
+     * @p moving are the bodies of large motions, or null.
+     */
+    FragmentMotion(const Discretization<dim> &discretization,
+                   const Communicator &communicator,
+                   const MovingBodies<dim> *moving, const State &start);
+
+    /** Bodies and points are others now. */
+    void mesh_changed(const State &start);
+
+    /** By number; empty except on the first rank. Collective. */
+    std::vector<FragmentRecord> measure(const State &state,
+                                        const Fragments<dim> &fragments) const;
+
+  private:
+    struct Body;
+    struct Place;
+    struct Amounts;
+    struct Motions;
+    class Pieces;
+
+    Body cell_body(unsigned int cell, const std::vector<double> &displacement,
+                   const std::vector<double> &velocity) const;
+    Body rigid_body(std::size_t body, const State &state) const;
+    std::vector<Body> bodies(const State &state) const;
+    std::vector<Amounts> amounts(const State &state,
+                                 const std::vector<Body> &bodies,
+                                 const Pieces &pieces) const;
+
+    const Discretization<dim> &discretization_;
+    const Communicator &communicator_;
+    const MovingBodies<dim> *moving_;
+    std::vector<std::vector<double>> masses_; ///< by class, node x node
+    std::vector<double> first_beta_;
+  };
+} // namespace nsfd

@@ -1,0 +1,248 @@
+#include "run_output.h"
+
+#include "remember_pictures.h"
+#include "units_file.h"
+
+#include "core/archive.h"
+#include "core/cost.h"
+#include "core/stopwatch.h"
+#include "nsfd/scene/scene_input.h"
+#include "field_output.h"
+#include "fragment_output.h"
+#include "history_file.h"
+#include "core/output_folder.h"
+#include "progress.h"
+#include "report.h"
+#include "summary_file.h"
+
+#include <cmath>
+#include <iostream>
+
+namespace nsfd
+{
+  template <int dim>
+  RunOutput<dim>::RunOutput(
+      const SceneInput &input, const RunInfo &info, const bool quiet,
+      const bool verbose, const Discretization<dim> &discretization,
+      const Communicator &communicator,
+      const std::vector<ObservableRecord> &observables, const bool resumes)
+      : input_(input), info_(info), communicator_(communicator)
+  {
+    const std::string &directory = input.output.directory;
+    for (const unsigned int b : discretization.driven_boundaries())
+      driven_.push_back(input.boundaries[b].name);
+    units_ = units_text(dim, driven_, observables);
+    if (communicator.is_root()) {
+      if (!resumes) {
+        write_descriptions();
+        history_file_ = std::make_unique<HistoryFile>(
+            directory + "/history.csv", driven_, dim);
+      }
+      progress_ =
+          verbose ? std::make_unique<Progress>(std::cout, input.time.end,
+                                               Progress::Mode::lines, 1)
+                  : std::make_unique<Progress>(
+                        std::cout, input.time.end,
+                        Progress::mode_for_stdout(quiet));
+    }
+    if (input.output.fields || input.output.report)
+      fields_ = std::make_unique<FieldOutput<dim>>(
+          directory, discretization, communicator, input.output.hdf5);
+  }
+
+  template <int dim>
+  RunOutput<dim>::~RunOutput() = default;
+
+  template <int dim>
+  void RunOutput<dim>::set_fragments(
+      std::unique_ptr<FragmentOutput<dim>> fragments)
+  {
+    fragments_ = std::move(fragments);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::write_descriptions() const
+  {
+    const std::string &directory = input_.output.directory;
+    OutputFolder::instance().describe(describe_run(info_)); // before all others
+    write_file_atomically(directory + "/parameters.prm", input_.echo);
+    write_file_atomically(directory + "/units.json", units_);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::start(const HistoryRow &row)
+  {
+    if (history_file_)
+      history_file_->write(row);
+    keep(row);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::record(const HistoryRow &row)
+  {
+    if (history_file_)
+      history_file_->write(row);
+    if (progress_)
+      progress_->step(row);
+    keep(row);
+  }
+
+  /** The report draws at most some ten thousand rows. */
+  template <int dim>
+  void RunOutput<dim>::keep(const HistoryRow &row)
+  {
+    if (row.step % history_stride_ == 0)
+      history_.push_back(row);
+    if (history_.size() > 20000) {
+      history_stride_ *= 2;
+      std::vector<HistoryRow> thinned;
+      for (auto &kept : history_)
+        if (kept.step % history_stride_ == 0)
+          thinned.push_back(std::move(kept));
+      history_.swap(thinned);
+    }
+  }
+
+  template <int dim>
+  bool RunOutput<dim>::is_due(const State &state) const
+  {
+    const auto &output = input_.output;
+    return state.step == 0 ||
+           (output.fields_every > 0. &&
+            state.time >= next_fields_ * (1. - 1e-12)) ||
+           (output.fields_every_steps > 0 &&
+            state.step % output.fields_every_steps == 0);
+  }
+
+  template <int dim>
+  bool RunOutput<dim>::write_if_due(const State &state, const double time_step,
+                                    const Fragments<dim> &fragments,
+                                    const bool last)
+  {
+    const Stopwatch watch(cpu_);
+    const auto &output = input_.output;
+    const bool due = last || is_due(state),
+               writes = due && !(last && fields_current_);
+    if (writes) {
+      charge_memory("vectors of a step and its solver");
+      if (output.fields_every > 0.)
+        next_fields_ =
+            (std::floor(state.time / output.fields_every * (1. + 1e-12)) + 1.) *
+            output.fields_every;
+      if (output.fields)
+        fields_->write(state, time_step, fragments);
+      if (fragments_)
+        fragments_->write(state, fragments);
+      if (output.report) {
+        snapshots_.push_back(fields_->snapshot(state, fragments));
+        if (snapshots_.size() > 24) // keep every second one
+          for (std::size_t k = 1; k < snapshots_.size(); ++k)
+            snapshots_.erase(snapshots_.begin() + long(k));
+      }
+      charge_memory("fields and curves");
+    }
+    if (last && fragments_) // the rows may be those of a run before this one
+      fragments_->measure(state, fragments);
+    fields_current_ = due;
+    return writes;
+  }
+
+  template <int dim>
+  void RunOutput<dim>::mesh_changed(const State &start)
+  {
+    if (fields_)
+      fields_->mesh_changed();
+    if (fragments_)
+      fragments_->mesh_changed(start);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::end_progress()
+  {
+    if (progress_)
+      progress_->finish();
+  }
+
+  template <int dim>
+  void RunOutput<dim>::message(const std::string &text)
+  {
+    if (progress_)
+      progress_->message(text);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "output");
+    remember_history(archive);
+    archive.numbers("due", next_fields_, fields_current_);
+    if (fields_)
+      fields_->remember(archive);
+    if (fragments_)
+      fragments_->remember(archive);
+    nsfd::remember(snapshots_, archive);
+    if (archive.reads() && communicator_.is_root())
+      write_descriptions();
+  }
+
+  template <int dim>
+  void RunOutput<dim>::remember_history(Archive &archive)
+  {
+    std::uintmax_t n_bytes = history_file_ ? history_file_->n_bytes() : 0;
+    archive.numbers("history_bytes", n_bytes);
+    if (!archive.reads())
+      return;
+    std::string failure;
+    history_.clear();
+    if (communicator_.is_root())
+      try {
+        const std::string path = input_.output.directory + "/history.csv";
+        for (const HistoryRow &row :
+             HistoryFile::read(path, driven_.size() * dim, n_bytes))
+          keep(row);
+        history_file_ =
+            std::make_unique<HistoryFile>(path, driven_, dim, n_bytes);
+      } catch (const std::exception &error) {
+        failure = error.what();
+      }
+    if (communicator_.any(!failure.empty()))
+      throw BadCheckpoint(failure);
+  }
+
+  template <int dim>
+  void RunOutput<dim>::write_summary(const Summary &summary,
+                                     const Certificate &certificate) const
+  {
+    if (!communicator_.is_root())
+      return;
+    const std::string &directory = input_.output.directory;
+    RunFindings findings;
+    findings.certificate = certificate;
+    if (fragments_)
+      findings.fragment_sizes = fragment_sizes(fragments_->records(), dim);
+    nsfd::write_summary(directory + "/summary.json", summary, findings);
+    if (input_.output.report)
+      write_page(summary, findings);
+    OutputFolder::instance().finish();
+  }
+
+  template <int dim>
+  void RunOutput<dim>::write_page(const Summary &summary,
+                                  const RunFindings &findings) const
+  {
+    Report report;
+    report.title = input_.title;
+    report.description = input_.description;
+    report.info = info_;
+    report.summary = summary;
+    report.findings = findings;
+    report.history = history_;
+    report.reaction_names = driven_;
+    report.snapshots = snapshots_;
+    report.parameters = input_.echo;
+    write_report(input_.output.directory + "/report.html", report);
+  }
+
+  template class RunOutput<2>;
+  template class RunOutput<3>;
+} // namespace nsfd

@@ -1,0 +1,218 @@
+#include "vtu.h"
+
+#include "core/archive.h"
+#include "visualization/markup.h"
+#include "core/output_folder.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+#include <stdexcept>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** The binary blocks at the end of the file and where each starts. */
+    class AppendedData
+    {
+    public:
+      /** Returns the offset attribute of the block. */
+      std::size_t add(const void *data, const std::uint64_t n_bytes)
+      {
+        const std::size_t offset = bytes_.size();
+        bytes_.append(reinterpret_cast<const char *>(&n_bytes),
+                      sizeof(n_bytes));
+        bytes_.append(static_cast<const char *>(data), n_bytes);
+        return offset;
+      }
+
+      const std::string &bytes() const { return bytes_; }
+
+    private:
+      std::string bytes_;
+    };
+
+    template <typename Number>
+    const char *vtk_type();
+    template <>
+    const char *vtk_type<double>()
+    {
+      return "Float64";
+    }
+    template <>
+    const char *vtk_type<std::int64_t>()
+    {
+      return "Int64";
+    }
+    template <>
+    const char *vtk_type<VtuCell>()
+    {
+      return "UInt8";
+    }
+
+    template <typename Number>
+    std::string data_array(const std::string &name,
+                           const unsigned int components, const Number *values,
+                           const std::size_t n_values, AppendedData &data)
+    {
+      return fmt::format("<DataArray type=\"{}\" Name=\"{}\" "
+                         "NumberOfComponents=\"{}\" format=\"appended\" "
+                         "offset=\"{}\"/>\n",
+                         vtk_type<Number>(), escape_markup(name), components,
+                         data.add(values, n_values * sizeof(Number)));
+    }
+
+    std::string data_section(const char *tag,
+                             const std::vector<VtuGrid::Array> &arrays,
+                             AppendedData &data)
+    {
+      std::string xml = fmt::format("<{}>\n", tag);
+      for (const auto &array : arrays)
+        xml += data_array(array.name, array.components, array.values.data(),
+                          array.values.size(), data);
+      return xml + fmt::format("</{}>\n", tag);
+    }
+
+    void check_sizes(const VtuGrid &grid)
+    {
+      const auto check = [](const bool holds, const std::string &what) {
+        if (!holds)
+          throw std::logic_error("VTU: " + what + '.');
+      };
+      check(grid.offsets.size() == grid.cells.size(), "one offset per cell");
+      check(grid.offsets.empty()
+                ? grid.connectivity.empty()
+                : grid.offsets.back() ==
+                      static_cast<std::int64_t>(grid.connectivity.size()),
+            "the last offset is the length of the connectivity");
+      for (const auto &array : grid.point_data)
+        check(array.values.size() == array.components * grid.points.size(),
+              "size of point data '" + array.name + "'");
+      for (const auto &array : grid.cell_data)
+        check(array.values.size() == array.components * grid.cells.size(),
+              "size of cell data '" + array.name + "'");
+    }
+
+    std::string opening(const char *type)
+    {
+      return fmt::format("<?xml version=\"1.0\"?>\n"
+                         "<VTKFile type=\"{}\" version=\"1.0\" "
+                         "byte_order=\"LittleEndian\" "
+                         "header_type=\"UInt64\">\n",
+                         type);
+    }
+
+    std::string parallel_arrays(const char *tag,
+                                const std::vector<VtuGrid::Array> &arrays)
+    {
+      std::string xml = fmt::format("<{}>\n", tag);
+      for (const auto &array : arrays)
+        xml += fmt::format("<PDataArray type=\"Float64\" Name=\"{}\" "
+                           "NumberOfComponents=\"{}\"/>\n",
+                           escape_markup(array.name), array.components);
+      return xml + fmt::format("</{}>\n", tag);
+    }
+  } // namespace
+
+  void VtuGrid::add_cell(const VtuCell shape,
+                         const std::vector<std::int64_t> &corners)
+  {
+    cells.push_back(shape);
+    connectivity.insert(connectivity.end(), corners.begin(), corners.end());
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+  }
+
+  std::string vtu_name(const std::string &base, const unsigned int number,
+                       const unsigned int rank, const unsigned int n_ranks)
+  {
+    return n_ranks == 1 ? fmt::format("{}_{:05}.vtu", base, number)
+                        : fmt::format("{}_{:05}.{:04}.vtu", base, number, rank);
+  }
+
+  void write_vtu(const std::string &path, const VtuGrid &grid)
+  {
+    check_sizes(grid);
+
+    AppendedData data;
+    std::string xml = opening("UnstructuredGrid");
+    xml += "<UnstructuredGrid>\n<FieldData>\n";
+    xml += fmt::format("<DataArray type=\"Float64\" Name=\"TimeValue\" "
+                       "NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
+                       grid.time);
+    xml += "</FieldData>\n";
+    xml += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+                       grid.points.size(), grid.cells.size());
+    xml += "<Points>\n";
+    xml += data_array("Points", 3,
+                      grid.points.empty() ? nullptr : grid.points[0].data(),
+                      3 * grid.points.size(), data);
+    xml += "</Points>\n<Cells>\n";
+    xml += data_array("connectivity", 1, grid.connectivity.data(),
+                      grid.connectivity.size(), data);
+    xml += data_array("offsets", 1, grid.offsets.data(), grid.offsets.size(),
+                      data);
+    xml += data_array("types", 1, grid.cells.data(), grid.cells.size(), data);
+    xml += "</Cells>\n";
+    xml += data_section("PointData", grid.point_data, data);
+    xml += data_section("CellData", grid.cell_data, data);
+    xml += "</Piece>\n</UnstructuredGrid>\n";
+    xml += "<AppendedData encoding=\"raw\">\n_" + data.bytes();
+    xml += "\n</AppendedData>\n</VTKFile>\n";
+    write_file_atomically(path, xml);
+  }
+
+  void write_pvtu(const std::string &path, const VtuGrid &grid,
+                  const std::vector<std::string> &pieces)
+  {
+    std::string xml = opening("PUnstructuredGrid");
+    xml += "<PUnstructuredGrid GhostLevel=\"0\">\n<PPoints>\n";
+    xml += "<PDataArray type=\"Float64\" Name=\"Points\" "
+           "NumberOfComponents=\"3\"/>\n</PPoints>\n";
+    xml += parallel_arrays("PPointData", grid.point_data);
+    xml += parallel_arrays("PCellData", grid.cell_data);
+    for (const auto &piece : pieces)
+      xml += fmt::format("<Piece Source=\"{}\"/>\n", escape_markup(piece));
+    xml += "</PUnstructuredGrid>\n</VTKFile>\n";
+    write_file_atomically(path, xml);
+  }
+
+  PvdSeries::PvdSeries(const std::string &path) : path_(path) {}
+
+  void PvdSeries::add(const double time, const std::string &file)
+  {
+    entries_.emplace_back(time, file);
+    write();
+  }
+
+  void PvdSeries::remember(Archive &archive)
+  {
+    std::vector<double> times;
+    std::string names;
+    for (const auto &[time, name] : entries_) {
+      times.push_back(time);
+      names += name + '\n';
+    }
+    archive.on_root("times", times);
+    archive.on_root("names", names);
+    if (!archive.reads())
+      return;
+    entries_.clear();
+    std::istringstream lines(names);
+    std::string name;
+    for (std::size_t k = 0; k < times.size() && std::getline(lines, name); ++k)
+      entries_.emplace_back(times[k], name);
+    if (!entries_.empty())
+      write();
+  }
+
+  void PvdSeries::write() const
+  {
+    std::string xml = opening("Collection") + "<Collection>\n";
+    for (const auto &[t, name] : entries_)
+      xml += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n",
+                         t, escape_markup(name));
+    xml += "</Collection>\n</VTKFile>\n";
+    write_file_atomically(path_, xml);
+  }
+} // namespace nsfd

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "time_integration/inelastic_motion.h"
+#include "time_integration/large_motion.h"
+
+#include "delassus/bonded.h"
+#include "nsfd/scene/scene_input.h"
+#include "mesh/mesh_builder.h"
+#include "time_integration/moreau_jean.h"
+#include "time_integration/quasi_static.h"
+#include "time_integration/step_control.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  /** Sentences to standard error, as `FILE: KIND: SENTENCE`; rank 0 only. */
+  void print_problems(const Communicator &communicator, const SceneInput &input,
+                      const char *kind,
+                      const std::vector<std::string> &problems);
+
+  /** The parts that a scene names, in the order in which they are built. */
+  template <int dim>
+  struct Model {
+    std::unique_ptr<dealii::Triangulation<dim>> triangulation;
+    std::unique_ptr<MeshGroups<dim>> groups;
+    std::unique_ptr<Discretization<dim>> discretization;
+    std::unique_ptr<StepControl> control;
+    std::string path; ///< of the linear algebra: element-wise or global
+    std::unique_ptr<Dynamics<dim>> dynamics;
+    BondedDynamics<dim> *bonded = nullptr; ///< the same, if faces are bonded
+    std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
+    /// of small motions with materials that remember, or null
+    std::unique_ptr<InelasticBodies<dim>> inelastic;
+    std::string method; ///< name of the nonsmooth solver
+    std::unique_ptr<NonsmoothSolver<dim>> solver;
+    std::unique_ptr<MoreauJean<dim>> stepper;
+    LargeMotion<dim> *large_motion = nullptr; ///< the same, or null
+    InelasticMotion<dim> *inelastic_motion = nullptr; ///< the same, or null
+    std::unique_ptr<QuasiStatic<dim>> quasi_static; ///< or null
+
+    /** Steps in time from @p start on. */
+    std::unique_ptr<StepControl> dynamic_control(const SceneInput &input,
+                                                 double start) const;
+
+    /**
+     * False with messages on standard error if the input does not fit the
+     * mesh. Collective.
+     */
+    bool build(const SceneInput &input, const Communicator &communicator);
+
+    /**
+     * After cells have changed: all parts again, and steps that the symplectic
+     * scheme can take on them. Collective.
+     */
+    void rebuild(const SceneInput &input, const Communicator &communicator);
+
+    /** Bodies and points are all that a run needs of it. */
+    void forget_mesh()
+    {
+      groups.reset();
+      triangulation.reset();
+    }
+
+  private:
+    void build_mesh_parts(const SceneInput &input,
+                          const Communicator &communicator,
+                          std::vector<std::string> &problems);
+    void build_control(const SceneInput &input,
+                       std::vector<std::string> &problems);
+    double stable_limit(const SceneInput &input,
+                        const Communicator &communicator, double enough);
+    double step_of_smallest_cells(const Communicator &communicator) const;
+    void check_stability(const SceneInput &input,
+                         const Communicator &communicator,
+                         std::vector<std::string> &problems);
+    void join_all(const SceneInput &input);
+    double dynamic_step(const SceneInput &input) const;
+    void choose_path(const SceneInput &input);
+    void build_dynamics(const SceneInput &input,
+                        const Communicator &communicator);
+    void build_stepper(const SceneInput &input);
+    void find_unused_blocks(const SceneInput &input,
+                            const Communicator &communicator,
+                            std::vector<std::string> &problems) const;
+    void warn_of_unused_interfaces(const SceneInput &input,
+                                   const Communicator &communicator) const;
+    void find_impossible_bonds(const SceneInput &input,
+                               const Communicator &communicator,
+                               std::vector<std::string> &problems) const;
+  };
+} // namespace nsfd

@@ -1,0 +1,71 @@
+#include "run_end.h"
+
+#include "visualization/energy_lines.h"
+
+#include "records/engineering.h"
+#include "postprocess/progress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace nsfd
+{
+  namespace
+  {
+    std::string energies(const Summary &summary, const double broken_area)
+    {
+      const Units units(summary.dimension);
+      std::string text = "energy at the end:";
+      const auto add = [&](const std::string &name, const double value) {
+        if (value != 0.)
+          text += " " + name + " " + engineering(value, units.energy, 4) + ",";
+      };
+      for (const EnergyLine &line : all_lines())
+        add(line.name, summary.energy.*line.member);
+      add("work of loads", summary.energy.work);
+      text += fmt::format(" {} {}, {} fragment{}", units.broken,
+                          engineering(broken_area, units.area),
+                          summary.fragments, summary.fragments == 1 ? "" : "s");
+      return wrapped(text, 2);
+    }
+
+    /** One sentence on where the time went. */
+    std::string costs(const Summary &s)
+    {
+      double seconds = 0.;
+      for (const auto &[name, value] : s.timings)
+        if (name != "set-up" && name != "equilibria" && name != "output")
+          seconds += value;
+      const double steps = std::max(1., double(s.steps));
+      const auto counter = [&](const char *name) {
+        const auto found = s.counters.find(name);
+        return found == s.counters.end() ? 0. : found->second;
+      };
+      return wrapped(
+          fmt::format("{} step{} in {}, at most {:.0f} MB; per step {}, Newton "
+                      "{:.2f}, Krylov {:.1f}, sweeps {:.1f}",
+                      s.steps, s.steps == 1 ? "" : "s",
+                      Progress::duration(s.wall_seconds), s.peak_memory_mb,
+                      engineering(seconds / steps, "s"),
+                      counter("newton") / steps, counter("krylov") / steps,
+                      counter("gauss_seidel_sweeps") / steps),
+          2);
+    }
+  } // namespace
+
+  std::string run_end_text(const Summary &summary,
+                           const Certificate &certificate,
+                           const double broken_area, const std::string &page,
+                           const bool verbose)
+  {
+    std::string text = certificate_text(certificate);
+    text += energies(summary, broken_area);
+    for (const auto &[name, value] : summary.errors)
+      text += fmt::format("  {:<28} {:.6g}\n", name, value);
+    text += costs(summary);
+    if (verbose)
+      text += cost_text(summary.cost, summary.peak_memory_mb);
+    return text + "  " + page + "\n";
+  }
+} // namespace nsfd

@@ -1,0 +1,209 @@
+#include "run_facts.h"
+
+#include "core/archive.h"
+#include "zone_resolution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  void SolvedSteps::add(const Kind kind, const double residual)
+  {
+    switch (kind) {
+    case Kind::dynamic:
+      ++dynamic_;
+      residual_ = std::max(residual_, residual);
+      break;
+    case Kind::quasi_static:
+      ++quasi_static_;
+      imbalance_ = std::max(imbalance_, residual);
+      break;
+    case Kind::smooth:
+      ++smooth_;
+    }
+  }
+
+  void SolvedSteps::fill(RunFacts &facts) const
+  {
+    facts.steps = dynamic_;
+    facts.static_steps = quasi_static_;
+    facts.smooth_steps = smooth_;
+    facts.residual = residual_;
+    facts.imbalance = imbalance_;
+  }
+
+  void SolvedSteps::remember(Archive &archive)
+  {
+    archive.numbers("solved_steps", dynamic_, quasi_static_, smooth_, residual_,
+                    imbalance_);
+  }
+
+  namespace
+  {
+    /** Something of the scene can rub, and the like. */
+    bool has_line(const WatchedLine line, const SceneInput &input,
+                  const State &state)
+    {
+      const auto any = [](const auto &blocks, const auto &test) {
+        return std::any_of(blocks.begin(), blocks.end(), test);
+      };
+      const auto rubs = [](const auto &b) { return b.friction > 0.; };
+      const EnergyLines &e = state.energy;
+      switch (line) {
+      case WatchedLine::friction:
+        return any(input.interfaces, rubs) || any(input.obstacles, rubs) ||
+               any(input.contacts, rubs);
+      case WatchedLine::damage:
+        return any(input.interfaces, [](const auto &b) { return bool(b.law); });
+      case WatchedLine::impact:
+        return !input.obstacles.empty() || !input.contacts.empty() ||
+               any(input.interfaces, [](const auto &b) {
+                 return b.law || b.law_name == "contact";
+               });
+      case WatchedLine::viscous:
+        return e.viscous != 0.;
+      case WatchedLine::plastic:
+        return e.plastic != 0.;
+      case WatchedLine::joints:
+        return any(input.interfaces, [](const auto &b) {
+          return b.intact == IntactFaces::rigid;
+        });
+      case WatchedLine::supports:
+        return any(input.boundaries, [](const auto &b) {
+          const auto given = [](const auto &x) { return x.has_value(); };
+          return b.exact_motion ||
+                 std::any_of(b.velocity.begin(), b.velocity.end(), given) ||
+                 std::any_of(b.displacement.begin(), b.displacement.end(),
+                             given);
+        });
+      default:
+        return true;
+      }
+    }
+
+    std::string advice_of(const WatchedLine line, const SceneInput &input)
+    {
+      const TimeInput &time = input.time;
+      switch (line) {
+      case WatchedLine::friction:
+        return time.sliding == Sliding::velocity
+                   ? "set sliding = energy safe"
+                   : "lower Solver/tolerance";
+      case WatchedLine::impact:
+        return time.contact_target != ContactTarget::energy_safe
+                   ? "set contact target = energy safe"
+               : time.theta > 0.5 ? "lower theta to 1 / (1 + restitution)"
+                                  : "lower Solver/tolerance";
+      case WatchedLine::joints:
+      case WatchedLine::supports:
+        return "lower Solver/tolerance; rows may ask for the same";
+      case WatchedLine::scheme:
+        return time.scheme == Scheme::symplectic
+                   ? "set step to a shorter time, or scheme = moreau-jean"
+               : time.cohesion_rule != CohesionRule::exact && !input.statics
+                   ? "set cohesion rule = exact"
+                   : "set step to a shorter time";
+      default:
+        return "";
+      }
+    }
+
+    std::vector<GivenEnergy> given_energy(const SceneInput &input,
+                                          const EnergyWatch &watch,
+                                          const State &state)
+    {
+      // what the rules of explicit steps, end points, interior penalty and frames
+      // of large motions make comes and goes: as well as curves can be read
+      constexpr double of_pure_rules = 1e-2;
+      const double scale = std::max(watch.scale, state.largest_energy);
+      const auto share = [scale](const double energy) {
+        return energy == 0. ? 0. : energy / scale;
+      };
+      std::vector<GivenEnergy> result;
+      for (std::size_t k = 0; k < n_watched_lines; ++k) {
+        const auto line = WatchedLine(k);
+        if (!has_line(line, input, state))
+          continue;
+        GivenEnergy given;
+        given.line = line == WatchedLine::scheme ? "time scheme" : name_of(line);
+        given.share = share(watch.given[k]);
+        given.bound = energy_round_off;
+        if (line == WatchedLine::joints || line == WatchedLine::supports)
+          given.bound += share(watch.noise);
+        if (line == WatchedLine::scheme)
+          given.bound = never_gives(line, input)
+                            ? energy_round_off + share(watch.noise)
+                            : of_pure_rules;
+        given.advice = advice_of(line, input);
+        result.push_back(std::move(given));
+      }
+      return result;
+    }
+  } // namespace
+
+  template <int dim>
+  RunFacts run_facts(const SceneInput &input, const Model<dim> &model,
+                     const SolvedSteps &steps, const Extremes<dim> &extremes,
+                     const EnergyWatch &watch, const State &state,
+                     const Summary &summary, const Communicator &communicator)
+  {
+    const auto counter = [&summary](const char *name) {
+      const auto found = summary.counters.find(name);
+      return found == summary.counters.end()
+                 ? 0ull
+                 : static_cast<unsigned long long>(found->second);
+    };
+    RunFacts facts;
+    steps.fill(facts);
+    facts.completed = summary.completed;
+    facts.failure = summary.failure;
+    facts.time = summary.final_time;
+    facts.tolerance = input.solver.tolerance;
+    if (input.statics)
+      facts.static_tolerance = input.statics->tolerance;
+    facts.ledger_defect = summary.ledger_defect_max;
+    const EnergyLines &e = summary.energy;
+    if (!std::isfinite(e.kinetic + e.elastic + e.cohesive + e.numerical))
+      facts.ledger_defect = std::numeric_limits<double>::quiet_NaN();
+    facts.given = given_energy(input, watch, state);
+    facts.penetration = summary.penetration_max;
+    facts.penetration_bound = summary.penetration_bound;
+    facts.penetration_excess = state.penetration_excess;
+    double largest = 0.;
+    for (const double u : state.displacement)
+      largest = std::max(largest, std::abs(u));
+    facts.displacement = communicator.max(largest);
+    for (const auto &block : input.interfaces)
+      if (block.law) {
+        facts.softens = true;
+        facts.brittle |= std::isinf(block.law->steepest_softening());
+      }
+    extremes.fill(facts);
+    facts.follows_jumps = input.statics &&
+                          input.statics->at_jump == SolutionJump::dynamic;
+    facts.takes_jumps =
+        input.statics && input.statics->at_jump == SolutionJump::relax;
+    facts.maximum_halvings = input.time.maximum_halvings;
+    facts.automatic_steps = input.time.step_kind == StepKind::automatic;
+    facts.beyond_unique = counter("steps_beyond_uniqueness");
+    facts.solution_jumps = counter("solution_jumps");
+    facts.rejected = counter("rejected_steps");
+    facts.redone = counter("redone_steps") + counter("shortened_load_steps");
+    if (facts.softens)
+      facts.zone = zone_resolution(input, *model.discretization,
+                                   model.stepper->problem(), state,
+                                   communicator);
+    return facts;
+  }
+
+  template RunFacts run_facts(const SceneInput &, const Model<2> &,
+                              const SolvedSteps &, const Extremes<2> &,
+                              const EnergyWatch &, const State &,
+                              const Summary &, const Communicator &);
+  template RunFacts run_facts(const SceneInput &, const Model<3> &,
+                              const SolvedSteps &, const Extremes<3> &,
+                              const EnergyWatch &, const State &,
+                              const Summary &, const Communicator &);
+} // namespace nsfd

@@ -1,0 +1,132 @@
+#include "activation.h"
+
+#include "nonsmooth/point_law.h"
+#include "nonsmooth/pull_and_shear.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Row @p k is a component that the joint holds. */
+    template <int dim>
+    bool is_joined(const OneStepProblem<dim> &problem, const std::size_t k)
+    {
+      return problem.mask[k / dim] & (1u << (k % dim)) &&
+             problem.kind[k / dim] == PointKind::prescribed;
+    }
+
+    /** A point that is joined now and has a strength. */
+    template <int dim>
+    bool may_let_go(const OneStepProblem<dim> &problem,
+                    const std::vector<PointOrigin> &origins,
+                    const std::size_t point)
+    {
+      return origins[point].kind == PointOrigin::Kind::interface &&
+             problem.interactions[problem.interaction[point]].law &&
+             is_joined(problem, point * dim);
+    }
+
+    /**
+     * Rigid rows on neighbouring faces make tractions ambiguous (W is
+     * singular, one condition per loop around a vertex): what counts is the
+     * impulse of least norm on the joined rows with the same effect as @p P,
+     * W^+ W P, by conjugate gradients from zero.
+     */
+    template <int dim>
+    std::vector<double> least_impulse(const Dynamics<dim> &dynamics,
+                                      const OneStepProblem<dim> &problem,
+                                      const std::vector<double> &P)
+    {
+      const auto &communicator = dynamics.communicator();
+      const std::size_t n = problem.n_points * dim,
+                        n_owned = problem.n_owned * dim;
+      std::vector<double> x(n, 0.), r(n), p(n), Wp(n);
+      const auto apply = [&](const std::vector<double> &in,
+                             std::vector<double> &out) {
+        dynamics.apply_delassus(in.data(), out.data());
+        for (std::size_t k = 0; k < n; ++k)
+          if (!is_joined(problem, k))
+            out[k] = 0.;
+      };
+      apply(P, r);
+      p = r;
+      double rr = communicator.dot(r.data(), r.data(), n_owned);
+      const double goal = 1e-20 * rr;
+      for (unsigned int k = 0; k < 1000 && rr > goal; ++k) {
+        apply(p, Wp);
+        const double pWp = communicator.dot(p.data(), Wp.data(), n_owned);
+        if (!(pWp > 0.))
+          break;
+        for (std::size_t j = 0; j < n; ++j) {
+          x[j] += rr / pWp * p[j];
+          r[j] -= rr / pWp * Wp[j];
+        }
+        const double next = communicator.dot(r.data(), r.data(), n_owned);
+        for (std::size_t j = 0; j < n; ++j)
+          p[j] = r[j] + next / rr * p[j];
+        rr = next;
+      }
+      return x;
+    }
+  } // namespace
+
+  template <int dim>
+  std::vector<double> strength_shares(const Dynamics<dim> &dynamics,
+                                      const std::vector<PointOrigin> &origins,
+                                      const std::vector<double> &impulse,
+                                      const OneStepProblem<dim> &problem)
+  {
+    std::vector<double> joined(problem.n_points * dim, 0.);
+    for (std::size_t k = 0; k < joined.size(); ++k)
+      if (is_joined(problem, k))
+        joined[k] = impulse[k];
+    std::vector<std::size_t> candidates;
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      if (may_let_go(problem, origins, i))
+        candidates.push_back(i);
+    if (!dynamics.communicator().any(!candidates.empty()))
+      return {};
+
+    const auto least = least_impulse(dynamics, problem, joined);
+    std::vector<double> shares(problem.n_points, 0.);
+    for (const std::size_t i : candidates) {
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      const double *P = &least[i * dim];
+      shares[i] = pull_and_shear<dim>(-P[0], P + 1, interaction.shear_weight) /
+                  (problem.weight[i] * problem.time_step *
+                   point_strength<dim>(problem, i));
+    }
+    return shares;
+  }
+
+  template <int dim>
+  bool activate(const Dynamics<dim> &dynamics,
+                const std::vector<PointOrigin> &origins,
+                const std::vector<double> &impulse,
+                OneStepProblem<dim> &problem)
+  {
+    const auto shares = strength_shares(dynamics, origins, impulse, problem);
+    bool any = false;
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      if (shares[i] > 1.) {
+        problem.kind[i] = PointKind::rigid;
+        problem.mask[i] = 0;
+        any = true;
+      }
+    return dynamics.communicator().any(any);
+  }
+
+  template std::vector<double>
+  strength_shares(const Dynamics<2> &, const std::vector<PointOrigin> &,
+                  const std::vector<double> &, const OneStepProblem<2> &);
+  template std::vector<double>
+  strength_shares(const Dynamics<3> &, const std::vector<PointOrigin> &,
+                  const std::vector<double> &, const OneStepProblem<3> &);
+  template bool activate(const Dynamics<2> &, const std::vector<PointOrigin> &,
+                         const std::vector<double> &, OneStepProblem<2> &);
+  template bool activate(const Dynamics<3> &, const std::vector<PointOrigin> &,
+                         const std::vector<double> &, OneStepProblem<3> &);
+} // namespace nsfd

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "delassus/dynamics.h"
+#include "nsfd/discretization/discretization.h"
+#include "nsfd/nonsmooth/one_step_problem.h"
+
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * How much of its strength every point carries that is rigidly joined and
+   * extrinsic; 0 at all others, empty if there is none on any rank. Collective.
+   */
+  template <int dim>
+  std::vector<double> strength_shares(const Dynamics<dim> &dynamics,
+                                      const std::vector<PointOrigin> &origins,
+                                      const std::vector<double> &impulse,
+                                      const OneStepProblem<dim> &problem);
+
+  /**
+   * Let go of rigidly joined extrinsic points whose traction exceeds the
+   * strength: they take part in @p problem with their law. True if there was
+   * one. Collective.
+   */
+  template <int dim>
+  bool activate(const Dynamics<dim> &dynamics,
+                const std::vector<PointOrigin> &origins,
+                const std::vector<double> &impulse,
+                OneStepProblem<dim> &problem);
+} // namespace nsfd

@@ -1,0 +1,146 @@
+#include "bond_release.h"
+
+#include "nonsmooth/point_law.h"
+#include "nonsmooth/pull_and_shear.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Pull and shear as the strength is compared with them, over it. */
+    template <int dim>
+    double utilisation(const OneStepProblem<dim> &problem, const std::size_t i,
+                       const double *traction)
+    {
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      return pull_and_shear<dim>(traction[0], traction + 1,
+                                 interaction.shear_weight) /
+             point_strength<dim>(problem, i);
+    }
+
+    /// of the toughness, taken where a released point enters its law
+    constexpr double share_at_start = 1e-9;
+
+    /**
+     * A law that is set-valued at u = 0 leaves open what a point carries that
+     * does not move; joined neighbours leave it open again. So the law starts
+     * on its envelope, a little way along it, with the jump that carries the
+     * traction of the bond there. Returns the energy that it stores with that,
+     * in J.
+     */
+    template <int dim>
+    double start_law(const OneStepProblem<dim> &problem, const std::size_t i,
+                     const double utilisation, const double *traction,
+                     State &next)
+    {
+      const auto &interaction = problem.interactions[problem.interaction[i]];
+      const double opening = share_at_start * interaction.law->toughness() /
+                             interaction.law->strength() /
+                             problem.opening_factor[i];
+      const double r2 = interaction.shear_weight;
+      const double compliance =
+        opening / (utilisation * point_strength<dim>(problem, i));
+      next.kind[i] = PointKind::cohesive;
+      next.opening_max[i] = opening;
+      for (unsigned int c = 0; c < dim; ++c) {
+        double &u = next.jump[i * dim + c];
+        if (c == 0)
+          u = compliance * std::max(0., traction[0]);
+        else
+          u = r2 > 0. ? compliance * traction[c] / r2 : 0.;
+        next.impulse[i * dim + c] = -problem.weight[i] * problem.time_step *
+                                    traction[c] / utilisation;
+      }
+      return problem.weight[i] * point_strength<dim>(problem, i) * opening / 2.;
+    }
+  } // namespace
+
+  std::vector<std::uint8_t> bonded_points(const State &state)
+  {
+    std::vector<std::uint8_t> bonded(state.kind.size());
+    std::transform(state.kind.begin(), state.kind.end(), bonded.begin(),
+                   [](const PointKind kind) {
+                     return kind == PointKind::bonded;
+                   });
+    return bonded;
+  }
+
+  template <int dim>
+  void set_bond_tractions(const BulkTraction<dim> &bulk, State &state)
+  {
+    state.bond_traction.resize(state.jump.size());
+    bulk.evaluate(state.displacement.data(), state.bond_traction.data());
+    if (bulk.dynamics().is_viscous()) {
+      std::vector<double> viscous(state.jump.size());
+      bulk.evaluate_viscous(state.velocity.data(), viscous.data());
+      for (std::size_t k = 0; k < viscous.size(); ++k)
+        state.bond_traction[k] += viscous[k];
+    }
+    for (std::size_t i = 0; i < state.kind.size(); ++i)
+      if (state.kind[i] != PointKind::bonded)
+        std::fill_n(&state.bond_traction[i * dim], dim, 0.);
+  }
+
+  template <int dim>
+  BondReport release_bonds(const OneStepProblem<dim> &problem,
+                           const BulkTraction<dim> &bulk, const State &old,
+                           State &next)
+  {
+    const auto &communicator = bulk.dynamics().communicator();
+    set_bond_tractions(bulk, next);
+    // what bonds store is the work of the elastic part
+    std::vector<double> elastic = next.bond_traction;
+    if (bulk.dynamics().is_viscous())
+      bulk.evaluate(next.displacement.data(), elastic.data());
+    BondReport report;
+    std::vector<double> in_bonds(problem.n_owned, 0.), in_laws(in_bonds);
+    unsigned int released = 0;
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      if (next.kind[i] != PointKind::bonded ||
+          !problem.interactions[problem.interaction[i]].law)
+        continue;
+      const double *traction = &next.bond_traction[i * dim];
+      const double now = utilisation(problem, i, traction);
+      if (now < 1.)
+        continue;
+      const double before =
+        utilisation(problem, i, &old.bond_traction[i * dim]);
+      report.overshoot = std::max(report.overshoot, now - 1.);
+      if (now > before)
+        report.share =
+          std::min(report.share, std::max(0., 1. - before) / (now - before));
+      if (i < problem.n_owned) {
+        in_bonds[i] = bulk.bond_energy(i, &next.jump[i * dim],
+                                       &elastic[i * dim]);
+        ++released;
+      }
+      const double stored = start_law(problem, i, now, traction, next);
+      if (i < problem.n_owned)
+        in_laws[i] = stored;
+    }
+    report.released = unsigned(communicator.sum_integer(released));
+    if (report.released == 0)
+      return report;
+    report.overshoot = communicator.max(report.overshoot);
+    report.share = communicator.min(report.share);
+    const double lost = communicator.sum(in_bonds),
+                 gained = communicator.sum(in_laws);
+    next.energy.elastic -= lost;
+    next.energy.cohesive += gained;
+    next.energy.numerical += lost - gained;
+    set_bond_tractions(bulk, next);
+    return report;
+  }
+
+  template void set_bond_tractions(const BulkTraction<2> &, State &);
+  template void set_bond_tractions(const BulkTraction<3> &, State &);
+  template BondReport release_bonds(const OneStepProblem<2> &,
+                                    const BulkTraction<2> &, const State &,
+                                    State &);
+  template BondReport release_bonds(const OneStepProblem<3> &,
+                                    const BulkTraction<3> &, const State &,
+                                    State &);
+} // namespace nsfd

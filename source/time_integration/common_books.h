@@ -1,0 +1,87 @@
+#pragma once
+
+#include "nonsmooth/point_law.h"
+#include "moreau_jean.h"
+#include "state/state.h"
+
+#include <algorithm>
+#include <cmath>
+
+/** What the books of a dynamic and of a quasi-static step have in common. */
+namespace nsfd
+{
+  /** What points remember, before a step has changed any of it. */
+  inline void carry_history(const State &old, State &next)
+  {
+    next.opening_max = old.opening_max;
+    next.slip_max = old.slip_max;
+    next.beta = old.beta;
+    next.kind = old.kind;
+    next.two_sided = old.two_sided;
+    next.slip = old.slip;
+    next.released_overlap = old.released_overlap;
+    next.approach = old.approach;
+    next.contact.assign(old.kind.size(), 0);
+  }
+
+  /**
+   * The damage of point @p i after a step; @p lets_go: it was rigid and is not
+   * any more. @return true if it is broken since this step. Tails count as
+   * broken once they carry a thousandth.
+   */
+  template <int dim>
+  bool remember_damage(const PointEnergies<dim> &energies,
+                       const std::size_t i,
+                       const bool lets_go,
+                       const State &old,
+                       State &next)
+  {
+    next.opening_max[i] = energies.history.opening;
+    if (!next.slip_max.empty())
+      next.slip_max[i] = energies.history.slip;
+    if (lets_go)
+      next.kind[i] = PointKind::cohesive;
+    if (next.kind[i] != PointKind::cohesive)
+      return false;
+    next.beta[i] = std::min(old.beta[i], energies.beta);
+    if (energies.beta < 1.)
+      next.two_sided[i] = 0; // its overlap is booked in point_energies()
+    if (next.beta[i] <= 0.)
+      next.kind[i] = PointKind::free;
+    return next.beta[i] < 1e-3 && old.beta[i] >= 1e-3;
+  }
+
+  /**
+   * The largest energy so far, and how far the sum of the lines is off: not a
+   * number if one of them is none.
+   */
+  inline void close_books(const State &old, State &next, StepReport &report)
+  {
+    const EnergyLines &energy = next.energy;
+    next.largest_energy =
+        std::max({old.largest_energy, energy.kinetic, energy.elastic,
+                  energy.cohesive, std::abs(energy.work), energy.damage,
+                  energy.impact, energy.friction, energy.viscous,
+                  energy.plastic});
+    const double defect = energy.kinetic + energy.elastic + energy.cohesive +
+                          energy.damage + energy.friction + energy.viscous +
+                          energy.plastic + energy.impact + energy.numerical -
+                          energy.work - next.initial_energy;
+    report.ledger_defect = next.largest_energy > 0. || !std::isfinite(defect)
+                               ? std::abs(defect) / next.largest_energy
+                               : 0.;
+  }
+
+  /**
+   * The defect over the largest energy so far, or over the kinetic energy that
+   * impulses had to move in this step if that is more: of a body at rest there
+   * is no other. @p energy_scale as for LawEvaluation: four times as much.
+   */
+  inline void relate_defect(const double energy_scale, const State &next,
+                            StepReport &report)
+  {
+    const double moved = energy_scale / 4.;
+    if (moved > next.largest_energy)
+      report.ledger_defect *= next.largest_energy / moved;
+  }
+} // namespace nsfd

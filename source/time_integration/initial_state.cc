@@ -1,0 +1,240 @@
+#include "initial_state.h"
+
+#include "bond_release.h"
+#include "step_data.h"
+
+#include "nsfd/scene/scene_input.h"
+#include "nonsmooth/point_law.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  namespace
+  {
+    using Components = std::array<Expression, 3>;
+
+    /** One of the initial fields of the materials, as unknowns. */
+    template <int dim>
+    std::vector<double> initial_field(const SceneInput &input,
+                                      const Discretization<dim> &discretization,
+                                      const Components MaterialInput::*field)
+    {
+      return discretization.interpolate([&](const dealii::Point<dim> &x,
+                                            const unsigned int body,
+                                            double *value) {
+        const auto &material =
+            input.materials[discretization.material_of(body)];
+        for (unsigned int c = 0; c < dim; ++c)
+          value[c] = (material.*field)[c].at(x, 0.);
+      });
+    }
+
+    template <int dim>
+    void set_interface_point(const InterfaceInput &block,
+                             const dealii::Point<dim> &x,
+                             const OneStepProblem<dim> &problem,
+                             const std::size_t i, State &state)
+    {
+      if (block.law_name == "contact" ||
+          (block.has_broken && block.broken.at(x, 0.) != 0.)) {
+        state.kind[i] = PointKind::free;
+        state.beta[i] = 0.;
+      } else if (block.intact == IntactFaces::bonded) {
+        state.kind[i] = PointKind::bonded;
+      } else if (block.law_name == "elastic") {
+        state.kind[i] = PointKind::elastic;
+        state.two_sided[i] = block.intact == IntactFaces::spring;
+      } else if (block.law && block.law->extrinsic())
+        state.kind[i] = PointKind::rigid;
+      else if (block.law) {
+        state.kind[i] = PointKind::cohesive;
+        state.two_sided[i] = block.intact == IntactFaces::spring;
+        const auto &interaction = problem.interactions[problem.interaction[i]];
+        const double factor = problem.opening_factor[i];
+        // below the elastic limit there is nothing to remember
+        // (just below, so that round-off does not damage it)
+        Reach history = reach_of<dim>(interaction, &state.jump[i * dim]);
+        history.opening = std::max(
+            (1. - 1e-14) * interaction.law->elastic_limit() / factor,
+            history.opening);
+        state.opening_max[i] = history.opening;
+        if (!state.slip_max.empty())
+          state.slip_max[i] = history.slip;
+        state.beta[i] = beta_of(interaction, state.kind[i], factor, history);
+      }
+    }
+
+    /** Stored in springs and cohesion, over the points of this rank. */
+    template <int dim>
+    std::vector<double> stored_energy(const OneStepProblem<dim> &problem,
+                                      const State &state)
+    {
+      OneStepProblem<dim> start = problem;
+      start.kind = state.kind;
+      start.jump_old = state.jump;
+      start.opening_max = state.opening_max;
+      start.slip_max = state.slip_max;
+      std::vector<double> stored(problem.n_owned, 0.);
+      for (std::size_t i = 0; i < problem.n_owned; ++i) {
+        if (state.kind[i] == PointKind::bonded ||
+            state.kind[i] == PointKind::parted)
+          continue; // in the stiffness of the bodies, or nowhere
+        if (state.two_sided[i])
+          start.compression_stiffness[i] = intact_stiffness<dim>(problem, i);
+        stored[i] = problem.weight[i] * stored_energy<dim>(start, i);
+      }
+      return stored;
+    }
+
+    template <int dim>
+    double half_product(const Dynamics<dim> &dynamics,
+                        const typename Dynamics<dim>::Operator op,
+                        const std::vector<double> &x)
+    {
+      std::vector<double> y(x.size());
+      dynamics.apply(op, x.data(), y.data());
+      return dynamics.communicator().dot(x.data(), y.data(), x.size()) / 2.;
+    }
+  } // namespace
+
+  template <int dim>
+  double initial_gap(const SceneInput &input,
+                     const Discretization<dim> &discretization,
+                     const std::size_t i)
+  {
+    const PointOrigin origin = discretization.origins()[i];
+    if (origin.kind != PointOrigin::Kind::obstacle)
+      return 0.;
+    const auto &points = discretization.points();
+    double gap = 0.;
+    for (unsigned int c = 0; c < dim; ++c)
+      gap += points.frame[i * dim * dim + c] *
+             (points.position[i * dim + c] -
+              input.obstacles[origin.block].point[c]);
+    return gap;
+  }
+
+  template <int dim>
+  void set_energies(const Dynamics<dim> &dynamics,
+                    const OneStepProblem<dim> &problem, State &state)
+  {
+    using Operator = typename Dynamics<dim>::Operator;
+    auto &energy = state.energy;
+    energy.kinetic = half_product(dynamics, Operator::mass, state.velocity);
+    energy.elastic =
+        half_product(dynamics, Operator::stiffness, state.displacement);
+    energy.cohesive =
+        stored_in_points(dynamics.communicator(), problem, state);
+  }
+
+  template <int dim>
+  State initial_state(const SceneInput &input,
+                      const Discretization<dim> &discretization,
+                      const Dynamics<dim> &dynamics,
+                      const OneStepProblem<dim> &problem,
+                      BondedDynamics<dim> *bonded)
+  {
+    State state = initial_motion(input, discretization);
+    const std::size_t n = discretization.points().n_points;
+    state.jump.assign(n * dim, 0.);
+    state.relative_velocity.assign(n * dim, 0.);
+    dynamics.relative_velocity(state.displacement.data(), state.jump.data());
+    dynamics.relative_velocity(state.velocity.data(),
+                               state.relative_velocity.data());
+    set_points(input, discretization, problem, state);
+    if (bonded)
+      bonded->set_bonds(bonded_points(state));
+    set_energies(dynamics, problem, state);
+    begin_books(state);
+    return state;
+  }
+
+  template <int dim>
+  State initial_motion(const SceneInput &input,
+                       const Discretization<dim> &discretization)
+  {
+    State state;
+    state.displacement = initial_field(input, discretization,
+                                       &MaterialInput::initial_displacement);
+    state.velocity =
+        initial_field(input, discretization, &MaterialInput::initial_velocity);
+    return state;
+  }
+
+  void begin_books(State &state)
+  {
+    const auto &energy = state.energy;
+    state.initial_energy = energy.kinetic + energy.elastic + energy.cohesive;
+    state.largest_energy = state.initial_energy;
+  }
+
+  template <int dim>
+  double stored_in_points(const Communicator &communicator,
+                          const OneStepProblem<dim> &problem,
+                          const State &state)
+  {
+    return communicator.sum(stored_energy(problem, state));
+  }
+
+  template <int dim>
+  void set_points(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const OneStepProblem<dim> &problem, State &state)
+  {
+    const std::size_t n = discretization.points().n_points;
+    state.impulse.assign(n * dim, 0.);
+    state.opening_max.assign(n, 0.);
+    for (const auto &block : input.interfaces)
+      if (block.law && block.law->mixed())
+        state.slip_max.assign(n, 0.);
+    state.beta.assign(n, 1.);
+    state.slip.assign(n, 0.);
+    if (has_sliding_lift(input))
+      for (auto *array : {&state.dilated, &state.worn, &state.dilation_speed,
+                          &state.wear_speed})
+        array->assign(n, 0.);
+    state.released_overlap.assign(n, 0.);
+    state.approach.assign(n, 0.);
+    state.kind.assign(n, PointKind::prescribed);
+    state.two_sided.assign(n, 0);
+    state.contact.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const PointOrigin origin = discretization.origins()[i];
+      switch (origin.kind) {
+      case PointOrigin::Kind::interface:
+        set_interface_point(input.interfaces[origin.block],
+                            discretization.position(i), problem, i, state);
+        break;
+      case PointOrigin::Kind::obstacle:
+        state.jump[i * dim] += initial_gap(input, discretization, i);
+        state.kind[i] = PointKind::free;
+        state.beta[i] = 0.;
+        break;
+      default:
+        break;
+      }
+    }
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template double initial_gap(const SceneInput &, const Discretization<dim> &, \
+                              std::size_t);                                    \
+  template void set_energies(const Dynamics<dim> &,                            \
+                             const OneStepProblem<dim> &, State &);            \
+  template State initial_motion(const SceneInput &,                            \
+                                const Discretization<dim> &);                  \
+  template double stored_in_points(                                            \
+      const Communicator &, const OneStepProblem<dim> &, const State &);       \
+  template void set_points(const SceneInput &, const Discretization<dim> &,    \
+                           const OneStepProblem<dim> &, State &);              \
+  template State initial_state(const SceneInput &,                             \
+                               const Discretization<dim> &,                    \
+                               const Dynamics<dim> &,                          \
+                               const OneStepProblem<dim> &,                    \
+                               BondedDynamics<dim> *)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
+#undef NSFD_INSTANTIATE
+} // namespace nsfd

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "delassus/bonded.h"
+#include "nsfd/discretization/discretization.h"
+#include "state/state.h"
+
+namespace nsfd
+{
+  struct SceneInput;
+
+  /**
+   * State at t = 0: fields of the materials, gaps to obstacles, intact and
+   * broken points, stored energies. @p problem is the constant data of the
+   * points. Jumps of bonded faces are in the elastic energy: their bonds are set
+   * in @p bonded (null: there are none). Collective.
+   */
+  template <int dim>
+  State initial_state(const SceneInput &input,
+                      const Discretization<dim> &discretization,
+                      const Dynamics<dim> &dynamics,
+                      const OneStepProblem<dim> &problem,
+                      BondedDynamics<dim> *bonded);
+
+  /**
+   * Distance of a boundary point from the half space it may touch, m; 0 for
+   * points that face no obstacle.
+   */
+  template <int dim>
+  double initial_gap(const SceneInput &input,
+                     const Discretization<dim> &discretization, std::size_t i);
+
+  /**
+   * Kinetic, elastic and cohesive energy of a state whose bonds are those of
+   * @p dynamics. Collective.
+   */
+  template <int dim>
+  void set_energies(const Dynamics<dim> &dynamics,
+                    const OneStepProblem<dim> &problem, State &state);
+
+  /** Displacements and velocities of the bodies alone. */
+  template <int dim>
+  State initial_motion(const SceneInput &input,
+                       const Discretization<dim> &discretization);
+
+  /**
+   * What the points are and remember at t = 0, from the jumps of @p state; gaps
+   * of obstacles go into these.
+   */
+  template <int dim>
+  void set_points(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const OneStepProblem<dim> &problem, State &state);
+
+  /** Of springs and cohesion at the jumps of @p state, in J. Collective. */
+  template <int dim>
+  double stored_in_points(const Communicator &communicator,
+                          const OneStepProblem<dim> &problem,
+                          const State &state);
+
+  /** From the energies of @p state on. */
+  void begin_books(State &state);
+} // namespace nsfd

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "elastic_forces.h"
+#include "uniqueness.h"
+
+#include "bodies/body_energies.h"
+
+#include "nsfd/discretization/discretization.h"
+#include "nonsmooth/solver.h"
+#include "state/state.h"
+
+#include <vector>
+
+namespace nsfd
+{
+  struct StepReport;
+
+  /**
+   * The books of a step that has been solved: every energy line on its own
+   * (report, 5.3), what the points remember (d_m, beta, kind, slip, bound of
+   * the penetration), and the forces on driven boundaries.
+   */
+  template <int dim>
+  class Ledger
+  {
+  public:
+    Ledger(const SceneInput &input, const Discretization<dim> &discretization,
+           const Dynamics<dim> &dynamics,
+           const UniquenessBound<dim> &uniqueness);
+
+    /**
+     * From @p old to @p next, whose motion and impulses are known: everything
+     * else of @p next, and all of @p report but the solver's. @p origins are
+     * those of the points of @p problem. Collective.
+     */
+    void book(const OneStepProblem<dim> &problem,
+              const LawEvaluation<dim> &evaluation,
+              const std::vector<PointOrigin> &origins,
+              const BodyEnergies &bodies, const State &old, State &next,
+              StepReport &report);
+
+    /** Of small motions; @p forces are the loads of the step, @p elastic K q of
+        an explicit one, else null. Collective. */
+    BodyEnergies book_bodies(const std::vector<double> &forces,
+                             double time_step, const State &old,
+                             const State &next,
+                             const ElasticForces<dim> *elastic) const;
+
+    /** Force on each driven boundary during the last step, dim per boundary. */
+    const std::vector<double> &reactions() const { return reactions_; }
+
+  private:
+    double pressure_work(const OneStepProblem<dim> &problem, const State &old,
+                         const State &next) const;
+    double symplectic_share(double kick, const ElasticForces<dim> &elastic,
+                            const State &old, const State &next) const;
+
+    const Discretization<dim> &discretization_;
+    const Dynamics<dim> &dynamics_;
+    const UniquenessBound<dim> &uniqueness_;
+    double theta_; ///< of the velocity that impulses and loads work with
+    std::vector<double> reactions_;
+  };
+} // namespace nsfd

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "nsfd/discretization/discretization.h"
+
+#include <string>
+#include <vector>
+
+namespace nsfd
+{
+  struct State;
+
+  /**
+   * The rigid motion that @p residual, the forces without balance, does most
+   * work on: of which fragment of @p state, in words. Empty if those forces
+   * are mostly balanced by themselves. Collective.
+   */
+  template <int dim>
+  std::string loose_motion(const Discretization<dim> &discretization,
+                           const Communicator &communicator, const State &state,
+                           const std::vector<double> &residual);
+} // namespace nsfd

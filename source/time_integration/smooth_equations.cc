@@ -1,0 +1,341 @@
+#include "smooth_equations.h"
+
+#include "step_data.h"
+
+#include "core/archive.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  template <int dim>
+  SmoothEquations<dim>::SmoothEquations(
+    const SceneInput &input, const Discretization<dim> &discretization,
+    Dynamics<dim> &dynamics, const State &start)
+    : input_(input)
+    , discretization_(discretization)
+    , dynamics_(dynamics)
+    , communicator_(dynamics.communicator())
+    , motion_(input, discretization)
+    , free_(make_elementwise_dynamics<dim>(
+        dynamics.communicator(), discretization.bodies(),
+        discretization.points()))
+    , problem_(constant_data(input, discretization))
+    , kind_(start.kind)
+    , n_(discretization.bodies().n_dofs())
+    , n_rows_(discretization.points().n_points * dim)
+    , joined_(*free_, discretization.points().n_owned)
+    , shifted_(dynamics, discretization.points().n_owned)
+  {
+    free_->reinit(0., 1.);
+    if (input.has_bonded_faces())
+      bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
+    for (auto *vector : {&given_, &mu_, &lambda_, &rows_})
+      vector->assign(n_rows_, 0.);
+    for (auto *vector : {&loads_, &force_, &rate_, &v_, &body_})
+      vector->assign(n_, 0.);
+    set_rows();
+    find_scales(start);
+  }
+
+  /** Joints all over, driven boundaries in the components that they drive. */
+  template <int dim>
+  void SmoothEquations<dim>::set_rows()
+  {
+    D_joined_.assign(n_rows_, -1.);
+    for (std::size_t i = 0; i < n_rows_ / dim; ++i) {
+      if (kind_[i] != PointKind::prescribed)
+        continue;
+      const PointOrigin origin = discretization_.origins()[i];
+      for (unsigned int c = 0; c < dim; ++c) {
+        if (origin.kind == PointOrigin::Kind::motion) {
+          if (!motion_.drives(i, c))
+            continue;
+          const Expression *velocity = motion_.velocity(i, c);
+          moves_ |= !(velocity && velocity->is_zero());
+        }
+        D_joined_[i * dim + c] = 0.;
+      }
+    }
+    moves_ = communicator_.any(moves_);
+    joined_.set(D_joined_);
+  }
+
+  template <int dim>
+  void SmoothEquations<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "smooth_motion");
+    archive.numbers("scales", velocity_scale_, displacement_scale_,
+                    energy_scale_, inner_step_);
+    archive.points("row_forces", lambda_); // where their iterations start
+  }
+
+  template <int dim>
+  double SmoothEquations<dim>::motion(const std::size_t point,
+                                              const unsigned int c,
+                                              const double t) const
+  {
+    if (const Expression *velocity = motion_.velocity(point, c))
+      return motion_.at(*velocity, point, t);
+    const Expression *displacement = motion_.displacement(point, c);
+    if (displacement == nullptr)
+      return 0.;
+    // fourth order: what is left is of the size of round-off
+    const double d = 1e-4 * input_.time.end;
+    const auto u = [&](const double at) {
+      return motion_.at(*displacement, point, at);
+    };
+    return (8. * (u(t + d) - u(t - d)) - (u(t + 2. * d) - u(t - 2. * d))) /
+           (12. * d);
+  }
+
+  template <int dim>
+  void SmoothEquations<dim>::set_motion(const double t, Values &g) const
+  {
+    for (std::size_t k = 0; k < n_rows_; ++k)
+      g[k] = moves_ && D_joined_[k] == 0. ? motion(k / dim, k % dim, t) : 0.;
+  }
+
+  /** For the work and the reactions alone. */
+  template <int dim>
+  void SmoothEquations<dim>::set_motion_rate(const double t,
+                                                     Values &rate) const
+  {
+    const double d = 1e-3 * input_.time.end;
+    for (std::size_t k = 0; k < n_rows_; ++k) {
+      if (!moves_ || D_joined_[k] != 0.) {
+        rate[k] = 0.;
+        continue;
+      }
+      const auto g = [&](const double at) {
+        return motion(k / dim, k % dim, at);
+      };
+      rate[k] =
+        (8. * (g(t + d) - g(t - d)) - (g(t + 2. * d) - g(t - 2. * d))) /
+        (12. * d);
+    }
+  }
+
+  template <int dim>
+  auto SmoothEquations<dim>::loads(const double t) -> const Values &
+  {
+    if (!discretization_.has_loads() ||
+        (loads_known_ &&
+         (loads_time_ == t || !discretization_.loads_depend_on_time())))
+      return loads_;
+    std::fill(loads_.begin(), loads_.end(), 0.);
+    discretization_.add_loads(t, loads_);
+    loads_known_ = true;
+    loads_time_ = t;
+    return loads_;
+  }
+
+  /**
+   * The size of the motion, for tolerances that ask for no number of the user:
+   * what the start, the loads and the driven boundaries can bring about.
+   */
+  template <int dim>
+  void SmoothEquations<dim>::find_scales(const State &start)
+  {
+    double speed = 0., mass = 0., largest = 0.;
+    const auto &bodies = discretization_.bodies();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const unsigned int m = discretization_.material_of(unsigned(b));
+      mass += discretization_.extremes_of(unsigned(b)).densest *
+              discretization_.volume(unsigned(b));
+      if (!input_.materials[m].rigid)
+        speed = std::max(speed, discretization_.pressure_wave_speed(m));
+    }
+    mass = communicator_.sum(Values{mass});
+    speed = communicator_.max(speed);
+    const double length = discretization_.extent();
+    const double end = input_.time.end;
+    const double crossing = speed > 0. ? std::min(end, length / speed) : end;
+    for (const double u : start.displacement)
+      largest = std::max(largest, std::abs(u));
+    velocity_scale_ = largest / crossing;
+    for (const double v : start.velocity)
+      velocity_scale_ = std::max(velocity_scale_, std::abs(v));
+    constexpr unsigned int samples = 32;
+    for (unsigned int k = 0; k <= samples; ++k) {
+      const double t = k * end / samples;
+      set_motion(t, given_);
+      for (const double g : given_)
+        velocity_scale_ = std::max(velocity_scale_, std::abs(g));
+      free_->apply(Operator::inverse, loads(t).data(), rate_.data());
+      for (const double a : rate_)
+        velocity_scale_ = std::max(velocity_scale_, std::abs(a) * crossing);
+    }
+    velocity_scale_ = communicator_.max(velocity_scale_);
+    displacement_scale_ = velocity_scale_ * crossing;
+    energy_scale_ = mass * velocity_scale_ * velocity_scale_;
+    inner_step_ =
+      1e-2 * (speed > 0. ? discretization_.crossing_time() : end);
+  }
+
+  /** @p result: v with the impulses that joints and driven boundaries need. */
+  template <int dim>
+  void SmoothEquations<dim>::project(const double t, const double *v,
+                                             Values &result)
+  {
+    result.assign(v, v + n_);
+    if (joined_.empty())
+      return;
+    set_motion(t, given_);
+    free_->relative_velocity(v, rows_.data());
+    for (std::size_t k = 0; k < n_rows_; ++k)
+      rows_[k] = given_[k] - rows_[k];
+    counters.iterations += joined_.solve(
+      rows_, 1e-14 * velocity_scale_ * std::sqrt(double(n_rows_)), mu_);
+    free_->add_velocity_change(mu_.data(), result.data());
+  }
+
+  /** force -= H^T w C H q. */
+  template <int dim>
+  void SmoothEquations<dim>::add_springs(const double *q,
+                                                 Values &force) const
+  {
+    Values jump(n_rows_, 0.), sum(n_);
+    bool any = false;
+    free_->relative_velocity(q, jump.data());
+    for (std::size_t i = 0; i < kind_.size(); ++i) {
+      const auto &joint = problem_.interactions[problem_.interaction[i]];
+      const bool elastic = kind_[i] == PointKind::elastic;
+      any |= elastic;
+      for (unsigned int c = 0; c < dim; ++c)
+        jump[i * dim + c] *= !elastic ? 0.
+                                      : -problem_.weight[i] *
+                                          joint.normal_stiffness *
+                                          (c == 0 ? 1. : joint.stiffness_ratio);
+    }
+    if (!communicator_.any(any))
+      return;
+    free_->generalised_impulse(jump.data(), sum.data());
+    for (std::size_t k = 0; k < n_; ++k)
+      force[k] += sum[k];
+  }
+
+  /** Without the forces of joints and driven boundaries. */
+  template <int dim>
+  auto SmoothEquations<dim>::acceleration(const double t, const double *q)
+    -> const Values &
+  {
+    dynamics_.apply(Operator::stiffness, q, force_.data());
+    const Values &external = loads(t);
+    for (std::size_t k = 0; k < n_; ++k)
+      force_[k] = external[k] - force_[k];
+    add_springs(q, force_);
+    free_->apply(Operator::inverse, force_.data(), rate_.data());
+    return rate_;
+  }
+
+  /** lambda: forces of the rows, W lambda = g' - H a. */
+  template <int dim>
+  void SmoothEquations<dim>::set_reaction_forces(const double t,
+                                                         const double *a)
+  {
+    if (joined_.empty())
+      return;
+    Values rate(n_rows_);
+    set_motion_rate(t, rate);
+    free_->relative_velocity(a, rows_.data());
+    double scale = 0.;
+    for (std::size_t k = 0; k < n_rows_; ++k) {
+      scale = std::max(scale, std::abs(rows_[k]));
+      rows_[k] = rate[k] - rows_[k];
+    }
+    counters.iterations += joined_.solve(
+      rows_, 1e-13 * communicator_.max(scale) * std::sqrt(double(n_rows_)),
+      lambda_);
+  }
+
+  template <int dim>
+  void SmoothEquations<dim>::evaluate(const double t, const Vector &y,
+                                              Vector &rate)
+  {
+    ++counters.evaluations;
+    project(t, velocity(y), v_);
+    std::copy(v_.begin(), v_.end(), displacement(rate));
+    const Values &a = acceleration(t, displacement(y));
+    std::copy(a.begin(), a.end(), velocity(rate));
+    Values power(n_ + n_rows_, 0.);
+    const Values &external = loads(t);
+    for (std::size_t k = 0; k < n_; ++k)
+      power[k] = external[k] * v_[k];
+    if (moves_) {
+      set_reaction_forces(t, velocity(rate));
+      const std::size_t n_owned = discretization_.points().n_owned * dim;
+      for (std::size_t k = 0; k < n_owned; ++k)
+        power[n_ + k] = lambda_[k] * given_[k];
+    }
+    const double sum = communicator_.sum(power);
+    if (communicator_.is_root())
+      rate.local_element(2 * n_) = sum;
+  }
+
+  /**
+   * (1 - gamma J) x = b in the velocity w that the rows allow:
+   *
+   *     (M + gamma^2 K) w + ... = M b_v - gamma K b_q + H^T P,
+   *
+   * springs as rows of compliance 1 / (gamma^2 w C). x_q = b_q + gamma w.
+   */
+  template <int dim>
+  void SmoothEquations<dim>::solve_shifted(const double gamma,
+                                                   const Vector &b, Vector &x)
+  {
+    ++counters.linear_solves;
+    const auto spring = [&](const std::size_t k) {
+      const auto &joint =
+        problem_.interactions[problem_.interaction[k / dim]];
+      return problem_.weight[k / dim] * joint.normal_stiffness *
+             (k % dim == 0 ? 1. : joint.stiffness_ratio);
+    };
+    if (gamma != gamma_) {
+      gamma_ = gamma;
+      dynamics_.reinit(gamma, 1.);
+      Values D = D_joined_;
+      for (std::size_t k = 0; k < n_rows_; ++k)
+        if (kind_[k / dim] == PointKind::elastic)
+          D[k] = 1. / (gamma * gamma * spring(k));
+      shifted_.set(D);
+    }
+    Values w(n_), momentum(n_), product(n_), P(n_rows_, 0.), U(n_rows_),
+      jump(n_rows_);
+    dynamics_.apply(Operator::mass, velocity(b), momentum.data());
+    dynamics_.apply(Operator::stiffness, displacement(b), product.data());
+    for (std::size_t k = 0; k < n_; ++k)
+      momentum[k] -= gamma * product[k];
+    dynamics_.apply(Operator::inverse, momentum.data(), w.data());
+    if (!shifted_.empty()) {
+      free_->relative_velocity(w.data(), U.data());
+      free_->relative_velocity(displacement(b), jump.data());
+      double norm = 0.;
+      for (std::size_t k = 0; k < n_rows_; ++k) {
+        U[k] = -U[k] -
+               (kind_[k / dim] == PointKind::elastic ? jump[k] / gamma : 0.);
+        norm = std::max(norm, std::abs(U[k]));
+      }
+      counters.iterations += shifted_.solve(
+        U, 1e-13 * communicator_.max(norm) * std::sqrt(double(n_rows_)), P);
+      dynamics_.add_velocity_change(P.data(), w.data());
+    }
+    for (std::size_t k = 0; k < n_; ++k)
+      displacement(x)[k] = displacement(b)[k] + gamma * w[k];
+    Values force(n_);
+    dynamics_.apply(Operator::stiffness, displacement(x), force.data());
+    for (double &f : force)
+      f = -f;
+    add_springs(displacement(x), force);
+    free_->apply(Operator::inverse, force.data(), product.data());
+    for (std::size_t k = 0; k < n_; ++k)
+      velocity(x)[k] = velocity(b)[k] + gamma * product[k];
+    if (communicator_.is_root())
+      x.local_element(2 * n_) = b.local_element(2 * n_);
+  }
+
+  template class SmoothEquations<2>;
+  template class SmoothEquations<3>;
+} // namespace nsfd

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "moreau_jean.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Motion without events, `scheme = arkode`: bodies, springs, bonds, joints
+   * and prescribed motion as ordinary differential equations, integrated by
+   * the adaptive Runge-Kutta pairs of ARKODE (SUNDIALS), explicit or
+   * diagonally implicit,
+   *
+   *     q' = v = v* + M^{-1} H_r^T mu,    W_r mu = g(t) - H_r v*,
+   *     v*' = M^{-1} (F(t) - K q - H^T w C H q),
+   *
+   * with rows r of joints and prescribed motion, whose impulses mu since the
+   * start of a recorded step keep H_r v = g exactly, without a derivative of
+   * g. The work of the loads is integrated along: the ledger shows the error
+   * of the integration.
+   */
+  template <int dim>
+  class SmoothMotion
+  {
+  public:
+    /**
+     * @p dynamics holds the stiffness of the bodies and bonds. The scales of
+     * the tolerances come from @p start and from the loads and motions until
+     * the end. Collective.
+     */
+    SmoothMotion(const SceneInput &input,
+                 const Discretization<dim> &discretization,
+                 Dynamics<dim> &dynamics, const State &start);
+    ~SmoothMotion();
+
+    /**
+     * From @p old over @p time_step, in as many steps of the pairs as the
+     * tolerance asks for. @throws StepRejected if ARKODE gives up. Collective.
+     */
+    StepReport advance(const State &old, double time_step, State &next);
+
+    /** Force on each driven boundary at the end, dim per boundary. */
+    const std::vector<double> &reactions() const;
+
+    void remember(Archive &archive);
+
+    struct Counters {
+      unsigned long long steps = 0, evaluations = 0, iterations = 0,
+                         linear_solves = 0;
+      double seconds = 0.; ///< CPU time of advance()
+    };
+    const Counters &counters() const;
+
+  private:
+    class Equations;
+    std::unique_ptr<Equations> equations_;
+  };
+} // namespace nsfd

@@ -1,0 +1,79 @@
+#include "step_control.h"
+
+#include "core/archive.h"
+
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  namespace
+  {
+    // Lengths of cells far from the origin, hence crossings, are known to
+    // round-off of the coordinates only: 2e-9 at 1e7 lengths of a cell.
+    constexpr double round_off = 1e-8;
+  } // namespace
+
+  StepControl::StepControl(const double end,
+                           const double base,
+                           const unsigned int maximum_halvings,
+                           const double start)
+    : end_(end)
+    , ceiling_(std::numeric_limits<double>::infinity())
+    , n_base_(static_cast<unsigned long long>(
+        std::fmax(1., std::ceil((end - start) / base * (1. - round_off)))))
+    , maximum_level_(maximum_halvings)
+    , start_(start)
+  {
+    base_ = (end - start) / double(n_base_);
+  }
+
+  double StepControl::time() const
+  {
+    if (finished())
+      return end_;
+    return start_ +
+           (double(base_count_) + std::ldexp(double(position_), -int(level_))) *
+             base_;
+  }
+
+  double StepControl::step() const { return std::ldexp(base_, -int(level_)); }
+
+  void StepControl::accept()
+  {
+    ++position_;
+    if (level_ > 0 && position_ % 2 == 0 && 2. * step() <= ceiling_) {
+      position_ /= 2;
+      --level_;
+    }
+    if (position_ == 1ull << level_) {
+      ++base_count_;
+      position_ = 0;
+    }
+  }
+
+  bool StepControl::halve()
+  {
+    if (level_ == maximum_level_)
+      return false;
+    ++level_;
+    position_ *= 2;
+    ++n_halvings_;
+    return true;
+  }
+
+  void StepControl::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "step_control");
+    archive.numbers("ladder", start_, end_, base_, n_base_, base_count_,
+                    position_, level_, maximum_level_, n_halvings_, ceiling_);
+  }
+
+  void StepControl::limit(const double limit)
+  {
+    while (step() > limit && level_ < maximum_level_) {
+      ++level_;
+      position_ *= 2;
+    }
+  }
+} // namespace nsfd

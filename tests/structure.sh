@@ -1,0 +1,57 @@
+#!/bin/sh
+# structure.sh [-v]: measures of the source tree, one per line; exit code 1 if
+# one is beyond its bound. With -v what is counted is named. Run it at the top.
+#
+#   upward includes   of headers from a folder that comes later in source/LAYERS
+#   folder circles    pairs of folders that include each other
+#   long files        above 500 lines
+set -eu
+verbose=0
+[ "${1:-}" != -v ] || verbose=1
+
+find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
+  xargs awk -v verbose="$verbose" '
+    function folder(path) {
+      sub(/^source\//, "", path)
+      sub(/^include\/nsfd\//, "", path)
+      sub(/^nsfd\//, "", path)
+      if (!sub(/\/[^\/]*$/, "", path)) return ""
+      while (!(path in rank))
+        if (!sub(/\/[^\/]*$/, "", path)) return ""
+      return path
+    }
+    function tell(text) { if (verbose) print "  " text }
+    FNR == 1 { mine = folder(FILENAME) }
+    FNR == 1 && mine == "" {
+      print FILENAME ": its folder is not in source/LAYERS"; bad = 1
+    }
+    FILENAME == "source/LAYERS" { next }
+    /^[ \t]*#[ \t]*include[ \t]*"/ {
+      split($0, part, "\"")
+      if (part[2] ~ /^\.\.?\//) {
+        print FILENAME ": " part[2] " is not named from source/"; bad = 1
+      }
+      its = part[2] ~ /\// ? folder(part[2]) : mine
+      if (its == "") { print FILENAME ": where is " part[2] "?"; bad = 1 }
+      if (its == mine) next
+      if (rank[its] > rank[mine]) {
+        ++upward; tell("upward: " FILENAME " includes " part[2])
+      }
+      if (!((mine, its) in uses)) {
+        uses[mine, its] = 1
+        if ((its, mine) in uses) { ++circles; tell("circle: " mine " and " its) }
+      }
+    }
+    { ++lines[FILENAME] }
+    BEGIN {
+      while ((getline line < "source/LAYERS") > 0)
+        if (line !~ /^#/ && split(line, word, " ") > 0) rank[word[1]] = ++n
+    }
+    END {
+      for (file in lines)
+        if (lines[file] > 500) { ++long_files; tell("long: " file " " lines[file]) }
+      printf "upward includes %d\n", upward
+      printf "folder circles %d\n", circles
+      printf "long files %d\n", long_files
+      exit bad || upward || circles
+    }'
