@@ -1,6 +1,6 @@
 #include "mesh_adaptor.h"
 
-#include "discretization/owned_cells.h"
+#include "mesh/owned_cells.h"
 #include "family.h"
 #include "spring_shift.h"
 

@@ -3,7 +3,7 @@
 #include "family.h"
 
 #include "cohesive_laws/stiffened_law.h"
-#include "discretization/owned_cells.h"
+#include "mesh/owned_cells.h"
 #include "time_integration/initial_state.h"
 
 #include "discretization/point_places.h"

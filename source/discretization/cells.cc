@@ -1,6 +1,6 @@
 #include "cells.h"
 
-#include "owned_cells.h"
+#include "mesh/owned_cells.h"
 
 #include "nsfd/scene/scene_input.h"
 

@@ -1,7 +1,7 @@
 #include "face_points.h"
 
 #include "interface_quadrature.h"
-#include "owned_cells.h"
+#include "mesh/owned_cells.h"
 #include "spring_shares.h"
 
 #include "nsfd/core/communicator.h"

@@ -6,6 +6,8 @@
 #include "mesh_types.h"
 #include "named_mesh.h"
 
+#include "nsfd/mesh/body_table.h"
+
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_generator.h>

@@ -17,14 +17,6 @@ namespace nsfd
     {
       return entry.name_location.source == command_line;
     }
-
-    std::string join(const std::vector<std::string> &words)
-    {
-      std::string result;
-      for (const std::string &word : words)
-        result += (result.empty() ? "" : ", ") + word;
-      return result;
-    }
   } // namespace
 
   std::string collapse_blanks(const std::string &text)
@@ -237,7 +229,7 @@ namespace nsfd
                                entry.name, description()),
                    did_you_mean(entry.name, names,
                                 valid.empty() ? "it has no entries"
-                                              : "it knows: " + join(valid)));
+                                              : fmt::format("it knows: {}", fmt::join(valid, ", "))));
     }
   }
 

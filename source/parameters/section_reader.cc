@@ -81,14 +81,6 @@ namespace nsfd
     {
       return value.empty() ? "" : "write for example: " + value;
     }
-
-    std::string join(const std::vector<std::string> &words)
-    {
-      std::string result;
-      for (const std::string &word : words)
-        result += (result.empty() ? "" : ", ") + word;
-      return result;
-    }
   } // namespace
 
   Range Range::any() { return {-infinity, infinity}; }
@@ -380,7 +372,8 @@ namespace nsfd
       return word;
     errors_.error(
         value->location(),
-        fmt::format("{} = {} is not one of: {}", name, word, join(choices)),
+        fmt::format("{} = {} is not one of: {}", name, word,
+                    fmt::join(choices, ", ")),
         did_you_mean(word, choices));
     return default_text.empty() ? choices.front() : default_text;
   }

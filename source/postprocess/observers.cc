@@ -15,21 +15,6 @@
 
 namespace nsfd
 {
-  double StepView::observed(const std::string &name,
-                            const std::string &column) const
-  {
-    if (observables)
-      for (const ObservableRecord &record : *observables)
-        for (std::size_t k = 0; k < record.columns.size(); ++k)
-          if (record.name == name && record.columns[k].name == column)
-            return k < record.last.size()
-                       ? record.last[k]
-                       : std::numeric_limits<double>::quiet_NaN();
-    throw std::runtime_error(fmt::format(
-        "Verification: the scene has no `Observable: {}` with a column {}",
-        name, column));
-  }
-
   template <int dim>
   Observers<dim>::Observers(const SceneInput &input,
                             const Discretization<dim> &discretization,

@@ -1,7 +1,7 @@
 #include "run_view.h"
 
 #include "core/gather.h"
-#include "discretization/owned_cells.h"
+#include "mesh/owned_cells.h"
 #include "face_pieces.h"
 
 #include "nsfd/scene/scene_input.h"

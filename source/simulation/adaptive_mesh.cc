@@ -3,7 +3,7 @@
 #include "adaptivity/mesh_adaptor.h"
 #include "adaptivity/state_transfer.h"
 
-#include "discretization/owned_cells.h"
+#include "mesh/owned_cells.h"
 
 #include "core/archive.h"
 #include "discretization/point_places.h"

@@ -6,9 +6,13 @@
 
 #include "core/archive.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <stdexcept>
 #include <type_traits>
 
 namespace nsfd
@@ -311,4 +315,19 @@ namespace nsfd
 
   template class CaseObserver<2>;
   template class CaseObserver<3>;
+
+  double StepView::observed(const std::string &name,
+                            const std::string &column) const
+  {
+    if (observables)
+      for (const ObservableRecord &record : *observables)
+        for (std::size_t k = 0; k < record.columns.size(); ++k)
+          if (record.name == name && record.columns[k].name == column)
+            return k < record.last.size()
+                       ? record.last[k]
+                       : std::numeric_limits<double>::quiet_NaN();
+    throw std::runtime_error(fmt::format(
+        "Verification: the scene has no `Observable: {}` with a column {}",
+        name, column));
+  }
 } // namespace nsfd

@@ -1,7 +1,7 @@
 #include "make_scene.h"
 #include "rigid_in_rubber.h"
 
-#include "nsfd/discretization/body_table.h"
+#include "nsfd/mesh/body_table.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "nsfd/core/communicator.h"
 #include "nsfd/discretization/bodies.h"
-#include "nsfd/discretization/body_table.h"
+#include "nsfd/mesh/body_table.h"
 #include "nsfd/materials/material_extremes.h"
 
 #include <deal.II/base/point.h>

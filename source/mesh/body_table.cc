@@ -1,9 +1,9 @@
-#include "nsfd/discretization/body_table.h"
+#include "nsfd/mesh/body_table.h"
 
 #include "owned_cells.h"
 
 #include "nsfd/scene/scene_input.h"
-#include "mesh/mesh_builder.h"
+#include "mesh_builder.h"
 
 #include <algorithm>
 #include <string>
