@@ -38,12 +38,6 @@ namespace nsfd
       const char *text;
     };
 
-    int fail(std::ostream &err, const std::string &message,
-             const std::string &advice)
-    {
-      return refuse(err, "nsfd", message, advice);
-    }
-
     /** What follows --resume; false if --output says something else. */
     bool take_folder(std::string &folder, CommandLine &command_line)
     {
@@ -161,19 +155,19 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return fail(err, error.what(), "`nsfd --help` prints all options");
+      return refuse(err, "nsfd", error.what(), "`nsfd --help` prints all options");
     }
     if (resume->count() > 0 &&
         !take_folder(folder, command_line)) // the file is no folder
-      return fail(err,
+      return refuse(err, "nsfd",
                   "--resume " + folder + " and --output " +
                       command_line.output + " are two folders",
                   "a run goes on in the folder of its checkpoint: name one");
     if (command_line.resume && command_line.force)
-      return fail(err, "--force and --resume exclude each other",
+      return refuse(err, "nsfd", "--force and --resume exclude each other",
                   "--force begins again, --resume goes on");
     if (command_line.quiet && command_line.verbose)
-      return fail(err, "--quiet and --verbose exclude each other",
+      return refuse(err, "nsfd", "--quiet and --verbose exclude each other",
                   "write one of them");
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -192,10 +186,10 @@ namespace nsfd
     }
     for (const std::string &assignment : command_line.set)
       if (assignment.find('=') == std::string::npos)
-        return fail(err, fmt::format("--set {}: there is no `=`", assignment),
+        return refuse(err, "nsfd", fmt::format("--set {}: there is no `=`", assignment),
                     "write for example: --set 'Time/theta=0.5'");
     if (command_line.file.empty())
-      return fail(err, "no parameter file is named",
+      return refuse(err, "nsfd", "no parameter file is named",
                   "write for example: nsfd prm/quickstart.prm");
     return {};
   }

@@ -24,12 +24,6 @@ namespace nsfd
         "  nsfd compare output/wedge output/tough --output "
         "output/wedge_and_tough\n";
 
-    int fail(std::ostream &err, const std::string &message,
-             const std::string &advice)
-    {
-      return refuse(err, "nsfd compare", message, advice);
-    }
-
     /** What --force would take away is one of the runs. */
     bool is_a_run(const CompareCommand &command)
     {
@@ -74,7 +68,7 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return fail(err, error.what(), "`nsfd compare --help` prints all options");
+      return refuse(err, "nsfd compare", error.what(), "`nsfd compare --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -85,16 +79,16 @@ namespace nsfd
       return exit_code::done;
     }
     if (command.runs.size() < 2)
-      return fail(err, "two runs are needed",
+      return refuse(err, "nsfd compare", "two runs are needed",
                   "write for example: nsfd compare output/a output/b");
     if (given->count() > 0) {
       if (!(tolerance >= 0.) || !std::isfinite(tolerance))
-        return fail(err, "--tolerance must be 0 or more",
+        return refuse(err, "nsfd compare", "--tolerance must be 0 or more",
                     "write for example: --tolerance 1e-6");
       command.tolerance = tolerance;
     }
     if (!command.output.empty() && is_a_run(command))
-      return fail(err,
+      return refuse(err, "nsfd compare",
                   "--output " + command.output + " is one of the runs",
                   "name another folder");
     return {};

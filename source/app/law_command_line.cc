@@ -12,12 +12,6 @@ namespace nsfd
 {
   namespace
   {
-    int fail(std::ostream &err, const std::string &message,
-             const std::string &advice)
-    {
-      return refuse(err, "nsfd law", message, advice);
-    }
-
     /** Arguments that no option has taken. */
     int fail_at(std::ostream &err, const std::string &word, const CLI::App &app)
     {
@@ -106,7 +100,7 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return fail(err, error.what(), "`nsfd law --help` prints all options");
+      return refuse(err, "nsfd law", error.what(), "`nsfd law --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -117,10 +111,10 @@ namespace nsfd
     }
     for (const std::string &assignment : command_line.set)
       if (assignment.find('=') == std::string::npos)
-        return fail(err, fmt::format("--set {}: there is no `=`", assignment),
+        return refuse(err, "nsfd law", fmt::format("--set {}: there is no `=`", assignment),
                     "write for example: --set 'friction=0.5'");
     if (command_line.file.empty())
-      return fail(err, "no law is named",
+      return refuse(err, "nsfd law", "no law is named",
                   "write for example: nsfd law tvergaard");
 
     if (path.empty() && !(opening.empty() && slip.empty()))

@@ -17,12 +17,6 @@ namespace nsfd
   {
     namespace fs = std::filesystem;
 
-    int fail(std::ostream &err, const std::string &message,
-             const std::string &advice)
-    {
-      return refuse(err, "nsfd solve", message, advice);
-    }
-
     std::string solvers_text()
     {
       std::string text = "Solvers:\n";
@@ -75,7 +69,7 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return fail(err, error.what(), "`nsfd solve --help` prints all options");
+      return refuse(err, "nsfd solve", error.what(), "`nsfd solve --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -85,15 +79,15 @@ namespace nsfd
       return exit_code::done;
     }
     if (names.empty())
-      return fail(err, "no problem is named",
+      return refuse(err, "nsfd solve", "no problem is named",
                   "write for example: nsfd solve tests/problems");
     const auto &registry = ContactSolverRegistry::instance();
     if (!registry.knows(command.solver))
-      return fail(err, fmt::format("there is no solver `{}`", command.solver),
+      return refuse(err, "nsfd solve", fmt::format("there is no solver `{}`", command.solver),
                   did_you_mean(command.solver, registry.names(),
                                "`nsfd solve --help` prints them all"));
     if (!(command.tolerance > 0. && command.tolerance < 1.))
-      return fail(err, fmt::format("--tolerance is {}", command.tolerance),
+      return refuse(err, "nsfd solve", fmt::format("--tolerance is {}", command.tolerance),
                   "write a number between 0 and 1, for example 1e-8");
     for (const std::string &name : names) {
       if (!fs::is_directory(name)) {
@@ -102,7 +96,7 @@ namespace nsfd
       }
       const std::vector<std::string> files = files_of(name);
       if (files.empty())
-        return fail(err, fmt::format("the folder {} has no problem", name),
+        return refuse(err, "nsfd solve", fmt::format("the folder {} has no problem", name),
                     "its problems must end in .hdf5 or .h5");
       command.files.insert(command.files.end(), files.begin(), files.end());
     }

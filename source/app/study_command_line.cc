@@ -13,7 +13,7 @@ namespace nsfd
 {
   namespace
   {
-    const char *const footer =
+    const char *const study_footer =
         "Variations:\n"
         "  --vary 'Discretization/degree=1..4'        every value, every "
         "combination with the others\n"
@@ -35,12 +35,6 @@ namespace nsfd
         "Example:\n"
         "  nsfd study prm/verification/mode.prm --vary "
         "'Discretization/degree=1..3' --vary 'Mesh/cells=[8*2^0..2, 1]'\n";
-
-    int fail(std::ostream &err, const std::string &message,
-             const std::string &advice)
-    {
-      return refuse(err, "nsfd study", message, advice);
-    }
 
     /** Options that may be given several times, one value each. */
     void add_repeatable(CLI::App &app, const char *name,
@@ -110,7 +104,7 @@ namespace nsfd
                  "nsfd study");
     app.set_help_flag();
     app.allow_extras();
-    app.footer(footer);
+    app.footer(study_footer);
     bool help = false;
     std::string output;
     app.add_option("FILE.prm", command.file, "the scene that varies");
@@ -134,7 +128,7 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return fail(err, error.what(), "`nsfd study --help` prints all options");
+      return refuse(err, "nsfd study", error.what(), "`nsfd study --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -148,20 +142,20 @@ namespace nsfd
          {std::pair("--set", command.set), {"--vary", command.vary}}) {
       const std::string wrong = without_equals(values);
       if (!wrong.empty())
-        return fail(err, fmt::format("{} {}: there is no `=`", option, wrong),
+        return refuse(err, "nsfd study", fmt::format("{} {}: there is no `=`", option, wrong),
                     fmt::format("write for example: {} 'Time/theta=0.5{}'",
                                 option, option[2] == 'v' ? ", 1" : ""));
     }
     if (command.file.empty())
-      return fail(err, "no parameter file is named",
+      return refuse(err, "nsfd study", "no parameter file is named",
                   "write for example: nsfd study prm/verification/mode.prm "
                   "--vary 'Discretization/degree=1..3'");
     if (command.force && command.resume)
-      return fail(
-          err, "--force and --resume exclude each other",
+      return refuse(
+          err, "nsfd study", "--force and --resume exclude each other",
           "--force runs all cases again, --resume only what is missing");
     if (starts_more_than_one_process())
-      return fail(err, "a study starts its cases itself, without mpirun",
+      return refuse(err, "nsfd study", "a study starts its cases itself, without mpirun",
                   "write: nsfd study FILE.prm --set Study/ranks=2");
     if (!output.empty())
       command.set.push_back("Output/directory=" + output);

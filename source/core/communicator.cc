@@ -1,5 +1,7 @@
 #include "nsfd/core/communicator.h"
 
+#include "sum_kernels.h"
+
 #include "cost.h"
 #include "stop_request.h"
 

@@ -26,20 +26,6 @@ namespace nsfd
                       const double *X,
                       double *Y);
 
-  /** Bit pattern of the largest |x_i|; above that of infinity if one is NaN. */
-  unsigned long long largest_bits(const double *x, std::size_t n);
-
-  /**
-   * Split every x_i at two binary places and add the parts, both exactly:
-   * parts[0] what is above the ulp of @p high, parts[1] of the rest what is
-   * above the ulp of @p low.
-   */
-  void split_sums(const double *x,
-                  std::size_t n,
-                  double high,
-                  double low,
-                  double *parts);
-
   /** y = A x for one column; y has padded(rows) entries. */
   void multiply_one(const double *A,
                     unsigned int rows,
