@@ -23,7 +23,7 @@ namespace nsfd
 {
   namespace
   {
-    constexpr unsigned int most_iterations = 40;
+    constexpr unsigned int most_newton_steps = 40;
   } // namespace
 
   template <int dim>
@@ -484,7 +484,7 @@ namespace nsfd
           std::max<unsigned long long>(motion_counters_.most_iterations, round + 1);
       if (change <= rest * rest * energy_scale_)
         return total;
-      if (round == most_iterations || !std::isfinite(change))
+      if (round == most_newton_steps || !std::isfinite(change))
         throw StepRejected(fmt::format(
             "the motion of the step of {:.4g} at t = {:.6g} did not come to "
             "rest: velocities change by {:.1e} of all after {} iterations",
