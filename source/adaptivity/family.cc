@@ -37,9 +37,10 @@ namespace nsfd
   {
     const std::size_t first = bodies.first_dof[body];
     classes.push_back(&bodies.classes[bodies.class_of[body]]);
-    displacement.emplace_back(
-        state.displacement.begin() + std::ptrdiff_t(first),
-        state.displacement.begin() + std::ptrdiff_t(bodies.first_dof[body + 1]));
+    displacement.emplace_back(state.displacement.begin() +
+                                  std::ptrdiff_t(first),
+                              state.displacement.begin() +
+                                  std::ptrdiff_t(bodies.first_dof[body + 1]));
     for (std::size_t i = 0; i < displacement.back().size(); ++i)
       displacement.back()[i] -= translation[i % dim];
     velocity.push_back(state.velocity.data() + first);
@@ -50,8 +51,7 @@ namespace nsfd
                                 const Family &family)
   {
     const unsigned int n_nodes = element.n_dofs_per_cell(), n = n_nodes * dim;
-    ParentMotion parent{std::vector<double>(n, 0.),
-                        std::vector<double>(n, 0.)};
+    ParentMotion parent{std::vector<double>(n, 0.), std::vector<double>(n, 0.)};
     std::vector<unsigned int> children_at(n_nodes, 0);
     const auto &nodes = element.get_unit_support_points();
     for (unsigned int c = 0; c < family.classes.size(); ++c) {

@@ -35,9 +35,9 @@ namespace nsfd
 
   /** The polynomials @p x of a parent in its child @p child; n unknowns. */
   template <int dim>
-  std::vector<double>
-  in_child(const dealii::FiniteElement<dim, dim> &element, unsigned int child,
-           const double *x, std::size_t n);
+  std::vector<double> in_child(const dealii::FiniteElement<dim, dim> &element,
+                               unsigned int child, const double *x,
+                               std::size_t n);
 
   template <int dim>
   ParentMotion motion_of_parent(const dealii::FiniteElement<dim, dim> &element,

@@ -1,7 +1,7 @@
 #include "mesh_adaptor.h"
 
-#include "mesh/owned_cells.h"
 #include "family.h"
+#include "mesh/owned_cells.h"
 #include "spring_shift.h"
 
 #include "discretization/point_places.h"
@@ -64,8 +64,7 @@ namespace nsfd
     for (const auto &cell : cells)
       levels.push_back(unsigned(cell->level()));
     const StateView<dim> view(input_, mesh, levels);
-    std::vector<double> size(levels.size(),
-                             std::numeric_limits<double>::max());
+    std::vector<double> size(levels.size(), std::numeric_limits<double>::max());
     for (const auto &indicator : input_.adaptivity->indicators)
       indicator->limit(view, size);
     const auto history =

@@ -10,16 +10,17 @@ namespace nsfd
    * Decides which cells change: smaller where an indicator asks for it, larger
    * where no one minds, where no point of their faces remembers anything, so
    * that nothing heals, and where the larger cell has the motion of the smaller
-   * ones: their energies may change by 1e-4, of that of the family or of as many
-   * mean cells.
+   * ones: their energies may change by 1e-4, of that of the family or of as
+   * many mean cells.
    */
   template <int dim>
   class MeshAdaptor
   {
   public:
     /** @p triangulation as it is now is the mesh with level 0. */
-    MeshAdaptor(const SceneInput &input,
-                dealii::parallel::distributed::Triangulation<dim> &triangulation);
+    MeshAdaptor(
+        const SceneInput &input,
+        dealii::parallel::distributed::Triangulation<dim> &triangulation);
 
     /**
      * Flags the cells by the state at the end of a step; the bodies of @p mesh

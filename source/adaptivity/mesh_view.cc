@@ -6,9 +6,9 @@
 #include "family.h"
 
 #include "discretization/point_places.h"
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/point_law.h"
 #include "nonsmooth/pull_and_shear.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,14 +28,13 @@ namespace nsfd
       for (const int b : bodies) {
         if (b < 0)
           continue;
-        const auto &softest =
-            discretization.extremes_of(unsigned(b)).softest;
+        const auto &softest = discretization.extremes_of(unsigned(b)).softest;
         if (softest.young > 0.) // not rigid
-          modulus = std::min(modulus,
-                             softest.young / (input.plane_stress
-                                                  ? 1.
-                                                  : 1. - softest.poisson *
-                                                             softest.poisson));
+          modulus = std::min(
+              modulus,
+              softest.young / (input.plane_stress
+                                   ? 1.
+                                   : 1. - softest.poisson * softest.poisson));
       }
       return modulus;
     }
@@ -48,8 +47,7 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  StateView<dim>::StateView(const SceneInput &input,
-                            const MeshState<dim> &mesh,
+  StateView<dim>::StateView(const SceneInput &input, const MeshState<dim> &mesh,
                             const std::vector<unsigned int> &levels)
       : input_(input), mesh_(mesh), bodies_(levels.size())
   {
@@ -134,8 +132,8 @@ namespace nsfd
           continue;
         double square = 0.;
         for (unsigned int c = 0; c < dim; ++c)
-          square += std::pow(
-              traction[1][i * dim + c] - traction[0][i * dim + c], 2);
+          square +=
+              std::pow(traction[1][i * dim + c] - traction[0][i * dim + c], 2);
         for (const int b : face.bodies)
           if (b >= 0)
             (*stress_jump_)[b] =
@@ -187,9 +185,8 @@ namespace nsfd
       const double toughness = law->toughness() * problem.strength_factor[i] /
                                problem.opening_factor[i];
       point.zone = 9. * pi / 32. * toughness / (strength * strength) *
-                   plane_strain_modulus(
-                       input_, mesh_.discretization,
-                       points.faces[points.face_of[i]].bodies);
+                   plane_strain_modulus(input_, mesh_.discretization,
+                                        points.faces[points.face_of[i]].bodies);
       points_->push_back(point);
     }
     return *points_;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/adaptivity/indicator.h"
 #include "delassus/dynamics.h"
+#include "nsfd/adaptivity/indicator.h"
 #include "nsfd/discretization/discretization.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
 #include "state/state.h"

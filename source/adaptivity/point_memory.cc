@@ -48,9 +48,8 @@ namespace nsfd
     }
     row[compliance] = origin.compliance;
     double *next = row + history;
-    for_numbers(state, [&](const std::vector<double> &values) {
-      *next++ = values[i];
-    });
+    for_numbers(
+        state, [&](const std::vector<double> &values) { *next++ = values[i]; });
     *next++ = double(state.kind[i]);
     *next++ = state.two_sided[i];
     *next++ = state.contact[i];

@@ -7,8 +7,8 @@
 #include "time_integration/initial_state.h"
 
 #include "discretization/point_places.h"
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -70,7 +70,8 @@ namespace nsfd
                                     Mesh &triangulation,
                                     const MeshState<dim> &mesh)
       : input_(input), triangulation_(triangulation), memory_(mesh.state),
-        shift_(input, mesh), old_(mesh), body_of_(bodies_of_cells(triangulation)),
+        shift_(input, mesh), old_(mesh),
+        body_of_(bodies_of_cells(triangulation)),
         offset_(beyond_motion(input, mesh)),
         points_of_(mesh.discretization.bodies().size())
   {
@@ -109,8 +110,7 @@ namespace nsfd
                                         const bool all_faces) const
   {
     for (const auto &[slot, point] : points_of_[body]) {
-      const unsigned int face_no =
-          old_.discretization.face_of_slot(body, slot);
+      const unsigned int face_no = old_.discretization.face_of_slot(body, slot);
       if (!all_faces && !lies_on_face(child, face_no))
         continue;
       const std::size_t first = parcel.size();
@@ -133,9 +133,9 @@ namespace nsfd
     for (const auto *vector : {&old_.state.displacement, &old_.state.velocity})
       parcel.insert(parcel.end(), vector->begin() + std::ptrdiff_t(first),
                     vector->begin() + std::ptrdiff_t(end));
-    const auto translations =
-        level_of_children > 0 ? shift_.of_children(body, level_of_children)
-                              : std::vector<double>(n_translations, 0.);
+    const auto translations = level_of_children > 0
+                                  ? shift_.of_children(body, level_of_children)
+                                  : std::vector<double>(n_translations, 0.);
     parcel.insert(parcel.end(), translations.begin(), translations.end());
     add_memories(body, 0, parcel, true);
     return parcel;
@@ -173,11 +173,11 @@ namespace nsfd
     const std::vector<int> body_of = bodies_of_cells(triangulation_);
     received_.resize(triangulation_.n_locally_owned_active_cells());
     triangulation_.notify_ready_to_unpack(
-        handle_, [&](const Cell &cell, const Status status,
-                     const boost::iterator_range<
-                         std::vector<char>::const_iterator> &bytes) {
-          auto parcel =
-              std::make_shared<Parcel>(bytes.size() / sizeof(double));
+        handle_,
+        [&](const Cell &cell, const Status status,
+            const boost::iterator_range<std::vector<char>::const_iterator>
+                &bytes) {
+          auto parcel = std::make_shared<Parcel>(bytes.size() / sizeof(double));
           if (!bytes.empty())
             std::memcpy(parcel->data(), &*bytes.begin(), bytes.size());
           if (status != Mesh::CELL_REFINE) {
@@ -204,8 +204,7 @@ namespace nsfd
       const Received &received = received_[b];
       const Parcel &parcel = *received.parcel;
       const auto n = unsigned(parcel[0]);
-      const std::array<const double *, 2> from = {
-          {&parcel[1], &parcel[1 + n]}};
+      const std::array<const double *, 2> from = {{&parcel[1], &parcel[1 + n]}};
       const std::array<double *, 2> to = {
           {state.displacement.data() + bodies.first_dof[b],
            state.velocity.data() + bodies.first_dof[b]}};
@@ -242,11 +241,10 @@ namespace nsfd
    * an old cell.
    */
   template <int dim>
-  const double *StateTransfer<dim>::memory_of(const Received &received,
-                                              const unsigned int face_no,
-                                              const std::size_t i,
-                                              const MeshState<dim> &fresh,
-                                              bool &inside) const
+  const double *
+  StateTransfer<dim>::memory_of(const Received &received,
+                                const unsigned int face_no, const std::size_t i,
+                                const MeshState<dim> &fresh, bool &inside) const
   {
     using Memory = PointMemory<dim>;
     inside = received.status == Mesh::CELL_REFINE &&
@@ -301,10 +299,10 @@ namespace nsfd
       state.opening_max[i] = fresh.state.opening_max[i];
     else if (state.beta[i] > 0.) {
       const double beta = state.beta[i];
-      state.opening_max[i] = opening_at_compliance(law,
-                                                   factor * state.opening_max[i],
-                                                   before, now) /
-                             factor;
+      state.opening_max[i] =
+          opening_at_compliance(law, factor * state.opening_max[i], before,
+                                now) /
+          factor;
       state.beta[i] = interaction.law->beta(factor * state.opening_max[i]);
       if (now < before)
         state.beta[i] = std::min(state.beta[i], beta);
@@ -361,13 +359,15 @@ namespace nsfd
             const std::size_t point, const unsigned int side) {
           bool inside = false;
           double *row = &rows[side][point * size];
-          const double *memory = memory_of(
-              received_[body],
-              fresh.discretization.face_of_slot(unsigned(body), slot), point,
-              fresh, inside);
+          const double *memory =
+              memory_of(received_[body],
+                        fresh.discretization.face_of_slot(unsigned(body), slot),
+                        point, fresh, inside);
           if (memory)
             std::copy_n(memory, size, row);
-          row[Memory::face] = memory ? remembered : inside ? inside_a_cell : none;
+          row[Memory::face] = memory   ? remembered
+                              : inside ? inside_a_cell
+                                       : none;
         });
     fresh.dynamics.exchange({{rows[0].data(), rows[1].data()}}, size);
 

@@ -17,9 +17,9 @@ namespace nsfd
    * one: nothing changes. A larger one interpolates the displacement of its
    * children (mean where they meet) and takes the velocity nearest to theirs
    * in the norm of mass, which keeps both momenta. Points inherit from the
-   * nearest one of the same face; new faces inside a cell are born intact. Where
-   * springs keep the modulus of the body, smaller cells are translated to where
-   * their springs carry what the bulk does, see SpringShift.
+   * nearest one of the same face; new faces inside a cell are born intact.
+   * Where springs keep the modulus of the body, smaller cells are translated to
+   * where their springs carry what the bulk does, see SpringShift.
    */
   template <int dim>
   class StateTransfer
@@ -81,10 +81,10 @@ namespace nsfd
     const SpringShift<dim> shift_;
     // of the old mesh, while it lives; its state lives until the end
     const MeshState<dim> old_;
-    std::vector<int> body_of_;      ///< by active cell index, -1: not ours
-    std::vector<double> offset_;    ///< jump - H q - gap at t = 0, by point
+    std::vector<int> body_of_;   ///< by active cell index, -1: not ours
+    std::vector<double> offset_; ///< jump - H q - gap at t = 0, by point
     std::vector<std::vector<std::pair<unsigned int, unsigned int>>>
-        points_of_; ///< per body: slot, point
+        points_of_;                  ///< per body: slot, point
     std::vector<Received> received_; ///< per new body
   };
 } // namespace nsfd

@@ -1,8 +1,8 @@
 #include "command_line.h"
 
+#include "input/read_scene.h"
 #include "parameters/input_errors.h"
 #include "refuse_word.h"
-#include "input/read_scene.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -25,7 +25,8 @@ namespace nsfd
         "nsfd - nonsmooth fracture dynamics\n"
         "  nsfd FILE.prm             run a scene\n"
         "  nsfd FILE.prm --check     only say whether it would run\n"
-        "  nsfd study FILE.prm       vary its parameters: errors, orders, cost\n"
+        "  nsfd study FILE.prm       vary its parameters: errors, orders, "
+        "cost\n"
         "  nsfd law NAME             drive one point of a cohesive law\n"
         "  nsfd solve PROBLEM.hdf5   solve stored contact problems\n"
         "  nsfd compare RUN RUN      what differs between runs\n"
@@ -155,20 +156,21 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return refuse(err, "nsfd", error.what(), "`nsfd --help` prints all options");
+      return refuse(err, "nsfd", error.what(),
+                    "`nsfd --help` prints all options");
     }
     if (resume->count() > 0 &&
         !take_folder(folder, command_line)) // the file is no folder
       return refuse(err, "nsfd",
-                  "--resume " + folder + " and --output " +
-                      command_line.output + " are two folders",
-                  "a run goes on in the folder of its checkpoint: name one");
+                    "--resume " + folder + " and --output " +
+                        command_line.output + " are two folders",
+                    "a run goes on in the folder of its checkpoint: name one");
     if (command_line.resume && command_line.force)
       return refuse(err, "nsfd", "--force and --resume exclude each other",
-                  "--force begins again, --resume goes on");
+                    "--force begins again, --resume goes on");
     if (command_line.quiet && command_line.verbose)
       return refuse(err, "nsfd", "--quiet and --verbose exclude each other",
-                  "write one of them");
+                    "write one of them");
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
       return fail_at(err, extras.front(), app);
@@ -186,11 +188,12 @@ namespace nsfd
     }
     for (const std::string &assignment : command_line.set)
       if (assignment.find('=') == std::string::npos)
-        return refuse(err, "nsfd", fmt::format("--set {}: there is no `=`", assignment),
-                    "write for example: --set 'Time/theta=0.5'");
+        return refuse(err, "nsfd",
+                      fmt::format("--set {}: there is no `=`", assignment),
+                      "write for example: --set 'Time/theta=0.5'");
     if (command_line.file.empty())
       return refuse(err, "nsfd", "no parameter file is named",
-                  "write for example: nsfd prm/quickstart.prm");
+                    "write for example: nsfd prm/quickstart.prm");
     return {};
   }
 } // namespace nsfd

@@ -30,9 +30,9 @@ namespace nsfd
       namespace fs = std::filesystem;
       std::error_code error;
       for (const fs::path run : command.runs)
-        if (fs::equivalent(fs::is_directory(run, error) ? run
-                                                        : run.parent_path() / ".",
-                           command.output, error))
+        if (fs::equivalent(
+                fs::is_directory(run, error) ? run : run.parent_path() / ".",
+                command.output, error))
           return true;
       return false;
     }
@@ -68,7 +68,8 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return refuse(err, "nsfd compare", error.what(), "`nsfd compare --help` prints all options");
+      return refuse(err, "nsfd compare", error.what(),
+                    "`nsfd compare --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -80,17 +81,17 @@ namespace nsfd
     }
     if (command.runs.size() < 2)
       return refuse(err, "nsfd compare", "two runs are needed",
-                  "write for example: nsfd compare output/a output/b");
+                    "write for example: nsfd compare output/a output/b");
     if (given->count() > 0) {
       if (!(tolerance >= 0.) || !std::isfinite(tolerance))
         return refuse(err, "nsfd compare", "--tolerance must be 0 or more",
-                    "write for example: --tolerance 1e-6");
+                      "write for example: --tolerance 1e-6");
       command.tolerance = tolerance;
     }
     if (!command.output.empty() && is_a_run(command))
       return refuse(err, "nsfd compare",
-                  "--output " + command.output + " is one of the runs",
-                  "name another folder");
+                    "--output " + command.output + " is one of the runs",
+                    "name another folder");
     return {};
   }
 } // namespace nsfd

@@ -1,7 +1,7 @@
 #include "command_line.h"
+#include "material_point/path.h"
 #include "parameters/input_errors.h"
 #include "refuse_word.h"
-#include "material_point/path.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,9 +15,10 @@ namespace nsfd
     /** Arguments that no option has taken. */
     int fail_at(std::ostream &err, const std::string &word, const CLI::App &app)
     {
-      return refuse_word(err, "nsfd law", word, app, "law",
-                         "drive one law at a time, or write a file with several "
-                         "Interface blocks");
+      return refuse_word(
+          err, "nsfd law", word, app, "law",
+          "drive one law at a time, or write a file with several "
+          "Interface blocks");
     }
 
     std::string paths_text()
@@ -100,7 +101,8 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return refuse(err, "nsfd law", error.what(), "`nsfd law --help` prints all options");
+      return refuse(err, "nsfd law", error.what(),
+                    "`nsfd law --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -111,11 +113,12 @@ namespace nsfd
     }
     for (const std::string &assignment : command_line.set)
       if (assignment.find('=') == std::string::npos)
-        return refuse(err, "nsfd law", fmt::format("--set {}: there is no `=`", assignment),
-                    "write for example: --set 'friction=0.5'");
+        return refuse(err, "nsfd law",
+                      fmt::format("--set {}: there is no `=`", assignment),
+                      "write for example: --set 'friction=0.5'");
     if (command_line.file.empty())
       return refuse(err, "nsfd law", "no law is named",
-                  "write for example: nsfd law tvergaard");
+                    "write for example: nsfd law tvergaard");
 
     if (path.empty() && !(opening.empty() && slip.empty()))
       path = "points";

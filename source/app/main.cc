@@ -1,11 +1,11 @@
-#include "compare/compare_command.h"
-#include "core/stop_request.h"
 #include "command_line.h"
-#include "material_point/read_law.h"
+#include "compare/compare_command.h"
+#include "core/output_folder.h"
+#include "core/stop_request.h"
 #include "input/read_scene.h"
+#include "material_point/read_law.h"
 #include "material_point/run_law.h"
 #include "mesh/gmsh_process.h"
-#include "core/output_folder.h"
 #include "simulation/simulation.h"
 #include "solve_command.h"
 #include "study/study_command.h"
@@ -134,9 +134,9 @@ int main(int argc, char **argv)
   SolveCommand stored;
   const bool solve = argc > 1 && argv[1] == std::string("solve");
   if (const auto code =
-        solve ? parse_solve_command_line(argc - 1, argv + 1, stored, std::cout,
-                                         std::cerr)
-              : parse_command_line(argc, argv, command, std::cout, std::cerr))
+          solve ? parse_solve_command_line(argc - 1, argv + 1, stored,
+                                           std::cout, std::cerr)
+                : parse_command_line(argc, argv, command, std::cout, std::cerr))
     return *code;
 
   // what needs no bodies needs no MPI
@@ -166,7 +166,7 @@ int main(int argc, char **argv)
     }
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool root =
-    dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+      dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   const unsigned int n_ranks =
       dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
   // MPI has taken some of them
@@ -176,8 +176,10 @@ int main(int argc, char **argv)
       return run_on_root(
           root, [&] { return run_solve(stored, std::cout, std::cerr); });
     if (command.law)
-      return run_on_root(root, [&] { return run_law({command.file, command.overrides(), command.check,
-                        command.quiet, command.force}); });
+      return run_on_root(root, [&] {
+        return run_law({command.file, command.overrides(), command.check,
+                        command.quiet, command.force});
+      });
     RunOptions options;
     for (int i = 0; i < argc; ++i)
       options.command_line += std::string(i ? " " : "") + argv[i];

@@ -1,5 +1,5 @@
-#include "core/stopwatch.h"
 #include "command_line.h"
+#include "core/stopwatch.h"
 #include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nonsmooth/frictional_contact/fclib.h"
 #include "solve_command.h"

@@ -1,8 +1,8 @@
 #include "command_line.h"
-#include "parameters/input_errors.h"
 #include "nonsmooth/frictional_contact/contact_solver.h"
-#include "solve_command.h"
+#include "parameters/input_errors.h"
 #include "refuse_word.h"
+#include "solve_command.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -69,7 +69,8 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return refuse(err, "nsfd solve", error.what(), "`nsfd solve --help` prints all options");
+      return refuse(err, "nsfd solve", error.what(),
+                    "`nsfd solve --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -80,15 +81,17 @@ namespace nsfd
     }
     if (names.empty())
       return refuse(err, "nsfd solve", "no problem is named",
-                  "write for example: nsfd solve tests/problems");
+                    "write for example: nsfd solve tests/problems");
     const auto &registry = ContactSolverRegistry::instance();
     if (!registry.knows(command.solver))
-      return refuse(err, "nsfd solve", fmt::format("there is no solver `{}`", command.solver),
-                  did_you_mean(command.solver, registry.names(),
-                               "`nsfd solve --help` prints them all"));
+      return refuse(err, "nsfd solve",
+                    fmt::format("there is no solver `{}`", command.solver),
+                    did_you_mean(command.solver, registry.names(),
+                                 "`nsfd solve --help` prints them all"));
     if (!(command.tolerance > 0. && command.tolerance < 1.))
-      return refuse(err, "nsfd solve", fmt::format("--tolerance is {}", command.tolerance),
-                  "write a number between 0 and 1, for example 1e-8");
+      return refuse(err, "nsfd solve",
+                    fmt::format("--tolerance is {}", command.tolerance),
+                    "write a number between 0 and 1, for example 1e-8");
     for (const std::string &name : names) {
       if (!fs::is_directory(name)) {
         command.files.push_back(name);
@@ -96,8 +99,9 @@ namespace nsfd
       }
       const std::vector<std::string> files = files_of(name);
       if (files.empty())
-        return refuse(err, "nsfd solve", fmt::format("the folder {} has no problem", name),
-                    "its problems must end in .hdf5 or .h5");
+        return refuse(err, "nsfd solve",
+                      fmt::format("the folder {} has no problem", name),
+                      "its problems must end in .hdf5 or .h5");
       command.files.insert(command.files.end(), files.begin(), files.end());
     }
     return {};

@@ -128,7 +128,8 @@ namespace nsfd
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError &error) {
-      return refuse(err, "nsfd study", error.what(), "`nsfd study --help` prints all options");
+      return refuse(err, "nsfd study", error.what(),
+                    "`nsfd study --help` prints all options");
     }
     const std::vector<std::string> extras = app.remaining();
     if (!extras.empty())
@@ -142,21 +143,23 @@ namespace nsfd
          {std::pair("--set", command.set), {"--vary", command.vary}}) {
       const std::string wrong = without_equals(values);
       if (!wrong.empty())
-        return refuse(err, "nsfd study", fmt::format("{} {}: there is no `=`", option, wrong),
-                    fmt::format("write for example: {} 'Time/theta=0.5{}'",
-                                option, option[2] == 'v' ? ", 1" : ""));
+        return refuse(err, "nsfd study",
+                      fmt::format("{} {}: there is no `=`", option, wrong),
+                      fmt::format("write for example: {} 'Time/theta=0.5{}'",
+                                  option, option[2] == 'v' ? ", 1" : ""));
     }
     if (command.file.empty())
       return refuse(err, "nsfd study", "no parameter file is named",
-                  "write for example: nsfd study prm/verification/mode.prm "
-                  "--vary 'Discretization/degree=1..3'");
+                    "write for example: nsfd study prm/verification/mode.prm "
+                    "--vary 'Discretization/degree=1..3'");
     if (command.force && command.resume)
       return refuse(
           err, "nsfd study", "--force and --resume exclude each other",
           "--force runs all cases again, --resume only what is missing");
     if (starts_more_than_one_process())
-      return refuse(err, "nsfd study", "a study starts its cases itself, without mpirun",
-                  "write: nsfd study FILE.prm --set Study/ranks=2");
+      return refuse(err, "nsfd study",
+                    "a study starts its cases itself, without mpirun",
+                    "write: nsfd study FILE.prm --set Study/ranks=2");
     if (!output.empty())
       command.set.push_back("Output/directory=" + output);
     for (int i = 0; i < argc; ++i)

@@ -10,9 +10,9 @@ namespace nsfd
                    const std::vector<BodyEnergies> &bodies)
   {
     constexpr std::array<double BodyEnergies::*, 7> lines = {
-        {&BodyEnergies::kinetic, &BodyEnergies::elastic,
-         &BodyEnergies::of_mass, &BodyEnergies::of_strain, &BodyEnergies::work,
-         &BodyEnergies::plastic, &BodyEnergies::viscous}};
+        {&BodyEnergies::kinetic, &BodyEnergies::elastic, &BodyEnergies::of_mass,
+         &BodyEnergies::of_strain, &BodyEnergies::work, &BodyEnergies::plastic,
+         &BodyEnergies::viscous}};
     std::vector<double> terms;
     for (const auto line : lines)
       for (const BodyEnergies &body : bodies)

@@ -1,8 +1,8 @@
 #include "cell_stresses.h"
 
+#include "deformable_cells.h"
 #include "discretization/body_shape.h"
 #include "discretization/cell_sampler.h"
-#include "deformable_cells.h"
 
 #include "nsfd/scene/scene_input.h"
 
@@ -77,9 +77,9 @@ namespace nsfd
           });
     std::size_t k = 0;
     discretization_.visit_quadrature(
-        displacement, [&](const unsigned int body, const dealii::Point<dim> &x,
-                          const double JxW, const double *,
-                          const double *gradient) {
+        displacement,
+        [&](const unsigned int body, const dealii::Point<dim> &x,
+            const double JxW, const double *, const double *gradient) {
           Stress sigma = visit(body, x, gradient);
           if (!viscous.empty())
             for (unsigned int c = 0; c < 6; ++c)
@@ -169,8 +169,8 @@ namespace nsfd
     const std::size_t node = discretization_.first_node(body) * dim;
     const auto gradient = sampler.gradient(q, corners, &displacement[node]);
     Sample result;
-    result.stress = discretization_.stress(
-        body, sampler.position(q, corners), gradient.data());
+    result.stress = discretization_.stress(body, sampler.position(q, corners),
+                                           gradient.data());
     if (discretization_.is_viscous()) {
       const auto viscous = discretization_.viscous_stress(
           body, sampler.gradient(q, corners, &velocity[node]).data());

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
 #include "materials/history_material.h"
+#include "nsfd/discretization/discretization.h"
 #include "state/state.h"
 
 #include <array>
@@ -42,9 +42,8 @@ namespace nsfd
     void visit_all(const std::vector<double> &displacement,
                    const std::vector<double> &velocity, const Visitor &visitor);
 
-    struct Sample
-    {
-      Stress stress{};           ///< with that of viscosity
+    struct Sample {
+      Stress stress{};            ///< with that of viscosity
       double plastic_strain = 0.; ///< equivalent
     };
     /**
@@ -69,7 +68,7 @@ namespace nsfd
     std::vector<std::unique_ptr<const HistoryMaterial<dim>>> materials_;
     std::vector<std::size_t> first_;    ///< by cell; empty: nothing remembers
     unsigned int body_ = 0, point_ = 0; ///< visited next
-    std::vector<double> nodes_; ///< those of the body sampled last
+    std::vector<double> nodes_;         ///< those of the body sampled last
     unsigned int sampled_ = 0;
   };
 } // namespace nsfd

@@ -2,9 +2,9 @@
 
 #include "discretization/body_shape.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "finite_cell.h"
 #include "history_cell.h"
+#include "nsfd/scene/scene_input.h"
 
 namespace nsfd
 {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
 #include "deformable_cell.h"
+#include "nsfd/discretization/discretization.h"
 
 #include <memory>
 #include <vector>

@@ -32,7 +32,7 @@ namespace nsfd
 
     template <int dim>
     FaceNodes<dim> on_hypercube(const FiniteElement<dim> &element,
-                           const unsigned int f)
+                                const unsigned int f)
     {
       const unsigned int constant = f / 2, n = element.degree + 1;
       FaceNodes<dim> face;
@@ -59,7 +59,8 @@ namespace nsfd
     }
 
     template <int dim>
-    FaceNodes<dim> on_simplex(const FiniteElement<dim> &element, const unsigned int f)
+    FaceNodes<dim> on_simplex(const FiniteElement<dim> &element,
+                              const unsigned int f)
     {
       const ReferenceCell cell = element.reference_cell();
       std::vector<Point<dim>> corners;
@@ -102,7 +103,9 @@ namespace nsfd
     Tensor<1, dim> normal_of(const BodyShape<dim> &shape,
                              const std::vector<unsigned int> &piece)
     {
-      const auto x = [&](const unsigned int v) { return shape.nodes[piece[v]]; };
+      const auto x = [&](const unsigned int v) {
+        return shape.nodes[piece[v]];
+      };
       Tensor<1, dim> n;
       if constexpr (dim == 2) {
         const Tensor<1, dim> edge = x(1) - x(0);
@@ -116,12 +119,13 @@ namespace nsfd
 
   template <int dim>
   std::vector<FaceNodes<dim>> face_nodes(const FiniteElement<dim> &element,
-                                    const BodyShape<dim> &shape)
+                                         const BodyShape<dim> &shape)
   {
     std::vector<FaceNodes<dim>> result;
     for (unsigned int f = 0; f < shape.reference.n_faces(); ++f) {
-      FaceNodes<dim> face = shape.reference.is_simplex() ? on_simplex(element, f)
-                                                    : on_hypercube(element, f);
+      FaceNodes<dim> face = shape.reference.is_simplex()
+                                ? on_simplex(element, f)
+                                : on_hypercube(element, f);
       const double measure =
           FaceGeometry<dim>(shape.reference, shape.corners, f).measure();
       for (double &w : face.weights)
@@ -139,7 +143,7 @@ namespace nsfd
   }
 
   template std::vector<FaceNodes<2>> face_nodes(const FiniteElement<2> &,
-                                             const BodyShape<2> &);
+                                                const BodyShape<2> &);
   template std::vector<FaceNodes<3>> face_nodes(const FiniteElement<3> &,
-                                             const BodyShape<3> &);
+                                                const BodyShape<3> &);
 } // namespace nsfd

@@ -10,10 +10,9 @@ namespace nsfd
 {
   /** The nodes on one face of a cell, and flat pieces between them. */
   template <int dim>
-  struct FaceNodes
-  {
-    std::vector<unsigned int> nodes;  ///< of the cell
-    std::vector<double> weights;      ///< of these nodes, m or m^2
+  struct FaceNodes {
+    std::vector<unsigned int> nodes; ///< of the cell
+    std::vector<double> weights;     ///< of these nodes, m or m^2
     /// dim nodes of the cell each, 4 of a quadrilateral; the outside as in
     /// Surfaces
     std::vector<std::vector<unsigned int>> pieces;

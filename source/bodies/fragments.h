@@ -47,12 +47,11 @@ namespace nsfd
     double broken_area_ = -1.;
     unsigned int count_ = 0;
 
-    struct Link
-    {
+    struct Link {
       unsigned int face, body; ///< of this rank
       int other;               ///< body of this rank, or -1
     };
-    std::vector<Link> links_; ///< faces between two cells, counted here
+    std::vector<Link> links_;         ///< faces between two cells, counted here
     std::vector<unsigned int> piece_; ///< per body, from 0 on each rank
     unsigned int n_pieces_ = 0;
     unsigned long long first_piece_ = 0; ///< number among those of all ranks

@@ -137,10 +137,9 @@ namespace nsfd
           result.of_strain +=
               (theta_ - 0.5) * (u[i] - u_old[i]) * k * (u[j] - u_old[j]);
           if (body.damping.rows > 0)
-            result.viscous += time_step_ *
-                              (theta_ * v[i] + (1. - theta_) * v_old[i]) *
-                              body.damping(i, j) *
-                              (theta_ * v[j] + (1. - theta_) * v_old[j]);
+            result.viscous +=
+                time_step_ * (theta_ * v[i] + (1. - theta_) * v_old[i]) *
+                body.damping(i, j) * (theta_ * v[j] + (1. - theta_) * v_old[j]);
         }
         result.work += time_step_ * (*forces_)[first + i] *
                        (theta_ * v[i] + (1. - theta_) * v_old[i]);

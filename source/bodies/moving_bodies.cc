@@ -1,11 +1,11 @@
 #include "moving_bodies.h"
 
+#include "body_energies.h"
 #include "core/gather.h"
 #include "discretization/body_shape.h"
-#include "body_energies.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "discretization/cell_geometry.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -63,8 +63,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void MovingBodies<dim>::put_rigid(const RigidState &rigid,
-                                    const Mover &mover, State &state) const
+  void MovingBodies<dim>::put_rigid(const RigidState &rigid, const Mover &mover,
+                                    State &state) const
   {
     double *x = state.rigid.data() + 13 * mover.rigid_number;
     std::copy_n(rigid.centre.begin(), 3, x);
@@ -77,9 +77,8 @@ namespace nsfd
       const std::size_t first = discretization_.first_node(c);
       for (std::size_t i = first; i < first + discretization_.shape(c).n_nodes;
            ++i) {
-        const Vec3 x_now =
-            in_space(Vector(at_nodes(rest_, i)) +
-                     Vector(at_nodes(state.displacement, i)));
+        const Vec3 x_now = in_space(Vector(at_nodes(rest_, i)) +
+                                    Vector(at_nodes(state.displacement, i)));
         const Vec3 v = rigid.velocity + cross(spin, x_now - rigid.centre);
         for (unsigned int d = 0; d < dim; ++d)
           state.velocity[i * dim + d] = v[d];
@@ -91,8 +90,7 @@ namespace nsfd
   template <int dim>
   void MovingBodies<dim>::share_rigid(State &state) const
   {
-    struct Motion
-    {
+    struct Motion {
       std::size_t number;
       std::array<double, 13> values;
     };
@@ -124,8 +122,8 @@ namespace nsfd
   {
     double square = 0.;
     for (std::size_t i = 0; i < n_nodes_; ++i)
-      square = std::max(square,
-                        Vector(at_nodes(state.velocity, i)).norm_square());
+      square =
+          std::max(square, Vector(at_nodes(state.velocity, i)).norm_square());
     double speed = std::sqrt(square);
     for (const Mover &mover : movers_)
       if (mover.radius > 0.) {
@@ -175,16 +173,16 @@ namespace nsfd
   }
 
   template <int dim>
-  std::array<double, dim>
-  MovingBodies<dim>::pin_drift(const unsigned int k, const State &state) const
+  std::array<double, dim> MovingBodies<dim>::pin_drift(const unsigned int k,
+                                                       const State &state) const
   {
     const Mover &mover = movers_[std::size_t(local_body_[body_of_pin(k)])];
     const RigidState rigid = rigid_state(state, mover);
     Vec3 at{};
     for (unsigned int d = 0; d < dim; ++d)
       at[d] = input_.pins[k].at[d];
-    const Vec3 off = rigid.centre +
-                     rotation(rigid.orientation) * (at - mover.centre) - at;
+    const Vec3 off =
+        rigid.centre + rotation(rigid.orientation) * (at - mover.centre) - at;
     std::array<double, dim> result;
     std::copy_n(off.begin(), dim, result.begin());
     return result;
@@ -310,8 +308,8 @@ namespace nsfd
                       node = discretization_.bodies().first_dof[mover.cells[0]];
     for (unsigned int i = 0; i < bodies_.classes[b].n_dofs; ++i)
       u_new_[node + i] =
-          u_old_[node + i] + time_step_ * (theta_ * v_[dof + i] +
-                                           (1. - theta_) * v_old_[dof + i]);
+          u_old_[node + i] +
+          time_step_ * (theta_ * v_[dof + i] + (1. - theta_) * v_old_[dof + i]);
   }
 
   template <int dim>
@@ -360,7 +358,8 @@ namespace nsfd
       for (const Slot &slot : slots) {
         const auto k = cells.class_of[slot.cell];
         const unsigned int n = discretization_.shape(slot.cell).n_nodes;
-        const Vector *g = slot_gradients_[k].data() + std::size_t(slot.slot) * n;
+        const Vector *g =
+            slot_gradients_[k].data() + std::size_t(slot.slot) * n;
         const std::size_t first = discretization_.first_node(slot.cell);
         for (unsigned int a = 1; a < dim; ++a) {
           Vector T;
@@ -370,8 +369,8 @@ namespace nsfd
           for (unsigned int i = 0; i < n; ++i)
             sum += (g[i] * T) * Vector(middle(first + i));
           for (unsigned int d = 0; d < dim; ++d)
-            side[slot.sign > 0][std::size_t(slot.point) * stride +
-                                (a - 1) * dim + d] = sum[d];
+            side[slot.sign > 0]
+                [std::size_t(slot.point) * stride + (a - 1) * dim + d] = sum[d];
         }
       }
     share_sides(side, stride);
@@ -499,8 +498,7 @@ namespace nsfd
   template <int dim>
   void MovingBodies<dim>::take_rigid_velocity(const std::size_t b)
   {
-    const RigidVelocity now =
-        rigid_[std::size_t(movers_[b].rigid)].velocity();
+    const RigidVelocity now = rigid_[std::size_t(movers_[b].rigid)].velocity();
     double *v = v_.data() + bodies_.first_dof[b];
     for (unsigned int d = 0; d < dim; ++d)
       v[d] = now.centre[d];
@@ -568,8 +566,7 @@ namespace nsfd
         put_rigid(rigid_[std::size_t(mover.rigid)].state(), mover, next);
       else {
         const unsigned int c = mover.cells[0];
-        std::copy_n(v_.data() + bodies_.first_dof[b],
-                    bodies_.classes[b].n_dofs,
+        std::copy_n(v_.data() + bodies_.first_dof[b], bodies_.classes[b].n_dofs,
                     next.velocity.data() +
                         discretization_.bodies().first_dof[c]);
         if (cells_.of(c)->n_history() > 0)
@@ -596,8 +593,8 @@ namespace nsfd
         result.of_mass += step.dissipated();
         const RigidLoad load = load_of(mover);
         const RigidVelocity v = step.theta_velocity();
-        result.work += time_step_ *
-                       (dot(load.force, v.centre) + dot(load.moment, v.spin));
+        result.work +=
+            time_step_ * (dot(load.force, v.centre) + dot(load.moment, v.spin));
         continue;
       }
       const unsigned int c = mover.cells[0], k = cells.class_of[c];
@@ -607,8 +604,8 @@ namespace nsfd
       for (unsigned int i = 0; i < M.rows; ++i) {
         for (unsigned int j = 0; j < M.cols; ++j) {
           result.kinetic += 0.5 * v[i] * M(i, j) * v[j];
-          result.of_mass += (theta_ - 0.5) * (v[i] - v_old[i]) * M(i, j) *
-                            (v[j] - v_old[j]);
+          result.of_mass +=
+              (theta_ - 0.5) * (v[i] - v_old[i]) * M(i, j) * (v[j] - v_old[j]);
         }
         result.work += time_step_ * forces_[first + i] *
                        (theta_ * v[i] + (1. - theta_) * v_old[i]);

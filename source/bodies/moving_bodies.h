@@ -5,8 +5,8 @@
 
 #include "core/neighbor_messages.h"
 #include "delassus/dynamics.h"
-#include "nsfd/discretization/discretization.h"
 #include "nsfd/bodies/rigid_step.h"
+#include "nsfd/discretization/discretization.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
 #include "state/state.h"
 
@@ -101,7 +101,8 @@ namespace nsfd
         it is a body of this rank. */
     unsigned int body_of_pin(unsigned int k) const;
     std::array<double, dim> pin_drift(unsigned int k, const State &state) const;
-    /** x2 - x1 of the points of the mesh, less its value at rest. Collective. */
+    /** x2 - x1 of the points of the mesh, less its value at rest. Collective.
+     */
     std::vector<double> jumps(const std::vector<double> &displacement) const;
 
     // --- one step ---
@@ -148,28 +149,25 @@ namespace nsfd
                                          const std::vector<double> &y) const;
 
   private:
-    struct Mover
-    {
+    struct Mover {
       std::vector<unsigned int> cells;
       unsigned int number = 0; ///< in the table
       unsigned int material = 0;
       int rigid = -1; ///< index of the rigid body on this rank, or -1
       std::size_t rigid_number = 0; ///< among those of all ranks
-      double radius = 0.; ///< of a ball
+      double radius = 0.;           ///< of a ball
       RigidInertia inertia;
-      Vec3 centre{}; ///< at rest
+      Vec3 centre{};            ///< at rest
       double extra_weight = 0.; ///< mass beyond that of its cells, kg
     };
     /** A place of a point of the mesh on a body. */
-    struct Slot
-    {
+    struct Slot {
       unsigned int cell, slot, point;
       signed char sign;
     };
 
     /** Of a contact of this rank. */
-    struct RowBodies
-    {
+    struct RowBodies {
       std::array<int, 2> body{{-1, -1}}; ///< of this rank, or -1
       std::array<unsigned int, 2> slot{};
       int other_rank = -1; ///< of the other body, if it is not this one
@@ -239,8 +237,8 @@ namespace nsfd
     // of the step
     double time_step_ = 0., theta_ = 0.5;
     std::vector<double> u_old_, u_new_, forces_, middle_; ///< by node
-    std::vector<double> history_; ///< of the materials, at the start
-    std::vector<double> v_old_, v_;                       ///< by unknown
+    std::vector<double> history_;   ///< of the materials, at the start
+    std::vector<double> v_old_, v_; ///< by unknown
     std::vector<RigidStep> rigid_;
     std::vector<double> shift_middle_;
     std::vector<MovingRow<dim>> rows_; ///< own ones first

@@ -2,8 +2,8 @@
 
 #include "discretization/body_shape.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "discretization/cell_geometry.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -119,25 +119,23 @@ namespace nsfd
       face.first = unsigned(row_point(k));
       face.count = 1;
       // apart from those of the mesh, the same in every run
-      face.key =
-          (std::uint64_t(row.partner == MovingRow<dim>::Partner::edge
-                             ? row.edge[0]
-                         : row.node == row.nowhere ? n_nodes + row.body_2
-                                                   : row.node)
-           << 20) +
-          row.index;
+      face.key = (std::uint64_t(row.partner == MovingRow<dim>::Partner::edge
+                                    ? row.edge[0]
+                                : row.node == row.nowhere ? n_nodes + row.body_2
+                                                          : row.node)
+                  << 20) +
+                 row.index;
       face.boundary = row.body_1 < 0;
       face.bodies = row_bodies_[k].body;
       face.neighbor_rank = row_bodies_[k].other_rank;
-      face.cells = {{row.body_1 < 0 ? row.body_2 : std::size_t(row.body_1),
-                     row.body_2}};
+      face.cells = {
+          {row.body_1 < 0 ? row.body_2 : std::size_t(row.body_1), row.body_2}};
       points_.faces.push_back(face);
     }
   }
 
   template <int dim>
-  void
-  MovingBodies<dim>::set_slots(const std::vector<unsigned int> &n_slots)
+  void MovingBodies<dim>::set_slots(const std::vector<unsigned int> &n_slots)
   {
     bodies_.first_slot.assign(1, 0);
     for (std::size_t b = 0; b < movers_.size(); ++b) {
@@ -323,8 +321,7 @@ namespace nsfd
     using Partner = typename MovingRow<dim>::Partner;
     const MovingRow<dim> &row = rows_[k];
     const std::size_t i = row_point(k);
-    const Vector normal =
-        row_normal(input_, row, row_ends_[k], shift_middle_);
+    const Vector normal = row_normal(input_, row, row_ends_[k], shift_middle_);
     const Place x = row_place(row, row_ends_[k], normal);
     auto frame = local_frame<dim>(normal);
     if (row.partner == Partner::pin)
@@ -346,8 +343,7 @@ namespace nsfd
       else if (side == 0)
         deformable_trace(b, slot,
                          in_reference_cell(row.facet_cell, row.facet.data(),
-                                           row.weights.data(), row.n_facet,
-                                           x));
+                                           row.weights.data(), row.n_facet, x));
       else if (row.partner == Partner::edge)
         deformable_trace(b, slot,
                          in_reference_cell(row.cell, row.edge.data(),

@@ -2,8 +2,8 @@
 
 #include "discretization/body_shape.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "discretization/cell_geometry.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -141,7 +141,8 @@ namespace nsfd
           mover.radius =
               std::max(mover.radius, norm(in_space(Vector(corner)) - centre));
       const double R = mover.radius;
-      mass = material.density * (dim == 2 ? pi * R * R : 4. / 3. * pi * R * R * R);
+      mass =
+          material.density * (dim == 2 ? pi * R * R : 4. / 3. * pi * R * R * R);
       inertia = {};
       for (unsigned int i = 0; i < 3; ++i)
         inertia[i][i] = (dim == 2 ? 0.5 : 0.4) * mass * R * R;

@@ -14,16 +14,8 @@ namespace nsfd
    * ranks: SurfaceCells.
    */
   template <int dim>
-  struct MovingRow
-  {
-    enum class Partner : unsigned char
-    {
-      facet,
-      ball,
-      obstacle,
-      edge,
-      pin
-    };
+  struct MovingRow {
+    enum class Partner : unsigned char { facet, ball, obstacle, edge, pin };
     static constexpr std::size_t nowhere =
         std::numeric_limits<std::size_t>::max();
 
@@ -47,7 +39,7 @@ namespace nsfd
     double gap = 0.;  ///< at the start of the step, m
     double rate = 0.; ///< of the gap at the start of the step, m/s
     double approach = 0., overlap = 0.; ///< known of it from elsewhere, m
-    double weight = 0.;         ///< m or m^2
+    double weight = 0.;                 ///< m or m^2
     unsigned int interaction = 0; ///< index into OneStepProblem::interactions
     unsigned int block = 0;
     std::size_t place = nowhere; ///< of what it remembers
@@ -55,7 +47,7 @@ namespace nsfd
     /// side: both know the same bound of their overlap
     std::size_t twin = nowhere;
     bool released = false; ///< a body has been let go of in the last step
-    double share = 1.; ///< of the impulse that its place remembers
+    double share = 1.;     ///< of the impulse that its place remembers
     std::array<double, dim> jump{}; ///< of a pin: how far it is off, m
   };
 } // namespace nsfd

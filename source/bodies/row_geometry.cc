@@ -63,9 +63,9 @@ namespace nsfd
       n[0] = 1.;
       return n;
     case Partner::obstacle:
-      return ObstacleGeometry<dim>(
-                 input.obstacles[row.obstacle],
-                 shifts.empty() ? nullptr : &shifts[3 * row.obstacle])
+      return ObstacleGeometry<dim>(input.obstacles[row.obstacle],
+                                   shifts.empty() ? nullptr
+                                                  : &shifts[3 * row.obstacle])
           .normal(ends.of_2[0]);
     case Partner::ball:
       n = ends.of_2[0] - ends.of_1[0];
@@ -88,8 +88,7 @@ namespace nsfd
   {
     using Partner = typename MovingRow<dim>::Partner;
     if (row.partner == Partner::edge)
-      return ends.of_2[0] +
-             row.edge_weights[1] * (ends.of_2[1] - ends.of_2[0]);
+      return ends.of_2[0] + row.edge_weights[1] * (ends.of_2[1] - ends.of_2[0]);
     // of a node and of a pin there is no radius
     return ends.of_2[0] - row.radius * normal;
   }

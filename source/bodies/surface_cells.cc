@@ -16,8 +16,7 @@ namespace nsfd
 
   /** A face of a cell, and what it is. */
   template <int dim>
-  struct SurfaceCells<dim>::CellFace
-  {
+  struct SurfaceCells<dim>::CellFace {
     std::uint64_t key;
     unsigned int cell, face;
   };
@@ -50,11 +49,10 @@ namespace nsfd
     const Bodies &cells = discretization_.bodies();
     std::vector<std::vector<FaceNodes<dim>>> own;
     for (const auto &body : cells.classes)
-      own.push_back(
-          body.bodies.empty()
-              ? std::vector<FaceNodes<dim>>()
-              : face_nodes(discretization_.element(),
-                           discretization_.shape(body.bodies[0])));
+      own.push_back(body.bodies.empty()
+                        ? std::vector<FaceNodes<dim>>()
+                        : face_nodes(discretization_.element(),
+                                     discretization_.shape(body.bodies[0])));
     std::size_t before = 0;
     const auto of_ranks = Utilities::MPI::all_gather(all_.mpi(), own);
     for (std::size_t r = 0; r < of_ranks.size(); ++r) {
@@ -62,14 +60,12 @@ namespace nsfd
         before = faces_.size();
       faces_.insert(faces_.end(), of_ranks[r].begin(), of_ranks[r].end());
     }
-    struct ClassOf
-    {
+    struct ClassOf {
       unsigned int cell, number;
     };
     std::vector<ClassOf> classes;
     for (unsigned int c = 0; c < cells.size(); ++c)
-      classes.push_back(
-          {cell_of(c), unsigned(before + cells.class_of[c])});
+      classes.push_back({cell_of(c), unsigned(before + cells.class_of[c])});
     class_of_.resize(table_.n_cells());
     for (const ClassOf &entry : gather_all(all_, classes))
       class_of_[entry.cell] = entry.number;
@@ -81,8 +77,7 @@ namespace nsfd
   template <int dim>
   void SurfaceCells<dim>::gather_balls()
   {
-    struct Ball
-    {
+    struct Ball {
       unsigned int body;
       double radius;
     };
@@ -99,8 +94,7 @@ namespace nsfd
   template <int dim>
   void SurfaceCells<dim>::merge_nodes()
   {
-    struct Twin
-    {
+    struct Twin {
       std::size_t node, first;
     };
     const double unit = 1e-9 * discretization_.extent();
@@ -140,8 +134,8 @@ namespace nsfd
       for (std::size_t s = cells.first_slot[c]; s < cells.first_slot[c + 1];
            ++s) {
         const unsigned int i = cells.slot_point[s];
-        if (i < points.n_points && discretization_.origins()[i].kind ==
-                                       PointOrigin::Kind::interface)
+        if (i < points.n_points &&
+            discretization_.origins()[i].kind == PointOrigin::Kind::interface)
           between.push_back({points.faces[points.face_of[i]].key, cell_of(c),
                              discretization_.face_of_slot(
                                  c, unsigned(s - cells.first_slot[c]))});

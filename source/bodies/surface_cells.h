@@ -41,8 +41,7 @@ namespace nsfd
     }
 
     /** Of the faces between cells that have points. */
-    struct MeshFace
-    {
+    struct MeshFace {
       unsigned int body_1, body_2;
     };
     const std::vector<MeshFace> &mesh_faces() const { return mesh_faces_; }

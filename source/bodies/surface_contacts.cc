@@ -67,8 +67,8 @@ namespace nsfd
   SurfaceContacts<dim>::place_of_edge(const unsigned int node_1,
                                       const unsigned int node_2) const
   {
-    const auto edge = std::lower_bound(edges_.begin(), edges_.end(),
-                                       pair_of(node_1, node_2));
+    const auto edge =
+        std::lower_bound(edges_.begin(), edges_.end(), pair_of(node_1, node_2));
     return first_place_.back() + table_.bodies.size() +
            std::size_t(edge - edges_.begin());
   }
@@ -98,8 +98,8 @@ namespace nsfd
   bool SurfaceContacts<dim>::may_touch(const unsigned int body) const
   {
     const auto n = long(input_.materials.size());
-    const auto blocks = block_by_materials_.begin() +
-                        long(table_.bodies[body].material) * n;
+    const auto blocks =
+        block_by_materials_.begin() + long(table_.bodies[body].material) * n;
     return std::any_of(blocks, blocks + n, [](const int k) { return k >= 0; });
   }
 
@@ -112,8 +112,8 @@ namespace nsfd
     state.surface_contact.assign(n, 0);
     state.surface_facet.assign(first_place_.back(), Surfaces<dim>::no_key);
     state.surface_gap.assign(first_place_.back(), 0.);
-    for (auto *array : {&state.surface_slip, &state.surface_overlap,
-                        &state.surface_approach})
+    for (auto *array :
+         {&state.surface_slip, &state.surface_overlap, &state.surface_approach})
       array->assign(n, 0.);
     if (has_sliding_lift(input_))
       for (auto *array : {&state.surface_worn, &state.surface_wear_speed})
@@ -218,9 +218,8 @@ namespace nsfd
     set_surfaces();
     set_moving_nodes();
     share_motion(state);
-    set_edges<dim>(
-        surfaces_, x_.data(),
-        [this](const unsigned int b) { return table_.is_rigid(b); });
+    set_edges<dim>(surfaces_, x_.data(),
+                   [this](const unsigned int b) { return table_.is_rigid(b); });
     counters_.facets =
         std::max<unsigned long long>(counters_.facets, surfaces_.facets.size());
     return true;
@@ -287,13 +286,11 @@ namespace nsfd
           cells_.first_node(origin.cell) +
           cells_.faces(origin.cell)[origin.face].nodes[origin.node]);
     std::sort(moving_nodes_.begin(), moving_nodes_.end());
-    moving_nodes_.erase(
-        std::unique(moving_nodes_.begin(), moving_nodes_.end()),
-        moving_nodes_.end());
+    moving_nodes_.erase(std::unique(moving_nodes_.begin(), moving_nodes_.end()),
+                        moving_nodes_.end());
     own_moving_nodes_.clear();
     const auto rank_of = [this](const std::size_t node) {
-      return table_
-          .bodies[table_.body_of_cell[node / cells_.nodes_per_cell()]]
+      return table_.bodies[table_.body_of_cell[node / cells_.nodes_per_cell()]]
           .rank;
     };
     for (const std::size_t node : moving_nodes_)
@@ -344,7 +341,8 @@ namespace nsfd
   {
     if (!table_.is_rigid(table_.body_of_cell[c]))
       return true;
-    const auto &sides = sides_at_.at(cells_.merged(cells_.first_node(c) + node));
+    const auto &sides =
+        sides_at_.at(cells_.merged(cells_.first_node(c) + node));
     const auto own = std::find_if(sides.begin(), sides.end(), [&](auto &side) {
       return side.cell == c && side.face == f;
     });
@@ -381,9 +379,9 @@ namespace nsfd
           continue;
         surfaces_.points.push_back(
             {facet.vertex[v], unsigned(surfaces_.facets.size())});
-        const auto j = unsigned(
-            std::find(face.nodes.begin(), face.nodes.end(), node) -
-            face.nodes.begin());
+        const auto j =
+            unsigned(std::find(face.nodes.begin(), face.nodes.end(), node) -
+                     face.nodes.begin());
         point_origins_.push_back({c, f, j});
         point_places_.push_back(place_of(c, f, j));
       }

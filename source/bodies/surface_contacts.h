@@ -41,8 +41,7 @@ namespace nsfd
     void set_initial(State &state) const;
 
     /** What State::surface_contact says of a place, added up. */
-    enum Mark : std::uint8_t
-    {
+    enum Mark : std::uint8_t {
       touches = 1,
       released = 2 ///< something let go of its body in the last step
     };
@@ -59,11 +58,10 @@ namespace nsfd
         same. Collective. */
     std::vector<MovingRow<dim>> rows(const State &old, double time_step);
 
-    struct Counters
-    {
+    struct Counters {
       unsigned long long searches = 0, facets = 0, rows = 0;
       unsigned long long edge_rows = 0; ///< of these rows
-      double largest_overlap = 0.; ///< of all pairs at starts of steps, m
+      double largest_overlap = 0.;      ///< of all pairs at starts of steps, m
     };
     const Counters &counters() const { return counters_; }
 
@@ -126,8 +124,7 @@ namespace nsfd
     std::vector<int> block_by_materials_;
 
     // of the surfaces at hand
-    struct Side
-    {
+    struct Side {
       unsigned int cell, face;
       Vector normal;
     };
@@ -138,8 +135,7 @@ namespace nsfd
     std::vector<double> x_, v_; ///< of them by node, and centres
     std::unordered_set<Pair> joined_;
     Surfaces<dim> surfaces_;
-    struct Origin
-    {
+    struct Origin {
       unsigned int cell, face, node; ///< node of the face
     };
     std::vector<Origin> point_origins_;
@@ -150,8 +146,7 @@ namespace nsfd
     SurfaceSearch<dim> search_;
     NearPairs<dim> pairs_;
     /// normals of contacts between two corners, by own node and other one
-    struct Seen
-    {
+    struct Seen {
       Vector normal;
       std::size_t row;
     };

@@ -27,22 +27,21 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::vector<MovingRow<dim>>
-  SurfaceContacts<dim>::rows(const State &old, const double h)
+  std::vector<MovingRow<dim>> SurfaceContacts<dim>::rows(const State &old,
+                                                         const double h)
   {
     if (follow(old))
       search_.topology_changed();
     // twice the speed of two bodies that meet, and what rests
-    const double reach = 2. * h * bodies_.largest_speed(old) +
-                         1e-9 * discretization_.extent();
+    const double reach =
+        2. * h * bodies_.largest_speed(old) + 1e-9 * discretization_.extent();
     std::vector<Row> result;
     if (!input_.contacts.empty())
       add_surface_rows(old, reach, result);
     if (!input_.obstacles.empty()) {
       auto rows = gather_all(all_, own_obstacle_rows(old, reach));
-      std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) {
-        return a.index < b.index;
-      });
+      std::sort(rows.begin(), rows.end(),
+                [](const Row &a, const Row &b) { return a.index < b.index; });
       result.insert(result.end(), rows.begin(), rows.end());
     }
     // an explicit forecast is known already; the overlap of springs that let
@@ -69,14 +68,12 @@ namespace nsfd
     counters_.rows += result.size();
     counters_.searches = search_.n_searches();
     for (const Row &row : result)
-      counters_.largest_overlap =
-          std::max(counters_.largest_overlap, -row.gap);
+      counters_.largest_overlap = std::max(counters_.largest_overlap, -row.gap);
     return result;
   }
 
   template <int dim>
-  Tensor<1, dim>
-  SurfaceContacts<dim>::velocity(const std::size_t node) const
+  Tensor<1, dim> SurfaceContacts<dim>::velocity(const std::size_t node) const
   {
     Vector v;
     for (unsigned int d = 0; d < dim; ++d)
@@ -149,9 +146,9 @@ namespace nsfd
       for (std::size_t k = places[0]; k < places[1]; ++k)
         take(k, own ? row.body_1 : int(row.body_2));
     }
-    const auto first = std::lower_bound(
-        points_by_vertex_.begin(), points_by_vertex_.end(),
-        std::pair(point.vertex, 0u));
+    const auto first =
+        std::lower_bound(points_by_vertex_.begin(), points_by_vertex_.end(),
+                         std::pair(point.vertex, 0u));
     for (auto p = first;
          p != points_by_vertex_.end() && p->first == point.vertex; ++p)
       take(point_places_[p->second], row.body_1);
@@ -198,9 +195,8 @@ namespace nsfd
 
   /** A point of an edge of body 2 on the edge of body 1 that it crosses. */
   template <int dim>
-  MovingRow<dim>
-  SurfaceContacts<dim>::edge_row(const EdgePair<dim> &pair,
-                                 const State &old) const
+  MovingRow<dim> SurfaceContacts<dim>::edge_row(const EdgePair<dim> &pair,
+                                                const State &old) const
   {
     const auto &edge = surfaces_.edges[pair.edge],
                &other = surfaces_.edges[pair.other];
@@ -238,9 +234,9 @@ namespace nsfd
     // as of a corner of a facet with these sides
     row.weight = way[0].norm() * way[1].norm() / 4.;
     row.place = place_of_edge(edge.vertex[0], edge.vertex[1]);
-    row.released = ((mark_of(old, edge.facet[0]) |
-                     mark_of(old, other.facet[0])) &
-                    released) != 0;
+    row.released =
+        ((mark_of(old, edge.facet[0]) | mark_of(old, other.facet[0])) &
+         released) != 0;
     row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
     row.interaction = interaction_of_contact(input_, row.block);
     return row;
@@ -253,9 +249,9 @@ namespace nsfd
    * tenth of a side and eight degrees.
    */
   template <int dim>
-  std::size_t
-  SurfaceContacts<dim>::seen_from_there(const FacetPair<dim> &pair,
-                                        const Row &row, const std::size_t index)
+  std::size_t SurfaceContacts<dim>::seen_from_there(const FacetPair<dim> &pair,
+                                                    const Row &row,
+                                                    const std::size_t index)
   {
     constexpr double at_corner = 0.9, opposed = -0.99;
     for (unsigned int v = 0; v < row.n_facet; ++v) {
@@ -385,8 +381,8 @@ namespace nsfd
     std::map<std::pair<std::size_t, unsigned int>, std::size_t> known;
     const auto add = [&](Row row, const unsigned int o) {
       const bool is_ball = row.node == Row::nowhere;
-      Vector away = is_ball ? centre_velocity(old, row.body_2)
-                            : node_velocity(row.node);
+      Vector away =
+          is_ball ? centre_velocity(old, row.body_2) : node_velocity(row.node);
       for (unsigned int d = 0; d < dim; ++d)
         if (const auto &own = input_.obstacles[o].velocity[d])
           away[d] -= own->at(Point<dim>(), old.time);

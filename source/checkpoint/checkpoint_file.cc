@@ -2,8 +2,8 @@
 
 #include "core/mix_bits.h"
 
-#include "core/version.h"
 #include "core/output_folder.h"
+#include "core/version.h"
 
 #include <fmt/format.h>
 
@@ -149,9 +149,8 @@ namespace nsfd::checkpoint_file
   {
     std::error_code unknown;
     if (!fs::is_regular_file(file, unknown))
-      throw std::runtime_error(
-          fmt::format("{}: it is no file, but a folder or a device",
-                      file.string()));
+      throw std::runtime_error(fmt::format(
+          "{}: it is no file, but a folder or a device", file.string()));
     errno = 0;
     std::ifstream stream(file, std::ios::binary | std::ios::ate);
     if (!stream)

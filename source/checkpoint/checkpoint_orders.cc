@@ -1,8 +1,8 @@
 #include "checkpoint_archive.h"
 
+#include "bodies/deformable_cells.h"
 #include "core/gather.h"
 #include "core/mix_bits.h"
-#include "bodies/deformable_cells.h"
 
 #include <algorithm>
 #include <cmath>

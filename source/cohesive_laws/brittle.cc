@@ -1,5 +1,5 @@
-#include "nsfd/cohesive_laws/law_input.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/cohesive_laws/law_input.h"
 
 #include <cmath>
 #include <limits>

@@ -22,9 +22,8 @@ namespace nsfd
   bool CohesiveLaw::has_potential() const
   {
     // equal up to the round-off of reading the two from the input
-    return mixed() == nullptr &&
-           std::abs(stiffness_ratio() - shear_weight()) <=
-               1e-12 * shear_weight();
+    return mixed() == nullptr && std::abs(stiffness_ratio() - shear_weight()) <=
+                                     1e-12 * shear_weight();
   }
 
   std::vector<double> CohesiveLaw::kinks() const

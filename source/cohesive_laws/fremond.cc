@@ -1,8 +1,8 @@
 #include "core/bracketed_root.h"
 #include "gauss.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/cohesive_laws/law_input.h"
 #include "parameters/parameter_file.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -101,18 +101,14 @@ namespace nsfd
         result.power_ = std::abs(power - std::round(power)) < 1e-5
                             ? std::round(power)
                             : std::round(power * 1e4) / 1e4;
-        result.s_ = Series::of([&](const double x) {
-          return f(x) / std::pow(x, result.power_);
-        });
+        result.s_ = Series::of(
+            [&](const double x) { return f(x) / std::pow(x, result.power_); });
         result.ds_ = result.s_.derivative();
         result.dds_ = result.ds_.derivative();
         return result;
       }
 
-      double value(const double x) const
-      {
-        return std::pow(x, power_) * s_(x);
-      }
+      double value(const double x) const { return std::pow(x, power_) * s_(x); }
       double first(const double x) const
       {
         return term(x, 1.) * s_(x) + std::pow(x, power_) * ds_(x);
@@ -169,10 +165,12 @@ namespace nsfd
       viscosity_ = reader.number("damage viscosity", "0",
                                  units::damage_viscosity, Range::non_negative(),
                                  "Of the intensity, J s/m^2; 0: none");
-      f_ = read_function(reader, "stiffness function", "beta^2",
-                         "Of the intensity beta: 0 at 0, 1 at 1, rising", false);
-      g_ = read_function(reader, "surface energy function", "1 - beta",
-                         "Of the intensity beta: 1 at 0, 0 at 1, falling", true);
+      f_ =
+          read_function(reader, "stiffness function", "beta^2",
+                        "Of the intensity beta: 0 at 0, 1 at 1, rising", false);
+      g_ =
+          read_function(reader, "surface energy function", "1 - beta",
+                        "Of the intensity beta: 1 at 0, 0 at 1, falling", true);
       tabulate();
       if (viscosity_ > 0. && jumps_)
         reader.error("damage viscosity",
@@ -231,8 +229,8 @@ namespace nsfd
       const double end = intensity(d), start = intensity(d_m) - end;
       const auto slowness = [&](const double y) {
         const double b = end + std::exp(y);
-        const double chi = f_.first(b) * stiffness_ * d * d / 2. -
-                           energy_ * g_.first(1. - b);
+        const double chi =
+            f_.first(b) * stiffness_ * d * d / 2. - energy_ * g_.first(1. - b);
         return viscosity_ * std::exp(y) / chi;
       };
       if (!(start > 0.))
@@ -341,8 +339,8 @@ namespace nsfd
       const auto softening = [&](const double b) {
         const double slope = f_.first(b), square = square_at(b);
         const double change = // d(d^2)/db < 0
-            -square * (g_.second(1. - b) / g_.first(1. - b) +
-                       f_.second(b) / slope);
+            -square *
+            (g_.second(1. - b) / g_.first(1. - b) + f_.second(b) / slope);
         return -(stiffness_at(b) + 2. * square * slope / change) * stiffness_;
       };
       steepest_ = softening(place_of_largest(softening));

@@ -1,6 +1,6 @@
 #include "gauss.h"
-#include "nsfd/cohesive_laws/law_input.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/cohesive_laws/law_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +78,8 @@ namespace nsfd
         double low = std::max(l, at - (1. - l) / n),
                high = std::min(1., at + (1. - l) / n);
         for (unsigned int k = 0; k < 60; ++k) {
-          const double a = low + (high - low) / 3., b = high - (high - low) / 3.;
+          const double a = low + (high - low) / 3.,
+                       b = high - (high - low) / 3.;
           (slope(a) < slope(b) ? low : high) = slope(a) < slope(b) ? a : b;
         }
         return std::max(best, slope(0.5 * (low + high)));
@@ -91,8 +92,8 @@ namespace nsfd
    * With g_N(x), g_T(y) of x = <u_N>_+ / delta_N and y = |u_T| / delta_T, and
    * toughnesses phi_N and phi_T in opening and in shear,
    *
-   *   T_N = -g_N'(x) <phi_T g_T(y) - <phi_T - phi_N>_+>_+ / delta_N  (phi_N < phi_T)
-   *   T_T = -g_T'(y) <phi_N g_N(x) - <phi_N - phi_T>_+>_+ / delta_T
+   *   T_N = -g_N'(x) <phi_T g_T(y) - <phi_T - phi_N>_+>_+ / delta_N  (phi_N <
+   * phi_T) T_T = -g_T'(y) <phi_N g_N(x) - <phi_N - phi_T>_+>_+ / delta_T
    *
    * and phi g of the other direction where its toughness is the larger one: the
    * gradient of their potential. Each strength fixes its final opening. Secants
@@ -105,12 +106,12 @@ namespace nsfd
     {
       strength_ = reader.number("strength", "", units::pressure,
                                 Range::positive(), "Largest traction R_max");
-      toughness_ = reader.number("toughness", "", units::energy_per_area,
-                                 Range::positive(), "Fracture energy in opening");
-      shear_strength_ =
-          laws::given(reader, "shear strength", units::pressure,
-                      "Largest traction in shear; default R_max")
-              .value_or(strength_);
+      toughness_ =
+          reader.number("toughness", "", units::energy_per_area,
+                        Range::positive(), "Fracture energy in opening");
+      shear_strength_ = laws::given(reader, "shear strength", units::pressure,
+                                    "Largest traction in shear; default R_max")
+                            .value_or(strength_);
       shear_toughness_ =
           laws::given(reader, "shear toughness", units::energy_per_area,
                       "Fracture energy in shear; default that in opening")
@@ -227,7 +228,8 @@ namespace nsfd
                             true};
       const Range share{0., 1., true, true};
       double alpha = normal_.alpha, peak = normal_.l;
-      if (is_normal || reader.optional(alpha_name, alpha_text + "; default alpha"))
+      if (is_normal ||
+          reader.optional(alpha_name, alpha_text + "; default alpha"))
         alpha = reader.number(alpha_name, alpha_default, units::none, above_one,
                               alpha_text);
       if (is_normal ||
@@ -247,14 +249,15 @@ namespace nsfd
     }
   };
 
-  NSFD_REGISTER(CohesiveLawRegistry, Ppr, "ppr",
-                "Intrinsic, of Park, Paulino and Roesler, two damage scalars; "
-                "strength and toughness of each mode",
-                "strength = 40 MPa; toughness = 100 J/m^2",
-                "strength = 40 MPa; toughness = 100 J/m^2; shear strength = 30 "
-                "MPa; shear toughness = 200 J/m^2; alpha = 5; peak ratio = 0.1; "
-                "shear alpha = 1.3; shear peak ratio = 0.2",
-                "strength = 40 MPa; toughness = 300 J/m^2; shear strength = 30 "
-                "MPa; shear toughness = 200 J/m^2; alpha = 2.5; shear alpha = "
-                "3; shear peak ratio = 0.05");
+  NSFD_REGISTER(
+      CohesiveLawRegistry, Ppr, "ppr",
+      "Intrinsic, of Park, Paulino and Roesler, two damage scalars; "
+      "strength and toughness of each mode",
+      "strength = 40 MPa; toughness = 100 J/m^2",
+      "strength = 40 MPa; toughness = 100 J/m^2; shear strength = 30 "
+      "MPa; shear toughness = 200 J/m^2; alpha = 5; peak ratio = 0.1; "
+      "shear alpha = 1.3; shear peak ratio = 0.2",
+      "strength = 40 MPa; toughness = 300 J/m^2; shear strength = 30 "
+      "MPa; shear toughness = 200 J/m^2; alpha = 2.5; shear alpha = "
+      "3; shear peak ratio = 0.05");
 } // namespace nsfd

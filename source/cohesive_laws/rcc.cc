@@ -1,5 +1,5 @@
-#include "nsfd/parameters/section_reader.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/parameters/section_reader.h"
 
 #include <algorithm>
 #include <cmath>

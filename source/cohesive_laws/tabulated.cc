@@ -1,8 +1,8 @@
+#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/cohesive_laws/law_input.h"
 #include "parameters/input_errors.h"
 #include "parameters/parameter_file.h"
 #include "parameters/text_file.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <fmt/format.h>
 

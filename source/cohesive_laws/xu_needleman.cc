@@ -1,6 +1,6 @@
 #include "gauss.h"
-#include "nsfd/cohesive_laws/law_input.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/cohesive_laws/law_input.h"
 
 #include <cmath>
 #include <limits>
@@ -40,10 +40,7 @@ namespace nsfd
     {
       return std::exp(1.) * strength_ / opening_;
     }
-    double stiffness_ratio() const override
-    {
-      return 2. * shear_weight();
-    }
+    double stiffness_ratio() const override { return 2. * shear_weight(); }
     double shear_weight() const override
     {
       return (opening_ / slip_) * (opening_ / slip_);
@@ -143,9 +140,9 @@ namespace nsfd
 
     double read_slip(SectionReader &reader) const
     {
-      const auto slip = laws::given(reader, "characteristic slip",
-                                    units::length,
-                                    "Slip delta_T; default delta_N");
+      const auto slip =
+          laws::given(reader, "characteristic slip", units::length,
+                      "Slip delta_T; default delta_N");
       const auto shear = laws::given(reader, "shear strength", units::pressure,
                                      "Largest traction in shear");
       if (slip && shear)

@@ -81,8 +81,7 @@ namespace nsfd
         for (const auto &change :
              parameter_changes(*runs[0].parameters, *runs[k].parameters))
           if (!is_place(change.name) &&
-              std::find(names.begin(), names.end(), change.name) ==
-                  names.end())
+              std::find(names.begin(), names.end(), change.name) == names.end())
             names.push_back(change.name);
       for (const std::string &name : names) {
         ComparedParameter entry;
@@ -96,12 +95,11 @@ namespace nsfd
               entry.values[k] = value.now;
         comparison.parameters.push_back(entry);
       }
-      std::stable_sort(comparison.parameters.begin(),
-                       comparison.parameters.end(),
-                       [](const ComparedParameter &a,
-                          const ComparedParameter &b) {
-                         return a.section < b.section;
-                       });
+      std::stable_sort(
+          comparison.parameters.begin(), comparison.parameters.end(),
+          [](const ComparedParameter &a, const ComparedParameter &b) {
+            return a.section < b.section;
+          });
     }
 
     double difference(const double a, const double b, const double scale)
@@ -212,10 +210,10 @@ namespace nsfd
             const auto &x = *runs[0].column("time"),
                        &y = *runs[k].column("time");
             const double scale =
-                is_energy(name)     ? energy
-                : is_reaction(name) ? reaction
-                                    : std::max(largest_size(*a),
-                                               largest_size(*b));
+                is_energy(name) ? energy
+                : is_reaction(name)
+                    ? reaction
+                    : std::max(largest_size(*a), largest_size(*b));
             const auto times =
                 common_times(x, y, comparison.begin, comparison.end);
             curve = compare_curve(times, interpolated(x, *a, times),

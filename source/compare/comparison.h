@@ -9,15 +9,13 @@
 namespace nsfd
 {
   /** One entry of parameters.prm that is not the same in all runs. */
-  struct ComparedParameter
-  {
+  struct ComparedParameter {
     std::string section, name;
     std::vector<std::string> values; ///< per run; empty: not set
   };
 
   /** A number of summary.json, per run. */
-  struct ComparedNumber
-  {
+  struct ComparedNumber {
     std::string name; ///< energy/kinetic
     std::vector<std::optional<double>> values;
     /// |difference| to the first run over `scale`; 0 for the first one, NaN
@@ -28,8 +26,7 @@ namespace nsfd
   };
 
   /** A column of history.csv of one run against that of the first. */
-  struct ComparedCurve
-  {
+  struct ComparedCurve {
     std::string name;
     std::size_t run = 1;
     /// of the difference at common times, over `scale`
@@ -38,8 +35,7 @@ namespace nsfd
     bool result = false;
   };
 
-  struct Comparison
-  {
+  struct Comparison {
     std::vector<RunFolder> runs;
     std::vector<ComparedParameter> parameters;
     unsigned int n_parameters = 0; ///< of the first run
@@ -49,8 +45,7 @@ namespace nsfd
     double begin = 0., end = 0.;
 
     /** The largest difference of any result, and whose it is. */
-    struct Largest
-    {
+    struct Largest {
       double difference = 0.;
       std::string name;
     };

@@ -1,8 +1,8 @@
 #include "comparison.h"
 
-#include "visualization/energy_lines.h"
 #include "postprocess/report_html.h"
 #include "shown_numbers.h"
+#include "visualization/energy_lines.h"
 
 #include "core/output_folder.h"
 #include "visualization/svg.h"
@@ -54,7 +54,7 @@ namespace nsfd
     };
 
     std::vector<std::string> page_head(const Comparison &comparison,
-                                  const bool differences)
+                                       const bool differences)
     {
       std::vector<std::string> row = {""};
       for (std::size_t k = 0; k < comparison.runs.size(); ++k)
@@ -115,8 +115,8 @@ namespace nsfd
       const auto add = [&](const std::string &file, const LineChart &chart) {
         write_file_atomically(directory + "/" + file + ".svg",
                               chart.svg(SvgUse::file));
-        html += "<figure class=\"card\">" + chart.svg(SvgUse::page) +
-                "</figure>\n";
+        html +=
+            "<figure class=\"card\">" + chart.svg(SvgUse::page) + "</figure>\n";
       };
       std::vector<std::string> drawn;
       for (const ComparedCurve &curve : comparison.curves) {
@@ -141,10 +141,10 @@ namespace nsfd
       Table table;
       for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
         const RunFolder &run = comparison.runs[k];
-        table.add_text(letter(k), run.name + (run.completed
-                                                  ? ""
-                                                  : ": not completed, " +
-                                                        run.failure));
+        table.add_text(letter(k),
+                       run.name + (run.completed
+                                       ? ""
+                                       : ": not completed, " + run.failure));
       }
       const auto largest = comparison.largest();
       table.add_text("largest difference of results",
@@ -218,8 +218,7 @@ namespace nsfd
         section("Differences",
                 "<p class=\"muted\">Relative to the larger value, of energies "
                 "to the largest energy.</p>\n" +
-                    row_of(numbers_html(comparison) +
-                           curves_html(comparison)));
+                    row_of(numbers_html(comparison) + curves_html(comparison)));
     write_file_atomically(directory + "/compare.html",
                           page("Comparison of runs", content));
   }

@@ -61,12 +61,13 @@ namespace nsfd
       std::string text;
       for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
         const RunFolder &run = comparison.runs[k];
-        text += letter(k) + "  " + run.name +
-                (run.completed ? "" : "  (not completed: " +
-                                          run.failure.substr(
-                                              0, run.failure.find('\n')) +
-                                          ")") +
-                "\n";
+        text +=
+            letter(k) + "  " + run.name +
+            (run.completed
+                 ? ""
+                 : "  (not completed: " +
+                       run.failure.substr(0, run.failure.find('\n')) + ")") +
+            "\n";
       }
       return text;
     }
@@ -172,9 +173,9 @@ namespace nsfd
     // verdicts have a table of their own
     if (in("cost/") || in("timings/") || in("certificate/"))
       return false;
-    const bool differs = std::any_of(number.differences.begin(),
-                                     number.differences.end(),
-                                     [](const double d) { return !(d == 0.); });
+    const bool differs =
+        std::any_of(number.differences.begin(), number.differences.end(),
+                    [](const double d) { return !(d == 0.); });
     const bool is_something =
         std::any_of(number.values.begin(), number.values.end(),
                     [](const auto &value) { return value && *value != 0.; });
@@ -254,8 +255,7 @@ namespace nsfd
     for (const auto &row : certificate_rows(comparison))
       json["certificate"].push_back(
           {{"name", row[0]},
-           {"verdicts",
-            std::vector<std::string>(row.begin() + 1, row.end())}});
+           {"verdicts", std::vector<std::string>(row.begin() + 1, row.end())}});
     json["begin"] = json_of(comparison.begin);
     json["end"] = json_of(comparison.end);
     json["curves"] = Json::array();

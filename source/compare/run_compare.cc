@@ -45,9 +45,10 @@ namespace nsfd
     out << "\n";
     if (!command.output.empty()) {
       OutputFolder &folder = OutputFolder::instance();
-      folder.describe(nlohmann::json{{"subcommand", "compare"},
-                                     {"runs", command.runs}}
-                          .dump());
+      folder.describe(nlohmann::json{
+          {"subcommand", "compare"},
+          {"runs",
+           command.runs}}.dump());
       write_file_atomically(command.output + "/compare.json",
                             comparison_json(comparison, command.tolerance));
       write_comparison_page(comparison, command.output);

@@ -50,13 +50,12 @@ namespace nsfd
     {
       const auto text = text_of(file);
       if (!text)
-        throw std::runtime_error(
-            fmt::format("there is no {}", file.string()));
+        throw std::runtime_error(fmt::format("there is no {}", file.string()));
       const Json json = Json::parse(*text, nullptr, false);
       if (!json.is_object() || !json.contains("completed") ||
           !json["completed"].is_boolean())
-        throw std::runtime_error(fmt::format(
-            "{} is not the summary of a run", file.string()));
+        throw std::runtime_error(
+            fmt::format("{} is not the summary of a run", file.string()));
       run.completed = json["completed"].get<bool>();
       if (json.contains("failure") && json["failure"].is_string())
         run.failure = json["failure"].get<std::string>();
@@ -102,9 +101,9 @@ namespace nsfd
       for (std::size_t row = 2; std::getline(lines, line); ++row) {
         const auto numbers = numbers_of(line, columns.size());
         if (numbers.empty())
-          throw std::runtime_error(fmt::format(
-              "{}, line {}: not {} numbers", file.string(), row,
-              columns.size()));
+          throw std::runtime_error(fmt::format("{}, line {}: not {} numbers",
+                                               file.string(), row,
+                                               columns.size()));
         for (std::size_t c = 0; c < columns.size(); ++c)
           columns[c].second.push_back(numbers[c]);
       }
@@ -162,9 +161,9 @@ namespace nsfd
       if (name == "work" || name.compare(0, 7, "energy/") == 0 ||
           name.compare(0, 11, "dissipated/") == 0)
         see(value);
-    for (const char *name : {"kinetic", "elastic", "cohesive", "damage",
-                             "friction", "viscous", "plastic", "impact",
-                             "numerical", "work"})
+    for (const char *name :
+         {"kinetic", "elastic", "cohesive", "damage", "friction", "viscous",
+          "plastic", "impact", "numerical", "work"})
       if (const auto *values = column(name))
         std::for_each(values->begin(), values->end(), see);
     return largest;
@@ -178,8 +177,8 @@ namespace nsfd
     if (!is_folder && !fs::exists(path))
       throw std::runtime_error(
           fmt::format("there is no folder or file {}", path));
-    const fs::path folder = is_folder ? fs::path(path)
-                                      : fs::path(path).parent_path();
+    const fs::path folder =
+        is_folder ? fs::path(path) : fs::path(path).parent_path();
     read_summary(is_folder ? folder / "summary.json" : fs::path(path), run);
     const auto history = text_of(folder / "history.csv");
     if (history)
@@ -189,10 +188,10 @@ namespace nsfd
          {std::pair(history.has_value(), "history.csv"),
           std::pair(run.parameters.has_value(), "parameters.prm")})
       if (is_folder && !there)
-        throw std::runtime_error(fmt::format("there is no {}; name {} to "
-                                             "compare the summaries alone",
-                                             (folder / name).string(),
-                                             (folder / "summary.json").string()));
+        throw std::runtime_error(fmt::format(
+            "there is no {}; name {} to "
+            "compare the summaries alone",
+            (folder / name).string(), (folder / "summary.json").string()));
     read_fragments(folder / "fragments.csv", run);
     return run;
   }

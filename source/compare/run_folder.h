@@ -11,8 +11,7 @@
 namespace nsfd
 {
   /** What a finished run has left in its folder. */
-  struct RunFolder
-  {
+  struct RunFolder {
     std::string name; ///< as given
 
     // of summary.json

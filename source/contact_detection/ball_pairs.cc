@@ -7,8 +7,7 @@ namespace nsfd
   namespace
   {
     template <int dim>
-    struct Near
-    {
+    struct Near {
       FacetPair<dim> pair;
       double distance = 0.; ///< of the centre
     };

@@ -36,8 +36,8 @@ namespace nsfd
     {
       double size = length;
       for (const unsigned int f : edge.facet)
-        size = std::min({size, planes[f].size,
-                         planes[f].size * planes[f].size / length});
+        size = std::min(
+            {size, planes[f].size, planes[f].size * planes[f].size / length});
       return size;
     }
 
@@ -88,9 +88,9 @@ namespace nsfd
         if (!sticks_out(edge, planes_, a.way) ||
             !sticks_out(other, planes_, b.way))
           return false;
-        const double lack = lack_of_room(
-            inward(edge, planes_, a.way), a_length,
-            inward(other, planes_, b.way), b_length, pair);
+        const double lack =
+            lack_of_room(inward(edge, planes_, a.way), a_length,
+                         inward(other, planes_, b.way), b_length, pair);
         const double size = std::min(size_of(edge, planes_, a_length),
                                      size_of(other, planes_, b_length));
         const double turn = std::abs(pair.gap) <= reach_
@@ -232,9 +232,9 @@ namespace nsfd
               facet.vertex[i], facet.vertex[(i + 1) % facet.n_vertices]);
           if (!edge || !sticks_out(*edge, planes_, segment_of(*edge, x_).way))
             continue;
-          const Plane<3> &next = planes_[edge->facet[0] == touch.facet
-                                             ? edge->facet[1]
-                                             : edge->facet[0]];
+          const Plane<3> &next =
+              planes_[edge->facet[0] == touch.facet ? edge->facet[1]
+                                                    : edge->facet[0]];
           if (dot(next.normal, difference(inside, next.centre)) > rounding)
             return true;
         }
@@ -248,11 +248,9 @@ namespace nsfd
           return std::minmax(edge.vertex[0], edge.vertex[1]);
         };
         const auto wanted = std::minmax(a, b);
-        const auto edge =
-            std::lower_bound(surfaces_.edges.begin(), surfaces_.edges.end(),
-                             wanted, [&](const Edge &e, const auto &value) {
-                               return ends(e) < value;
-                             });
+        const auto edge = std::lower_bound(
+            surfaces_.edges.begin(), surfaces_.edges.end(), wanted,
+            [&](const Edge &e, const auto &value) { return ends(e) < value; });
         return edge != surfaces_.edges.end() && ends(*edge) == wanted ? &*edge
                                                                       : nullptr;
       }
@@ -278,11 +276,10 @@ namespace nsfd
           return surfaces_.points[point.index].vertex;
         };
         const unsigned int vertex = own.vertex[end];
-        auto point = std::lower_bound(
-            points_.begin(), points_.end(), vertex,
-            [&](const auto &p, const unsigned int v) {
-              return vertex_of(p) < v;
-            });
+        auto point = std::lower_bound(points_.begin(), points_.end(), vertex,
+                                      [&](const auto &p, const unsigned int v) {
+                                        return vertex_of(p) < v;
+                                      });
         for (; point != points_.end() && vertex_of(*point) == vertex; ++point) {
           if (surfaces_.facets[point->facet].body !=
               surfaces_.facets[opposite.facet[0]].body)
@@ -293,7 +290,7 @@ namespace nsfd
                 (end == 0 ? place : 1. - place) * length(own);
             pair_lost_[k] |= distance < same_place * size(pair);
           } else if (pair.is_sure && (point->facet == opposite.facet[0] ||
-                                  point->facet == opposite.facet[1])) {
+                                      point->facet == opposite.facet[1])) {
             const double rounding = same_length * size(pair);
             const Segment segment = segment_of(own, x_);
             const double climb = (end == 0 ? 1. : -1.) *
@@ -323,8 +320,8 @@ namespace nsfd
             at_vertex.emplace_back(v, k);
         std::sort(at_vertex.begin(), at_vertex.end());
         for (std::size_t i = 0; i < at_vertex.size(); ++i)
-          for (std::size_t j = i + 1; j < at_vertex.size() &&
-                                      at_vertex[j].first == at_vertex[i].first;
+          for (std::size_t j = i + 1;
+               j < at_vertex.size() && at_vertex[j].first == at_vertex[i].first;
                ++j)
             if (are_neighbours(other(pairs_[at_vertex[i].second]),
                                other(pairs_[at_vertex[j].second])))
@@ -372,8 +369,7 @@ namespace nsfd
     };
 
     /** A side of a facet, its vertices in order. */
-    struct Side
-    {
+    struct Side {
       unsigned int low, high;
       std::uint64_t key; ///< of the facet
       unsigned int facet;

@@ -5,8 +5,7 @@
 namespace nsfd
 {
   /** from + s way, s from 0 to 1 */
-  struct Segment
-  {
+  struct Segment {
     Place<3> from{}, way{};
   };
 

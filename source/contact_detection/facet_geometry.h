@@ -83,8 +83,7 @@ namespace nsfd
                      const Place<dim> &y);
 
   template <int dim>
-  struct FacetPlace
-  {
+  struct FacetPlace {
     Place<dim> place{};
     std::array<double, 4> weights{};
   };

@@ -36,8 +36,7 @@ namespace nsfd
     using Box = boost::geometry::model::box<Corner<dim>>;
 
     template <int dim>
-    struct BoxTree
-    {
+    struct BoxTree {
       using Entry = std::pair<Box<dim>, unsigned int>;
       boost::geometry::index::rtree<Entry,
                                     boost::geometry::index::linear<node_size>>
@@ -114,8 +113,7 @@ namespace nsfd
     }
 
     /** What a facet may become before the next search. */
-    struct Change
-    {
+    struct Change {
       double size = 0.; ///< the largest
       double turn = 2.; ///< of the unit normal, the length of its change
       /// distance of the vertices from the plane, now
@@ -232,12 +230,11 @@ namespace nsfd
     }
 
     template <int dim>
-    IndexLists facets_of_points(const Surfaces<dim> &surfaces, const double *x,
-                                const std::vector<unsigned int> &order,
-                                const BoxTree<dim> &tree,
-                                const FacetFilter<dim> &filter,
-                                const OwnBodies &is_own,
-                                const JoinedBodies &joined)
+    IndexLists
+    facets_of_points(const Surfaces<dim> &surfaces, const double *x,
+                     const std::vector<unsigned int> &order,
+                     const BoxTree<dim> &tree, const FacetFilter<dim> &filter,
+                     const OwnBodies &is_own, const JoinedBodies &joined)
     {
       IndexLists result;
       result.first.reserve(order.size() + 1);
@@ -357,8 +354,7 @@ namespace nsfd
         double size = norm(segments[e].way) + skin;
         for (const unsigned int f : edges[e].facet)
           size = std::min(
-              size,
-              change_of<3>(surfaces.facets[f], planes[f], x, skin).size);
+              size, change_of<3>(surfaces.facets[f], planes[f], x, skin).size);
         // a tenth more than the skin for round-off
         margins[e] = std::max(reach, deepest * size) + 1.1 * skin;
         entries.emplace_back(box_of(segments[e], 0.), e);

@@ -10,8 +10,7 @@ namespace nsfd
   namespace
   {
     template <int dim>
-    struct Touch
-    {
+    struct Touch {
       FacetPair<dim> pair;
       double opposed = 0.;  ///< cosine between the two outward normals
       bool is_kept = false; ///< the facet of the last step
@@ -145,8 +144,8 @@ namespace nsfd
         const auto &ends = surfaces_.facets[f].vertex;
         const auto past = [&](const unsigned int v) {
           const Place<dim> end = place<dim>(x_, ends[v]);
-          return dot(difference(y, end),
-                     difference(end, planes_[f].centre)) > 0.;
+          return dot(difference(y, end), difference(end, planes_[f].centre)) >
+                 0.;
         };
         for (unsigned int v = 0; v < 2; ++v)
           if (past(v) && next_[f][v] != NearCandidates::no_facet) {

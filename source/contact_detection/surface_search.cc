@@ -1,7 +1,7 @@
 #include "surface_search.h"
 
-#include "core/gather.h"
 #include "ball_pairs.h"
+#include "core/gather.h"
 #include "edge_pairs.h"
 #include "near_candidates.h"
 #include "point_pairs.h"
@@ -64,9 +64,8 @@ namespace nsfd
       return std::pair(vertex(a), a.index) < std::pair(vertex(b), b.index);
     });
     if (!surfaces.balls.empty()) {
-      join(pairs.balls, [](const auto &a, const auto &b) {
-        return a.index < b.index;
-      });
+      join(pairs.balls,
+           [](const auto &a, const auto &b) { return a.index < b.index; });
       join(pairs.ball_balls, [](const auto &a, const auto &b) {
         return std::tie(a.ball, a.other) < std::tie(b.ball, b.other);
       });
@@ -100,9 +99,8 @@ namespace nsfd
     set_planes<dim>(surfaces, x, planes_);
     if (!candidates_hold(surfaces, x, reach)) {
       skin_ = skin_of<dim>(surfaces, planes_);
-      candidates_ =
-          search_candidates<dim>(surfaces, x, planes_, reach, skin_,
-                                 all_ ? is_own_ : any_body, joined);
+      candidates_ = search_candidates<dim>(surfaces, x, planes_, reach, skin_,
+                                           all_ ? is_own_ : any_body, joined);
       searched_at_.assign(x, x + surfaces.n_vertices * dim);
       searched_sizes_ = sizes_of(surfaces);
       searched_reach_ = reach;

@@ -15,15 +15,13 @@ namespace nsfd
    * facets of one body share their vertices, those of two bodies never do.
    */
   template <int dim>
-  struct Surfaces
-  {
+  struct Surfaces {
     /**
      * A flat piece: 2 vertices in the plane, its outward normal being b - a
      * turned by -90 degrees; 3 or 4 in space, counter-clockwise seen from
      * outside, 4 of them convex and perhaps slightly warped.
      */
-    struct Facet
-    {
+    struct Facet {
       std::array<unsigned int, 4> vertex{};
       unsigned int n_vertices = dim;
       unsigned int body = 0;
@@ -33,14 +31,12 @@ namespace nsfd
     static constexpr std::uint64_t no_key = (std::uint64_t(1) << 53) - 1;
 
     /** A vertex of a facet that may touch facets of other bodies. */
-    struct Point
-    {
+    struct Point {
       unsigned int vertex = 0, facet = 0;
       /// of the facet that it was over in the last step: which way it came in
       std::uint64_t last_key = no_key;
     };
-    struct Ball
-    {
+    struct Ball {
       unsigned int body = 0;
       double radius = 0.;
       std::uint64_t key = 0;
@@ -50,8 +46,7 @@ namespace nsfd
      * In space: where two facets of a body meet. The way from vertex 0 to
      * vertex 1 has facet 0 on its left, seen from outside.
      */
-    struct Edge
-    {
+    struct Edge {
       std::array<unsigned int, 2> vertex{}, facet{};
     };
 
@@ -77,8 +72,7 @@ namespace nsfd
    * two triangles, and is the same for whichever vertex comes first.
    */
   template <int dim>
-  struct Plane
-  {
+  struct Plane {
     std::array<double, dim> normal{}, centre{};
     double size = 0.; ///< length or square root of the area
   };
@@ -88,8 +82,7 @@ namespace nsfd
    * body of the facet; lengths are those of the positions.
    */
   template <int dim>
-  struct FacetPair
-  {
+  struct FacetPair {
     unsigned int index = 0; ///< of the point or of the ball
     unsigned int facet = 0;
     double gap = 0.;
@@ -100,8 +93,7 @@ namespace nsfd
 
   /** ball < other; the normal leads from the other ball to this one. */
   template <int dim>
-  struct BallPair
-  {
+  struct BallPair {
     unsigned int ball = 0, other = 0;
     double gap = 0.;
     std::array<double, dim> normal{}, closest{}; ///< closest: on the other
@@ -112,8 +104,7 @@ namespace nsfd
    * other edge to this one; places are parts of the way along the edges.
    */
   template <int dim>
-  struct EdgePair
-  {
+  struct EdgePair {
     unsigned int edge = 0, other = 0;
     double gap = 0.;
     std::array<double, dim> normal{}, closest{}; ///< closest: on the other
@@ -122,8 +113,7 @@ namespace nsfd
   };
 
   template <int dim>
-  struct NearPairs
-  {
+  struct NearPairs {
     std::vector<FacetPair<dim>> points; ///< at most one per point
     std::vector<FacetPair<dim>> balls;  ///< one per place that a ball is near
     std::vector<BallPair<dim>> ball_balls;
@@ -134,15 +124,13 @@ namespace nsfd
   using JoinedBodies = std::function<bool(unsigned int, unsigned int)>;
 
   /** List i is entries first[i] to first[i + 1]. */
-  struct IndexLists
-  {
+  struct IndexLists {
     std::vector<std::size_t> first;
     std::vector<unsigned int> entries;
   };
 
   /** What may be near what until something has moved by half the skin. */
-  struct NearCandidates
-  {
+  struct NearCandidates {
     std::vector<unsigned int> order; ///< points, those of a vertex in a row
     IndexLists facets_of_points;     ///< one list per place in `order`
     IndexLists facets_of_balls;
@@ -155,9 +143,10 @@ namespace nsfd
 
   /**
    * Finds which points and balls are near which facets and balls of other
-   * bodies, and which edges cross. Candidates are searched in a tree of boxes with a skin around them
-   * and kept while nothing has moved by more than half the skin. Pairs depend
-   * on positions and keys only, not on the order of facets or on earlier calls.
+   * bodies, and which edges cross. Candidates are searched in a tree of boxes
+   * with a skin around them and kept while nothing has moved by more than half
+   * the skin. Pairs depend on positions and keys only, not on the order of
+   * facets or on earlier calls.
    */
   template <int dim>
   class SurfaceSearch

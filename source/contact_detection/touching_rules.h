@@ -12,8 +12,8 @@ namespace nsfd
   /**
    * A corner touches facets whose normals point back into the cone of its own
    * ones, or nearly opposite to that of its facet (45 degrees): the bottom
-   * corner of a box that leans over another one does not touch its side, however
-   * near it is, while it sinks into its top.
+   * corner of a box that leans over another one does not touch its side,
+   * however near it is, while it sinks into its top.
    */
   constexpr double face_to_face = -0.7;
 

@@ -7,11 +7,8 @@ namespace nsfd
    * f(high): regula falsi with the Illinois change, bisection as the guard.
    */
   template <typename Function>
-  double bracketed_root(const Function &f,
-                        double low,
-                        double high,
-                        double f_low,
-                        double f_high)
+  double bracketed_root(const Function &f, double low, double high,
+                        double f_low, double f_high)
   {
     int side = 0;
     for (unsigned int k = 0; k < 200; ++k) {

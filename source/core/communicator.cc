@@ -19,7 +19,7 @@ namespace nsfd
   } // namespace
 
   Communicator::Communicator(const MPI_Comm communicator)
-    : communicator_(communicator)
+      : communicator_(communicator)
   {
     MPI_Comm_rank(communicator, &rank_);
     MPI_Comm_size(communicator, &size_);
@@ -30,8 +30,7 @@ namespace nsfd
     return sums(terms, 1, n)[0];
   }
 
-  double Communicator::dot(const double *a,
-                           const double *b,
+  double Communicator::dot(const double *a, const double *b,
                            const std::size_t n) const
   {
     const Charge charge(Cost::sums);
@@ -77,8 +76,8 @@ namespace nsfd
     std::vector<double> result(rows);
     for (std::size_t r = 0; r < rows; ++r)
       result[r] = std::isfinite(top[r])
-                    ? parts[2 * r] + parts[2 * r + 1]
-                    : std::numeric_limits<double>::quiet_NaN();
+                      ? parts[2 * r] + parts[2 * r + 1]
+                      : std::numeric_limits<double>::quiet_NaN();
     return result;
   }
 

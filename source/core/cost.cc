@@ -17,8 +17,7 @@ namespace nsfd
     using Clock = std::chrono::steady_clock;
 
     // one thread per rank: plain counters
-    struct Meter
-    {
+    struct Meter {
       std::array<Clock::duration, n_lines> spent{};
       std::array<unsigned long long, n_lines> calls{};
       Cost current = Cost::rest;
@@ -46,8 +45,7 @@ namespace nsfd
       return double(info.uordblks) + double(info.hblkhd);
     }
 
-    struct Heap
-    {
+    struct Heap {
       std::vector<std::pair<std::string, double>> lines;
       double last = 0.;
     };

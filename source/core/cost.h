@@ -51,8 +51,7 @@ namespace nsfd
   /** From now on all time is counted, from zero. */
   void begin_costs();
 
-  struct CostLine
-  {
+  struct CostLine {
     std::string name;
     double seconds = 0.;
     unsigned long long calls = 0;

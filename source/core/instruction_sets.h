@@ -6,8 +6,7 @@
 // machines of another would get the oldest code.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define NSFD_CLONES                                                            \
-  __attribute__((                                                              \
-      target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #define NSFD_INLINE inline __attribute__((always_inline))
 #else
 #define NSFD_CLONES

@@ -61,11 +61,11 @@ namespace nsfd
     {
       double left = unlimited;
       // in a container, the path may be that of the machine outside it
-      fs::path group = (root / fs::path(path).relative_path())
-                           .lexically_normal();
+      fs::path group =
+          (root / fs::path(path).relative_path()).lexically_normal();
       for (;;) {
-        left = std::min(left,
-                        left_by(group, limit_file, usage_file, cache_key));
+        left =
+            std::min(left, left_by(group, limit_file, usage_file, cache_key));
         if (group == root || !group.has_relative_path() ||
             group.string().size() <= root.string().size())
           break;
@@ -88,15 +88,14 @@ namespace nsfd
             "," + line.substr(first + 1, second - first - 1) + ",";
         const std::string path = line.substr(second + 1);
         if (controllers == ",,")
-          left = std::min(left, left_by_groups("/sys/fs/cgroup", path,
-                                               "memory.max", "memory.current",
-                                               "inactive_file"));
+          left = std::min(left,
+                          left_by_groups("/sys/fs/cgroup", path, "memory.max",
+                                         "memory.current", "inactive_file"));
         else if (controllers.find(",memory,") != std::string::npos)
-          left = std::min(
-              left, left_by_groups("/sys/fs/cgroup/memory", path,
-                                   "memory.limit_in_bytes",
-                                   "memory.usage_in_bytes",
-                                   "total_inactive_file"));
+          left = std::min(left, left_by_groups("/sys/fs/cgroup/memory", path,
+                                               "memory.limit_in_bytes",
+                                               "memory.usage_in_bytes",
+                                               "total_inactive_file"));
       }
       return left;
     }
@@ -104,13 +103,12 @@ namespace nsfd
     double left_of_address_space()
     {
       rlimit limit{};
-      if (getrlimit(RLIMIT_AS, &limit) != 0 ||
-          limit.rlim_cur == RLIM_INFINITY)
+      if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
         return unlimited;
       const auto pages = number_in("/proc/self/statm");
-      return std::max(0., double(limit.rlim_cur) -
-                              pages.value_or(0.) *
-                                  double(sysconf(_SC_PAGESIZE)));
+      return std::max(0.,
+                      double(limit.rlim_cur) -
+                          pages.value_or(0.) * double(sysconf(_SC_PAGESIZE)));
     }
   } // namespace
 

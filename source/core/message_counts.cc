@@ -150,7 +150,7 @@ int MPI_Recv(void *data, int n, MPI_Datatype type, int from, int tag,
              MPI_Comm comm, MPI_Status *status)
 {
   return waiting(
-    [&] { return PMPI_Recv(data, n, type, from, tag, comm, status); });
+      [&] { return PMPI_Recv(data, n, type, from, tag, comm, status); });
 }
 
 int MPI_Wait(MPI_Request *request, MPI_Status *status)
@@ -172,7 +172,7 @@ int MPI_Waitsome(int n, MPI_Request *requests, int *n_done, int *indices,
                  MPI_Status *statuses)
 {
   return waiting(
-    [&] { return PMPI_Waitsome(n, requests, n_done, indices, statuses); });
+      [&] { return PMPI_Waitsome(n, requests, n_done, indices, statuses); });
 }
 
 int MPI_Barrier(MPI_Comm comm)
@@ -222,19 +222,17 @@ int MPI_Exscan(const void *send, void *receive, int n, MPI_Datatype type,
 
 int MPI_Bcast(void *data, int n, MPI_Datatype type, int root, MPI_Comm comm)
 {
-  return collective(
-    rank_in(comm) == root ? n * size_of(type) : 0., comm,
-    [&] { return PMPI_Bcast(data, n, type, root, comm); });
+  return collective(rank_in(comm) == root ? n * size_of(type) : 0., comm,
+                    [&] { return PMPI_Bcast(data, n, type, root, comm); });
 }
 
 int MPI_Gather(const void *send, int n_send, MPI_Datatype type, void *receive,
                int n, MPI_Datatype type_receive, int root, MPI_Comm comm)
 {
-  return collective(
-    bytes_of(send, n_send, type, n, type_receive), comm, [&] {
-      return PMPI_Gather(send, n_send, type, receive, n, type_receive, root,
-                         comm);
-    });
+  return collective(bytes_of(send, n_send, type, n, type_receive), comm, [&] {
+    return PMPI_Gather(send, n_send, type, receive, n, type_receive, root,
+                       comm);
+  });
 }
 
 int MPI_Gatherv(const void *send, int n_send, MPI_Datatype type, void *receive,
@@ -243,8 +241,8 @@ int MPI_Gatherv(const void *send, int n_send, MPI_Datatype type, void *receive,
 {
   return collective(send == MPI_IN_PLACE ? 0. : n_send * size_of(type), comm,
                     [&] {
-                      return PMPI_Gatherv(send, n_send, type, receive, n,
-                                          first, type_receive, root, comm);
+                      return PMPI_Gatherv(send, n_send, type, receive, n, first,
+                                          type_receive, root, comm);
                     });
 }
 
@@ -252,11 +250,9 @@ int MPI_Allgather(const void *send, int n_send, MPI_Datatype type,
                   void *receive, int n, MPI_Datatype type_receive,
                   MPI_Comm comm)
 {
-  return collective(
-    bytes_of(send, n_send, type, n, type_receive), comm, [&] {
-      return PMPI_Allgather(send, n_send, type, receive, n, type_receive,
-                            comm);
-    });
+  return collective(bytes_of(send, n_send, type, n, type_receive), comm, [&] {
+    return PMPI_Allgather(send, n_send, type, receive, n, type_receive, comm);
+  });
 }
 
 int MPI_Allgatherv(const void *send, int n_send, MPI_Datatype type,
@@ -264,10 +260,10 @@ int MPI_Allgatherv(const void *send, int n_send, MPI_Datatype type,
                    MPI_Datatype type_receive, MPI_Comm comm)
 {
   return collective(
-    bytes_of(send, n_send, type, n[rank_in(comm)], type_receive), comm, [&] {
-      return PMPI_Allgatherv(send, n_send, type, receive, n, first,
-                             type_receive, comm);
-    });
+      bytes_of(send, n_send, type, n[rank_in(comm)], type_receive), comm, [&] {
+        return PMPI_Allgatherv(send, n_send, type, receive, n, first,
+                               type_receive, comm);
+      });
 }
 
 int MPI_Scatter(const void *send, int n_send, MPI_Datatype type, void *receive,
@@ -276,34 +272,34 @@ int MPI_Scatter(const void *send, int n_send, MPI_Datatype type, void *receive,
   int size = 1;
   PMPI_Comm_size(comm, &size);
   return collective(
-    rank_in(comm) == root ? double(n_send) * size * size_of(type) : 0., comm,
-    [&] {
-      return PMPI_Scatter(send, n_send, type, receive, n, type_receive, root,
-                          comm);
-    });
+      rank_in(comm) == root ? double(n_send) * size * size_of(type) : 0., comm,
+      [&] {
+        return PMPI_Scatter(send, n_send, type, receive, n, type_receive, root,
+                            comm);
+      });
 }
 
 int MPI_Scatterv(const void *send, const int *n_send, const int *first,
                  MPI_Datatype type, void *receive, int n,
                  MPI_Datatype type_receive, int root, MPI_Comm comm)
 {
-  return collective(
-    rank_in(comm) == root ? bytes_of(n_send, type, comm) : 0., comm, [&] {
-      return PMPI_Scatterv(send, n_send, first, type, receive, n, type_receive,
-                           root, comm);
-    });
+  return collective(rank_in(comm) == root ? bytes_of(n_send, type, comm) : 0.,
+                    comm, [&] {
+                      return PMPI_Scatterv(send, n_send, first, type, receive,
+                                           n, type_receive, root, comm);
+                    });
 }
 
-int MPI_Alltoall(const void *send, int n_send, MPI_Datatype type,
-                 void *receive, int n, MPI_Datatype type_receive,
-                 MPI_Comm comm)
+int MPI_Alltoall(const void *send, int n_send, MPI_Datatype type, void *receive,
+                 int n, MPI_Datatype type_receive, MPI_Comm comm)
 {
   int size = 1;
   PMPI_Comm_size(comm, &size);
-  return collective(
-    size * bytes_of(send, n_send, type, n, type_receive), comm, [&] {
-      return PMPI_Alltoall(send, n_send, type, receive, n, type_receive, comm);
-    });
+  return collective(size * bytes_of(send, n_send, type, n, type_receive), comm,
+                    [&] {
+                      return PMPI_Alltoall(send, n_send, type, receive, n,
+                                           type_receive, comm);
+                    });
 }
 
 int MPI_Alltoallv(const void *send, const int *n_send, const int *first,

@@ -16,8 +16,7 @@ namespace nsfd
   class NeighborMessages
   {
   public:
-    struct Message
-    {
+    struct Message {
       int rank = 0;
       std::vector<T> out, in;
     };

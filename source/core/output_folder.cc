@@ -31,14 +31,14 @@ namespace nsfd
     /** Of runs whose run.json has no list: the files that every run promises.
      */
     const std::vector<std::string> promised = {
-        "parameters.prm", "run.json",       "units.json",    "history.csv",
-        "summary.json",   "fields.pvd",     "interfaces.pvd", "checkpoint.h5",
-        "report.html"};
+        "parameters.prm", "run.json",      "units.json",
+        "history.csv",    "summary.json",  "fields.pvd",
+        "interfaces.pvd", "checkpoint.h5", "report.html"};
 
     /** Those of many runs. */
     const std::vector<std::string> frequent = {
-        "checkpoint_previous.h5", "fields.xdmf",       "fields.h5",
-        "interfaces.xdmf",        "interfaces.h5",     "fragments.csv"};
+        "checkpoint_previous.h5", "fields.xdmf",   "fields.h5",
+        "interfaces.xdmf",        "interfaces.h5", "fragments.csv"};
 
     bool refuse(const std::string &text)
     {
@@ -151,8 +151,7 @@ namespace nsfd
         return fmt::format("process {} on {}", process, host_name());
       const Json json = read_description(directory);
       if (json.is_object() && json.contains("host") && json["host"].is_string())
-        return "another process, perhaps on " +
-               json["host"].get<std::string>();
+        return "another process, perhaps on " + json["host"].get<std::string>();
       return "another process";
     }
   } // namespace
@@ -166,7 +165,8 @@ namespace nsfd
   /** Held until the process ends, however it does. */
   bool OutputFolder::lock(const std::string &directory)
   {
-    const int file = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int file =
+        open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file < 0)
       return refuse(fmt::format("cannot open the output directory `{}`: {}",
                                 directory, std::strerror(errno)));
@@ -226,16 +226,15 @@ namespace nsfd
           "  write --output DIR with another name",
           directory));
     if (!existed && how == Claim::go_on)
-      return refuse(fmt::format("there is no folder `{}`: nothing was run",
-                                directory));
+      return refuse(
+          fmt::format("there is no folder `{}`: nothing was run", directory));
     fs::create_directories(folder, error);
     if (error)
       return refuse(fmt::format("cannot create the output directory `{}`: {}",
                                 directory, error.message()));
     if (access(directory.c_str(), W_OK | X_OK) != 0)
-      return refuse(
-          fmt::format("cannot write to the output directory `{}`: {}",
-                      directory, std::strerror(errno)));
+      return refuse(fmt::format("cannot write to the output directory `{}`: {}",
+                                directory, std::strerror(errno)));
     if (!lock(directory))
       return false;
     files_.clear();
@@ -267,8 +266,7 @@ namespace nsfd
         fs::remove(folder / name, error);
         if (error)
           return refuse(fmt::format("cannot replace `{}`: {}",
-                                    (folder / name).string(),
-                                    error.message()));
+                                    (folder / name).string(), error.message()));
         if (name.has_parent_path())
           below.insert(name.parent_path());
       }
@@ -350,9 +348,9 @@ namespace nsfd
 
   bool claim_directory(const std::string &directory, const bool force)
   {
-    return OutputFolder::instance().claim(
-        directory, force ? OutputFolder::Claim::replace
-                         : OutputFolder::Claim::anew);
+    return OutputFolder::instance().claim(directory,
+                                          force ? OutputFolder::Claim::replace
+                                                : OutputFolder::Claim::anew);
   }
 
   void write_file_atomically(const std::string &path, const std::string &text)

@@ -26,16 +26,19 @@ namespace nsfd::stop_request
       int signal;
       const char *text;
     };
-    constexpr Name names[] = {{SIGHUP, "SIGHUP"},   {SIGINT, "SIGINT"},
-                              {SIGQUIT, "SIGQUIT"}, {SIGTERM, "SIGTERM"},
-                              {SIGUSR1, "SIGUSR1"}, {SIGXCPU, "SIGXCPU"},
+    constexpr Name names[] = {{SIGHUP, "SIGHUP"},
+                              {SIGINT, "SIGINT"},
+                              {SIGQUIT, "SIGQUIT"},
+                              {SIGTERM, "SIGTERM"},
+                              {SIGUSR1, "SIGUSR1"},
+                              {SIGXCPU, "SIGXCPU"},
                               {SIGPIPE, "a closed standard output"}};
 
     std::atomic<bool> is_first{true}, remembers{false}, watches{false};
-    std::atomic<int> request{0};       ///< the signal, 0: none
+    std::atomic<int> request{0};          ///< the signal, 0: none
     std::atomic<double> request_time{0.}; ///< s
-    int scope_ranks = 0;               ///< 0: not in a step
-    double next_look = 0.;             ///< s
+    int scope_ranks = 0;                  ///< 0: not in a step
+    double next_look = 0.;                ///< s
 
     double seconds()
     {

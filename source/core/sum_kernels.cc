@@ -37,11 +37,8 @@ namespace nsfd
   }
 
   NSFD_CLONES
-  void split_sums(const double *x,
-                  const std::size_t n,
-                  const double high,
-                  const double low,
-                  double *parts)
+  void split_sums(const double *x, const std::size_t n, const double high,
+                  const double low, double *parts)
   {
     Vector8 first = {}, second = {};
     std::size_t i = 0;

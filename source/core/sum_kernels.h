@@ -12,9 +12,6 @@ namespace nsfd
    * parts[0] what is above the ulp of @p high, parts[1] of the rest what is
    * above the ulp of @p low.
    */
-  void split_sums(const double *x,
-                  std::size_t n,
-                  double high,
-                  double low,
+  void split_sums(const double *x, std::size_t n, double high, double low,
                   double *parts);
 } // namespace nsfd

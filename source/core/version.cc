@@ -6,10 +6,7 @@
 
 namespace nsfd
 {
-  Version version()
-  {
-    return {NSFD_VERSION, NSFD_GIT_HASH, NSFD_BUILD_TYPE};
-  }
+  Version version() { return {NSFD_VERSION, NSFD_GIT_HASH, NSFD_BUILD_TYPE}; }
 
   std::vector<std::pair<std::string, std::string>> library_versions()
   {

@@ -19,7 +19,7 @@ namespace nsfd
             L[i * n + j] = value * L[j * n + j];
           else // what round-off takes from a stiff block stays positive
             L[j * n + j] =
-              1. / std::sqrt(std::max(value, 1e-14 * std::abs(L[j * n + j])));
+                1. / std::sqrt(std::max(value, 1e-14 * std::abs(L[j * n + j])));
         }
       }
     }
@@ -69,8 +69,8 @@ namespace nsfd
       for (int i = first; i < end; ++i)
         for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k)
           if (matrix.column[k] >= first && matrix.column[k] < end)
-            block[std::size_t(i - first) * n + std::size_t(matrix.column[k] - first)] =
-              matrix.value[k];
+            block[std::size_t(i - first) * n +
+                  std::size_t(matrix.column[k] - first)] = matrix.value[k];
       factorise(block, n);
       invert(block, n, work_.data());
     }

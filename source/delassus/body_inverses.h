@@ -11,8 +11,9 @@ namespace nsfd
   {
   public:
     explicit BodyInverses(std::vector<std::size_t> first_dof)
-      : first_dof_(std::move(first_dof))
-    {}
+        : first_dof_(std::move(first_dof))
+    {
+    }
 
     void prepare(const SparseRows &matrix);
     /** z = sum_b E_b A_bb^{-1} E_b^T r. */

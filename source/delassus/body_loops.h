@@ -44,15 +44,12 @@ namespace nsfd
 
   /** The block that @p select has for a class to all of its bodies. */
   template <typename Select, typename Gather, typename Scatter>
-  void for_all_bodies(const Bodies &bodies,
-                      const Select &select,
-                      const Gather &gather,
-                      const Scatter &scatter)
+  void for_all_bodies(const Bodies &bodies, const Select &select,
+                      const Gather &gather, const Scatter &scatter)
   {
     for (std::size_t k = 0; k < bodies.classes.size(); ++k) {
       const auto &members = bodies.classes[k].bodies;
-      for_bodies(select(k), members.data(), 0, members.size(), gather,
-                 scatter);
+      for_bodies(select(k), members.data(), 0, members.size(), gather, scatter);
     }
   }
 
@@ -91,47 +88,46 @@ namespace nsfd
                         n = bodies.first_slot[b + 1] - first;
       for (std::size_t s = 0; s < n; ++s) {
         const double *P =
-          cartesian.data() + std::size_t(bodies.slot_point[first + s]) * dim;
+            cartesian.data() + std::size_t(bodies.slot_point[first + s]) * dim;
         const double sign = bodies.slot_sign[first + s];
         for (unsigned int c = 0; c < dim; ++c)
           x[(s * dim + c) * stride] = sign * P[c];
       }
       if (!bodies.extra_points.empty())
         for (auto e = std::lower_bound(
-               bodies.extra_points.begin(), bodies.extra_points.end(),
-               std::pair<std::size_t, unsigned int>(first, 0));
+                 bodies.extra_points.begin(), bodies.extra_points.end(),
+                 std::pair<std::size_t, unsigned int>(first, 0));
              e != bodies.extra_points.end() && e->first < first + n; ++e)
           for (unsigned int c = 0; c < dim; ++c)
             x[((e->first - first) * dim + c) * stride] +=
-              cartesian[std::size_t(e->second) * dim + c];
+                cartesian[std::size_t(e->second) * dim + c];
     };
   }
 
   template <int dim>
-  auto slot_scatter(const Bodies &bodies,
-                    std::vector<double> &side_1,
+  auto slot_scatter(const Bodies &bodies, std::vector<double> &side_1,
                     std::vector<double> &side_2)
   {
-    return [&](const unsigned int b, const double *y,
-               const unsigned int stride) {
-      const std::size_t first = bodies.first_slot[b],
-                        n = bodies.first_slot[b + 1] - first;
-      for (std::size_t s = 0; s < n; ++s) {
-        const std::size_t p = bodies.slot_point[first + s];
-        const double sign = bodies.slot_sign[first + s];
-        double *U = (sign > 0. ? side_2 : side_1).data() + p * dim;
-        for (unsigned int c = 0; c < dim; ++c)
-          U[c] = sign * y[(s * dim + c) * stride];
-      }
-      if (!bodies.extra_points.empty())
-        for (auto e = std::lower_bound(
-               bodies.extra_points.begin(), bodies.extra_points.end(),
-               std::pair<std::size_t, unsigned int>(first, 0));
-             e != bodies.extra_points.end() && e->first < first + n; ++e)
-          for (unsigned int c = 0; c < dim; ++c)
-            side_2[std::size_t(e->second) * dim + c] =
-              y[((e->first - first) * dim + c) * stride];
-    };
+    return
+        [&](const unsigned int b, const double *y, const unsigned int stride) {
+          const std::size_t first = bodies.first_slot[b],
+                            n = bodies.first_slot[b + 1] - first;
+          for (std::size_t s = 0; s < n; ++s) {
+            const std::size_t p = bodies.slot_point[first + s];
+            const double sign = bodies.slot_sign[first + s];
+            double *U = (sign > 0. ? side_2 : side_1).data() + p * dim;
+            for (unsigned int c = 0; c < dim; ++c)
+              U[c] = sign * y[(s * dim + c) * stride];
+          }
+          if (!bodies.extra_points.empty())
+            for (auto e = std::lower_bound(
+                     bodies.extra_points.begin(), bodies.extra_points.end(),
+                     std::pair<std::size_t, unsigned int>(first, 0));
+                 e != bodies.extra_points.end() && e->first < first + n; ++e)
+              for (unsigned int c = 0; c < dim; ++c)
+                side_2[std::size_t(e->second) * dim + c] =
+                    y[((e->first - first) * dim + c) * stride];
+        };
   }
 
   /**
@@ -140,9 +136,8 @@ namespace nsfd
    * way.
    */
   template <int dim, typename Select, typename Gather>
-  void values_of_both_sides(const Dynamics<dim> &dynamics,
-                            const Select &select, const Gather &gather,
-                            std::vector<double> &side_1,
+  void values_of_both_sides(const Dynamics<dim> &dynamics, const Select &select,
+                            const Gather &gather, std::vector<double> &side_1,
                             std::vector<double> &side_2)
   {
     const auto &classes = dynamics.order().classes;

@@ -19,24 +19,21 @@ namespace nsfd
                               std::array<std::vector<PointTrace>, 2> traces,
                               std::vector<Bond> bonds,
                               const long long first_dof)
-    : bodies_(bodies)
-    , points_(points)
-    , traces_(std::move(traces))
-    , bonds_(std::move(bonds))
-    , first_dof_(first_dof)
-    , neighbors_(bodies.size())
+      : bodies_(bodies), points_(points), traces_(std::move(traces)),
+        bonds_(std::move(bonds)), first_dof_(first_dof),
+        neighbors_(bodies.size())
   {
     matrix_.first_row = first_dof;
     for (std::size_t b = 0; b < bodies.size(); ++b)
       neighbors_[b].push_back(
-        neighbor(first_dof + static_cast<long long>(bodies.first_dof[b]),
-                 unsigned(bodies.first_dof[b + 1] - bodies.first_dof[b])));
+          neighbor(first_dof + static_cast<long long>(bodies.first_dof[b]),
+                   unsigned(bodies.first_dof[b + 1] - bodies.first_dof[b])));
     for (const auto &face : points.faces)
       for (unsigned int s = 0; s < 2; ++s) {
         const PointTrace &other = traces_[1 - s][face.first];
         if (face.bodies[s] >= 0 && other.first >= 0)
           neighbors_[face.bodies[s]].push_back(
-            neighbor(other.first, other.n_dofs));
+              neighbor(other.first, other.n_dofs));
       }
     for (auto &list : neighbors_) {
       std::sort(list.begin(), list.end(), comes_before<Neighbor>);
@@ -56,8 +53,8 @@ namespace nsfd
                             const unsigned int n_dofs) const
   {
     const bool here =
-      first >= first_dof_ &&
-      first < first_dof_ + static_cast<long long>(bodies_.n_dofs());
+        first >= first_dof_ &&
+        first < first_dof_ + static_cast<long long>(bodies_.n_dofs());
     return {!here, first, n_dofs, 0};
   }
 
@@ -89,12 +86,12 @@ namespace nsfd
            ++i) {
         for (const auto &neighbor : neighbors_[b]) {
           const long long first =
-            neighbor.elsewhere
-              ? static_cast<long long>(bodies_.n_dofs()) +
-                  (std::lower_bound(ghosts.begin(), ghosts.end(),
-                                    neighbor.first) -
-                   ghosts.begin())
-              : neighbor.first - first_dof_;
+              neighbor.elsewhere
+                  ? static_cast<long long>(bodies_.n_dofs()) +
+                        (std::lower_bound(ghosts.begin(), ghosts.end(),
+                                          neighbor.first) -
+                         ghosts.begin())
+                  : neighbor.first - first_dof_;
           for (unsigned int j = 0; j < neighbor.n_dofs; ++j)
             matrix_.column.push_back(int(first + j));
         }
@@ -106,12 +103,12 @@ namespace nsfd
 
   /** First entry of the columns from @p first on in the first row of a body. */
   template <int dim>
-  double *BodyMatrix<dim>::block(const unsigned int body,
-                                 const long long first, std::size_t &stride)
+  double *BodyMatrix<dim>::block(const unsigned int body, const long long first,
+                                 std::size_t &stride)
   {
     const auto &list = neighbors_[body];
     const auto found = std::lower_bound(
-      list.begin(), list.end(), neighbor(first, 0), comes_before<Neighbor>);
+        list.begin(), list.end(), neighbor(first, 0), comes_before<Neighbor>);
     const std::size_t row = bodies_.first_dof[body];
     stride = std::size_t(matrix_.start[row + 1] - matrix_.start[row]);
     return &matrix_.value[std::size_t(matrix_.start[row]) + found->offset];
@@ -136,15 +133,15 @@ namespace nsfd
 
   template <int dim>
   void BodyMatrix<dim>::add_face(
-    const typename InterfacePoints<dim>::Face &face, const unsigned int s,
-    const unsigned int t, const StepShares &shares,
-    const std::vector<std::uint8_t> &bonded, const double *stiffness)
+      const typename InterfacePoints<dim>::Face &face, const unsigned int s,
+      const unsigned int t, const StepShares &shares,
+      const std::vector<std::uint8_t> &bonded, const double *stiffness)
   {
     if (face.bodies[s] < 0 || traces_[t][face.first].first < 0)
       return;
     std::size_t stride;
-    double *out = block(unsigned(face.bodies[s]), traces_[t][face.first].first,
-                        stride);
+    double *out =
+        block(unsigned(face.bodies[s]), traces_[t][face.first].first, stride);
     std::vector<double> row_traction, column_traction;
     for (unsigned int p = face.first; p < face.first + face.count; ++p) {
       const PointTrace &row = traces_[s][p], &column = traces_[t][p];
@@ -176,9 +173,8 @@ namespace nsfd
                      *v = step_traction(column, k, shares, column_traction);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < m; ++j)
-            out[i * stride + j] +=
-              a[i] * (alpha * c[j] + column_beta * v[j]) +
-              row_beta * u[i] * c[j];
+            out[i * stride + j] += a[i] * (alpha * c[j] + column_beta * v[j]) +
+                                   row_beta * u[i] * c[j];
       }
     }
   }
@@ -193,10 +189,9 @@ namespace nsfd
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const BodyClass &body = bodies_.classes[bodies_.class_of[b]];
       std::size_t stride;
-      double *out =
-        block(unsigned(b),
-              first_dof_ + static_cast<long long>(bodies_.first_dof[b]),
-              stride);
+      double *out = block(
+          unsigned(b),
+          first_dof_ + static_cast<long long>(bodies_.first_dof[b]), stride);
       for (unsigned int i = 0; i < body.n_dofs; ++i)
         for (unsigned int j = 0; j < body.n_dofs; ++j)
           out[i * stride + j] = step_entry(body, shares, i, j);

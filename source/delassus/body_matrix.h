@@ -38,8 +38,7 @@ namespace nsfd
 
   private:
     /** A body that couples with a row of bodies: its columns there. */
-    struct Neighbor
-    {
+    struct Neighbor {
       bool elsewhere = false; ///< on another rank: ghosts come last in a row
       long long first = 0;    ///< global
       unsigned int n_dofs = 0, offset = 0;

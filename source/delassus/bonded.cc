@@ -24,10 +24,8 @@ namespace nsfd
     public:
       using typename BondedDynamics<dim>::Operator;
 
-      Bonded(const Communicator &communicator,
-             const Bodies &bodies,
-             const InterfacePoints<dim> &points,
-             const std::string &solver,
+      Bonded(const Communicator &communicator, const Bodies &bodies,
+             const InterfacePoints<dim> &points, const std::string &solver,
              const std::vector<double> &coordinates);
 
       void reinit(double time_step, double theta) override;
@@ -52,10 +50,7 @@ namespace nsfd
       void prepare(SpdSolver &solver, const SparseRows &matrix,
                    SparseRows &kept) const;
       void update() const;
-      bool is_row(const std::size_t k) const
-      {
-        return !this->bonded_[k / dim];
-      }
+      bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
       double least_compliance(std::size_t row, double W) const;
       bool condense() const;
       void set_diagonal();
@@ -67,18 +62,18 @@ namespace nsfd
       std::unique_ptr<SpdSolver> joined_; ///< of A = M_hat + H^T D^{-1} H
       mutable SparseRows factor_matrix_, joined_matrix_;
       mutable bool is_glued_ = false; ///< for the step and the bonds
-      mutable bool valid_ = false;        ///< factor_
+      mutable bool valid_ = false;    ///< factor_
       bool joined_valid_ = false;
       /// the system was factored as a dense one: W may be condensed later,
       /// within the iterations of a system prepared without
       bool dense_system_ = false;
-      mutable std::size_t n_solves_ = 0; ///< with the present factor
-      mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
-      std::vector<double> D_;         ///< of the system to precondition
-      std::vector<double> inverse_D_; ///< of the one that was factored
+      mutable std::size_t n_solves_ = 0;     ///< with the present factor
+      mutable CondensedDelassus condensed_;  ///< W of the rows, if it pays
+      std::vector<double> D_;                ///< of the system to precondition
+      std::vector<double> inverse_D_;        ///< of the one that was factored
       std::vector<double> inverse_D_coarse_; ///< of the glued space (`cg`)
       unsigned long long coarse_version_ = 0;
-      std::vector<double> diagonal_;  ///< of W, from above
+      std::vector<double> diagonal_; ///< of W, from above
       /// applications after which a new factor is cheaper than going on
       static constexpr unsigned int patience = 12;
       mutable unsigned int n_applied_ = 0; ///< since the last system
@@ -86,12 +81,11 @@ namespace nsfd
     };
 
     template <int dim>
-    Bonded<dim>::Bonded(const Communicator &communicator,
-                        const Bodies &bodies,
+    Bonded<dim>::Bonded(const Communicator &communicator, const Bodies &bodies,
                         const InterfacePoints<dim> &points,
                         const std::string &solver,
                         const std::vector<double> &coordinates)
-      : BondedDynamics<dim>(communicator, bodies, points)
+        : BondedDynamics<dim>(communicator, bodies, points)
     {
       // K >= so much of the bodies' own: their blocks bound W from above
       this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
@@ -99,17 +93,17 @@ namespace nsfd
       long long sum = 0;
       MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
       matrix_ = std::make_unique<BodyMatrix<dim>>(
-        bodies, points, point_traces(*this, sum - mine, true), this->bulk_.bonds(),
-        sum - mine);
+          bodies, points, point_traces(*this, sum - mine, true),
+          this->bulk_.bonds(), sum - mine);
       const auto n = communicator.sum_integer(bodies.n_dofs());
-      const bool direct =
-        solver == "direct" ||
-        (solver == "auto" && static_cast<long long>(n) <= largest_factor<dim>);
+      const bool direct = solver == "direct" ||
+                          (solver == "auto" &&
+                           static_cast<long long>(n) <= largest_factor<dim>);
       if (!direct) {
         const SparseAssembly<dim> nodes(communicator, bodies, points,
                                         coordinates);
         glued_ = std::make_unique<GluedSpace>(
-          communicator, dim, nodes.unknowns(), nodes.node_pairs());
+            communicator, dim, nodes.unknowns(), nodes.node_pairs());
       }
       for (auto *one : {&factor_, &joined_})
         *one = direct ? make_cholesky_solver(communicator)
@@ -128,10 +122,10 @@ namespace nsfd
         return;
       std::vector<char> faces;
       for (const auto &face : this->points_.faces)
-        faces.push_back(std::all_of(
-          this->bonded_.begin() + face.first,
-          this->bonded_.begin() + face.first + face.count,
-          [](const std::uint8_t bonded) { return bonded != 0; }));
+        faces.push_back(
+            std::all_of(this->bonded_.begin() + face.first,
+                        this->bonded_.begin() + face.first + face.count,
+                        [](const std::uint8_t bonded) { return bonded != 0; }));
       glued_->glue(faces);
       glued_->touch();
       is_glued_ = true;
@@ -184,8 +178,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void Bonded<dim>::solve(SpdSolver &solver, const double *b,
-                            double *x) const
+    void Bonded<dim>::solve(SpdSolver &solver, const double *b, double *x) const
     {
       std::fill(x, x + this->bodies_.n_dofs(), 0.);
       this->counters_.inner_iterations += solver.solve(b, x, tight);
@@ -193,8 +186,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void Bonded<dim>::apply(const Operator op, const double *x,
-                            double *y) const
+    void Bonded<dim>::apply(const Operator op, const double *x, double *y) const
     {
       if (op == Operator::inverse) {
         solve(x, y);
@@ -255,7 +247,7 @@ namespace nsfd
       const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
       constexpr std::size_t batch = 64; // columns fill the caches
       std::vector<double> B(n * batch), X(n * batch),
-        impulse(this->bonded_.size() * dim, 0.), velocity(impulse.size());
+          impulse(this->bonded_.size() * dim, 0.), velocity(impulse.size());
       condensed_.reset(impulse.size(), rows);
       for (std::size_t first = 0; first < m; first += batch) {
         const std::size_t count = std::min(batch, m - first);
@@ -304,7 +296,7 @@ namespace nsfd
       for (std::size_t row = 0; row < D.size(); ++row)
         if (D[row] >= 0. && is_row(row))
           inverse_D_[row] =
-            1. / std::max(D[row], least_compliance(row, diagonal_[row]));
+              1. / std::max(D[row], least_compliance(row, diagonal_[row]));
       prepare_joined();
     }
 
@@ -408,8 +400,7 @@ namespace nsfd
 
   template <int dim>
   std::unique_ptr<BondedDynamics<dim>>
-  make_bonded_dynamics(const Communicator &communicator,
-                       const Bodies &bodies,
+  make_bonded_dynamics(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
                        const std::vector<double> &coordinates)

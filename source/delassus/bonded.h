@@ -62,8 +62,7 @@ namespace nsfd
    */
   template <int dim>
   std::unique_ptr<BondedDynamics<dim>>
-  make_bonded_dynamics(const Communicator &communicator,
-                       const Bodies &bodies,
+  make_bonded_dynamics(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
                        const std::vector<double> &coordinates);

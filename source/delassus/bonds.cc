@@ -12,12 +12,9 @@ namespace nsfd
   BondedDynamics<dim>::BondedDynamics(const Communicator &communicator,
                                       const Bodies &bodies,
                                       const InterfacePoints<dim> &points)
-    : Dynamics<dim>(communicator, bodies, points)
-    , bulk_(*this)
-    , bonded_(points.n_points, 0)
-    , jump_(points.n_points * dim)
-    , traction_(points.n_points * dim)
-    , force_(bodies.n_dofs())
+      : Dynamics<dim>(communicator, bodies, points), bulk_(*this),
+        bonded_(points.n_points, 0), jump_(points.n_points * dim),
+        traction_(points.n_points * dim), force_(bodies.n_dofs())
   {
     for (const auto &body : bodies.classes) {
       traction_transposed_.push_back(body.traction.transposed());
@@ -26,8 +23,7 @@ namespace nsfd
   }
 
   template <int dim>
-  bool
-  BondedDynamics<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
+  bool BondedDynamics<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
   {
     if (!this->communicator_.any(bonded != bonded_))
       return false;
@@ -75,13 +71,13 @@ namespace nsfd
     else
       bulk_.evaluate(x, traction_.data());
     const auto &transposed =
-      viscous ? viscous_transposed_ : traction_transposed_;
+        viscous ? viscous_transposed_ : traction_transposed_;
     for (std::size_t i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c) {
         double &u = jump_[i * dim + c], &t = traction_[i * dim + c];
         const double w = bonded_[i] ? points.weight[i] : 0.;
-        t = w * (t + (viscous ? bonds[i].viscous_penalty : bonds[i].penalty) *
-                       u);
+        t = w *
+            (t + (viscous ? bonds[i].viscous_penalty : bonds[i].penalty) * u);
         u *= w;
       }
     this->generalised_impulse(traction_.data(), force_.data());
@@ -97,7 +93,7 @@ namespace nsfd
       for (std::size_t s = 0; s < n_slots; ++s) {
         const std::size_t p = bodies.slot_point[first + s];
         const bool second = bodies.slot_sign[first + s] > 0;
-        const double share = p == n     ? 0.
+        const double share = p == n   ? 0.
                              : second ? -bonds[p].weight_2
                                       : bonds[p].weight_1;
         for (unsigned int c = 0; c < dim; ++c)
@@ -105,10 +101,9 @@ namespace nsfd
       }
     };
     for_all_bodies(
-      bodies, [&](const std::size_t k) -> const Block & {
-        return transposed[k];
-      },
-      gather, dof_scatter<true>(bodies, y));
+        bodies,
+        [&](const std::size_t k) -> const Block & { return transposed[k]; },
+        gather, dof_scatter<true>(bodies, y));
   }
 
   template class BondedDynamics<2>;

@@ -9,8 +9,7 @@ namespace nsfd
 {
   template <int dim>
   BulkTraction<dim>::BulkTraction(const Dynamics<dim> &dynamics)
-    : dynamics_(dynamics)
-    , bonds_(dynamics.points().n_points)
+      : dynamics_(dynamics), bonds_(dynamics.points().n_points)
   {
     set_bonds();
     side_1_.resize((bonds_.size() + 1) * dim);
@@ -49,8 +48,9 @@ namespace nsfd
         bond.penalty = penalty_factor * a * b / (a + b);
       }
       bond.viscous_penalty =
-        penalty_factor * (bond.weight_1 * bond.weight_1 * bounds[0][2 * i + 1] +
-                          bond.weight_2 * bond.weight_2 * bounds[1][2 * i + 1]);
+          penalty_factor *
+          (bond.weight_1 * bond.weight_1 * bounds[0][2 * i + 1] +
+           bond.weight_2 * bond.weight_2 * bounds[1][2 * i + 1]);
     }
   }
 
@@ -78,10 +78,11 @@ namespace nsfd
     std::fill(side_1_.begin(), side_1_.end(), 0.);
     std::fill(side_2_.begin(), side_2_.end(), 0.);
     values_of_both_sides(
-      dynamics_, [&](const std::size_t k) -> const Block & {
-        return bodies.classes[k].*block;
-      },
-      dof_gather(bodies, motion), side_1_, side_2_);
+        dynamics_,
+        [&](const std::size_t k) -> const Block & {
+          return bodies.classes[k].*block;
+        },
+        dof_gather(bodies, motion), side_1_, side_2_);
     for (std::size_t i = 0; i < points.n_points; ++i) {
       const double *Q = points.frame.data() + i * dim * dim;
       double t[dim];

@@ -30,8 +30,7 @@ namespace nsfd
      */
     static constexpr double penalty_factor = 32.;
 
-    struct Bond
-    {
+    struct Bond {
       double weight_1 = 0., weight_2 = 0.; ///< omega
       /// eta = factor Lambda_1 Lambda_2 / (Lambda_1 + Lambda_2) in Pa/m; 0 at
       /// the boundary and between rigid bodies
@@ -52,14 +51,15 @@ namespace nsfd
     /** Viscous stress in the same mean, from velocities. Collective. */
     void evaluate_viscous(const double *velocity, double *traction) const;
 
-    /** w (t.u + eta u.u / 2): share of an interior penalty bond in the energy. */
+    /** w (t.u + eta u.u / 2): share of an interior penalty bond in the energy.
+     */
     double bond_energy(const std::size_t point, const double *jump,
                        const double *traction) const
     {
       double energy = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         energy +=
-          jump[c] * (traction[c] + bonds_[point].penalty / 2. * jump[c]);
+            jump[c] * (traction[c] + bonds_[point].penalty / 2. * jump[c]);
       return dynamics_.points().weight[point] * energy;
     }
 

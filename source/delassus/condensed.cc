@@ -82,7 +82,8 @@ namespace nsfd
       if (info == 0)
         return;
       if (share > 1.)
-        throw std::runtime_error("the Delassus matrix has no positive diagonal");
+        throw std::runtime_error(
+            "the Delassus matrix has no positive diagonal");
     }
   }
 

@@ -64,8 +64,8 @@ namespace nsfd
     };
 
     MachineLimits limits;
-    const std::size_t n =
-        std::max<std::size_t>(64, std::size_t(cost.bytes / 2. / sizeof(double)));
+    const std::size_t n = std::max<std::size_t>(
+        64, std::size_t(cost.bytes / 2. / sizeof(double)));
     std::vector<double> from(n, 1.), to(n, 0.);
     limits.copy_bytes_per_second =
         2. * double(n) * sizeof(double) / fastest([&]() {

@@ -5,8 +5,7 @@
 namespace nsfd
 {
   /** What one application of W takes on this rank, counted. */
-  struct DelassusCost
-  {
+  struct DelassusCost {
     double flops = 0.; ///< additions and multiplications that are needed
     /// read or written once: vectors, frames, lists, and blocks once per class
     double bytes = 0.;
@@ -22,8 +21,7 @@ namespace nsfd
    * operations per second of the product of a block with several columns, all
    * of it in the nearest cache. Takes some milliseconds.
    */
-  struct MachineLimits
-  {
+  struct MachineLimits {
     double copy_bytes_per_second = 0., product_flops_per_second = 0.;
   };
   MachineLimits measure_machine(const DelassusCost &cost);

@@ -15,9 +15,7 @@ namespace nsfd
   Dynamics<dim>::Dynamics(const Communicator &communicator,
                           const Bodies &bodies,
                           const InterfacePoints<dim> &points)
-    : communicator_(communicator)
-    , bodies_(bodies)
-    , points_(points)
+      : communicator_(communicator), bodies_(bodies), points_(points)
   {
     set_layout();
   }
@@ -56,8 +54,8 @@ namespace nsfd
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const BodyClass &body = bodies_.classes[k];
       const BlockInverse inverse(
-        body, {stiffness_share_ * time_step * time_step * theta * theta,
-               stiffness_share_ * time_step * viscous_theta_});
+          body, {stiffness_share_ * time_step * time_step * theta * theta,
+                 stiffness_share_ * time_step * viscous_theta_});
       ++counters_.factorisations;
       Block identity(body.n_dofs, body.n_dofs);
       for (unsigned int i = 0; i < body.n_dofs; ++i)
@@ -65,7 +63,7 @@ namespace nsfd
       blocks_[k].inverse = inverse.form(identity);
       blocks_[k].delassus = inverse.form(blocks_[k].trace_transposed);
       blocks_[k].velocity_change =
-        product(blocks_[k].inverse, blocks_[k].trace_transposed);
+          product(blocks_[k].inverse, blocks_[k].trace_transposed);
     }
     build_face_blocks();
   }
@@ -118,16 +116,18 @@ namespace nsfd
     ++counters_.delassus;
     to_cartesian(impulse);
     values_of_both_sides(
-      *this, [this](const std::size_t k) -> const Block & {
-        return blocks_[k].delassus;
-      },
-      slot_gather<dim>(bodies_, cartesian_), side_1_, side_2_);
+        *this,
+        [this](const std::size_t k) -> const Block & {
+          return blocks_[k].delassus;
+        },
+        slot_gather<dim>(bodies_, cartesian_), side_1_, side_2_);
     add_sides(velocity);
   }
 
   template <int dim>
-  void Dynamics<dim>::delassus_sides(
-    const double *impulse, std::array<std::vector<double>, 2> &side) const
+  void
+  Dynamics<dim>::delassus_sides(const double *impulse,
+                                std::array<std::vector<double>, 2> &side) const
   {
     std::vector<double> sum(points_.n_points * dim);
     apply_delassus(impulse, sum.data());
@@ -139,10 +139,11 @@ namespace nsfd
                                         double *result) const
   {
     values_of_both_sides(
-      *this, [this](const std::size_t k) -> const Block & {
-        return bodies_.classes[k].trace;
-      },
-      dof_gather(bodies_, velocity), side_1_, side_2_);
+        *this,
+        [this](const std::size_t k) -> const Block & {
+          return bodies_.classes[k].trace;
+        },
+        dof_gather(bodies_, velocity), side_1_, side_2_);
     add_sides(result);
   }
 
@@ -152,11 +153,12 @@ namespace nsfd
   {
     to_cartesian(impulse);
     for_all_bodies(
-      bodies_, [this](const std::size_t k) -> const Block & {
-        return blocks_[k].trace_transposed;
-      },
-      slot_gather<dim>(bodies_, cartesian_),
-      dof_scatter<false>(bodies_, result));
+        bodies_,
+        [this](const std::size_t k) -> const Block & {
+          return blocks_[k].trace_transposed;
+        },
+        slot_gather<dim>(bodies_, cartesian_),
+        dof_scatter<false>(bodies_, result));
   }
 
   template <int dim>
@@ -165,28 +167,28 @@ namespace nsfd
   {
     to_cartesian(impulse);
     for_all_bodies(
-      bodies_, [this](const std::size_t k) -> const Block & {
-        return blocks_[k].velocity_change;
-      },
-      slot_gather<dim>(bodies_, cartesian_),
-      dof_scatter<true>(bodies_, velocity));
+        bodies_,
+        [this](const std::size_t k) -> const Block & {
+          return blocks_[k].velocity_change;
+        },
+        slot_gather<dim>(bodies_, cartesian_),
+        dof_scatter<true>(bodies_, velocity));
   }
 
   template <int dim>
-  void
-  Dynamics<dim>::apply(const Operator op, const double *x, double *y) const
+  void Dynamics<dim>::apply(const Operator op, const double *x, double *y) const
   {
     if (op == Operator::stiffness || op == Operator::damping)
       std::fill(y, y + bodies_.n_dofs(), 0.);
     for_all_bodies(
-      bodies_,
-      [this, op](const std::size_t k) -> const Block & {
-        return op == Operator::mass        ? bodies_.classes[k].mass
-               : op == Operator::stiffness ? bodies_.classes[k].stiffness
-               : op == Operator::damping   ? bodies_.classes[k].damping
-                                           : blocks_[k].inverse;
-      },
-      dof_gather(bodies_, x), dof_scatter<false>(bodies_, y));
+        bodies_,
+        [this, op](const std::size_t k) -> const Block & {
+          return op == Operator::mass        ? bodies_.classes[k].mass
+                 : op == Operator::stiffness ? bodies_.classes[k].stiffness
+                 : op == Operator::damping   ? bodies_.classes[k].damping
+                                             : blocks_[k].inverse;
+        },
+        dof_gather(bodies_, x), dof_scatter<false>(bodies_, y));
   }
 
   template <int dim>
@@ -202,7 +204,7 @@ namespace nsfd
       messages[k].out.resize(neighbor.points.size() * stride);
       for (std::size_t j = 0; j < neighbor.points.size(); ++j)
         std::copy_n(side[neighbor.side[j]] +
-                      std::size_t(neighbor.points[j]) * stride,
+                        std::size_t(neighbor.points[j]) * stride,
                     stride, messages[k].out.data() + j * stride);
     }
     messages_.start(communicator_.mpi(), 7);
@@ -218,7 +220,7 @@ namespace nsfd
       for (std::size_t j = 0; j < neighbor.points.size(); ++j)
         std::copy_n(messages_.messages[k].in.data() + j * stride, stride,
                     side[1 - neighbor.side[j]] +
-                      std::size_t(neighbor.points[j]) * stride);
+                        std::size_t(neighbor.points[j]) * stride);
     }
   }
 
@@ -230,8 +232,8 @@ namespace nsfd
     std::size_t width = 0;
     for (const auto &face : points_.faces)
       width = std::max<std::size_t>(width, face.count);
-    width = std::size_t(
-      communicator_.max(static_cast<double>(width))); // same stride everywhere
+    width = std::size_t(communicator_.max(
+        static_cast<double>(width))); // same stride everywhere
     const std::size_t row = width * dim, stride = dim * row;
     std::array<std::vector<double>, 2> sides;
     for (auto &side : sides)
@@ -250,7 +252,7 @@ namespace nsfd
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int d = 0; d < dim; ++d)
                 sides[side][(face.first + p) * stride + c * row + q * dim + d] =
-                  W(mine.slot * dim + c, other.slot * dim + d);
+                    W(mine.slot * dim + c, other.slot * dim + d);
           }
         }
     exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
@@ -263,16 +265,16 @@ namespace nsfd
       for (unsigned int p = 0; p < face.count; ++p)
         for (unsigned int q = 0; q < face.count; ++q) {
           const double *Qp =
-            points_.frame.data() + (face.first + p) * dim * dim;
+              points_.frame.data() + (face.first + p) * dim * dim;
           const double *Qq =
-            points_.frame.data() + (face.first + q) * dim * dim;
+              points_.frame.data() + (face.first + q) * dim * dim;
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j) {
               double value = 0.;
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int d = 0; d < dim; ++d) {
                   const std::size_t k =
-                    (face.first + p) * stride + c * row + q * dim + d;
+                      (face.first + p) * stride + c * row + q * dim + d;
                   value += Qp[i * dim + c] * (sides[1][k] + sides[0][k]) *
                            Qq[j * dim + d];
                 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/core/communicator.h"
 #include "core/neighbor_messages.h"
+#include "nsfd/core/communicator.h"
 #include "nsfd/discretization/bodies.h"
 
 #include <memory>
@@ -26,8 +26,7 @@ namespace nsfd
   class Dynamics
   {
   public:
-    Dynamics(const Communicator &communicator,
-             const Bodies &bodies,
+    Dynamics(const Communicator &communicator, const Bodies &bodies,
              const InterfacePoints<dim> &points);
     virtual ~Dynamics() = default;
 
@@ -61,8 +60,7 @@ namespace nsfd
     virtual void add_velocity_change(const double *impulse,
                                      double *velocity) const;
 
-    enum class Operator
-    {
+    enum class Operator {
       mass,
       stiffness,
       inverse, ///< M_hat^{-1}
@@ -108,11 +106,11 @@ namespace nsfd
      * and the D of the preconditioner where D = 0, a proximal step; @p next
      * holds P* of the components that do not take part and all of them on
      * return. A null @p U is zero: laws that know r - U by themselves, not from
-     * the U at hand, put it into @p r. The right-hand side is a momentum of the order of P*, whatever
-     * the step and the stiffness, while (W + D) dP = -r loses the digits of
-     * W/D on its way through D^{-1} r. @p tolerance is that of an iterative
-     * solve, relative to its start, the velocities of the last one. Returns
-     * false where there is no such solver or no v_free.
+     * the U at hand, put it into @p r. The right-hand side is a momentum of the
+     * order of P*, whatever the step and the stiffness, while (W + D) dP = -r
+     * loses the digits of W/D on its way through D^{-1} r. @p tolerance is that
+     * of an iterative solve, relative to its start, the velocities of the last
+     * one. Returns false where there is no such solver or no v_free.
      */
     virtual bool solve_springs(const double * /*P*/, const double * /*U*/,
                                const double * /*r*/, double /*tolerance*/,
@@ -121,7 +119,8 @@ namespace nsfd
       return false;
     }
 
-    /** v_free behind the U_free of the problems to come; it stays the owner's. */
+    /** v_free behind the U_free of the problems to come; it stays the owner's.
+     */
     void set_free_velocity(const std::vector<double> *v_free)
     {
       free_velocity_ = v_free;
@@ -173,8 +172,7 @@ namespace nsfd
     const Bodies &bodies() const { return bodies_; }
     const Communicator &communicator() const { return communicator_; }
 
-    struct Counters
-    {
+    struct Counters {
       unsigned long long factorisations = 0; ///< of body blocks
       /// matrices of all bodies that were assembled and made ready to solve
       unsigned long long global_factorisations = 0;
@@ -196,8 +194,7 @@ namespace nsfd
     virtual void remember(Archive &archive);
 
     /** Contribution of each body to W P, used by Gauss-Seidel. */
-    struct ClassBlocks
-    {
+    struct ClassBlocks {
       Block inverse, delassus, velocity_change; ///< M^-1, T M^-1 T^T, M^-1 T^T
       Block trace_transposed;
     };
@@ -279,8 +276,7 @@ namespace nsfd
    */
   template <int dim>
   std::unique_ptr<Dynamics<dim>>
-  make_sparse_dynamics(const Communicator &communicator,
-                       const Bodies &bodies,
+  make_sparse_dynamics(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
                        const std::vector<double> &coordinates = {});

@@ -38,10 +38,9 @@ namespace nsfd
           for (unsigned int i = 0; i < n; ++i) {
             const bool active = D[first + i] >= 0.;
             for (unsigned int j = 0; j <= i; ++j)
-              L[i * n + j] =
-                active && D[first + j] >= 0.
-                  ? W[i * n + j] + (i == j ? D[first + i] : 0.)
-                  : (i == j ? 1. : 0.);
+              L[i * n + j] = active && D[first + j] >= 0.
+                                 ? W[i * n + j] + (i == j ? D[first + i] : 0.)
+                                 : (i == j ? 1. : 0.);
           }
           factorise(L, n);
           invert(L, n);
@@ -82,7 +81,7 @@ namespace nsfd
           for (unsigned int k = 0; k < j; ++k)
             pivot -= L[j * n + k] * L[j * n + k];
           const double inverse =
-            pivot > 1e-10 * original ? 1. / std::sqrt(pivot) : 0.;
+              pivot > 1e-10 * original ? 1. / std::sqrt(pivot) : 0.;
           L[j * n + j] = inverse;
           for (unsigned int i = j + 1; i < n; ++i) {
             double value = L[i * n + j];
@@ -128,9 +127,8 @@ namespace nsfd
         }
       }
 
-      static void
-      multiply(const double *A, const unsigned int n, const double *r,
-               double *z)
+      static void multiply(const double *A, const unsigned int n,
+                           const double *r, double *z)
       {
         std::fill(z, z + n, 0.);
         for (unsigned int j = 0; j < n; ++j)
@@ -156,8 +154,8 @@ namespace nsfd
           set_lanes();
         const auto before = lanes_->applications();
         const unsigned int iterations =
-          system.jacobian ? lanes_->gmres(system, r, x)
-                          : lanes_->conjugate_gradients(system, r, x);
+            system.jacobian ? lanes_->gmres(system, r, x)
+                            : lanes_->conjugate_gradients(system, r, x);
         this->counters_.delassus += lanes_->applications() - before;
         return iterations;
       }
@@ -167,7 +165,7 @@ namespace nsfd
       {
         if (!lanes_)
           lanes_ = std::make_unique<LaneSystem<dim>>(
-            this->communicator_, this->bodies_, this->points_);
+              this->communicator_, this->bodies_, this->points_);
         lanes_->reinit(*this);
       }
 
@@ -183,7 +181,7 @@ namespace nsfd
       void reinit(const double time_step, const double theta) override
       {
         const bool changes =
-          time_step != this->time_step_ || theta != this->theta_;
+            time_step != this->time_step_ || theta != this->theta_;
         Dynamics<dim>::reinit(time_step, theta);
         if (!changes)
           return;
@@ -224,7 +222,7 @@ namespace nsfd
                             const InterfacePoints<dim> &points)
   {
     return std::make_unique<ElementwiseDynamics<dim, Dynamics<dim>>>(
-      communicator, bodies, points);
+        communicator, bodies, points);
   }
 
   template <int dim>
@@ -234,19 +232,25 @@ namespace nsfd
                                 const InterfacePoints<dim> &points)
   {
     return std::make_unique<ElementwiseDynamics<dim, BondedDynamics<dim>>>(
-      communicator, bodies, points);
+        communicator, bodies, points);
   }
 
-  template std::unique_ptr<Dynamics<2>> make_moving_dynamics<2>(
-    const Communicator &, const Bodies &, const InterfacePoints<2> &);
-  template std::unique_ptr<Dynamics<3>> make_moving_dynamics<3>(
-    const Communicator &, const Bodies &, const InterfacePoints<3> &);
-  template std::unique_ptr<Dynamics<2>> make_elementwise_dynamics<2>(
-    const Communicator &, const Bodies &, const InterfacePoints<2> &);
-  template std::unique_ptr<Dynamics<3>> make_elementwise_dynamics<3>(
-    const Communicator &, const Bodies &, const InterfacePoints<3> &);
-  template std::unique_ptr<BondedDynamics<2>> make_explicit_bonded_dynamics<2>(
-    const Communicator &, const Bodies &, const InterfacePoints<2> &);
-  template std::unique_ptr<BondedDynamics<3>> make_explicit_bonded_dynamics<3>(
-    const Communicator &, const Bodies &, const InterfacePoints<3> &);
+  template std::unique_ptr<Dynamics<2>>
+  make_moving_dynamics<2>(const Communicator &, const Bodies &,
+                          const InterfacePoints<2> &);
+  template std::unique_ptr<Dynamics<3>>
+  make_moving_dynamics<3>(const Communicator &, const Bodies &,
+                          const InterfacePoints<3> &);
+  template std::unique_ptr<Dynamics<2>>
+  make_elementwise_dynamics<2>(const Communicator &, const Bodies &,
+                               const InterfacePoints<2> &);
+  template std::unique_ptr<Dynamics<3>>
+  make_elementwise_dynamics<3>(const Communicator &, const Bodies &,
+                               const InterfacePoints<3> &);
+  template std::unique_ptr<BondedDynamics<2>>
+  make_explicit_bonded_dynamics<2>(const Communicator &, const Bodies &,
+                                   const InterfacePoints<2> &);
+  template std::unique_ptr<BondedDynamics<3>>
+  make_explicit_bonded_dynamics<3>(const Communicator &, const Bodies &,
+                                   const InterfacePoints<3> &);
 } // namespace nsfd

@@ -19,18 +19,16 @@ namespace nsfd
       GluedCg(const Communicator &communicator,
               const std::vector<std::size_t> &first_dof,
               const long long largest_factor)
-        : communicator_(communicator)
-        , largest_factor_(largest_factor)
-        , bodies_(first_dof)
-      {}
+          : communicator_(communicator), largest_factor_(largest_factor),
+            bodies_(first_dof)
+      {
+      }
 
-      void prepare(const SparseRows &matrix,
-                   const CoarseSpace &coarse,
+      void prepare(const SparseRows &matrix, const CoarseSpace &coarse,
                    bool new_pattern) override;
       void prepare_coarse(const SparseRows &matrix, const CoarseSpace &coarse,
                           const Product &add_product) override;
-      unsigned int
-      solve(const double *b, double *x, double tolerance) override;
+      unsigned int solve(const double *b, double *x, double tolerance) override;
       unsigned int solve_parts(const double *b, std::size_t rows, double *rest,
                                double *coarse, double tolerance) override;
 
@@ -97,7 +95,7 @@ namespace nsfd
       exchange_.fetch(own.data(), ghosts.data());
       const std::vector<long long> numbers(ghosts.begin(), ghosts.end());
       const SparseRows coarse_matrix =
-        coarse_rows(communicator_, matrix, coarse, numbers);
+          coarse_rows(communicator_, matrix, coarse, numbers);
       ++counters_.coarse_spaces;
 
       // coarse unknowns of other ranks that own nodes are glued to
@@ -108,18 +106,17 @@ namespace nsfd
           remote.push_back(k);
       std::sort(remote.begin(), remote.end());
       remote.erase(std::unique(remote.begin(), remote.end()), remote.end());
-      coarse_exchange_ = GhostValues(communicator_, first,
-                                     std::size_t(coarse.n_own), remote);
+      coarse_exchange_ =
+          GhostValues(communicator_, first, std::size_t(coarse.n_own), remote);
       n_coarse_ = coarse.n_own;
       place_.resize(n);
       for (std::size_t i = 0; i < n; ++i) {
         const long long k = coarse.number[i];
-        place_[i] =
-          k >= first && k < end
-            ? int(k - first)
-            : int(n_coarse_ +
-                  (std::lower_bound(remote.begin(), remote.end(), k) -
-                   remote.begin()));
+        place_[i] = k >= first && k < end
+                        ? int(k - first)
+                        : int(n_coarse_ + (std::lower_bound(remote.begin(),
+                                                            remote.end(), k) -
+                                           remote.begin()));
       }
       coarse_r_.resize(std::size_t(n_coarse_) + remote.size());
       coarse_z_.resize(coarse_r_.size());
@@ -158,8 +155,8 @@ namespace nsfd
                         const double *coarse_a, const double *coarse_b) const
     {
       // the second one: how many ranks are asked to stop
-      double sums[2] = {0., stop_request::is_due(communicator_.size()) ? 1.
-                                                                       : 0.};
+      double sums[2] = {0.,
+                        stop_request::is_due(communicator_.size()) ? 1. : 0.};
       for (std::size_t i = 0; i < place_.size(); ++i)
         sums[0] += a[i] * b[i];
       for (long long i = 0; i < n_coarse_; ++i)
@@ -217,7 +214,7 @@ namespace nsfd
       const auto turn = [&](const bool first) {
         precondition(r_.data(), z_.data());
         const double next =
-          dot(r_.data(), z_.data(), coarse_r_.data(), coarse_z_.data());
+            dot(r_.data(), z_.data(), coarse_r_.data(), coarse_z_.data());
         const double beta = first ? 0. : next / rz;
         rz = next;
         for (std::size_t i = 0; i < n; ++i)
@@ -233,7 +230,7 @@ namespace nsfd
       for (; k < limit && rz > target; ++k) {
         multiply_direction();
         const double pAp =
-          dot(q_.data(), p_.data(), coarse_q_.data(), coarse_p_.data());
+            dot(q_.data(), p_.data(), coarse_q_.data(), coarse_p_.data());
         if (!(pAp > 0.))
           break;
         const double alpha = rz / pAp;

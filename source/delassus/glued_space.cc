@@ -5,13 +5,10 @@
 namespace nsfd
 {
   GluedSpace::GluedSpace(const Communicator &communicator,
-                         const unsigned int dim,
-                         Unknowns unknowns,
+                         const unsigned int dim, Unknowns unknowns,
                          NodePairs pairs)
-    : communicator_(communicator)
-    , dim_(dim)
-    , unknowns_(std::move(unknowns))
-    , pairs_(std::move(pairs))
+      : communicator_(communicator), dim_(dim), unknowns_(std::move(unknowns)),
+        pairs_(std::move(pairs))
   {
     const long long n = static_cast<long long>(unknowns_.component.size());
     for (const long long other : pairs_.other)
@@ -22,10 +19,10 @@ namespace nsfd
     ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
     const auto &component = unknowns_.component;
     const bool other_kinds =
-      std::find(component.begin(), component.end(), -1) != component.end();
+        std::find(component.begin(), component.end(), -1) != component.end();
     space_.per_node = communicator.any(other_kinds) ? 1 : dim;
     exchange_ =
-      GhostValues(communicator, unknowns_.first, std::size_t(n), ghosts_);
+        GhostValues(communicator, unknowns_.first, std::size_t(n), ghosts_);
   }
 
   int GluedSpace::root(int unknown)
@@ -43,8 +40,8 @@ namespace nsfd
       parent_[i] = int(i);
     across_.clear();
     for (std::size_t f = 0; f < faces.size(); ++f)
-      for (std::size_t k = pairs_.start[f];
-           faces[f] && k < pairs_.start[f + 1]; ++k)
+      for (std::size_t k = pairs_.start[f]; faces[f] && k < pairs_.start[f + 1];
+           ++k)
         for (unsigned int c = 0; c < dim_; ++c) {
           const int own = pairs_.own[k] + int(c);
           const long long other = pairs_.other[k] + c;
@@ -54,8 +51,9 @@ namespace nsfd
             parent_[std::max(a, b)] = std::min(a, b);
           } else
             across_.emplace_back(
-              own, int(std::lower_bound(ghosts_.begin(), ghosts_.end(), other) -
-                       ghosts_.begin()));
+                own,
+                int(std::lower_bound(ghosts_.begin(), ghosts_.end(), other) -
+                    ghosts_.begin()));
         }
   }
 
@@ -103,7 +101,7 @@ namespace nsfd
     space_.first = end - own;
     space_.n_own = own;
     space_.n_global = static_cast<long long>(
-      communicator_.sum_integer(static_cast<unsigned long long>(own)));
+        communicator_.sum_integer(static_cast<unsigned long long>(own)));
     double next = double(space_.first);
     for (std::size_t i = 0; i < n; ++i)
       value[i] = value[i] == double(unknowns_.first) + double(i) ? next++ : -1.;

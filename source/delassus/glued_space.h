@@ -12,8 +12,7 @@ namespace nsfd
    * Nodes at the same place on the two sides of a face, named by the first of
    * their unknowns. A face between two ranks is listed on both.
    */
-  struct NodePairs
-  {
+  struct NodePairs {
     std::vector<std::size_t> start{0}; ///< per face and one more
     std::vector<int> own;              ///< on this rank
     std::vector<long long> other;      ///< global number, of any rank
@@ -23,8 +22,7 @@ namespace nsfd
   };
 
   /** Where an unknown of a deformable body sits. */
-  struct Unknowns
-  {
+  struct Unknowns {
     long long first = 0;                ///< global number of the first one
     std::vector<double> coordinates;    ///< of its node, along its component
     std::vector<signed char> component; ///< -1: not a nodal value
@@ -37,10 +35,8 @@ namespace nsfd
   class GluedSpace
   {
   public:
-    GluedSpace(const Communicator &communicator,
-               unsigned int dim,
-               Unknowns unknowns,
-               NodePairs pairs);
+    GluedSpace(const Communicator &communicator, unsigned int dim,
+               Unknowns unknowns, NodePairs pairs);
 
     /**
      * Glue the faces that are marked, alike on both ranks of a shared face.

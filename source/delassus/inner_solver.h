@@ -5,10 +5,9 @@
 namespace nsfd
 {
   /** A Newton system of the point laws; vectors have an entry per component. */
-  struct InnerSystem
-  {
+  struct InnerSystem {
     const std::vector<double> &D; ///< >= 0; negative: takes no part
-    double tolerance = 0.; ///< relative, in the norm of the preconditioner
+    double tolerance = 0.;  ///< relative, in the norm of the preconditioner
     unsigned int limit = 0; ///< of iterations
     // of the unsymmetric system
     const std::vector<double> *jacobian = nullptr; ///< J, row-major by point

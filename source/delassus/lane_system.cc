@@ -37,17 +37,17 @@ namespace nsfd
           if (trace(r, k) != 0.)
             group.column_row.push_back(r);
         group.column_first.push_back(
-          static_cast<unsigned int>(group.column_row.size()));
+            static_cast<unsigned int>(group.column_row.size()));
       }
       for (unsigned int r = 0; r < trace.rows; ++r) {
         for (unsigned int k = 0; k < trace.cols; ++k)
           if (trace(r, k) != 0.)
             group.row_column.push_back(k);
         group.row_first.push_back(
-          static_cast<unsigned int>(group.row_column.size()));
+            static_cast<unsigned int>(group.row_column.size()));
       }
       const std::size_t factored =
-        2 * group.row_column.size() + std::size_t(group.dofs) * group.dofs;
+          2 * group.row_column.size() + std::size_t(group.dofs) * group.dofs;
       group.dense = std::size_t(group.rows) * group.rows <= factored;
     }
   } // namespace
@@ -56,9 +56,7 @@ namespace nsfd
   LaneSystem<dim>::LaneSystem(const Communicator &communicator,
                               const Bodies &bodies,
                               const InterfacePoints<dim> &points)
-    : communicator_(communicator)
-    , bodies_(bodies)
-    , points_(points)
+      : communicator_(communicator), bodies_(bodies), points_(points)
   {
     group_bodies();
     group_faces();
@@ -96,10 +94,10 @@ namespace nsfd
       auto &group = body_groups_[g];
       // first what other ranks wait for
       const auto others = std::stable_partition(
-        members_[g].begin(), members_[g].end(),
-        [&](const unsigned int b) { return shared[b] != 0; });
+          members_[g].begin(), members_[g].end(),
+          [&](const unsigned int b) { return shared[b] != 0; });
       group.n_shared =
-        (std::size_t(others - members_[g].begin()) + width - 1) / width;
+          (std::size_t(others - members_[g].begin()) + width - 1) / width;
       group.n_batches = (members_[g].size() + width - 1) / width;
       group.first = n_slots_;
       n_slots_ += group.n_batches * group.rows * width;
@@ -111,8 +109,7 @@ namespace nsfd
   {
     std::map<unsigned int, std::vector<unsigned int>> by_count;
     for (std::size_t f = 0; f < points_.faces.size(); ++f)
-      by_count[points_.faces[f].count].push_back(
-        static_cast<unsigned int>(f));
+      by_count[points_.faces[f].count].push_back(static_cast<unsigned int>(f));
     for (auto &[count, faces] : by_count) {
       FaceGroup &group = face_groups_.emplace_back();
       group.dim = dim;
@@ -151,17 +148,16 @@ namespace nsfd
         for (std::size_t s = bodies_.first_slot[b];
              s < bodies_.first_slot[b + 1]; ++s)
           if (bodies_.slot_point[s] < points_.n_points)
-            place_[bodies_.slot_sign[s] > 0][bodies_.slot_point[s]] = int(
-              first_row[b] + (s - bodies_.first_slot[b]) * dim * width);
+            place_[bodies_.slot_sign[s] > 0][bodies_.slot_point[s]] =
+                int(first_row[b] + (s - bodies_.first_slot[b]) * dim * width);
       }
     for (const auto &[slot, point] : bodies_.extra_points) {
-      const std::size_t b =
-        std::upper_bound(bodies_.first_slot.begin(), bodies_.first_slot.end(),
-                         slot) -
-        bodies_.first_slot.begin() - 1;
+      const std::size_t b = std::upper_bound(bodies_.first_slot.begin(),
+                                             bodies_.first_slot.end(), slot) -
+                            bodies_.first_slot.begin() - 1;
       extras_.push_back(
-        {int(first_row[b] + (slot - bodies_.first_slot[b]) * dim * width),
-         int(end)});
+          {int(first_row[b] + (slot - bodies_.first_slot[b]) * dim * width),
+           int(end)});
       place_[1][point] = int(end);
       end += dim * width;
     }
@@ -180,7 +176,7 @@ namespace nsfd
             for (unsigned int s = 0; s < 2; ++s)
               group.place[((l / width * group.count + q) * 2 + s) * width +
                           l % width] =
-                place_[s][points_.faces[group.faces[l]].first + q];
+                  place_[s][points_.faces[group.faces[l]].first + q];
     }
     for (Floats *v : {&x_, &r_, &z_, &p_, &w_})
       v->assign(size_, 0.f);
@@ -196,7 +192,7 @@ namespace nsfd
     for (std::size_t l = 0; l < group.faces.size(); ++l)
       if (group.faces[l] != none) {
         const std::size_t first =
-          std::size_t(points_.faces[group.faces[l]].first) * dim;
+            std::size_t(points_.faces[group.faces[l]].first) * dim;
         const std::size_t at = l / width * n * width + l % width;
         for (unsigned int k = 0; k < n; ++k)
           function(first + k, at + k * width);
@@ -214,7 +210,7 @@ namespace nsfd
       for (unsigned int k = 0; k < n; ++k)
         if (W[k * n + k] > 0.)
           scale_[std::size_t(points_.faces[f].first) * dim + k] =
-            std::sqrt(W[k * n + k]);
+              std::sqrt(W[k * n + k]);
     }
     unit_ = 0.;
     for (const double s : scale_)
@@ -250,17 +246,17 @@ namespace nsfd
       for (unsigned int c = 0; c < order; ++c)
         for (unsigned int r = 0; r < order; ++r)
           group.matrix[at(std::size_t(order) * order, c * order + r)] =
-            float(A(r, c) / unit_);
+              float(A(r, c) / unit_);
       std::size_t e = 0;
       for (unsigned int c = 0; c < group.dofs; ++c)
         for (; e < group.column_first[c + 1]; ++e)
           group.by_column[at(group.column_row.size(), e)] =
-            float(H(group.column_row[e], c));
+              float(H(group.column_row[e], c));
       e = 0;
       for (unsigned int r = 0; r < group.rows; ++r)
         for (; e < group.row_first[r + 1]; ++e)
           group.by_row[at(group.row_column.size(), e)] =
-            float(H(r, group.row_column[e]));
+              float(H(r, group.row_column[e]));
     }
   }
 
@@ -288,15 +284,15 @@ namespace nsfd
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j)
           blocks[(batch * packed + i * (i + 1) / 2 + j) * width + lane] =
-            W[i * n + j] / (s[i] * s[j]);
+              W[i * n + j] / (s[i] * s[j]);
       for (unsigned int q = 0; q < group.count; ++q)
         for (unsigned int k = 0; k < dim; ++k)
           for (unsigned int c = 0; c < dim; ++c)
             group.frame[(((batch * group.count + q) * dim + k) * dim + c) *
-                          width +
+                            width +
                         lane] =
-              float(points_.frame[((first + q) * dim + k) * dim + c] * root /
-                    s[q * dim + k]);
+                float(points_.frame[((first + q) * dim + k) * dim + c] * root /
+                      s[q * dim + k]);
     }
   }
 
@@ -307,7 +303,7 @@ namespace nsfd
     for (auto &group : face_groups_) {
       const unsigned int n = group.n(), packed = group.packed();
       const auto &blocks =
-        face_blocks_[std::size_t(&group - face_groups_.data())];
+          face_blocks_[std::size_t(&group - face_groups_.data())];
       part_.assign(group.D.size(), 0.);
       diagonal_.assign(group.D.size(), 0.);
       for_components(group, [&](const std::size_t k, const std::size_t at) {
@@ -365,7 +361,7 @@ namespace nsfd
       for (std::size_t j = 0; j < neighbor.points.size(); ++j)
         for (unsigned int c = 0; c < dim; ++c)
           messages[k].out.push_back(
-            Y_[place_[neighbor.side[j]][neighbor.points[j]] + c * width]);
+              Y_[place_[neighbor.side[j]][neighbor.points[j]] + c * width]);
     }
     messages_.start(communicator_.mpi(), 8);
   }
@@ -379,7 +375,7 @@ namespace nsfd
       for (std::size_t j = 0; j < neighbor.points.size(); ++j)
         for (unsigned int c = 0; c < dim; ++c)
           Y_[place_[1 - neighbor.side[j]][neighbor.points[j]] + c * width] =
-            messages_.messages[k].in[j * dim + c];
+              messages_.messages[k].in[j * dim + c];
     }
   }
 
@@ -481,7 +477,7 @@ namespace nsfd
         const double square = scale_[k] * scale_[k];
         const bool part = D[k] >= 0.;
         group.weight[at] =
-          part ? float(std::min((D[k] + R[k]) / square, 1e15)) : 0.f;
+            part ? float(std::min((D[k] + R[k]) / square, 1e15)) : 0.f;
         group.idle[at] = part ? 0.f : 1.f;
         group.ratio[at] = float((1. - system.shift) * R[k] / square);
         // `at` counts rows of one lane; the blocks have dim entries in each
@@ -489,7 +485,7 @@ namespace nsfd
                           first = k - k % dim;
         for (unsigned int c = 0; c < dim; ++c)
           group.jacobian[row + c * width] =
-            float(scale_[k] * J[k * dim + c] * scale_[first + c]);
+              float(scale_[k] * J[k * dim + c] * scale_[first + c]);
       });
   }
 

@@ -73,16 +73,15 @@ namespace nsfd
     std::vector<lane::FaceGroup> face_groups_;
     std::vector<std::vector<double>> face_blocks_; ///< scaled, packed, by lane
     std::vector<double> scale_; ///< per component, square root of its W
-    double unit_ = 1.; ///< of the bodies' blocks: the largest diagonal of W
-    std::size_t size_ = 0;      ///< of a vector over faces
-    std::size_t n_slots_ = 0;   ///< floats of the bodies' slots
+    double unit_ = 1.;     ///< of the bodies' blocks: the largest diagonal of W
+    std::size_t size_ = 0; ///< of a vector over faces
+    std::size_t n_slots_ = 0;               ///< floats of the bodies' slots
     std::array<std::vector<int>, 2> place_; ///< per point, of its sides
-    struct Extra
-    {
+    struct Extra {
       int slot, place;
     };
     std::vector<Extra> extras_;
-    Floats X_, Y_;              ///< at the slots
+    Floats X_, Y_; ///< at the slots
     Floats x_, r_, z_, p_, w_;
     std::vector<Floats> basis_;
     std::vector<double> terms_, part_, diagonal_, work_;

@@ -74,30 +74,30 @@ namespace nsfd
     for (const auto &body : bodies.classes)
       largest = std::max(largest, double(body.n_dofs));
     const unsigned int width =
-      unsigned(dynamics.communicator().max(largest)); // on every rank
+        unsigned(dynamics.communicator().max(largest)); // on every rank
     std::vector<const Block BodyClass::*> tractions;
     if (with_traction)
       tractions.push_back(&BodyClass::traction);
     if (with_traction &&
         dynamics.communicator().any(std::any_of(
-          bodies.classes.begin(), bodies.classes.end(),
-          [](const BodyClass &body) { return body.viscous_bound > 0.; })))
+            bodies.classes.begin(), bodies.classes.end(),
+            [](const BodyClass &body) { return body.viscous_bound > 0.; })))
       tractions.push_back(&BodyClass::viscous_traction);
     const unsigned int stride =
-      2 + (1 + unsigned(tractions.size())) * dim * width;
+        2 + (1 + unsigned(tractions.size())) * dim * width;
     std::array<std::vector<double>, 2> side;
     for (auto &s : side)
       s.assign((points.n_points + 1) * stride, -1.);
-    for_all_places(
-      bodies, points.n_points,
-      [&](const std::size_t b, const unsigned int slot, const std::size_t point,
-          const unsigned int s) {
-        write_trace<dim>(bodies.classes[bodies.class_of[b]], slot,
+    for_all_places(bodies, points.n_points,
+                   [&](const std::size_t b, const unsigned int slot,
+                       const std::size_t point, const unsigned int s) {
+                     write_trace<dim>(
+                         bodies.classes[bodies.class_of[b]], slot,
                          s == 1 ? 1. : -1.,
                          points.frame.data() + point * dim * dim,
                          double(first_dof) + double(bodies.first_dof[b]), width,
                          tractions, side[s].data() + point * stride);
-      });
+                   });
     dynamics.exchange({{side[0].data(), side[1].data()}}, stride);
 
     std::array<std::vector<PointTrace>, 2> traces;

@@ -12,13 +12,13 @@ namespace nsfd
    * every rank that has the point: rows of the jump, and of the traction where
    * the bodies have one.
    */
-  struct PointTrace
-  {
-    long long first = -1;   ///< first unknown among those of all ranks, or none
+  struct PointTrace {
+    long long first = -1; ///< first unknown among those of all ranks, or none
     unsigned int n_dofs = 0;
     std::vector<double> jump;     ///< dim x n_dofs, with the sign of the side
     std::vector<double> traction; ///< the same: sigma n, n from body 1 to 2
-    std::vector<double> viscous_traction; ///< of velocities; empty: none viscous
+    std::vector<double>
+        viscous_traction; ///< of velocities; empty: none viscous
   };
 
   /** Per side and point. Collective. */

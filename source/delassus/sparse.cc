@@ -34,8 +34,7 @@ namespace nsfd
     class SparseDynamics final : public Dynamics<dim>
     {
     public:
-      SparseDynamics(const Communicator &communicator,
-                     const Bodies &bodies,
+      SparseDynamics(const Communicator &communicator, const Bodies &bodies,
                      const InterfacePoints<dim> &points,
                      const std::string &solver,
                      const std::vector<double> &coordinates);
@@ -72,7 +71,8 @@ namespace nsfd
       std::vector<double> D_, inverse_D_, inverse_D_coarse_;
       bool valid_ = false, coarse_valid_ = false, inverts_ = false;
       mutable std::vector<double> work_, right_, solution_;
-      std::vector<double> difference_, velocity_; ///< of the last solve_springs()
+      std::vector<double> difference_,
+          velocity_;             ///< of the last solve_springs()
       std::vector<double> jump_; ///< H velocity_, to more than its round-off
       std::vector<char> without_jump_; ///< per point: the glued space has none
       bool all_without_jump_ = false;
@@ -84,9 +84,10 @@ namespace nsfd
                                         const InterfacePoints<dim> &points,
                                         const std::string &solver,
                                         const std::vector<double> &coordinates)
-      : Dynamics<dim>(communicator, bodies, points)
-      , assembly_(communicator, bodies, points, coordinates)
-      , glued_(communicator, dim, assembly_.unknowns(), assembly_.node_pairs())
+        : Dynamics<dim>(communicator, bodies, points),
+          assembly_(communicator, bodies, points, coordinates),
+          glued_(communicator, dim, assembly_.unknowns(),
+                 assembly_.node_pairs())
     {
       assembly_.forget_coordinates();
       const auto n = communicator.sum_integer(bodies.n_dofs());
@@ -105,13 +106,12 @@ namespace nsfd
     {
       direct_ = prepared_ = coarse_valid_ = false;
       solver_ =
-        make_glued_cg_solver(this->communicator_, this->bodies_.first_dof,
-                             largest_coarse_factor<dim>);
+          make_glued_cg_solver(this->communicator_, this->bodies_.first_dof,
+                               largest_coarse_factor<dim>);
     }
 
     template <int dim>
-    void SparseDynamics<dim>::reinit(const double time_step,
-                                     const double theta)
+    void SparseDynamics<dim>::reinit(const double time_step, const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
         valid_ = coarse_valid_ = false;
@@ -166,7 +166,7 @@ namespace nsfd
      */
     template <int dim>
     bool SparseDynamics<dim>::loose_springs_changed(
-      const std::vector<char> &glued) const
+        const std::vector<char> &glued) const
     {
       const auto &points = this->points_;
       for (std::size_t f = 0; f < points.faces.size(); ++f) {
@@ -247,10 +247,9 @@ namespace nsfd
       }
       all_without_jump_ = !this->communicator_.any(!all);
       assembly_.assemble(share(), inverse_D_, faces);
-      solver_->prepare_coarse(assembly_.matrix(), glued_.space(),
-                              [this](const double *x, double *y) {
-                                add_smooth(x, y);
-                              });
+      solver_->prepare_coarse(
+          assembly_.matrix(), glued_.space(),
+          [this](const double *x, double *y) { add_smooth(x, y); });
       assembly_.add_springs(inverse_D_, faces);
       solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
       prepared_ = true;
@@ -263,24 +262,26 @@ namespace nsfd
     {
       const auto &bodies = this->bodies_;
       for_all_bodies(
-        bodies, [&](const std::size_t k) -> const Block & {
-          return bodies.classes[k].mass;
-        },
-        dof_gather(bodies, x), dof_scatter<true>(bodies, y));
+          bodies,
+          [&](const std::size_t k) -> const Block & {
+            return bodies.classes[k].mass;
+          },
+          dof_gather(bodies, x), dof_scatter<true>(bodies, y));
       const StepShares shares = share();
       const auto add = [&](const Block BodyClass::*block, const double s) {
         for_all_bodies(
-          bodies, [&](const std::size_t k) -> const Block & {
-            return bodies.classes[k].*block;
-          },
-          dof_gather(bodies, x),
-          [&](const unsigned int b, const double *Kx,
-              const unsigned int stride) {
-            const std::size_t first = bodies.first_dof[b],
-                              n = bodies.first_dof[b + 1] - first;
-            for (std::size_t i = 0; i < n; ++i)
-              y[first + i] += s * Kx[i * stride];
-          });
+            bodies,
+            [&](const std::size_t k) -> const Block & {
+              return bodies.classes[k].*block;
+            },
+            dof_gather(bodies, x),
+            [&](const unsigned int b, const double *Kx,
+                const unsigned int stride) {
+              const std::size_t first = bodies.first_dof[b],
+                                n = bodies.first_dof[b + 1] - first;
+              for (std::size_t i = 0; i < n; ++i)
+                y[first + i] += s * Kx[i * stride];
+            });
       };
       add(&BodyClass::stiffness, shares.stiffness);
       if (this->is_viscous())
@@ -294,7 +295,8 @@ namespace nsfd
       add_bodies(x, y);
       if (all_without_jump_)
         return;
-      std::vector<double> jump(inverse_D_.size()), forces(this->bodies_.n_dofs());
+      std::vector<double> jump(inverse_D_.size()),
+          forces(this->bodies_.n_dofs());
       this->relative_velocity(x, jump.data());
       for (std::size_t k = 0; k < jump.size(); ++k)
         jump[k] *= without_jump_[k / dim] ? 0. : inverse_D_[k];
@@ -315,7 +317,7 @@ namespace nsfd
       this->generalised_impulse(work_.data(), right_.data());
       solution_.assign(m, 0.);
       this->counters_.inner_iterations += solver_->solve(
-        right_.data(), solution_.data(), this->inner_tolerance_);
+          right_.data(), solution_.data(), this->inner_tolerance_);
       ++this->counters_.global_solves;
       this->relative_velocity(solution_.data(), z);
       for (std::size_t k = 0; k < n; ++k)
@@ -353,15 +355,14 @@ namespace nsfd
       // the residual without A, whose round-off grows with the stiffness
       for (std::size_t k = 0; k < n; ++k)
         if (D_[k] >= 0.)
-          next[k] =
-            P[k] - inverse_D_[k] * (r[k] - (U ? U[k] : 0.) + jump_[k]);
+          next[k] = P[k] - inverse_D_[k] * (r[k] - (U ? U[k] : 0.) + jump_[k]);
       this->generalised_impulse(next, right_.data());
       for (std::size_t i = 0; i < m; ++i)
         difference_[i] = (*this->free_velocity_)[i] - velocity_[i];
       add_bodies(difference_.data(), right_.data());
       solution_.resize(m);
       this->counters_.inner_iterations += solver_->solve_parts(
-        right_.data(), m, solution_.data(), difference_.data(), tolerance);
+          right_.data(), m, solution_.data(), difference_.data(), tolerance);
       ++this->counters_.global_solves;
       for (std::size_t i = 0; i < m; ++i)
         velocity_[i] += solution_[i] + difference_[i];
@@ -421,8 +422,7 @@ namespace nsfd
 
   template <int dim>
   std::unique_ptr<Dynamics<dim>>
-  make_sparse_dynamics(const Communicator &communicator,
-                       const Bodies &bodies,
+  make_sparse_dynamics(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
                        const std::vector<double> &coordinates)

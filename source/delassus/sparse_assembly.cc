@@ -13,10 +13,8 @@ namespace nsfd
                                       const Bodies &bodies,
                                       const InterfacePoints<dim> &points,
                                       const std::vector<double> &coordinates)
-    : communicator_(communicator)
-    , bodies_(bodies)
-    , points_(points)
-    , coordinates_(coordinates)
+      : communicator_(communicator), bodies_(bodies), points_(points),
+        coordinates_(coordinates)
   {
     const long long mine = static_cast<long long>(bodies.n_dofs());
     long long sum = 0;
@@ -58,7 +56,7 @@ namespace nsfd
         const BodyClass &body = bodies_.classes[bodies_.class_of[place.body]];
         double *to = message.out.data() + j * stride;
         to[0] =
-          double(matrix_.first_row) + double(bodies_.first_dof[place.body]);
+            double(matrix_.first_row) + double(bodies_.first_dof[place.body]);
         to[1] = body.n_dofs;
         to[2] = body.rigid;
         for (unsigned int i = 0; i < body.n_dofs; ++i) {
@@ -96,7 +94,7 @@ namespace nsfd
   {
     if (place.body >= 0)
       return bodies_.classes[bodies_.class_of[place.body]].trace(
-        place.slot * dim + c, j);
+          place.slot * dim + c, j);
     const auto &trace = remote_[place.remote].trace;
     return trace[c * (trace.size() / dim) + j];
   }
@@ -108,8 +106,8 @@ namespace nsfd
     if (place.remote >= 0)
       return remote_[place.remote].coordinates[j];
     return coordinates_.empty()
-             ? 0.
-             : coordinates_[bodies_.first_dof[place.body] + j];
+               ? 0.
+               : coordinates_[bodies_.first_dof[place.body] + j];
   }
 
   template <int dim>
@@ -190,8 +188,8 @@ namespace nsfd
         matrix_.ghosts.push_back(column);
     std::sort(matrix_.ghosts.begin(), matrix_.ghosts.end());
     matrix_.ghosts.erase(
-      std::unique(matrix_.ghosts.begin(), matrix_.ghosts.end()),
-      matrix_.ghosts.end());
+        std::unique(matrix_.ghosts.begin(), matrix_.ghosts.end()),
+        matrix_.ghosts.end());
     matrix_.start.assign(n + 1, 0);
     std::size_t own_blocks = 0;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -204,8 +202,8 @@ namespace nsfd
       for (std::size_t i = bodies_.first_dof[b]; i < bodies_.first_dof[b + 1];
            ++i) {
         row.clear();
-        for (std::size_t j = bodies_.first_dof[b];
-             j < bodies_.first_dof[b + 1]; ++j)
+        for (std::size_t j = bodies_.first_dof[b]; j < bodies_.first_dof[b + 1];
+             ++j)
           row.push_back(int(j));
         for (int k = i == 0 ? 0 : count[i - 1]; k < count[i]; ++k)
           row.push_back(local_column(across[k]));
@@ -297,12 +295,12 @@ namespace nsfd
       H[s].assign(n_rows * m, 0.);
       for (unsigned int p = 0; m > 0 && p < f.count; ++p) {
         const double *Q =
-          points_.frame.data() + std::size_t(f.first + p) * dim * dim;
+            points_.frame.data() + std::size_t(f.first + p) * dim * dim;
         const Place &place = places_[s][f.first + p];
         for (std::size_t j = 0; j < m; ++j)
           for (unsigned int c = 0; c < dim; ++c) {
             const double value =
-              (s == 1 ? 1. : -1.) * trace(place, c, sides[s].support[j]);
+                (s == 1 ? 1. : -1.) * trace(place, c, sides[s].support[j]);
             if (value != 0.)
               for (unsigned int r = 0; r < dim; ++r)
                 H[s][(p * dim + r) * m + j] += Q[r * dim + c] * value;
@@ -363,8 +361,7 @@ namespace nsfd
         for (std::size_t j = 0; j < own.support.size() && carries; j += dim) {
           double springs[dim] = {}, diagonal = 0.;
           for (unsigned int p = face.first; p < face.first + face.count; ++p) {
-            const double N =
-              trace(places_[side_number][p], 0, own.support[j]);
+            const double N = trace(places_[side_number][p], 0, own.support[j]);
             for (unsigned int r = 0; r < dim; ++r)
               springs[r] += k[std::size_t(p) * dim + r] * N * N;
           }
@@ -447,8 +444,8 @@ namespace nsfd
                                   const Place &y, const unsigned int j) {
           double sum = 0.;
           for (unsigned int c = 0; c < dim; ++c)
-            sum = std::max(sum,
-                           std::abs(coordinate(x, i + c) - coordinate(y, j + c)));
+            sum = std::max(
+                sum, std::abs(coordinate(x, i + c) - coordinate(y, j + c)));
           return sum;
         };
         if (!sides[s].rigid && !sides[1 - s].rigid) {
@@ -461,14 +458,14 @@ namespace nsfd
             for (const unsigned short j : sides[1 - s].support)
               if (i % dim == 0 && j % dim == 0 &&
                   distance(a, i, b, j) < 1e-6 * size) {
-                pairs.own.push_back(
-                  int(sides[s].first - matrix_.first_row) + i);
+                pairs.own.push_back(int(sides[s].first - matrix_.first_row) +
+                                    i);
                 pairs.other.push_back(sides[1 - s].first + j);
               }
         }
       }
       pairs.complete.push_back(
-        nodes > 0 && (pairs.own.size() - pairs.start.back()) * dim == nodes);
+          nodes > 0 && (pairs.own.size() - pairs.start.back()) * dim == nodes);
       pairs.start.push_back(pairs.own.size());
     }
     return pairs;
@@ -487,7 +484,7 @@ namespace nsfd
         for (std::size_t i = bodies_.first_dof[b]; i < bodies_.first_dof[b + 1];
              ++i)
           result.component[i] =
-            static_cast<signed char>((i - bodies_.first_dof[b]) % dim);
+              static_cast<signed char>((i - bodies_.first_dof[b]) % dim);
     return result;
   }
 

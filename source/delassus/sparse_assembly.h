@@ -2,8 +2,8 @@
 
 #include "glued_space.h"
 
-#include "nsfd/discretization/bodies.h"
 #include "linear_algebra/spd_solver.h"
+#include "nsfd/discretization/bodies.h"
 
 #include <array>
 #include <vector>
@@ -20,8 +20,7 @@ namespace nsfd
   {
   public:
     /** @p coordinates as in make_sparse_dynamics(). */
-    SparseAssembly(const Communicator &communicator,
-                   const Bodies &bodies,
+    SparseAssembly(const Communicator &communicator, const Bodies &bodies,
                    const InterfacePoints<dim> &points,
                    const std::vector<double> &coordinates);
 
@@ -57,8 +56,7 @@ namespace nsfd
      * much to the diagonal of A as the body; infinite at rigid bodies and at
      * those of other ranks. Size n_points + 1.
      */
-    std::array<std::vector<double>, 2> 
-    own_stiffness(const StepShares &s) const;
+    std::array<std::vector<double>, 2> own_stiffness(const StepShares &s) const;
 
     /** Nodes at the same place on both sides of a face. */
     NodePairs node_pairs() const;
@@ -68,23 +66,20 @@ namespace nsfd
 
   private:
     /** One side of a point: a slot of a body, here or on another rank. */
-    struct Place
-    {
+    struct Place {
       int body = -1;   ///< of this rank
       int remote = -1; ///< index in remote_
       unsigned int slot = 0;
       bool exists() const { return body >= 0 || remote >= 0; }
     };
     /** What another rank tells about its side of a point. */
-    struct Remote
-    {
+    struct Remote {
       long long first = 0;
       bool rigid = false;
       std::vector<double> trace, coordinates; ///< (component, unknown)
     };
     /** A side of a face: the unknowns that move its points. */
-    struct Side
-    {
+    struct Side {
       long long first = 0; ///< global number of the body's first unknown
       bool rigid = false;
       std::vector<unsigned short> support; ///< numbers within the body

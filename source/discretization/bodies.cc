@@ -7,8 +7,9 @@
 namespace nsfd
 {
   Block::Block(const unsigned int rows_, const unsigned int cols_)
-    : rows(rows_), cols(cols_), values(std::size_t(padded(rows_)) * cols_, 0.)
-  {}
+      : rows(rows_), cols(cols_), values(std::size_t(padded(rows_)) * cols_, 0.)
+  {
+  }
 
   Block Block::transposed() const
   {
@@ -111,10 +112,10 @@ namespace nsfd
       auto &members = order.classes.emplace_back();
       members.bodies = body.bodies;
       members.n_shared = std::size_t(
-        std::stable_partition(
-          members.bodies.begin(), members.bodies.end(),
-          [&](const unsigned int b) { return shared[b] != 0; }) -
-        members.bodies.begin());
+          std::stable_partition(
+              members.bodies.begin(), members.bodies.end(),
+              [&](const unsigned int b) { return shared[b] != 0; }) -
+          members.bodies.begin());
     }
     return order;
   }

@@ -2,8 +2,8 @@
 
 #include "interface_quadrature.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "cell_geometry.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe.h>
@@ -130,9 +130,8 @@ namespace nsfd
       body.stiffness = stiffness(shape, shape.elasticity);
       body.rigid_motions = of_unit_mass(rigid_modes(shape, size), body.mass);
       if (input_.has_bonded_faces())
-        body.traction_bound =
-            set_traction(shape, body, shape.elasticity, body.stiffness,
-                         body.traction);
+        body.traction_bound = set_traction(shape, body, shape.elasticity,
+                                           body.stiffness, body.traction);
     }
     if (input.is_viscous()) {
       const std::vector<LinearElasticity<dim>> viscosity = {
@@ -145,11 +144,10 @@ namespace nsfd
             std::max(input.shear_viscosity, 0x1p-20 * input.bulk_viscosity);
         definite.bulk_viscosity =
             std::max(input.bulk_viscosity, 0x1p-20 * input.shear_viscosity);
-        body.viscous_bound =
-            set_traction(
-                shape, body, viscosity,
-                stiffness(shape, {LinearElasticity<dim>::viscous(definite)}),
-                body.viscous_traction);
+        body.viscous_bound = set_traction(
+            shape, body, viscosity,
+            stiffness(shape, {LinearElasticity<dim>::viscous(definite)}),
+            body.viscous_traction);
       }
     }
   }

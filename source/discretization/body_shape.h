@@ -38,7 +38,7 @@ namespace nsfd
     std::vector<dealii::Tensor<1, dim>> gradients;
     std::vector<dealii::Point<dim>> slot_positions;
     std::vector<dealii::Tensor<1, dim>> slot_normals; ///< outward, times w
-    std::vector<dealii::Point<dim>> slot_places; ///< in the reference cell
+    std::vector<dealii::Point<dim>> slot_places;      ///< in the reference cell
     std::vector<unsigned int> slot_faces;
     std::vector<double> corner_values; ///< corner x node
     double volume = 0.;
@@ -49,9 +49,9 @@ namespace nsfd
     std::vector<LocalModuli> moduli;
     std::vector<LinearElasticity<dim>> elasticity; ///< the same; rigid: none
     MaterialExtremes extremes; ///< of a rigid body only the density
-    Block modes;        ///< rigid: nodal values = modes * unknowns
-    Block projection;   ///< rigid: unknowns = projection * nodal values
-    Block nodal_mass;   ///< rigid: of the nodal values
+    Block modes;               ///< rigid: nodal values = modes * unknowns
+    Block projection;          ///< rigid: unknowns = projection * nodal values
+    Block nodal_mass;          ///< rigid: of the nodal values
   };
 
   /** Of the places of a class: one for all, or one for each. */

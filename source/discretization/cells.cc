@@ -61,8 +61,7 @@ namespace nsfd
       for (const auto member : {&LocalModuli::young, &LocalModuli::poisson,
                                 &LocalModuli::density}) {
         const bool finite = std::isfinite(local.*member);
-        const double value =
-            finite ? local.*member : -infinity;
+        const double value = finite ? local.*member : -infinity;
         range[0].*member = std::min(range[0].*member, value);
         range[1].*member = std::max(range[1].*member, value);
         possible = possible && finite;

@@ -1,14 +1,14 @@
 #include "nsfd/discretization/discretization.h"
 
 #include "cells.h"
-#include "materials/elasticity.h"
 #include "face_points.h"
 #include "loads.h"
+#include "materials/elasticity.h"
 
 #include "materials/cauchy_stress.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "mesh/mesh_builder.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 
@@ -70,8 +70,7 @@ namespace nsfd
           field.text(),
           std::isinf(range[1])
               ? "positive"
-              : fmt::format("above {:g} and below {:g}", range[0],
-                            range[1]),
+              : fmt::format("above {:g} and below {:g}", range[0], range[1]),
           what));
     }
 
@@ -84,13 +83,11 @@ namespace nsfd
       for (const auto &[m, range] : cells.graded) {
         const MaterialInput &material = input.materials[m];
         check_range(material, "density", material.graded->density,
-                    range[0].density, range[1].density, positive,
-                    communicator);
+                    range[0].density, range[1].density, positive, communicator);
         if (material.rigid || material.transverse)
           continue;
         check_range(material, "Young modulus", material.graded->young,
-                    range[0].young, range[1].young, positive,
-                    communicator);
+                    range[0].young, range[1].young, positive, communicator);
         check_range(material, "Poisson ratio", material.graded->poisson,
                     range[0].poisson, range[1].poisson, {-1., 0.5},
                     communicator);
@@ -226,9 +223,8 @@ namespace nsfd
   }
 
   template <int dim>
-  unsigned int
-  Discretization<dim>::face_of_slot(const unsigned int body,
-                                    const unsigned int slot) const
+  unsigned int Discretization<dim>::face_of_slot(const unsigned int body,
+                                                 const unsigned int slot) const
   {
     return cells_->shape(body).slot_faces[slot];
   }

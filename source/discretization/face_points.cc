@@ -4,10 +4,10 @@
 #include "mesh/owned_cells.h"
 #include "spring_shares.h"
 
-#include "nsfd/core/communicator.h"
-#include "nsfd/scene/scene_input.h"
 #include "cell_geometry.h"
 #include "mesh/mesh_builder.h"
+#include "nsfd/core/communicator.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/tria.h>
@@ -243,8 +243,8 @@ namespace nsfd
         const auto parent = cell->parent();
         bool is_part = false;
         for (unsigned int c = 0; c < parent->face(face_no)->n_children(); ++c)
-          is_part = is_part ||
-                    parent->face(face_no)->child(c) == cell->face(face_no);
+          is_part =
+              is_part || parent->face(face_no)->child(c) == cell->face(face_no);
         if (!is_part)
           break;
         cell = parent;

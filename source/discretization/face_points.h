@@ -12,8 +12,8 @@ namespace nsfd
   template <int dim>
   struct FacePoints {
     InterfacePoints<dim> points;
-    std::vector<PointOrigin> origins; ///< per point
-    std::vector<int> springs_inside;  ///< per body, or empty: none
+    std::vector<PointOrigin> origins;         ///< per point
+    std::vector<int> springs_inside;          ///< per body, or empty: none
     std::vector<ObstacleFace> obstacle_faces; ///< with large motions
     std::vector<InnerFace> inner_faces;       ///< the same
   };

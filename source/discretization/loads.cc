@@ -2,9 +2,9 @@
 
 #include "mesh/owned_cells.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "cell_geometry.h"
 #include "mesh/mesh_builder.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/grid/tria.h>

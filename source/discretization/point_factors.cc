@@ -1,7 +1,7 @@
 #include "point_factors.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nsfd/discretization/discretization.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 

@@ -8,8 +8,7 @@
 namespace nsfd
 {
   /** Where a point sits in one of its bodies. */
-  struct PointPlace
-  {
+  struct PointPlace {
     int body = -1;         ///< local, -1: none or on another rank
     unsigned int slot = 0; ///< within the body
   };
@@ -33,10 +32,10 @@ namespace nsfd
                 unsigned(bodies.slot_sign[s] > 0));
     for (const auto &[slot, point] : bodies.extra_points) {
       const std::size_t b =
-        std::size_t(std::upper_bound(bodies.first_slot.begin(),
-                                     bodies.first_slot.end(), slot) -
-                    bodies.first_slot.begin()) -
-        1;
+          std::size_t(std::upper_bound(bodies.first_slot.begin(),
+                                       bodies.first_slot.end(), slot) -
+                      bodies.first_slot.begin()) -
+          1;
       visit(b, slot_of(b, slot), point, 1u);
     }
   }

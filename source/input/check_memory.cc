@@ -34,8 +34,7 @@ namespace nsfd
 
     double n_cells(const MeshInput &mesh, const unsigned int dimension)
     {
-      const double refined =
-          std::ldexp(1., int(dimension * mesh.refinements));
+      const double refined = std::ldexp(1., int(dimension * mesh.refinements));
       const MeshType *type = find_mesh_type(mesh.type);
       double n = 1.;
       if (mesh.named)
@@ -46,8 +45,7 @@ namespace nsfd
         if (type != nullptr)
           n *= type->cells_per_brick;
       } else if (mesh.type.compare(0, 11, "subdivided_") == 0)
-        n = std::pow(largest_whole_number(mesh.generator_arguments),
-                     dimension);
+        n = std::pow(largest_whole_number(mesh.generator_arguments), dimension);
       if (mesh.split_simplices)
         n *= dimension + 1;
       return n * refined;
@@ -65,8 +63,8 @@ namespace nsfd
       const double n_unknowns =
           dim * std::pow(scene.discretization.degree + 1., dim);
       const double n_points =
-          dim * std::pow(double(scene.discretization.interface_points),
-                         dim - 1.);
+          dim *
+          std::pow(double(scene.discretization.interface_points), dim - 1.);
       const double mesh = dim == 2 ? 600. : 1200.;
       const double point = (dim == 2 ? 600. : 1200.) + 16. * n_unknowns;
       const double matrix =
@@ -97,8 +95,7 @@ namespace nsfd
         cells += n_cells(body.mesh, scene.dimension);
     else
       cells = n_cells(scene.mesh, scene.dimension);
-    const double bytes =
-        cells * bytes_per_cell(scene) * share_of_machine();
+    const double bytes = cells * bytes_per_cell(scene) * share_of_machine();
     const double available = available_memory();
     if (bytes <= available)
       return;

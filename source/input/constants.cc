@@ -68,11 +68,11 @@ namespace nsfd
                           formula.error->message),
               formula.error->advice);
         else
-          constant = {*formula.constant,
-                      formula.unit.value_or(
-                          formula.likely_unit.value_or(units::none)),
-                      !formula.unit && !formula.likely_unit,
-                      formula.likely_unit.has_value()};
+          constant = {
+              *formula.constant,
+              formula.unit.value_or(formula.likely_unit.value_or(units::none)),
+              !formula.unit && !formula.likely_unit,
+              formula.likely_unit.has_value()};
       }
       file.constants()[entry.name] = constant;
     }

@@ -1,8 +1,8 @@
 #include "formula_check.h"
 
-#include "parameters/bad_values.h"
-#include "nsfd/scene/scene_input.h"
 #include "nsfd/discretization/discretization.h"
+#include "nsfd/scene/scene_input.h"
+#include "parameters/bad_values.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -21,11 +21,10 @@ namespace nsfd
              communicator.mpi(), take_bad_values()))
       for (const std::string &text : of_rank) {
         const std::string formula = text.substr(0, text.find(" is "));
-        if (std::none_of(result.begin(), result.end(),
-                         [&](const std::string &known) {
-                           return known.compare(0, formula.size(), formula) ==
-                                  0;
-                         }))
+        if (std::none_of(
+                result.begin(), result.end(), [&](const std::string &known) {
+                  return known.compare(0, formula.size(), formula) == 0;
+                }))
           result.push_back(text);
       }
     return result;
@@ -41,8 +40,8 @@ namespace nsfd
     for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
       const auto &material = input.materials[discretization.material_of(b)];
       for (unsigned int c = 0; c < dim; ++c)
-        for (const Expression *initial : {&material.initial_displacement[c],
-                                          &material.initial_velocity[c]})
+        for (const Expression *initial :
+             {&material.initial_displacement[c], &material.initial_velocity[c]})
           if (!initial->is_constant())
             initial->at(discretization.centre(b), 0.);
     }

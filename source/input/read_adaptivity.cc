@@ -60,24 +60,25 @@ namespace nsfd
           continue;
         const std::string why = not_stiffened(*block.law);
         if (!why.empty())
-          reader.error("springs",
-                       fmt::format("the law {} of Interface: {} {}: its springs "
-                                   "cannot become stiffer on smaller cells",
-                                   block.law_name, block.name, why),
-                       "write springs = constant stiffness, which lowers the "
-                       "modulus of the body where cells are small, or take a "
-                       "law with one damage scalar and no viscosity of damage");
+          reader.error(
+              "springs",
+              fmt::format("the law {} of Interface: {} {}: its springs "
+                          "cannot become stiffer on smaller cells",
+                          block.law_name, block.name, why),
+              "write springs = constant stiffness, which lowers the "
+              "modulus of the body where cells are small, or take a "
+              "law with one damage scalar and no viscosity of damage");
       }
     }
 
-    std::shared_ptr<const Indicator>
-    read_indicator(ParameterSection &section, InputErrors &errors)
+    std::shared_ptr<const Indicator> read_indicator(ParameterSection &section,
+                                                    InputErrors &errors)
     {
       SectionReader reader(section, errors);
       const auto &registry = IndicatorRegistry::instance();
-      const std::string type = reader.choice(
-          "type", "process zone", registry.names(),
-          fmt::format("{}", fmt::join(registry.names(), ", ")));
+      const std::string type =
+          reader.choice("type", "process zone", registry.names(),
+                        fmt::format("{}", fmt::join(registry.names(), ", ")));
       if (!registry.knows(type)) {
         reader.accept_everything();
         return nullptr;

@@ -20,16 +20,17 @@ namespace nsfd
       if (!file.has_section("Verification"))
         return;
       SectionReader reader(file.open("Verification"), errors);
-      const auto value = reader.raw("case", "", "what the run is compared with");
+      const auto value =
+          reader.raw("case", "", "what the run is compared with");
       const auto &registry = VerificationRegistry::instance();
       const std::string name = value ? collapse_blanks(value->text()) : "";
       if (!registry.knows(name)) {
         reader.accept_everything();
         if (value)
-          reader.error("case",
-                       fmt::format("case = {} is not a verification case", name),
-                       did_you_mean(name, registry.names(),
-                                    "`nsfd --list` prints all names"));
+          reader.error(
+              "case", fmt::format("case = {} is not a verification case", name),
+              did_you_mean(name, registry.names(),
+                           "`nsfd --list` prints all names"));
         return;
       }
       const unsigned int n_before = errors.n_errors();

@@ -84,8 +84,8 @@ namespace nsfd
       if (input.opening_viscosity == 0.)
         reader.refuse({limit}, "there is no `opening viscosity`");
       else if (reader.optional(limit, text))
-        input.viscous_limit = reader.number(limit, "", units::pressure,
-                                            Range::positive(), text);
+        input.viscous_limit =
+            reader.number(limit, "", units::pressure, Range::positive(), text);
     }
 
     void read_damage_start(SectionReader &reader, InterfaceInput &input)
@@ -111,18 +111,17 @@ namespace nsfd
       reader.error(
           name,
           fmt::format("{} = bonded joins bodies {}, and the scene has {}", name,
-                      scene.large_motion  ? "that turn and strain little"
+                      scene.large_motion ? "that turn and strain little"
                       : all_rigid(scene) ? "that deform"
                                          : "without memory",
-                      scene.large_motion  ? "motion = large"
+                      scene.large_motion ? "motion = large"
                       : all_rigid(scene) ? "rigid ones only"
                                          : remembering_model(scene)),
           "write rigid");
     }
 
     void check_intact_faces(SectionReader &reader, const InterfaceInput &input,
-                            const std::string &name,
-                            const SceneInput &scene)
+                            const std::string &name, const SceneInput &scene)
     {
       const bool extrinsic = input.law && input.law->extrinsic();
       const bool joined = name == "rigid" || name == "bonded";
@@ -138,8 +137,7 @@ namespace nsfd
                (scene.iterates() || all_rigid(scene)))
         refuse_bonds(reader, scene, "intact faces");
       else if (extrinsic && !scene.iterates() && !all_rigid(scene) &&
-               name == "rigid" &&
-               input.where.kind == Where::Kind::all)
+               name == "rigid" && input.where.kind == Where::Kind::all)
         reader.error("intact faces",
                      fmt::format("intact faces = rigid with where = all and "
                                  "the law {}: rigid rows on all faces make the "

@@ -162,10 +162,11 @@ namespace nsfd
       const unsigned int n_before = reader.errors().n_errors();
       Expression value = read_initial_expression(reader, name, "", unit, text);
       if (!uniform.empty() && reader.errors().n_errors() == n_before)
-        reader.error(name,
-                     fmt::format("{} = {} depends on the place, and {}", name,
-                                 value.text(), uniform),
-                     "write a number; blocks with their own `where` may differ");
+        reader.error(
+            name,
+            fmt::format("{} = {} depends on the place, and {}", name,
+                        value.text(), uniform),
+            "write a number; blocks with their own `where` may differ");
       return value;
     }
 
@@ -189,10 +190,9 @@ namespace nsfd
             read_constant(reader, uniform, isotropic_names[0], units::pressure,
                           Range::positive(), "Pa" + graded);
         // the bulk modulus is infinite at 1/2, the shear modulus at -1
-        constants.poisson = read_constant(
-            reader, uniform, isotropic_names[1], units::none,
-            {-1., 0.5, true, true},
-            "lateral over axial strain" + graded);
+        constants.poisson = read_constant(reader, uniform, isotropic_names[1],
+                                          units::none, {-1., 0.5, true, true},
+                                          "lateral over axial strain" + graded);
       } else
         reader.refuse(isotropic_names,
                       material.rigid ? "the material is rigid"
@@ -275,13 +275,12 @@ namespace nsfd
       };
       input.axial_young = modulus(1, "Pa, along the axis");
       input.transverse_young = modulus(2, "Pa, across the axis");
-      input.axial_poisson = reader.number(
-          transverse_names[3], "", units::none, Range::any(),
-          "contraction across over extension along the axis");
-      input.transverse_poisson =
-          reader.number(transverse_names[4], "", units::none,
-                        {-1., 1., true, true},
-                        "contraction over extension, both across the axis");
+      input.axial_poisson =
+          reader.number(transverse_names[3], "", units::none, Range::any(),
+                        "contraction across over extension along the axis");
+      input.transverse_poisson = reader.number(
+          transverse_names[4], "", units::none, {-1., 1., true, true},
+          "contraction over extension, both across the axis");
       input.axial_shear =
           modulus(5, "Pa, of shear between the axis and any direction across");
       if (reader.errors().n_errors() == n_before)
@@ -318,19 +317,19 @@ namespace nsfd
       plastic.yield_stress =
           reader.number("yield stress", "", units::pressure, Range::positive(),
                         "Pa, in uniaxial stress, before any flow");
-      plastic.isotropic = reader.number(
-          "isotropic hardening modulus", "0", units::pressure,
-          Range::non_negative(), "Pa, growth of the yield stress with the flow");
+      plastic.isotropic =
+          reader.number("isotropic hardening modulus", "0", units::pressure,
+                        Range::non_negative(),
+                        "Pa, growth of the yield stress with the flow");
       plastic.kinematic = reader.number(
           "kinematic hardening modulus", "0", units::pressure,
           Range::non_negative(),
           "Pa, of the back stress in uniaxial stress; the middle of the "
           "surface follows the flow");
-      plastic.saturation_stress =
-          reader.number("saturation stress", "0", units::pressure,
-                        Range::non_negative(),
-                        "Pa, Q of Q (1 - exp(-b p)), which the yield stress "
-                        "grows by in the end");
+      plastic.saturation_stress = reader.number(
+          "saturation stress", "0", units::pressure, Range::non_negative(),
+          "Pa, Q of Q (1 - exp(-b p)), which the yield stress "
+          "grows by in the end");
       const std::string exponent = "saturation exponent";
       if (plastic.saturation_stress == 0.)
         reader.refuse({exponent}, "there is no `saturation stress`");
@@ -345,27 +344,25 @@ namespace nsfd
       plastic.viscosity = reader.number(
           "viscosity", "", units::viscosity, Range::positive(),
           "Pa s, overstress over rate of flow (at the reference rate)");
-      plastic.rate_exponent =
-          reader.number("rate exponent", "1", units::none,
-                        {1., 1e3, false, false},
-                        "n: the rate grows like the overstress to the n");
+      plastic.rate_exponent = reader.number(
+          "rate exponent", "1", units::none, {1., 1e3, false, false},
+          "n: the rate grows like the overstress to the n");
       const std::string rate = "reference rate";
       if (plastic.rate_exponent == 1.)
         reader.refuse({rate}, "it is of no effect where `rate exponent` is 1");
       else
-        plastic.reference_rate =
-            reader.number(rate, "", per_time, Range::positive(),
-                          "1/s, r of overstress = viscosity r (rate / r)^(1/n)");
+        plastic.reference_rate = reader.number(
+            rate, "", per_time, Range::positive(),
+            "1/s, r of overstress = viscosity r (rate / r)^(1/n)");
     }
 
     void read_flow(SectionReader &reader, MaterialInput &material)
     {
-      const std::vector<std::string> of_surface = {
-          "yield stress", "isotropic hardening modulus",
-          "kinematic hardening modulus", "saturation stress",
-          "saturation exponent"},
-                                     of_rates = {"viscosity", "rate exponent",
-                                                 "reference rate"};
+      const std::vector<std::string>
+          of_surface = {"yield stress", "isotropic hardening modulus",
+                        "kinematic hardening modulus", "saturation stress",
+                        "saturation exponent"},
+          of_rates = {"viscosity", "rate exponent", "reference rate"};
       if (!flows(material.model)) {
         reader.refuse(of_surface, "the material does not flow");
         return reader.refuse(of_rates, "the material does not flow");

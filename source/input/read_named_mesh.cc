@@ -111,8 +111,7 @@ namespace nsfd
       if (!reader.optional("element size",
                            "m, everywhere; without it as the geometry says"))
         return 0.;
-      return reader.number("element size", "", units::length,
-                           Range::positive(),
+      return reader.number("element size", "", units::length, Range::positive(),
                            "m, everywhere; without it as the geometry says");
     }
 
@@ -138,14 +137,14 @@ namespace nsfd
       if (split || !mixed_shapes(named))
         return;
       const bool has_prisms = named.dimension == 3;
-      reader.error(
-          "file",
-          fmt::format("the mesh has cells of different shapes: {}",
-                      count_of_shapes(named)),
-          has_prisms ? "add: set split simplices = true, which cuts all of "
-                       "them into hexes; or mesh with one shape"
-                     : "add: set split simplices = true, which cuts all of "
-                       "them into quads; or mesh with one shape");
+      reader.error("file",
+                   fmt::format("the mesh has cells of different shapes: {}",
+                               count_of_shapes(named)),
+                   has_prisms
+                       ? "add: set split simplices = true, which cuts all of "
+                         "them into hexes; or mesh with one shape"
+                       : "add: set split simplices = true, which cuts all of "
+                         "them into quads; or mesh with one shape");
     }
 
     void store(SectionReader &reader, const std::string &entry,
@@ -204,18 +203,18 @@ namespace nsfd
     const unsigned int n_before = reader.errors().n_errors();
     mesh.lower = reader.numbers("lower corner", "0, 0", units::length,
                                 Range::any(), 2, "m");
-    mesh.upper = reader.numbers("upper corner", "", units::length, Range::any(),
-                                2, "m");
+    mesh.upper =
+        reader.numbers("upper corner", "", units::length, Range::any(), 2, "m");
     VoronoiRequest request;
     constexpr unsigned int most_grains = 100000;
     request.grains =
         reader.integer("grains", "", 1, most_grains, "number of them");
-    request.seed = reader.integer("seed", "1", 0,
-                                  std::numeric_limits<unsigned int>::max(),
-                                  "of the grains and the distortion");
-    request.relaxation = reader.integer(
-        "relaxation", "5", 0, 1000,
-        "steps of Lloyd: more of them make more equal grains");
+    request.seed =
+        reader.integer("seed", "1", 0, std::numeric_limits<unsigned int>::max(),
+                       "of the grains and the distortion");
+    request.relaxation =
+        reader.integer("relaxation", "5", 0, 1000,
+                       "steps of Lloyd: more of them make more equal grains");
     request.element_size = reader.number("element size", "", units::length,
                                          Range::positive(), "m");
     request.seconds = read_meshing_time(reader);
@@ -236,10 +235,10 @@ namespace nsfd
     }
     constexpr double most_cells = 2e6; // in seconds, not in minutes
     if (n_cells > most_cells)
-      return reader.error("element size",
-                          fmt::format("the mesh would have {:.2g} cells",
-                                      n_cells),
-                          "write a larger element size");
+      return reader.error(
+          "element size",
+          fmt::format("the mesh would have {:.2g} cells", n_cells),
+          "write a larger element size");
     std::vector<std::string> problems;
     NamedMesh named = voronoi_mesh(request, problems);
     if (problems.empty())

@@ -1,11 +1,11 @@
 #include "read_scene.h"
 
+#include "mesh/mesh_types.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nsfd/adaptivity/indicator.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
-#include "mesh/mesh_types.h"
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/verification/verification_case.h"
-#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -17,12 +17,11 @@ namespace nsfd
   namespace
   {
     const std::vector<std::string> plain_sections = {
-        "Mesh",   "Discretization", "Loads",        "Time",      "Solver",
-        "Output", "Verification",   "Adaptivity",   "Constants"};
+        "Mesh",   "Discretization", "Loads",      "Time",     "Solver",
+        "Output", "Verification",   "Adaptivity", "Constants"};
     const std::vector<std::string> block_kinds = {
-        "Body",     "Material", "Interface", "Boundary",
-        "Obstacle", "Contact",  "Pin",       "Indicator",
-        "Observable"};
+        "Body",    "Material", "Interface", "Boundary",  "Obstacle",
+        "Contact", "Pin",      "Indicator", "Observable"};
     /// of a study, which reads them itself, see study/study_input.h
     const std::vector<std::string> study_kinds = {"Study", "Vary"};
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "parameters/input_errors.h"
 #include "nsfd/scene/scene_input.h"
+#include "parameters/input_errors.h"
 
 #include <memory>
 #include <string>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "nsfd/parameters/section_reader.h"
+#include "nsfd/scene/scene_input.h"
 #include "parameters/input_errors.h"
 #include "parameters/parameter_file.h"
-#include "nsfd/scene/scene_input.h"
-#include "nsfd/parameters/section_reader.h"
 
 #include <array>
 #include <string>
@@ -31,8 +31,8 @@ namespace nsfd
    * A registered law with the entries that it asks for; null, and reported, if
    * they do not make one.
    */
-  std::shared_ptr<const CohesiveLaw>
-  read_cohesive_law(SectionReader &reader, const std::string &name);
+  std::shared_ptr<const CohesiveLaw> read_cohesive_law(SectionReader &reader,
+                                                       const std::string &name);
 
   /** s of kappa = (1 - beta)^s. */
   double read_friction_exponent(SectionReader &reader);

@@ -364,10 +364,10 @@ namespace nsfd
     SectionReader reader(file.open("Time"), errors);
     TimeInput &time = scene.time;
     time.end = reader.number("end", "", units::time, Range::positive(), "s");
-    const std::string scheme = reader.choice(
-        "scheme", "moreau-jean",
-        {"moreau-jean", "symplectic", "arkode", "quasi-static"},
-        "moreau-jean, symplectic, arkode or quasi-static");
+    const std::string scheme =
+        reader.choice("scheme", "moreau-jean",
+                      {"moreau-jean", "symplectic", "arkode", "quasi-static"},
+                      "moreau-jean, symplectic, arkode or quasi-static");
     if (refuse_scheme(reader, scene, scheme))
       return;
     check_viscosity(reader, scene, scheme);

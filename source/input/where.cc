@@ -1,7 +1,7 @@
 #include "read_sections.h"
 
-#include "parameters/formula.h"
 #include "mesh/named_mesh.h"
+#include "parameters/formula.h"
 
 #include <fmt/format.h>
 
@@ -158,10 +158,9 @@ namespace nsfd
       for (const std::string &name : where.materials)
         if (!lacks_its_mesh(scene) &&
             std::find(known.begin(), known.end(), name) == known.end())
-          reader.error(
-              "where",
-              fmt::format("the mesh has no group of cells `{}`", name),
-              did_you_mean(name, known, "`--check` lists the groups"));
+          reader.error("where",
+                       fmt::format("the mesh has no group of cells `{}`", name),
+                       did_you_mean(name, known, "`--check` lists the groups"));
       return where;
     }
 
@@ -178,9 +177,8 @@ namespace nsfd
       std::string rest = collapse_blanks(value.substr(between.size()));
       if (rest.empty())
         return where;
-      where.materials =
-          read_two_materials(reader, "where", value, rest,
-                             "between materials [a, b]", scene);
+      where.materials = read_two_materials(reader, "where", value, rest,
+                                           "between materials [a, b]", scene);
       return where;
     }
 
@@ -203,13 +201,13 @@ namespace nsfd
         }
       if (groups.size() > 200)
         groups = "`--check` lists its groups";
-      reader.error(
-          "where",
-          fmt::format("where = {}: the mesh `{}` has no such group", value,
-                      scene.mesh.type),
-          did_you_mean(value, known,
-                       groups.empty() ? "write all or an expression of x, y, z"
-                                      : groups));
+      reader.error("where",
+                   fmt::format("where = {}: the mesh `{}` has no such group",
+                               value, scene.mesh.type),
+                   did_you_mean(value, known,
+                                groups.empty()
+                                    ? "write all or an expression of x, y, z"
+                                    : groups));
     }
   } // namespace
 
@@ -301,8 +299,8 @@ namespace nsfd
     } else if (is_grains)
       where = read_between_groups(reader, value, value.size(), use, scene);
     else if (value.compare(0, between_groups.size(), between_groups) == 0)
-      where = read_between_groups(reader, value, between_groups.size(), use,
-                                  scene);
+      where =
+          read_between_groups(reader, value, between_groups.size(), use, scene);
     else if (is_side(value)) {
       where.kind = Where::Kind::side;
       where.name = value;

@@ -13,11 +13,8 @@ namespace nsfd
   } // namespace
 
   NSFD_CLONES
-  void multiply_lanes(const double *A,
-                      const unsigned int rows,
-                      const unsigned int cols,
-                      const double *X,
-                      double *Y)
+  void multiply_lanes(const double *A, const unsigned int rows,
+                      const unsigned int cols, const double *X, double *Y)
   {
     const unsigned int ld = padded(rows);
     for (unsigned int r = 0; r < ld; r += 8) {
@@ -26,7 +23,7 @@ namespace nsfd
       const double *a = A + r;
       for (unsigned int k = 0; k < cols; ++k, a += ld) {
         const Vector8 x =
-          *reinterpret_cast<const Vector8u *>(X + std::size_t(k) * 8);
+            *reinterpret_cast<const Vector8u *>(X + std::size_t(k) * 8);
         y0 += a[0] * x;
         y1 += a[1] * x;
         y2 += a[2] * x;
@@ -49,11 +46,8 @@ namespace nsfd
   }
 
   NSFD_CLONES
-  void multiply_one(const double *A,
-                    const unsigned int rows,
-                    const unsigned int cols,
-                    const double *x,
-                    double *y)
+  void multiply_one(const double *A, const unsigned int rows,
+                    const unsigned int cols, const double *x, double *y)
   {
     const unsigned int ld = padded(rows);
     for (unsigned int r = 0; r < ld; r += 8) {

@@ -11,8 +11,7 @@
 
 namespace nsfd
 {
-  struct Cholesky::Library
-  {
+  struct Cholesky::Library {
     cholmod_common common;
     cholmod_factor *factor = nullptr;
     cholmod_dense *work_y = nullptr, *work_e = nullptr, *x = nullptr;
@@ -58,8 +57,9 @@ namespace nsfd
   };
 
   Cholesky::Cholesky(const Communicator &communicator)
-    : library_(std::make_unique<Library>()), communicator_(communicator)
-  {}
+      : library_(std::make_unique<Library>()), communicator_(communicator)
+  {
+  }
 
   Cholesky::~Cholesky() = default;
 
@@ -76,8 +76,8 @@ namespace nsfd
     std::vector<int> columns(n_entries);
     for (int k = 0; k < n_entries; ++k)
       columns[k] = matrix.column[k] < n
-                     ? int(matrix.first_row) + matrix.column[k]
-                     : int(matrix.ghosts[matrix.column[k] - n]);
+                       ? int(matrix.first_row) + matrix.column[k]
+                       : int(matrix.ghosts[matrix.column[k] - n]);
     counts_.resize(n_ranks);
     offsets_.assign(n_ranks, 0);
     MPI_Gather(&n, 1, MPI_INT, counts_.data(), 1, MPI_INT, 0, mpi);
@@ -132,8 +132,7 @@ namespace nsfd
       }
       failed = !library_->factor ||
                !cholmod_factorize(&A, library_->factor, common) ||
-               common->status != CHOLMOD_OK ||
-               library_->factor->minor < A.nrow;
+               common->status != CHOLMOD_OK || library_->factor->minor < A.nrow;
     }
     if (communicator_.any(failed))
       throw std::runtime_error("the sparse matrix has no Cholesky factor: not "
@@ -148,8 +147,8 @@ namespace nsfd
     int n = 0;
     if (!alone) {
       MPI_Scatter(counts_.data(), 1, MPI_INT, &n, 1, MPI_INT, 0, mpi);
-      MPI_Gatherv(b, n, MPI_DOUBLE, b_.data(), counts_.data(),
-                  offsets_.data(), MPI_DOUBLE, 0, mpi);
+      MPI_Gatherv(b, n, MPI_DOUBLE, b_.data(), counts_.data(), offsets_.data(),
+                  MPI_DOUBLE, 0, mpi);
     }
     if (communicator_.is_root()) {
       cholmod_dense right{};
@@ -158,15 +157,15 @@ namespace nsfd
       right.x = const_cast<double *>(alone ? b : b_.data());
       right.xtype = CHOLMOD_REAL;
       right.dtype = CHOLMOD_DOUBLE;
-      cholmod_solve2(CHOLMOD_A, library_->factor, &right, nullptr,
-                     &library_->x, nullptr, &library_->work_y,
-                     &library_->work_e, &library_->common);
+      cholmod_solve2(CHOLMOD_A, library_->factor, &right, nullptr, &library_->x,
+                     nullptr, &library_->work_y, &library_->work_e,
+                     &library_->common);
       std::copy_n(static_cast<const double *>(library_->x->x),
                   library_->factor->n, alone ? x : x_.data());
     }
     if (!alone)
-      MPI_Scatterv(x_.data(), counts_.data(), offsets_.data(), MPI_DOUBLE, x,
-                   n, MPI_DOUBLE, 0, mpi);
+      MPI_Scatterv(x_.data(), counts_.data(), offsets_.data(), MPI_DOUBLE, x, n,
+                   MPI_DOUBLE, 0, mpi);
   }
 
   void Cholesky::solve_columns(const double *B, double *X, const std::size_t n)
@@ -179,8 +178,8 @@ namespace nsfd
     right.x = const_cast<double *>(B);
     right.xtype = CHOLMOD_REAL;
     right.dtype = CHOLMOD_DOUBLE;
-    cholmod_dense *solution = cholmod_solve(CHOLMOD_A, library_->factor, &right,
-                                            &library_->common);
+    cholmod_dense *solution =
+        cholmod_solve(CHOLMOD_A, library_->factor, &right, &library_->common);
     std::copy_n(static_cast<const double *>(solution->x), rows * n, X);
     cholmod_free_dense(&solution, &library_->common);
   }
@@ -196,8 +195,9 @@ namespace nsfd
     {
     public:
       explicit CholeskySolver(const Communicator &communicator)
-        : factor_(communicator)
-      {}
+          : factor_(communicator)
+      {
+      }
 
       void prepare(const SparseRows &matrix, const CoarseSpace &,
                    const bool new_pattern) override

@@ -5,10 +5,9 @@
 namespace nsfd
 {
   GhostValues::GhostValues(const Communicator &communicator,
-                           const long long first,
-                           const std::size_t n_own,
+                           const long long first, const std::size_t n_own,
                            const std::vector<long long> &ghosts)
-    : mpi_(communicator.mpi())
+      : mpi_(communicator.mpi())
   {
     const int n = communicator.size();
     if (n == 1)

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/core/communicator.h"
 #include "core/neighbor_messages.h"
+#include "nsfd/core/communicator.h"
 
 #include <vector>
 
@@ -16,10 +16,8 @@ namespace nsfd
   {
   public:
     GhostValues() = default;
-    GhostValues(const Communicator &communicator,
-                long long first,
-                std::size_t n_own,
-                const std::vector<long long> &ghosts);
+    GhostValues(const Communicator &communicator, long long first,
+                std::size_t n_own, const std::vector<long long> &ghosts);
 
     /** Values of the owners. */
     void fetch(const double *own, double *ghosts) const
@@ -35,13 +33,13 @@ namespace nsfd
     void finish_add_back(double *own) const;
 
   private:
-    struct Neighbor
-    {
+    struct Neighbor {
       std::size_t first = 0, count = 0; ///< range of ghosts it owns
       std::vector<int> wanted;          ///< own unknowns it has as ghosts
     };
     MPI_Comm mpi_ = MPI_COMM_SELF;
     std::vector<Neighbor> neighbors_;
-    mutable NeighborMessages<double> messages_; ///< one per neighbour, with its rank
+    mutable NeighborMessages<double>
+        messages_; ///< one per neighbour, with its rank
   };
 } // namespace nsfd

@@ -65,8 +65,7 @@ namespace nsfd::lane
         Lanes y0 = {}, y1 = {}, y2 = {}, y3 = {}, y4 = {}, y5 = {}, y6 = {},
               y7 = {};
         const float *a = A + std::size_t(r) * step;
-        for (unsigned int k = 0; k < cols;
-             ++k, a += std::size_t(rows) * step) {
+        for (unsigned int k = 0; k < cols; ++k, a += std::size_t(rows) * step) {
           const Lanes v = load(x + std::size_t(k) * width);
           add_product<shared>(y0, a, v);
           add_product<shared>(y1, a + step, v);
@@ -100,10 +99,9 @@ namespace nsfd::lane
      * y = H x for rows of H with @p entries each, or with any number (0).
      */
     template <bool shared, unsigned int entries>
-    NSFD_INLINE void multiply_sparse(
-      const std::vector<unsigned int> &first,
-      const std::vector<unsigned int> &column, const float *h, const float *x,
-      float *y)
+    NSFD_INLINE void multiply_sparse(const std::vector<unsigned int> &first,
+                                     const std::vector<unsigned int> &column,
+                                     const float *h, const float *x, float *y)
     {
       constexpr unsigned int step = shared ? 1 : width;
       const unsigned int *at = column.data();
@@ -111,7 +109,7 @@ namespace nsfd::lane
       for (std::size_t r = 0; r < rows; ++r) {
         Lanes sum = {};
         const unsigned int count =
-          entries > 0 ? entries : first[r + 1] - first[r];
+            entries > 0 ? entries : first[r + 1] - first[r];
         for (unsigned int e = 0; e < count; ++e, ++at, h += step)
           add_product<shared>(sum, h, load(x + std::size_t(*at) * width));
         store(y + r * width, sum);
@@ -120,15 +118,14 @@ namespace nsfd::lane
 
     /** Per row and per column of H as many entries as given, or any (0). */
     template <bool shared, unsigned int in_row, unsigned int in_column>
-    NSFD_INLINE void multiply_group(const BodyGroup &g,
-                                    const std::size_t begin,
+    NSFD_INLINE void multiply_group(const BodyGroup &g, const std::size_t begin,
                                     const std::size_t end, const float *X,
                                     float *Y)
     {
       static thread_local std::vector<float> scratch;
       scratch.resize(std::size_t(2) * g.dofs * width);
-      float *const t = scratch.data(),
-                   *const s = t + std::size_t(g.dofs) * width;
+      float *const t = scratch.data(), *const s =
+                                           t + std::size_t(g.dofs) * width;
       const std::size_t size = std::size_t(g.rows) * width;
       const unsigned int order = g.dense ? g.rows : g.dofs;
       for (std::size_t b = begin; b < end; ++b) {
@@ -141,15 +138,15 @@ namespace nsfd::lane
           continue;
         }
         multiply_sparse<shared, in_column>(
-          g.column_first, g.column_row,
-          g.by_column.data() + own * g.column_row.size() * width, x, t);
+            g.column_first, g.column_row,
+            g.by_column.data() + own * g.column_row.size() * width, x, t);
         if (in_row == 2 && g.dofs == 8)
           multiply<shared>(A, 8, 8, t, s);
         else
           multiply<shared>(A, g.dofs, g.dofs, t, s);
         multiply_sparse<shared, in_row>(
-          g.row_first, g.row_column,
-          g.by_row.data() + own * g.row_column.size() * width, s, y);
+            g.row_first, g.row_column,
+            g.by_row.data() + own * g.row_column.size() * width, s, y);
       }
     }
 
@@ -178,9 +175,8 @@ namespace nsfd::lane
     }
 
     template <unsigned int dim>
-    NSFD_INLINE void scatter_faces(const FaceGroup &g,
-                                   const unsigned int count, const float *p,
-                                   float *X)
+    NSFD_INLINE void scatter_faces(const FaceGroup &g, const unsigned int count,
+                                   const float *p, float *X)
     {
       const int *place = g.place.data();
       const float *frame = g.frame.data();
@@ -191,8 +187,8 @@ namespace nsfd::lane
           for (unsigned int c = 0; c < dim; ++c) {
             Lanes value = {};
             for (unsigned int k = 0; k < dim; ++k)
-              value += load(frame + (k * dim + c) * width) *
-                       load(p + k * width);
+              value +=
+                  load(frame + (k * dim + c) * width) * load(p + k * width);
             float out[width];
             store(out, value);
             float *x = X + c * width;
@@ -226,9 +222,9 @@ namespace nsfd::lane
     }
 
     template <unsigned int dim>
-    NSFD_INLINE void gather_faces(const FaceGroup &g,
-                                  const unsigned int count, const float *Y,
-                                  const float *p, float *w, ExactSum &sum)
+    NSFD_INLINE void gather_faces(const FaceGroup &g, const unsigned int count,
+                                  const float *Y, const float *p, float *w,
+                                  ExactSum &sum)
     {
       const int *place = g.place.data();
       const float *frame = g.frame.data(), *D = g.D.data(),
@@ -238,8 +234,8 @@ namespace nsfd::lane
       Half all = {};
       for (std::size_t b = 0; b < g.n_batches; ++b, owned += width) {
         Lanes terms = {};
-        for (unsigned int q = 0; q < count; ++q, frame += dim * dim * width,
-                          place += 2 * width) {
+        for (unsigned int q = 0; q < count;
+             ++q, frame += dim * dim * width, place += 2 * width) {
           Lanes u[dim];
           velocity<dim>(place, frame, Y, u);
           for (unsigned int k = 0; k < dim;
@@ -256,18 +252,17 @@ namespace nsfd::lane
     }
 
     template <unsigned int dim>
-    NSFD_INLINE void gather_coupled_faces(const FaceGroup &g,
-                                          const unsigned int count,
-                                          const float *Y, const float *p,
-                                          float *w)
+    NSFD_INLINE void
+    gather_coupled_faces(const FaceGroup &g, const unsigned int count,
+                         const float *Y, const float *p, float *w)
     {
       const int *place = g.place.data();
       const float *frame = g.frame.data(), *J = g.jacobian.data(),
                   *ratio = g.ratio.data();
       p += g.first;
       w += g.first;
-      for (std::size_t j = 0; j < g.n_batches * count;
-           ++j, frame += dim * dim * width, place += 2 * width,
+      for (std::size_t j = 0; j < g.n_batches * count; ++j,
+                       frame += dim * dim * width, place += 2 * width,
                        J += dim * dim * width, ratio += dim * width,
                        p += dim * width, w += dim * width) {
         Lanes u[dim];
@@ -292,8 +287,8 @@ namespace nsfd::lane
 
     NSFD_INLINE void advance_faces(const FaceGroup &g, const unsigned int n,
                                    const float alpha, const float *p,
-                                   const float *w, float *x, float *r,
-                                   float *z, ExactSum &sum)
+                                   const float *w, float *x, float *r, float *z,
+                                   ExactSum &sum)
     {
       const float *B = g.inverse.data(), *owned = g.owned.data();
       const unsigned int packed = n * (n + 1) / 2;
@@ -308,8 +303,10 @@ namespace nsfd::lane
                        x += size, r += size, z += size,
                        B += std::size_t(packed) * width, owned += width) {
         for (unsigned int k = 0; k < n; ++k) {
-          store(x + k * width, load(x + k * width) + alpha * load(p + k * width));
-          store(r + k * width, load(r + k * width) - alpha * load(w + k * width));
+          store(x + k * width,
+                load(x + k * width) + alpha * load(p + k * width));
+          store(r + k * width,
+                load(r + k * width) - alpha * load(w + k * width));
         }
         Lanes terms = {};
         for (unsigned int i = 0; i < n; ++i) {
@@ -326,8 +323,9 @@ namespace nsfd::lane
   } // namespace
 
   ExactSum::ExactSum(const double scale)
-    : high(scale > 0. ? std::ldexp(1.5, std::ilogb(scale) - 36 + 52) : 1.5)
-  {}
+      : high(scale > 0. ? std::ldexp(1.5, std::ilogb(scale) - 36 + 52) : 1.5)
+  {
+  }
 
   NSFD_CLONES
   void multiply_bodies(const BodyGroup &group, const std::size_t begin,
@@ -466,9 +464,9 @@ namespace nsfd::lane
     for (; j + 4 <= count; j += 4)
       for (std::size_t k = 0; k < n; k += width)
         store(w + k, load(w + k) - h[j] * load(V[j] + k) -
-                       h[j + 1] * load(V[j + 1] + k) -
-                       h[j + 2] * load(V[j + 2] + k) -
-                       h[j + 3] * load(V[j + 3] + k));
+                         h[j + 1] * load(V[j + 1] + k) -
+                         h[j + 2] * load(V[j + 2] + k) -
+                         h[j + 3] * load(V[j + 3] + k));
     for (; j < count; ++j)
       for (std::size_t k = 0; k < n; k += width)
         store(w + k, load(w + k) - h[j] * load(V[j] + k));
@@ -486,8 +484,8 @@ namespace nsfd::lane
                                  const double *D, const double *part,
                                  double *work, float *inverse)
     {
-      HalfU *const L = reinterpret_cast<HalfU *>(work),
-                  *const X = L + n * (n + 1) / 2;
+      HalfU *const L = reinterpret_cast<HalfU *>(work), *const X =
+                                                            L + n * (n + 1) / 2;
       for (unsigned int j = 0; j < n; ++j) {
         const Half pj = load_half(part + j * width);
         Half pivot = load_half(W + entry(j, j) * width) * pj +
@@ -497,9 +495,8 @@ namespace nsfd::lane
           pivot -= L[entry(j, k)] * L[entry(j, k)];
         Half inverted;
         for (unsigned int l = 0; l < 8; ++l)
-          inverted[l] = pivot[l] > 1e-10 * original[l]
-                          ? 1. / std::sqrt(pivot[l])
-                          : 0.;
+          inverted[l] =
+              pivot[l] > 1e-10 * original[l] ? 1. / std::sqrt(pivot[l]) : 0.;
         L[entry(j, j)] = inverted;
         for (unsigned int i = j + 1; i < n; ++i) {
           Half value = load_half(W + entry(i, j) * width) * pj *

@@ -18,8 +18,7 @@ namespace nsfd::lane
    * are those of one class for all (`shared`) or one per lane. W = A where that
    * is cheaper, else W = H A H^T.
    */
-  struct BodyGroup
-  {
+  struct BodyGroup {
     unsigned int rows = 0, dofs = 0; ///< of H
     bool dense = false, shared = false;
     std::size_t first = 0; ///< of its vectors: rows x width per batch
@@ -34,8 +33,7 @@ namespace nsfd::lane
    * Faces with the same number of points, in batches of `width`. Local
    * components, scaled to a diagonal of W of one; n = count dim per face.
    */
-  struct FaceGroup
-  {
+  struct FaceGroup {
     unsigned int dim = 0, count = 0;
     std::size_t first = 0; ///< of its vectors: n x width per batch
     std::size_t n_batches = 0;
@@ -46,8 +44,8 @@ namespace nsfd::lane
     std::vector<float> D;     ///< per batch, component, lane; 0: no part
     std::vector<float> inverse; ///< packed, of W_ff + D
     // of the unsymmetric system, per batch, component, lane
-    std::vector<float> weight; ///< (D + R) before the preconditioner
-    std::vector<float> idle;   ///< 1 where there is no part
+    std::vector<float> weight;   ///< (D + R) before the preconditioner
+    std::vector<float> idle;     ///< 1 where there is no part
     std::vector<float> jacobian; ///< per batch, point, row, column, lane
     std::vector<float> ratio;    ///< (1 - shift) R
 

@@ -11,8 +11,7 @@
 
 namespace nsfd
 {
-  struct Multigrid::Library
-  {
+  struct Multigrid::Library {
     std::unique_ptr<Epetra_MpiComm> communicator;
     std::unique_ptr<Epetra_Map> map;
     std::unique_ptr<Epetra_CrsMatrix> matrix;
@@ -21,8 +20,9 @@ namespace nsfd
   };
 
   Multigrid::Multigrid(const Communicator &communicator)
-    : library_(std::make_unique<Library>()), communicator_(communicator)
-  {}
+      : library_(std::make_unique<Library>()), communicator_(communicator)
+  {
+  }
 
   Multigrid::~Multigrid() = default;
 
@@ -45,8 +45,8 @@ namespace nsfd
       columns.clear();
       for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k)
         columns.push_back(matrix.column[k] < n
-                            ? matrix.first_row + matrix.column[k]
-                            : matrix.ghosts[matrix.column[k] - n]);
+                              ? matrix.first_row + matrix.column[k]
+                              : matrix.ghosts[matrix.column[k] - n]);
       lib.matrix->InsertGlobalValues(matrix.first_row + i, lengths[i],
                                      matrix.value.data() + matrix.start[i],
                                      columns.data());

@@ -51,10 +51,9 @@ namespace nsfd
         umfpack_di_symbolic(n, n, matrix.start.data(), matrix.column.data(),
                             nullptr, &symbolic_, settings(), nullptr) < 0)
       throw std::bad_alloc();
-    const int status = umfpack_di_numeric(matrix.start.data(),
-                                          matrix.column.data(),
-                                          matrix.value.data(), symbolic_,
-                                          &numeric_, settings(), nullptr);
+    const int status = umfpack_di_numeric(
+        matrix.start.data(), matrix.column.data(), matrix.value.data(),
+        symbolic_, &numeric_, settings(), nullptr);
     if (status == UMFPACK_ERROR_out_of_memory)
       throw std::bad_alloc();
     return status == UMFPACK_OK;

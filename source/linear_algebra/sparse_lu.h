@@ -5,8 +5,8 @@
 namespace nsfd
 {
   /**
-   * Sparse factor of a matrix that need not be symmetric (UMFPACK), on one rank.
-   * Its pattern is symmetric, and so is the order of elimination.
+   * Sparse factor of a matrix that need not be symmetric (UMFPACK), on one
+   * rank. Its pattern is symmetric, and so is the order of elimination.
    */
   class SparseLU
   {

@@ -33,8 +33,7 @@ namespace nsfd
 
   namespace
   {
-    struct Entry
-    {
+    struct Entry {
       long long row, column;
       double value;
       bool operator<(const Entry &other) const
@@ -68,8 +67,8 @@ namespace nsfd
         }
         // equal columns in the order in which they were met: reproducible
         std::stable_sort(
-          row.begin(), row.end(),
-          [](const auto &a, const auto &b) { return a.first < b.first; });
+            row.begin(), row.end(),
+            [](const auto &a, const auto &b) { return a.first < b.first; });
         std::size_t kept = 0;
         for (std::size_t k = 1; k < row.size(); ++k)
           if (row[k].first == row[kept].first)
@@ -110,8 +109,7 @@ namespace nsfd
     }
   } // namespace
 
-  SparseRows coarse_rows(const Communicator &communicator,
-                         const SparseRows &A,
+  SparseRows coarse_rows(const Communicator &communicator, const SparseRows &A,
                          const CoarseSpace &coarse,
                          const std::vector<long long> &ghost_numbers)
   {
@@ -120,19 +118,21 @@ namespace nsfd
     result.start.assign(coarse.n_own + 1, 0);
     std::vector<long long> columns; // global
     if (communicator.size() == 1)
-      sum_rows(A, coarse, ghost_numbers, [&](const long long row, auto &entries) {
-        for (const auto &[column, value] : entries) {
-          columns.push_back(column);
-          result.value.push_back(value);
-        }
-        result.start[row + 1] = int(columns.size());
-      });
+      sum_rows(A, coarse, ghost_numbers,
+               [&](const long long row, auto &entries) {
+                 for (const auto &[column, value] : entries) {
+                   columns.push_back(column);
+                   result.value.push_back(value);
+                 }
+                 result.start[row + 1] = int(columns.size());
+               });
     else {
       std::vector<Entry> all;
-      sum_rows(A, coarse, ghost_numbers, [&](const long long row, auto &entries) {
-        for (const auto &[column, value] : entries)
-          all.push_back({row, column, value});
-      });
+      sum_rows(A, coarse, ghost_numbers,
+               [&](const long long row, auto &entries) {
+                 for (const auto &[column, value] : entries)
+                   all.push_back({row, column, value});
+               });
       all = to_owners(communicator, coarse, std::move(all));
       for (std::size_t k = 0; k < all.size(); ++k) {
         if (k > 0 && all[k].row == all[k - 1].row &&
@@ -152,18 +152,17 @@ namespace nsfd
       if (!own(column))
         result.ghosts.push_back(column);
     std::sort(result.ghosts.begin(), result.ghosts.end());
-    result.ghosts.erase(
-      std::unique(result.ghosts.begin(), result.ghosts.end()),
-      result.ghosts.end());
+    result.ghosts.erase(std::unique(result.ghosts.begin(), result.ghosts.end()),
+                        result.ghosts.end());
     result.column.resize(columns.size());
     for (std::size_t k = 0; k < columns.size(); ++k)
       result.column[k] =
-        own(columns[k])
-          ? int(columns[k] - coarse.first)
-          : int(coarse.n_own +
-                (std::lower_bound(result.ghosts.begin(), result.ghosts.end(),
-                                  columns[k]) -
-                 result.ghosts.begin()));
+          own(columns[k])
+              ? int(columns[k] - coarse.first)
+              : int(coarse.n_own +
+                    (std::lower_bound(result.ghosts.begin(),
+                                      result.ghosts.end(), columns[k]) -
+                     result.ghosts.begin()));
     return result;
   }
 } // namespace nsfd

@@ -14,8 +14,7 @@ namespace nsfd
    * P^T A P for the space @p coarse. @p ghost_numbers are the coarse numbers
    * of the ghosts of A. Rows that belong to other ranks are sent there.
    */
-  SparseRows coarse_rows(const Communicator &communicator,
-                         const SparseRows &A,
+  SparseRows coarse_rows(const Communicator &communicator, const SparseRows &A,
                          const CoarseSpace &coarse,
                          const std::vector<long long> &ghost_numbers);
 } // namespace nsfd

@@ -14,8 +14,7 @@ namespace nsfd
    * own consecutive rows. Columns are numbered locally: the own rows first,
    * from 0, then what `ghosts` lists; ascending in every row.
    */
-  struct SparseRows
-  {
+  struct SparseRows {
     long long first_row = 0; ///< global number of the first own row
     std::vector<int> start;  ///< per own row and one more
     std::vector<int> column;
@@ -30,8 +29,7 @@ namespace nsfd
    * coarse unknown to all own unknowns that carry its number. Ranks own
    * consecutive numbers; `number` may name those of other ranks.
    */
-  struct CoarseSpace
-  {
+  struct CoarseSpace {
     std::vector<long long> number; ///< per unknown of this rank
     long long first = 0, n_own = 0, n_global = 0;
     /// functions of no or little energy on the own coarse unknowns (the rigid
@@ -58,8 +56,7 @@ namespace nsfd
      * its version is another one, else kept although A has changed.
      * @throws std::runtime_error A is not positive definite or too large.
      */
-    virtual void prepare(const SparseRows &matrix,
-                         const CoarseSpace &coarse,
+    virtual void prepare(const SparseRows &matrix, const CoarseSpace &coarse,
                          bool new_pattern) = 0;
 
     /** y += A x, for own values. */
@@ -74,15 +71,16 @@ namespace nsfd
     virtual void prepare_coarse(const SparseRows & /*matrix*/,
                                 const CoarseSpace & /*coarse*/,
                                 const Product & /*add_product*/)
-    {}
+    {
+    }
 
     /**
      * x = A^{-1} b on the own rows; @p x is the start of an iteration.
      * Iterations end when the residual, in the norm of the preconditioner, is
      * @p tolerance of that of b. Returns their number, 0 for a factor.
      */
-    virtual unsigned int
-    solve(const double *b, double *x, double tolerance) = 0;
+    virtual unsigned int solve(const double *b, double *x,
+                               double tolerance) = 0;
 
     /**
      * The same in two parts, x = rest + coarse, the second of them a function
@@ -112,8 +110,7 @@ namespace nsfd
     /** Whether the last solve() reached its tolerance. */
     bool converged() const { return converged_; }
 
-    struct Counters
-    {
+    struct Counters {
       unsigned long long analyses = 0;       ///< of a pattern
       unsigned long long factorisations = 0; ///< of A itself
       unsigned long long coarse_spaces = 0;  ///< built, with their solvers

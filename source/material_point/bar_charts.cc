@@ -2,9 +2,9 @@
 
 #include "curve_names.h"
 
-#include "nsfd/scene/scene_input.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "drive_point.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/scene/scene_input.h"
 #include "visualization/svg.h"
 
 #include <fmt/format.h>
@@ -154,8 +154,8 @@ namespace nsfd
     const Bar &bar = *input.bar;
     const bool single = runs.size() == 1,
                is_static = bar.mode == BarMode::quasi_static;
-    LineChart chart(chart_title(input, "law and bar"), axes.of_opening("opening u"),
-                    axes.of_traction());
+    LineChart chart(chart_title(input, "law and bar"),
+                    axes.of_opening("opening u"), axes.of_traction());
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const CohesiveLaw &law = law_of(input, i);
       const auto jumps = bar_jumps(law, bar.stiffness);

@@ -1,7 +1,7 @@
-#include "nsfd/scene/scene_input.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "bar.h"
 #include "drive_point.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "nsfd/scene/scene_input.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "bar.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 

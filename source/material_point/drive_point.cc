@@ -1,8 +1,8 @@
 #include "drive_point.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "cohesive_laws/friction_weight.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "path.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
+#include "path.h"
 
 #include <memory>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "read_law.h"
 #include "drive_point.h"
+#include "read_law.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "bar.h"
 #include "drive_point.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <algorithm>
 #include <cmath>

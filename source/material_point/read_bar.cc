@@ -1,8 +1,8 @@
 #include "read_bar.h"
 
-#include "parameters/input_errors.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "drive_point.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "parameters/input_errors.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "read_law.h"
 
 #include "drive_point.h"
+#include "input/read_sections.h"
 #include "read_bar.h"
 #include "read_law_path.h"
-#include "input/read_sections.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "parameters/input_errors.h"
-#include "nsfd/scene/scene_input.h"
 #include "bar.h"
-#include "path.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
+#include "nsfd/scene/scene_input.h"
+#include "parameters/input_errors.h"
+#include "path.h"
 
 #include <memory>
 #include <optional>
@@ -37,8 +37,8 @@ namespace nsfd
   /**
    * Read what `nsfd law WHAT` names: a registered law, with entries of its
    * first example where @p overrides give none, or a file with Interface
-   * blocks and a section `Path` or `Bar`. In @p overrides, entries without a section
-   * belong to the (only) Interface block. Errors as read_scene().
+   * blocks and a section `Path` or `Bar`. In @p overrides, entries without a
+   * section belong to the (only) Interface block. Errors as read_scene().
    */
   std::unique_ptr<LawInput> read_law(const std::string &what,
                                      const std::vector<std::string> &overrides,

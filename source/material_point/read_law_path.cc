@@ -1,8 +1,8 @@
 #include "read_law_path.h"
 
+#include "drive_point.h"
 #include "parameters/parameter_file.h"
 #include "parameters/text_file.h"
-#include "drive_point.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

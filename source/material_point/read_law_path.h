@@ -1,7 +1,7 @@
 #pragma once
 
-#include "read_law.h"
 #include "nsfd/parameters/section_reader.h"
+#include "read_law.h"
 
 namespace nsfd
 {

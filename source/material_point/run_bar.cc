@@ -4,9 +4,9 @@
 #include "curve_names.h"
 #include "law_table.h"
 
-#include "nsfd/cohesive_laws/cohesive_law.h"
-#include "drive_point.h"
 #include "core/output_folder.h"
+#include "drive_point.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -96,7 +96,8 @@ namespace nsfd
       table_line(
           "steepest softening",
           std::isinf(ratio)
-              ? "the traction drops: every bar jumps (Acary & Monerie 2006, (42))"
+              ? "the traction drops: every bar jumps (Acary & Monerie 2006, "
+                "(42))"
               : fmt::format("{} = {:.4g} k: {} (Acary & Monerie 2006, (42))",
                             engineering(law.steepest_softening(), "Pa/m", 4),
                             ratio,

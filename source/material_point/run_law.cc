@@ -1,7 +1,7 @@
 #include "run_law.h"
 
-#include "law_charts.h"
 #include "curve_names.h"
+#include "law_charts.h"
 #include "law_table.h"
 #include "run_bar.h"
 

@@ -2,8 +2,8 @@
 
 #include "elasticity.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "hyperelastic.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <cmath>
 
@@ -37,8 +37,8 @@ namespace nsfd
           C[voigt_place<dim>(a, b)] += F[c][a] * F[c][b];
     std::array<double, 6> sigma{};
     const auto elastic =
-        make_hyperelastic<dim>(material.model, material.young,
-                               material.poisson, plane_stress && dim == 2);
+        make_hyperelastic<dim>(material.model, material.young, material.poisson,
+                               plane_stress && dim == 2);
     if (!elastic->stress(C, S))
       return sigma;
     const double J = std::sqrt(determinant(C));

@@ -87,8 +87,8 @@ namespace nsfd
     if (dim == 2 && input.axis[2] != 0.) {
       lambda = plane_stress_ ? C_23 - C_12 * C_12 / C_11 : C_23;
       lambda_zz_ = C_12;
-      speeds_ = {{std::sqrt(mu / density_),
-                  std::sqrt((lambda + 2. * mu) / density_)}};
+      speeds_ = {
+          {std::sqrt(mu / density_), std::sqrt((lambda + 2. * mu) / density_)}};
       return;
     }
     has_axis_ = true;
@@ -148,8 +148,8 @@ namespace nsfd
     double slowest = extreme(0, -1.);
     if (dim == 3)
       slowest = std::min({slowest, mu, shear});
-    speeds_ = {{std::sqrt(slowest / density_),
-                std::sqrt(extreme(1, 1.) / density_)}};
+    speeds_ = {
+        {std::sqrt(slowest / density_), std::sqrt(extreme(1, 1.) / density_)}};
   }
 
   template <int dim>

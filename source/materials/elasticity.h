@@ -76,8 +76,7 @@ namespace nsfd
     double axis_coupling(const unsigned int c, const unsigned int d,
                          const Vector &g, const Vector &h) const
     {
-      const double ag = axis_ * g, ah = axis_ * h,
-                   aa = axis_[c] * axis_[d];
+      const double ag = axis_ * g, ah = axis_ * h, aa = axis_[c] * axis_[d];
       return alpha_ * (g[c] * axis_[d] * ah + axis_[c] * ag * h[d]) +
              delta_ * (axis_[c] * ah * g[d] + aa * (g * h) +
                        (c == d ? ag * ah : 0.) + ag * axis_[d] * h[c]) +

@@ -2,8 +2,8 @@
 
 #include "owned_cells.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "mesh_builder.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <string>
@@ -52,8 +52,7 @@ namespace nsfd
     }
 
     template <int dim>
-    struct Share
-    {
+    struct Share {
       Point<dim> place;
       unsigned int cell = 0; ///< the first one of the body
       std::size_t n_cells = 0;
@@ -92,9 +91,9 @@ namespace nsfd
       auto middle = begin;
       // a body goes where most of its cells go
       for (std::size_t before = 0;
-           middle != end && (2 * before + middle->n_cells) *
-                                    std::size_t(n_ranks) <
-                                2 * n * std::size_t(n_first);
+           middle != end &&
+           (2 * before + middle->n_cells) * std::size_t(n_ranks) <
+               2 * n * std::size_t(n_first);
            ++middle)
         before += middle->n_cells;
       halve<dim>(begin, middle, rank, n_first, rank_of);
@@ -135,8 +134,7 @@ namespace nsfd
 
   template <int dim>
   void partition_by_bodies(const SceneInput &input,
-                           Triangulation<dim> &triangulation,
-                           const int n_ranks)
+                           Triangulation<dim> &triangulation, const int n_ranks)
   {
     std::vector<std::string> problems, warnings; // said by those who ask later
     const auto materials =

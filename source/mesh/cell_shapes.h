@@ -17,7 +17,7 @@ namespace nsfd
     /// make a right-handed system
     std::vector<std::vector<unsigned int>> edges;
     std::vector<std::vector<unsigned int>> faces; ///< corners of each
-    std::vector<unsigned int> mirrored;           ///< corners of the mirror image
+    std::vector<unsigned int> mirrored; ///< corners of the mirror image
   };
 
   /** Null if there is no such shape. */

@@ -58,7 +58,10 @@ namespace nsfd
     public:
       void push_back(const MeshVector &v) { values_[size_++] = v; }
       std::size_t size() const { return size_; }
-      const MeshVector &operator[](const std::size_t i) const { return values_[i]; }
+      const MeshVector &operator[](const std::size_t i) const
+      {
+        return values_[i];
+      }
       const MeshVector &back() const { return values_[size_ - 1]; }
       const MeshVector *begin() const { return values_.data(); }
       const MeshVector *end() const { return values_.data() + size_; }
@@ -246,7 +249,8 @@ namespace nsfd
     }
 
     /** The two cells of a face must be on its two sides. */
-    void check_folds(const NamedMesh &mesh, const std::vector<FaceOfCell> &faces,
+    void check_folds(const NamedMesh &mesh,
+                     const std::vector<FaceOfCell> &faces,
                      std::vector<std::string> &problems)
     {
       Counted folds("faces have both cells on one side", problems);

@@ -13,7 +13,7 @@ namespace nsfd
   {
     std::ostringstream out;
     if (const auto *error =
-          dynamic_cast<const dealii::ExceptionBase *>(&exception))
+            dynamic_cast<const dealii::ExceptionBase *>(&exception))
       error->print_info(out);
     else
       out << exception.what();

@@ -65,8 +65,7 @@ namespace nsfd
     };
 
     template <int dim>
-    NamedMesh read(const std::string &file,
-                   std::vector<std::string> &problems)
+    NamedMesh read(const std::string &file, std::vector<std::string> &problems)
     {
       NamedMesh mesh;
       try {
@@ -77,8 +76,9 @@ namespace nsfd
         Converter<dim> converter;
         mesh = converter.convert(triangulation);
       } catch (const std::exception &exception) {
-        problems.push_back(fmt::format("the file cannot be read as VTU of deal.II: {}",
-                                        deal_ii_message(exception)));
+        problems.push_back(
+            fmt::format("the file cannot be read as VTU of deal.II: {}",
+                        deal_ii_message(exception)));
       }
       return mesh;
     }

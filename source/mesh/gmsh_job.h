@@ -30,15 +30,15 @@ namespace nsfd
   template <typename Archive>
   void serialize(Archive &archive, GmshRequest &request, unsigned int)
   {
-    archive &request.file &request.extension &request.dimension
-        &request.is_geometry &request.element_size &request.shape &request.seconds;
+    archive &request.file &request.extension &request.dimension &request
+        .is_geometry &request.element_size &request.shape &request.seconds;
   }
 
   template <typename Archive>
   void serialize(Archive &archive, PlaneRegions &regions, unsigned int)
   {
-    archive &regions.x &regions.y &regions.corners &regions.names
-        &regions.borders;
+    archive &regions.x &regions.y &regions.corners &regions.names &regions
+        .borders;
   }
 
   template <typename Archive>
@@ -50,22 +50,21 @@ namespace nsfd
   template <typename Archive>
   void serialize(Archive &archive, NamedMesh::Elements &elements, unsigned int)
   {
-    archive &elements.first &elements.vertices &elements.set
-        &elements.numbers;
+    archive &elements.first &elements.vertices &elements.set &elements.numbers;
   }
 
   template <typename Archive>
   void serialize(Archive &archive, NamedMesh::Group &group, unsigned int)
   {
-    archive &group.dimension &group.number &group.name &group.n_elements
-        &group.n_boundary;
+    archive &group.dimension &group.number &group.name &group.n_elements &group
+        .n_boundary;
   }
 
   template <typename Archive>
   void serialize(Archive &archive, NamedMesh &mesh, unsigned int)
   {
-    archive &mesh.dimension &mesh.coordinates &mesh.cells &mesh.faces
-        &mesh.groups &mesh.sets &mesh.notes;
+    archive &mesh.dimension &mesh.coordinates &mesh.cells &mesh.faces &mesh
+        .groups &mesh.sets &mesh.notes;
   }
 
   template <typename Archive>

@@ -1,7 +1,7 @@
 #include "gmsh_process.h"
 
-#include "gmsh_job.h"
 #include "core/lock_process.h"
+#include "gmsh_job.h"
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>

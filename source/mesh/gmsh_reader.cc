@@ -159,8 +159,8 @@ namespace nsfd
               n));
           return;
         }
-        const auto order_of = deal_ii_order(unsigned(dimension),
-                                            unsigned(n_corners));
+        const auto order_of =
+            deal_ii_order(unsigned(dimension), unsigned(n_corners));
         std::vector<unsigned int> corners(order_of.size());
         for (std::size_t e = 0; e < n; ++e) {
           for (std::size_t i = 0; i < corners.size(); ++i)
@@ -177,7 +177,7 @@ namespace nsfd
 
       NamedMesh mesh_;
       bool leave_out_others_;
-      std::vector<unsigned int> number_;               ///< by tag of the node
+      std::vector<unsigned int> number_; ///< by tag of the node
       std::map<std::size_t, unsigned int> sparse_number_; ///< if tags are wild
       std::map<std::pair<unsigned int, int>, unsigned int> group_;
       std::map<unsigned int, bool> is_physical_;
@@ -296,8 +296,8 @@ namespace nsfd
     const bool done = session.run([&] {
       if (has_dimension(request, problems) &&
           (!request.is_geometry || make_cells(session, request, problems)))
-        mesh = Collector(request.dimension, request.is_geometry)
-                   .collect(problems);
+        mesh =
+            Collector(request.dimension, request.is_geometry).collect(problems);
     });
     if (!done && problems.empty())
       problems.push_back(complaint("the file cannot be used", session));
@@ -315,8 +315,8 @@ namespace nsfd
         const auto key = std::minmax(a, b);
         auto [entry, is_new] = number_.emplace(key, 0);
         if (is_new)
-          entry->second =
-              gmsh::model::geo::addLine(int(key.first) + 1, int(key.second) + 1);
+          entry->second = gmsh::model::geo::addLine(int(key.first) + 1,
+                                                    int(key.second) + 1);
         ++n_regions_[entry->second];
         return a < b ? entry->second : -entry->second;
       }

@@ -50,6 +50,5 @@ namespace nsfd
    * by Gmsh in at most @p seconds of CPU.
    */
   NamedMesh mesh_regions(const PlaneRegions &regions, double element_size,
-                         double seconds,
-                         std::vector<std::string> &problems);
+                         double seconds, std::vector<std::string> &problems);
 } // namespace nsfd

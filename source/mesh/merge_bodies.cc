@@ -1,5 +1,5 @@
-#include "mesh_topology.h"
 #include "core/mix_bits.h"
+#include "mesh_topology.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "mesh_builder.h"
 
+#include "core/mix_bits.h"
 #include "deal_ii_message.h"
 #include "mesh_topology.h"
-#include "core/mix_bits.h"
 #include "mesh_types.h"
 #include "named_mesh.h"
 
@@ -291,8 +291,8 @@ namespace nsfd
       }
       if (!problems.empty())
         return {};
-      CoarseMesh<dim> mesh = merge_bodies(
-          input.bodies, meshes, !input.contacts.empty(), problems);
+      CoarseMesh<dim> mesh =
+          merge_bodies(input.bodies, meshes, !input.contacts.empty(), problems);
       if (problems.empty() && input.mesh.distortion > 0.)
         distort(mesh, input.mesh.distortion, input.mesh.seed);
       return mesh;

@@ -161,8 +161,7 @@ namespace nsfd
                            std::vector<std::string> &problems)
   {
     // CAD files are read in millimetres, whatever their own unit
-    const double unit =
-        request.format == MeshFormat::cad ? 1e-3 : request.unit;
+    const double unit = request.format == MeshFormat::cad ? 1e-3 : request.unit;
     NamedMesh mesh;
     switch (request.format) {
     case MeshFormat::abaqus:

@@ -8,8 +8,8 @@ namespace nsfd
   /** A mesh that the entry `type` of a section Mesh or Body may name. */
   struct MeshType {
     enum class Kind {
-      box,      ///< fills the box between two corners
-      bodies,   ///< the meshes of all blocks `Body: name`
+      box,       ///< fills the box between two corners
+      bodies,    ///< the meshes of all blocks `Body: name`
       generator, ///< of deal.II, by its name there
       named      ///< brings its own cells and groups: MeshInput::named
     };

@@ -29,8 +29,7 @@ namespace nsfd
     return name.empty() ? std::to_string(number) : name;
   }
 
-  unsigned int
-  NamedMesh::set_of(std::vector<unsigned int> groups_of_element)
+  unsigned int NamedMesh::set_of(std::vector<unsigned int> groups_of_element)
   {
     std::sort(groups_of_element.begin(), groups_of_element.end());
     groups_of_element.erase(

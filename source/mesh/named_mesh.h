@@ -74,8 +74,9 @@ namespace nsfd
   /**
    * Put a mesh as it comes out of a file in order: scaled by @p unit, plane in
    * two dimensions, each cell and face once, cells of positive volume that do
-   * not overlap, no unused vertex; with @p merge_vertices those at one place become one. What
-   * was done goes into the notes, what cannot be repaired into @p problems.
+   * not overlap, no unused vertex; with @p merge_vertices those at one place
+   * become one. What was done goes into the notes, what cannot be repaired into
+   * @p problems.
    */
   void put_in_order(NamedMesh &mesh, double unit, bool merge_vertices,
                     std::vector<std::string> &problems);

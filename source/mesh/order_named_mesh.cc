@@ -24,7 +24,7 @@ namespace nsfd
     using Elements = NamedMesh::Elements;
 
     MeshVector middle(const NamedMesh &mesh, const Elements &elements,
-                  const std::size_t e)
+                      const std::size_t e)
     {
       MeshVector sum{};
       const unsigned int n = elements.n_vertices(e);
@@ -145,7 +145,8 @@ namespace nsfd
           return position(mesh, v[shape.edges[i][d]]) - origin;
         };
         sum += determinant(edge(0), edge(1),
-                           mesh.dimension == 3 ? edge(2) : MeshVector{{0., 0., 1.}});
+                           mesh.dimension == 3 ? edge(2)
+                                               : MeshVector{{0., 0., 1.}});
       }
       return sum;
     }
@@ -212,10 +213,9 @@ namespace nsfd
         for (unsigned int d = 0; d < mesh.dimension; ++d)
           bin[d] = std::llround((x[d] - origin[d]) / (2. * tolerance));
         for (unsigned int n = 0; n < (mesh.dimension == 2 ? 9 : 27); ++n) {
-          const Bin near = {{bin[0] + int(n % 3) - 1,
-                             bin[1] + int(n / 3 % 3) - 1,
-                             mesh.dimension == 2 ? 0
-                                                 : bin[2] + int(n / 9) - 1}};
+          const Bin near = {
+              {bin[0] + int(n % 3) - 1, bin[1] + int(n / 3 % 3) - 1,
+               mesh.dimension == 2 ? 0 : bin[2] + int(n / 9) - 1}};
           const auto found = bins.find(near);
           if (found != bins.end())
             for (const unsigned int w : found->second)
@@ -349,7 +349,8 @@ namespace nsfd
         if (faces[i].key == faces[i + 2].key) {
           problems.push_back(fmt::format(
               "three cells meet at one face: {}, {} and {}; cells overlap",
-              cell_text(mesh, faces[i].cell), cell_text(mesh, faces[i + 1].cell),
+              cell_text(mesh, faces[i].cell),
+              cell_text(mesh, faces[i + 1].cell),
               cell_text(mesh, faces[i + 2].cell)));
           return;
         }
@@ -358,8 +359,7 @@ namespace nsfd
       for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         const Face wanted = {
             key_of(mesh.faces.begin(f), mesh.faces.n_vertices(f)), 0, 0};
-        const auto found =
-            std::lower_bound(faces.begin(), faces.end(), wanted);
+        const auto found = std::lower_bound(faces.begin(), faces.end(), wanted);
         if (found == faces.end() || found->key != wanted.key)
           continue;
         kept.push_back(f);

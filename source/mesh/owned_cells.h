@@ -20,9 +20,8 @@ namespace nsfd
   void put_in_order(const bool refined, ActiveCells<dim> &cells)
   {
     if (refined)
-      std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) {
-        return a->id() < b->id();
-      });
+      std::sort(cells.begin(), cells.end(),
+                [](const auto &a, const auto &b) { return a->id() < b->id(); });
   }
 
   /** The cells of this rank. */

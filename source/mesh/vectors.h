@@ -29,7 +29,8 @@ namespace nsfd::mesh_vectors
              a[0] * b[1] - a[1] * b[0]}};
   }
 
-  inline double determinant(const MeshVector &a, const MeshVector &b, const MeshVector &c)
+  inline double determinant(const MeshVector &a, const MeshVector &b,
+                            const MeshVector &c)
   {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) +
            a[1] * (b[2] * c[0] - b[0] * c[2]) +

@@ -1,7 +1,7 @@
 #include "voronoi.h"
 
-#include "gmsh_reader.h"
 #include "core/mix_bits.h"
+#include "gmsh_reader.h"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,10 @@ namespace nsfd
     {
       return {s * a.x, s * a.y};
     }
-    double dot(const PlaneVector a, const PlaneVector b) { return a.x * b.x + a.y * b.y; }
+    double dot(const PlaneVector a, const PlaneVector b)
+    {
+      return a.x * b.x + a.y * b.y;
+    }
     double cross(const PlaneVector a, const PlaneVector b)
     {
       return a.x * b.y - a.y * b.x;
@@ -67,7 +70,7 @@ namespace nsfd
       double twice_area = 0.;
       for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
         const PlaneVector a = polygon[i] - polygon[0],
-                     b = polygon[i + 1] - polygon[0];
+                          b = polygon[i + 1] - polygon[0];
         const double part = cross(a, b);
         twice_area += part;
         sum = sum + (part / 3.) * (a + b);
@@ -257,7 +260,7 @@ namespace nsfd
     {
       const double scale = grain_size(request);
       const PlaneVector size = {(request.upper[0] - request.lower[0]) / scale,
-                           (request.upper[1] - request.lower[1]) / scale};
+                                (request.upper[1] - request.lower[1]) / scale};
       const Polygon box = {{0., 0.}, {size.x, 0.}, size, {0., size.y}};
       std::vector<PlaneVector> seeds;
       for (unsigned int s = 0; s < request.grains; ++s)
@@ -276,7 +279,7 @@ namespace nsfd
     }
 
     PlaneVector in_units(const VoronoiRequest &request, const double x,
-                    const double y)
+                         const double y)
     {
       const double scale = grain_size(request);
       return {request.lower[0] + scale * x, request.lower[1] + scale * y};

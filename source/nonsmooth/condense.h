@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solver.h"
 #include "nonsmooth/frictional_contact/contact_problem.h"
+#include "solver.h"
 
 namespace nsfd
 {

@@ -26,17 +26,15 @@ namespace nsfd
   template <int dim>
   PointDamage<dim>::PointDamage(const OneStepProblem<dim> &problem,
                                 const std::size_t point)
-    : problem_(problem)
-    , interaction_(problem.interactions[problem.interaction[point]])
-    , law_(*interaction_.law)
-    , mixed_(law_.mixed())
-    , point_(point)
-    , a_(problem.strength_factor[point])
-    , l_(problem.opening_factor[point])
-    , history_{problem.opening_max[point],
-               mixed_ ? problem.slip_max[point] : 0.}
-    , old_(&problem.jump_old[point * dim])
-  {}
+      : problem_(problem),
+        interaction_(problem.interactions[problem.interaction[point]]),
+        law_(*interaction_.law), mixed_(law_.mixed()), point_(point),
+        a_(problem.strength_factor[point]), l_(problem.opening_factor[point]),
+        history_{problem.opening_max[point],
+                 mixed_ ? problem.slip_max[point] : 0.},
+        old_(&problem.jump_old[point * dim])
+  {
+  }
 
   template <int dim>
   Reach PointDamage<dim>::reach(const double *u) const
@@ -52,7 +50,7 @@ namespace nsfd
     if (law_.rate_dependent())
       return {law_.delayed_opening(l_ * history_.opening, l_ * end.opening,
                                    problem_.time_step) /
-                l_,
+                  l_,
               0.};
     return {std::max(history_.opening, end.opening),
             std::max(history_.slip, end.slip)};
@@ -133,8 +131,8 @@ namespace nsfd
     if (d >= grown.opening)
       return growing;
     const double unloaded = secant_at(d_m) * (d_m - d) * (d_m + d);
-    return (unloaded + growing * (opening - grown.opening) *
-                         (opening + grown.opening)) /
+    return (unloaded +
+            growing * (opening - grown.opening) * (opening + grown.opening)) /
            ((opening - d) * (opening + d));
   }
 
@@ -159,15 +157,15 @@ namespace nsfd
   template <int dim>
   double PointDamage<dim>::strength() const
   {
-    return a_ * (plateau() ? law_.traction(l_ * history_.opening) :
-                             law_.strength());
+    return a_ *
+           (plateau() ? law_.traction(l_ * history_.opening) : law_.strength());
   }
 
   template <int dim>
   double PointDamage<dim>::beta(const Reach &history) const
   {
-    return mixed_ ? mixed_->beta(l_ * history.opening, l_ * history.slip) :
-                    law_.beta(l_ * history.opening);
+    return mixed_ ? mixed_->beta(l_ * history.opening, l_ * history.slip)
+                  : law_.beta(l_ * history.opening);
   }
 
   template <int dim>
@@ -195,14 +193,13 @@ namespace nsfd
     const auto half_stored = [&](const double d) {
       if (d == 0. && law_.extrinsic())
         return 0.;
-      return plateau() ? a_ * law_.traction(l_ * d) * d :
-                         secant_at(d) * square(d) / 2.;
+      return plateau() ? a_ * law_.traction(l_ * d) * d
+                       : secant_at(d) * square(d) / 2.;
     };
     // what the envelope leaves of the work between the two histories
     const double d_m = history_.opening, d_top = after.opening;
-    const double damage =
-      std::max(0., released(d_m, d_top) -
-                     (half_stored(d_top) - half_stored(d_m)));
+    const double damage = std::max(
+        0., released(d_m, d_top) - (half_stored(d_top) - half_stored(d_m)));
     if (plateau() || (law_.has_potential() && !law_.rate_dependent()))
       return {damage, 0.};
     const double loss = lost_energy(u, damage);
@@ -223,7 +220,8 @@ namespace nsfd
       const auto [normal, tangential] = squares<dim>(v);
       return normal + interaction_.stiffness_ratio * tangential;
     };
-    const double d0 = square(reach(old_).opening), d1 = square(reach(u).opening);
+    const double d0 = square(reach(old_).opening),
+                 d1 = square(reach(u).opening);
     const Growth grown = growth(reach(u).opening);
     const double e0 = norm(old_), e1 = norm(u);
     const double share = [&] {
@@ -236,7 +234,7 @@ namespace nsfd
     if (!(loss > 0.) || !(to > from))
       return 0.;
     const double way =
-      std::clamp((2. * damage / loss - from) / (to - from), 0., 1.);
+        std::clamp((2. * damage / loss - from) / (to - from), 0., 1.);
     return loss * (e_start + way * (e1 - e_start)) / 2.;
   }
 
@@ -260,30 +258,29 @@ namespace nsfd
       if (to <= top)
         return secant(top);
       const double elastic = secant(top) * (top - bottom) * (top + bottom);
-      return (elastic + 2. * energy(top, to)) /
-             ((to - bottom) * (to + bottom));
+      return (elastic + 2. * energy(top, to)) / ((to - bottom) * (to + bottom));
     };
     const double x_m = history_.opening, y_m = history_.slip;
     const auto normal = [&](const double y) {
       return quotient(
-        start.opening, end.opening, x_m,
-        [&](const double from, const double to) {
-          return a_ / l_ * mixed_->normal_energy(l_ * from, l_ * to, l_ * y);
-        },
-        [&](const double x) {
-          return a_ * l_ * mixed_->normal_secant(l_ * x, l_ * y);
-        });
+          start.opening, end.opening, x_m,
+          [&](const double from, const double to) {
+            return a_ / l_ * mixed_->normal_energy(l_ * from, l_ * to, l_ * y);
+          },
+          [&](const double x) {
+            return a_ * l_ * mixed_->normal_secant(l_ * x, l_ * y);
+          });
     };
     const auto tangential = [&](const double x) {
       return quotient(
-        start.slip, end.slip, y_m,
-        [&](const double from, const double to) {
-          return a_ / l_ *
-                 mixed_->tangential_energy(l_ * from, l_ * to, l_ * x);
-        },
-        [&](const double y) {
-          return a_ * l_ * mixed_->tangential_secant(l_ * x, l_ * y);
-        });
+          start.slip, end.slip, y_m,
+          [&](const double from, const double to) {
+            return a_ / l_ *
+                   mixed_->tangential_energy(l_ * from, l_ * to, l_ * x);
+          },
+          [&](const double y) {
+            return a_ * l_ * mixed_->tangential_secant(l_ * x, l_ * y);
+          });
     };
     return {(normal(y_m) + normal(after.slip)) / 2.,
             (tangential(x_m) + tangential(after.opening)) / 2.};
@@ -307,23 +304,22 @@ namespace nsfd
       if (after.opening <= x_m)
         return 0.;
       const double area =
-        a_ / l_ *
-        mixed_->normal_energy(l_ * x_m, l_ * after.opening, l_ * y);
-      return std::max(0., area - (K_N(after.opening, y) *
-                                    square(after.opening) -
-                                  K_N(x_m, y) * square(x_m)) /
-                                   2.) +
+          a_ / l_ * mixed_->normal_energy(l_ * x_m, l_ * after.opening, l_ * y);
+      return std::max(0.,
+                      area - (K_N(after.opening, y) * square(after.opening) -
+                              K_N(x_m, y) * square(x_m)) /
+                                 2.) +
              (K_T(x_m, y) - K_T(after.opening, y)) * square(s) / 2.;
     };
     const auto slips = [&](const double x, const double u) {
       if (after.slip <= y_m)
         return 0.;
       const double area =
-        a_ / l_ *
-        mixed_->tangential_energy(l_ * y_m, l_ * after.slip, l_ * x);
+          a_ / l_ *
+          mixed_->tangential_energy(l_ * y_m, l_ * after.slip, l_ * x);
       return std::max(0., area - (K_T(x, after.slip) * square(after.slip) -
                                   K_T(x, y_m) * square(y_m)) /
-                                   2.) +
+                                     2.) +
              (K_N(x, y_m) - K_N(x, after.slip)) * square(u) / 2.;
     };
     return (opens(y_m, start.slip) + slips(after.opening, end.opening) +

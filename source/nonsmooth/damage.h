@@ -62,14 +62,13 @@ namespace nsfd
     {
       return std::isinf(law_.steepest_softening()) &&
              law_.traction(law_.final_opening() * (1. - 1e-9)) >
-               1e-3 * law_.strength();
+                 1e-3 * law_.strength();
     }
 
     /** Elastic energy of cohesion at the jump @p u, no overlap. */
     double stored(const Reach &history, const double *u) const;
 
-    struct Dissipation
-    {
+    struct Dissipation {
       double damage = 0., viscous = 0.;
     };
     /** Of a step to the jump @p u. */
@@ -85,9 +84,8 @@ namespace nsfd
     Reach history_;
     const double *old_;
 
-    struct Growth
-    {
-      double opening; ///< d where damage begins to grow
+    struct Growth {
+      double opening;  ///< d where damage begins to grow
       double from, to; ///< d_m before and after
     };
     Growth growth(double opening) const;

@@ -23,18 +23,15 @@ namespace nsfd
                                     const Dynamics<dim> &dynamics,
                                     const double energy_scale,
                                     const double tolerance)
-    : velocity(problem.n_points * dim)
-    , defect(problem.n_points * dim)
-    , solutions(problem.n_points)
-    , problem_(problem)
-    , dynamics_(dynamics)
-    , floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
+      : velocity(problem.n_points * dim), defect(problem.n_points * dim),
+        solutions(problem.n_points), problem_(problem), dynamics_(dynamics),
+        floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
   {
     const Charge charge(Cost::laws);
     linear_.reserve(problem.n_points);
     for (std::size_t i = 0; i < problem.n_points; ++i)
       linear_.push_back(
-        linear_point<dim>(problem, i, majorant(i, 0), majorant(i, 1)));
+          linear_point<dim>(problem, i, majorant(i, 0), majorant(i, 1)));
     // local solves start from the opening without any change
     for (std::size_t i = 0; i < problem.n_points; ++i)
       solutions[i].reach.opening = problem.opening_max[i];
@@ -52,8 +49,9 @@ namespace nsfd
   }
 
   template <int dim>
-  std::array<double, dim> LawEvaluation<dim>::local_velocity(
-    const std::vector<double> &impulse, const std::size_t i) const
+  std::array<double, dim>
+  LawEvaluation<dim>::local_velocity(const std::vector<double> &impulse,
+                                     const std::size_t i) const
   {
     std::array<double, dim> local;
     for (unsigned int c = 0; c < dim; ++c)
@@ -69,9 +67,8 @@ namespace nsfd
     for (std::size_t i = 0; i < problem_.n_points; ++i) {
       const auto local = local_velocity(impulse, i);
       if (is_frozen(i))
-        solutions[i] =
-          solve_frozen_point<dim>(problem_, i, (*frozen_)[i], local,
-                                  majorant(i, 0), majorant(i, 1));
+        solutions[i] = solve_frozen_point<dim>(
+            problem_, i, (*frozen_)[i], local, majorant(i, 0), majorant(i, 1));
       // what broke in this solve may stay so beside a linear solution
       else if (!linear_[i].exists() ||
                (solutions[i].damages && drops(problem_, i)) ||
@@ -79,8 +76,7 @@ namespace nsfd
         solutions[i] = solve_point<dim>(problem_, i, local, majorant(i, 0),
                                         majorant(i, 1), solutions[i].reach);
       for (unsigned int c = 0; c < dim; ++c)
-        defect[i * dim + c] =
-          impulse[i * dim + c] - solutions[i].impulse[c];
+        defect[i * dim + c] = impulse[i * dim + c] - solutions[i].impulse[c];
     }
     const std::size_t n = problem_.n_owned;
     terms_.assign(2 * n, 0.);

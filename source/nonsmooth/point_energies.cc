@@ -17,8 +17,7 @@ namespace nsfd
 
     /** R_coh of the step at the given secants, and its viscous part. */
     template <int dim>
-    void set_tractions(const OneStepProblem<dim> &problem,
-                       const std::size_t i,
+    void set_tractions(const OneStepProblem<dim> &problem, const std::size_t i,
                        const Secant &secant,
                        const std::array<double, dim> &velocity,
                        PointEnergies<dim> &result)
@@ -28,15 +27,14 @@ namespace nsfd
       if (normal.drags(velocity[0])) {
         const double speed = problem.theta * (velocity[0] - normal.start);
         result.viscous_traction = normal.drag(velocity[0]);
-        result.viscous =
-          result.viscous_traction * speed * problem.time_step;
+        result.viscous = result.viscous_traction * speed * problem.time_step;
       }
       const TangentialSpring spring =
-        tangential_spring<dim>(problem, secant.tangential);
+          tangential_spring<dim>(problem, secant.tangential);
       for (unsigned int c = 1; c < dim; ++c)
         result.cohesive_traction[c] =
-          spring.stiffness *
-          (tangential_offset<dim>(problem, i, c) + spring.slope * velocity[c]);
+            spring.stiffness * (tangential_offset<dim>(problem, i, c) +
+                                spring.slope * velocity[c]);
     }
 
     template <int dim>
@@ -46,37 +44,34 @@ namespace nsfd
       for (unsigned int c = 1; c < dim; ++c)
         slip += square(u[c]);
       return interaction.normal_stiffness *
-             (square(positive(u[0])) + interaction.stiffness_ratio * slip) /
-             2.;
+             (square(positive(u[0])) + interaction.stiffness_ratio * slip) / 2.;
     }
   } // namespace
 
   template <int dim>
-  double stored_energy(const OneStepProblem<dim> &problem,
-                       const std::size_t i)
+  double stored_energy(const OneStepProblem<dim> &problem, const std::size_t i)
   {
     const double *u = &problem.jump_old[i * dim];
     const double overlap =
-      overlap_energy(problem.compression_stiffness[i], u[0]);
+        overlap_energy(problem.compression_stiffness[i], u[0]);
     switch (problem.kind[i]) {
     case PointKind::elastic:
-      return overlap +
-             elastic_energy<dim>(problem.interactions[problem.interaction[i]],
-                                 u);
+      return overlap + elastic_energy<dim>(
+                           problem.interactions[problem.interaction[i]], u);
     case PointKind::cohesive: {
       const PointDamage<dim> damage(problem, i);
       return overlap + damage.stored(damage.history(), u);
     }
-    default: return 0.;
+    default:
+      return 0.;
     }
   }
 
   template <int dim>
-  PointEnergies<dim>
-  point_energies(const OneStepProblem<dim> &problem,
-                 const std::size_t i,
-                 const std::array<double, dim> &velocity,
-                 const FrozenPoint &frozen)
+  PointEnergies<dim> point_energies(const OneStepProblem<dim> &problem,
+                                    const std::size_t i,
+                                    const std::array<double, dim> &velocity,
+                                    const FrozenPoint &frozen)
   {
     PointEnergies<dim> result;
     const PointKind kind = problem.kind[i];
@@ -131,8 +126,8 @@ namespace nsfd
   template double stored_energy<dim>(const OneStepProblem<dim> &,              \
                                      std::size_t);                             \
   template PointEnergies<dim> point_energies<dim>(                             \
-    const OneStepProblem<dim> &, std::size_t,                                  \
-    const std::array<double, dim> &, const FrozenPoint &)
+      const OneStepProblem<dim> &, std::size_t,                                \
+      const std::array<double, dim> &, const FrozenPoint &)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

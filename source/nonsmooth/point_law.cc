@@ -28,8 +28,7 @@ namespace nsfd
     }
 
     template <int dim>
-    Reach end_reach(const OneStepProblem<dim> &problem,
-                    const std::size_t i,
+    Reach end_reach(const OneStepProblem<dim> &problem, const std::size_t i,
                     const std::array<double, dim> &velocity)
     {
       const auto jump = end_jump<dim>(problem, i, velocity);
@@ -38,24 +37,20 @@ namespace nsfd
     }
 
     /** Friction bound for beta at the end of the step. */
-    double threshold_for(const Interaction &interaction,
-                         const double beta,
+    double threshold_for(const Interaction &interaction, const double beta,
                          const double contact_impulse)
     {
       return contact_impulse <= 0.
-               ? 0.
-               : interaction.friction *
-                   kappa(beta, interaction.friction_exponent) *
-                   contact_impulse;
+                 ? 0.
+                 : interaction.friction *
+                       kappa(beta, interaction.friction_exponent) *
+                       contact_impulse;
     }
 
     template <int dim>
-    void solve_normal(const OneStepProblem<dim> &problem,
-                      const std::size_t i,
-                      const FrozenPoint &frozen,
-                      const double local,
-                      const double majorant,
-                      LocalSolution<dim> &solution)
+    void solve_normal(const OneStepProblem<dim> &problem, const std::size_t i,
+                      const FrozenPoint &frozen, const double local,
+                      const double majorant, LocalSolution<dim> &solution)
     {
       const NormalLaw law = normal_law<dim>(problem, i, frozen.secant.normal);
       const double wh = problem.weight[i] * problem.time_step;
@@ -70,24 +65,21 @@ namespace nsfd
       } else {
         // a stiff spring: its traction is a difference of large jumps
         solution.impulse[0] = majorant * wh * law.derivative(U) > 1.
-                                ? (U - local) / majorant
-                                : -wh * law.at(U);
+                                  ? (U - local) / majorant
+                                  : -wh * law.at(U);
         solution.status = PointStatus::open;
       }
       solution.velocity[0] = U;
     }
 
-
     template <int dim>
     void solve_tangential(const OneStepProblem<dim> &problem,
-                          const std::size_t i,
-                          const FrozenPoint &frozen,
+                          const std::size_t i, const FrozenPoint &frozen,
                           const std::array<double, dim> &local,
-                          const double majorant,
-                          LocalSolution<dim> &solution)
+                          const double majorant, LocalSolution<dim> &solution)
     {
       const TangentialSpring spring =
-        tangential_spring<dim>(problem, frozen.secant.tangential);
+          tangential_spring<dim>(problem, frozen.secant.tangential);
       const double k = problem.weight[i] * problem.time_step *
                        spring.stiffness; // impulse per unit of y
       const double factor = 1. + majorant * k * spring.slope;
@@ -102,36 +94,35 @@ namespace nsfd
       const double bound = majorant * frozen.threshold;
       const double share = norm > bound ? (1. - bound / norm) / factor : 0.;
       for (unsigned int c = 1; c < dim; ++c) {
-        const double U =
-          share * z[c] - problem.sliding_offset[i * dim + c];
+        const double U = share * z[c] - problem.sliding_offset[i * dim + c];
         solution.velocity[c] = U;
         solution.impulse[c] =
-          frozen.threshold == 0. && factor < 2.
-            ? -k * (tangential_offset<dim>(problem, i, c) + spring.slope * U)
-            : (U - local[c]) / majorant;
+            frozen.threshold == 0. && factor < 2.
+                ? -k *
+                      (tangential_offset<dim>(problem, i, c) + spring.slope * U)
+                : (U - local[c]) / majorant;
       }
       if (solution.status == PointStatus::stick && share > 0.)
         solution.status = PointStatus::slide;
     }
 
     template <int dim>
-    LocalSolution<dim>
-    solve_prescribed(const OneStepProblem<dim> &problem,
-                     const std::size_t i,
-                     const std::array<double, dim> &local,
-                     const double majorant_normal,
-                     const double majorant_tangential)
+    LocalSolution<dim> solve_prescribed(const OneStepProblem<dim> &problem,
+                                        const std::size_t i,
+                                        const std::array<double, dim> &local,
+                                        const double majorant_normal,
+                                        const double majorant_tangential)
     {
       LocalSolution<dim> solution;
       solution.status = PointStatus::prescribed;
       for (unsigned int c = 0; c < dim; ++c) {
         const bool given = problem.mask[i] & (1u << c);
         solution.velocity[c] =
-          given ? problem.given_velocity[i * dim + c] : local[c];
+            given ? problem.given_velocity[i * dim + c] : local[c];
         solution.impulse[c] =
-          given ? (solution.velocity[c] - local[c]) /
-                    (c == 0 ? majorant_normal : majorant_tangential)
-                : 0.;
+            given ? (solution.velocity[c] - local[c]) /
+                        (c == 0 ? majorant_normal : majorant_tangential)
+                  : 0.;
       }
       solution.frozen.secant = Secant::rigid();
       return solution;
@@ -147,15 +138,14 @@ namespace nsfd
       solution.status = PointStatus::prescribed;
       for (unsigned int c = 0; c < dim; ++c)
         solution.impulse[c] =
-          -local[c] / (c == 0 ? majorant_normal : majorant_tangential);
+            -local[c] / (c == 0 ? majorant_normal : majorant_tangential);
       solution.frozen.secant = Secant::rigid();
       return solution;
     }
 
     /** U = 0 held by a traction below the strength? Compression always is. */
     template <int dim>
-    bool stays_rigid(const OneStepProblem<dim> &problem,
-                     const std::size_t i,
+    bool stays_rigid(const OneStepProblem<dim> &problem, const std::size_t i,
                      const std::array<double, dim> &impulse)
     {
       const double wh = problem.weight[i] * problem.time_step;
@@ -167,8 +157,7 @@ namespace nsfd
 
     /** One local problem: everything at a given frozen part. */
     template <int dim>
-    struct LocalProblem
-    {
+    struct LocalProblem {
       const OneStepProblem<dim> &problem;
       std::size_t i;
       const std::array<double, dim> &local;
@@ -217,7 +206,7 @@ namespace nsfd
                           solution);
         if (solution.contact_impulse > 0. && interaction().friction > 0.)
           frozen.threshold =
-            threshold_for(interaction(), beta(), solution.contact_impulse);
+              threshold_for(interaction(), beta(), solution.contact_impulse);
         solve_tangential<dim>(problem, i, frozen, local, majorant_tangential,
                               solution);
         solution.frozen = frozen;
@@ -250,10 +239,10 @@ namespace nsfd
       {
         const double h = problem.time_step;
         const double up =
-          problem.dilatancy.empty()
-            ? 0.
-            : std::min(problem.dilatancy[i] * speed,
-                       problem.lift_left[i] / (h * problem.theta));
+            problem.dilatancy.empty()
+                ? 0.
+                : std::min(problem.dilatancy[i] * speed,
+                           problem.lift_left[i] / (h * problem.theta));
         const double k = interaction().wear * speed / (problem.weight[i] * h);
         if (k == 0.)
           return up;
@@ -271,9 +260,8 @@ namespace nsfd
       {
         const auto excess = [&](const double speed) {
           frozen.lift = lift_at(frozen.secant, speed);
-          frozen.threshold =
-            threshold_for(interaction(), beta,
-                          contact_impulse(frozen.secant, frozen.lift));
+          frozen.threshold = threshold_for(
+              interaction(), beta, contact_impulse(frozen.secant, frozen.lift));
           solve(frozen);
           return sliding_speed<dim>(problem, i, solution.velocity) - speed;
         };
@@ -387,7 +375,7 @@ namespace nsfd
         return local.solution.reach.opening - opening;
       };
       const double root =
-        adjacent_root(excess, low, high, start, damage.kinks());
+          adjacent_root(excess, low, high, start, damage.kinks());
       if (std::abs(excess(root)) > 1e-9 * root && !damage.plateau()) {
         excess(root * (1. - 1e-15));
         const FrozenPoint before = local.solution.frozen;
@@ -416,8 +404,8 @@ namespace nsfd
       std::array<Pair, 2> H{{{{1., 0.}}, {{0., 1.}}}}; // step over distance
       Pair step{}, last{};
       const auto product = [&](const Pair &v) {
-        return Pair{{H[0][0] * v[0] + H[0][1] * v[1],
-                     H[1][0] * v[0] + H[1][1] * v[1]}};
+        return Pair{
+            {H[0][0] * v[0] + H[0][1] * v[1], H[1][0] * v[0] + H[1][1] * v[1]}};
       };
       const auto size = [](const Pair &v) {
         return std::abs(v[0]) + std::abs(v[1]);
@@ -425,8 +413,8 @@ namespace nsfd
       for (unsigned int k = 0; k < 12; ++k) {
         local.solve_end(damage, {x[0], x[1]});
         const Reach &reach = local.solution.reach;
-        const Pair to{{std::max(low[0], reach.opening),
-                       std::max(low[1], reach.slip)}};
+        const Pair to{
+            {std::max(low[0], reach.opening), std::max(low[1], reach.slip)}};
         const Pair distance{{to[0] - x[0], to[1] - x[1]}};
         const bool nearer = k == 0 || size(distance) < 0.5 * size(last);
         if (size(distance) <= (nearer ? 1e-14 : 1e-12) * size(to)) {
@@ -436,8 +424,8 @@ namespace nsfd
         if (!nearer)
           return false;
         if (k > 0) {
-          const Pair change = product(
-            {{distance[0] - last[0], distance[1] - last[1]}});
+          const Pair change =
+              product({{distance[0] - last[0], distance[1] - last[1]}});
           const double along = step[0] * change[0] + step[1] * change[1];
           if (!(along < 0.))
             return false;
@@ -490,15 +478,15 @@ namespace nsfd
           return reach({x, slip}).opening - x;
         };
         opening = high.opening > low.opening
-                    ? adjacent_root(excess, low.opening, high.opening,
-                                    start.opening)
-                    : low.opening;
+                      ? adjacent_root(excess, low.opening, high.opening,
+                                      start.opening)
+                      : low.opening;
         return reach({opening, slip}).slip - slip;
       };
       const double slip =
-        high.slip > low.slip
-          ? adjacent_root(slip_excess, low.slip, high.slip, start.slip)
-          : low.slip;
+          high.slip > low.slip
+              ? adjacent_root(slip_excess, low.slip, high.slip, start.slip)
+              : low.slip;
       slip_excess(slip);
       finish({opening, slip});
     }
@@ -525,14 +513,12 @@ namespace nsfd
   }
 
   template <int dim>
-  double sliding_speed(const OneStepProblem<dim> &problem,
-                       const std::size_t i,
+  double sliding_speed(const OneStepProblem<dim> &problem, const std::size_t i,
                        const std::array<double, dim> &velocity)
   {
     double sum = 0.;
     for (unsigned int c = 1; c < dim; ++c)
-      sum +=
-        square(velocity[c] + problem.sliding_offset[i * dim + c]);
+      sum += square(velocity[c] + problem.sliding_offset[i * dim + c]);
     return std::sqrt(sum);
   }
 
@@ -557,8 +543,7 @@ namespace nsfd
     return {positive(jump[0]), std::sqrt(slip)};
   }
 
-  bool past_peak(const CohesiveLaw &law,
-                 const double opening_factor,
+  bool past_peak(const CohesiveLaw &law, const double opening_factor,
                  const Reach &history)
   {
     const double x = opening_factor * history.opening;
@@ -566,14 +551,12 @@ namespace nsfd
       return x >= law.peak_opening();
     const double y = opening_factor * history.slip;
     return square(x / law.peak_opening()) +
-             square(y / law.mixed()->peak_slip()) >=
+               square(y / law.mixed()->peak_slip()) >=
            1.;
   }
 
-  double beta_of(const Interaction &interaction,
-                 const PointKind kind,
-                 const double opening_factor,
-                 const Reach &history)
+  double beta_of(const Interaction &interaction, const PointKind kind,
+                 const double opening_factor, const Reach &history)
   {
     if (kind == PointKind::free)
       return 0.;
@@ -586,8 +569,7 @@ namespace nsfd
   }
 
   template <int dim>
-  double point_strength(const OneStepProblem<dim> &problem,
-                        const std::size_t i)
+  double point_strength(const OneStepProblem<dim> &problem, const std::size_t i)
   {
     return PointDamage<dim>(problem, i).strength();
   }
@@ -602,10 +584,9 @@ namespace nsfd
   }
 
   template <int dim>
-  LinearPoint<dim> linear_point(const OneStepProblem<dim> &problem,
-                                const std::size_t i,
-                                const double majorant_normal,
-                                const double majorant_tangential)
+  LinearPoint<dim>
+  linear_point(const OneStepProblem<dim> &problem, const std::size_t i,
+               const double majorant_normal, const double majorant_tangential)
   {
     LinearPoint<dim> result;
     const auto &interaction = problem.interactions[problem.interaction[i]];
@@ -634,7 +615,7 @@ namespace nsfd
       return result;
     }
     const TangentialSpring spring =
-      tangential_spring<dim>(problem, result.secant.tangential);
+        tangential_spring<dim>(problem, result.secant.tangential);
     result.slope = spring.slope;
     for (unsigned int c = 0; c < dim; ++c)
       result.offset[c] = tangential_offset<dim>(problem, i, c);
@@ -650,20 +631,19 @@ namespace nsfd
   }
 
   template <int dim>
-  LocalSolution<dim>
-  solve_frozen_point(const OneStepProblem<dim> &problem,
-                     const std::size_t i,
-                     const FrozenPoint &frozen,
-                     const std::array<double, dim> &local,
-                     const double majorant_normal,
-                     const double majorant_tangential)
+  LocalSolution<dim> solve_frozen_point(const OneStepProblem<dim> &problem,
+                                        const std::size_t i,
+                                        const FrozenPoint &frozen,
+                                        const std::array<double, dim> &local,
+                                        const double majorant_normal,
+                                        const double majorant_tangential)
   {
     if (problem.kind[i] == PointKind::prescribed)
       return solve_prescribed<dim>(problem, i, local, majorant_normal,
                                    majorant_tangential);
     if (frozen.is_rigid()) {
       auto solution =
-        solve_held<dim>(local, majorant_normal, majorant_tangential);
+          solve_held<dim>(local, majorant_normal, majorant_tangential);
       solution.frozen = frozen;
       solution.reach = end_reach<dim>(problem, i, solution.velocity);
       return solution;
@@ -675,12 +655,11 @@ namespace nsfd
   }
 
   template <int dim>
-  LocalSolution<dim> solve_point(const OneStepProblem<dim> &problem,
-                                 const std::size_t i,
-                                 const std::array<double, dim> &local,
-                                 const double majorant_normal,
-                                 const double majorant_tangential,
-                                 const Reach &start)
+  LocalSolution<dim>
+  solve_point(const OneStepProblem<dim> &problem, const std::size_t i,
+              const std::array<double, dim> &local,
+              const double majorant_normal, const double majorant_tangential,
+              const Reach &start)
   {
     const PointKind kind = problem.kind[i];
     if (kind == PointKind::prescribed)
@@ -697,7 +676,7 @@ namespace nsfd
     if (kind == PointKind::free || kind == PointKind::elastic) {
       const auto &interaction = here.interaction();
       const double b =
-        kind == PointKind::elastic ? interaction.normal_stiffness : 0.;
+          kind == PointKind::elastic ? interaction.normal_stiffness : 0.;
       here.solve(Secant{b, b * interaction.stiffness_ratio},
                  [&] { return kind == PointKind::elastic ? 1. : 0.; });
       return finish(false);
@@ -708,7 +687,7 @@ namespace nsfd
     double low = history.opening;
     if (kind == PointKind::rigid) {
       const auto held =
-        solve_held<dim>(local, majorant_normal, majorant_tangential);
+          solve_held<dim>(local, majorant_normal, majorant_tangential);
       if (stays_rigid<dim>(problem, i, held.impulse))
         return held;
       // opens: friction alone may still hold it, or its kappa
@@ -750,12 +729,9 @@ namespace nsfd
 
   template <int dim>
   std::array<double, dim>
-  frozen_slopes(const OneStepProblem<dim> &problem,
-                const std::size_t i,
-                const FrozenPoint &frozen,
-                const LocalSolution<dim> &solution,
-                const double majorant_normal,
-                const double majorant_tangential)
+  frozen_slopes(const OneStepProblem<dim> &problem, const std::size_t i,
+                const FrozenPoint &frozen, const LocalSolution<dim> &solution,
+                const double majorant_normal, const double majorant_tangential)
   {
     std::array<double, dim> slopes{};
     if (problem.kind[i] == PointKind::prescribed) {
@@ -771,18 +747,16 @@ namespace nsfd
     }
     const double wh = problem.weight[i] * problem.time_step;
     if (solution.status == PointStatus::open) {
-      const double k =
-        wh * normal_law<dim>(problem, i, frozen.secant.normal)
-               .derivative(solution.velocity[0]);
+      const double k = wh * normal_law<dim>(problem, i, frozen.secant.normal)
+                                .derivative(solution.velocity[0]);
       slopes[0] = k / (1. + majorant_normal * k);
     } else
       slopes[0] = 1. / majorant_normal;
 
     const TangentialSpring spring =
-      tangential_spring<dim>(problem, frozen.secant.tangential);
+        tangential_spring<dim>(problem, frozen.secant.tangential);
     const double k = wh * spring.stiffness * spring.slope;
-    const double sliding =
-      sliding_speed<dim>(problem, i, solution.velocity);
+    const double sliding = sliding_speed<dim>(problem, i, solution.velocity);
     if (frozen.threshold > 0. && sliding == 0.) {
       for (unsigned int c = 1; c < dim; ++c)
         slopes[c] = 1. / majorant_tangential;
@@ -791,7 +765,7 @@ namespace nsfd
       if (dim == 3) {
         // across the sliding direction the friction force turns
         const double turning =
-          k + (frozen.threshold > 0. ? frozen.threshold / sliding : 0.);
+            k + (frozen.threshold > 0. ? frozen.threshold / sliding : 0.);
         slopes[dim - 1] = turning / (1. + majorant_tangential * turning);
       }
     }
@@ -800,8 +774,7 @@ namespace nsfd
 
   template <int dim>
   std::array<double, dim>
-  frozen_velocity(const OneStepProblem<dim> &problem,
-                  const std::size_t i,
+  frozen_velocity(const OneStepProblem<dim> &problem, const std::size_t i,
                   const FrozenPoint &frozen,
                   const std::array<double, dim> &impulse)
   {
@@ -816,7 +789,7 @@ namespace nsfd
     const double wh = problem.weight[i] * problem.time_step;
     const NormalLaw normal = normal_law<dim>(problem, i, frozen.secant.normal);
     const double target =
-      problem.contact[i] ? problem.target[i] + frozen.lift : -infinity;
+        problem.contact[i] ? problem.target[i] + frozen.lift : -infinity;
     const double traction = -impulse[0] / wh;
     if (normal.is_flat(traction))
       velocity[0] = problem.contact[i] ? target : normal.start;
@@ -824,7 +797,7 @@ namespace nsfd
       velocity[0] = std::max(target, normal.inverse(traction));
 
     const TangentialSpring spring =
-      tangential_spring<dim>(problem, frozen.secant.tangential);
+        tangential_spring<dim>(problem, frozen.secant.tangential);
     const double k = wh * spring.stiffness;
     double z[dim] = {}, norm = 0.;
     for (unsigned int c = 1; c < dim; ++c) {
@@ -836,8 +809,8 @@ namespace nsfd
     norm = std::sqrt(norm);
     const double stiffness = k * spring.slope;
     const double share = norm > frozen.threshold && stiffness > 0.
-                           ? (1. - frozen.threshold / norm) / stiffness
-                           : 0.;
+                             ? (1. - frozen.threshold / norm) / stiffness
+                             : 0.;
     for (unsigned int c = 1; c < dim; ++c)
       velocity[c] = share * z[c] - problem.sliding_offset[i * dim + c];
     return velocity;
@@ -845,23 +818,27 @@ namespace nsfd
 
   template <int dim>
   FrozenPoint frozen_state(const OneStepProblem<dim> &problem,
-                           const std::size_t i,
-                           const Reach &end,
+                           const std::size_t i, const Reach &end,
                            const double contact_impulse)
   {
     const auto &interaction = problem.interactions[problem.interaction[i]];
     FrozenPoint frozen;
     double beta = 1.;
     switch (problem.kind[i]) {
-    case PointKind::prescribed: frozen.secant = Secant::rigid(); return frozen;
-    case PointKind::rigid: return frozen; // has no secant before it opens
+    case PointKind::prescribed:
+      frozen.secant = Secant::rigid();
+      return frozen;
+    case PointKind::rigid:
+      return frozen; // has no secant before it opens
     case PointKind::bonded:
     case PointKind::parted:
-    case PointKind::free: beta = 0.; break;
+    case PointKind::free:
+      beta = 0.;
+      break;
     case PointKind::elastic:
       frozen.secant = {interaction.normal_stiffness,
                        interaction.normal_stiffness *
-                         interaction.stiffness_ratio};
+                           interaction.stiffness_ratio};
       break;
     case PointKind::cohesive:
       const PointDamage<dim> damage(problem, i);
@@ -878,24 +855,23 @@ namespace nsfd
                                          std::size_t, const Reach &, double);  \
   template struct OneStepProblem<dim>;                                         \
   template LocalSolution<dim> solve_point<dim>(                                \
-    const OneStepProblem<dim> &, std::size_t,                                  \
-    const std::array<double, dim> &, double, double, const Reach &);           \
+      const OneStepProblem<dim> &, std::size_t,                                \
+      const std::array<double, dim> &, double, double, const Reach &);         \
   template LocalSolution<dim> solve_frozen_point<dim>(                         \
-    const OneStepProblem<dim> &, std::size_t, const FrozenPoint &,             \
-    const std::array<double, dim> &, double, double);                          \
+      const OneStepProblem<dim> &, std::size_t, const FrozenPoint &,           \
+      const std::array<double, dim> &, double, double);                        \
   template std::array<double, dim> frozen_slopes<dim>(                         \
-    const OneStepProblem<dim> &, std::size_t, const FrozenPoint &,             \
-    const LocalSolution<dim> &, double, double);                               \
+      const OneStepProblem<dim> &, std::size_t, const FrozenPoint &,           \
+      const LocalSolution<dim> &, double, double);                             \
   template std::array<double, dim> frozen_velocity<dim>(                       \
-    const OneStepProblem<dim> &, std::size_t, const FrozenPoint &,             \
-    const std::array<double, dim> &);                                          \
-  template LinearPoint<dim> linear_point<dim>(                                 \
-    const OneStepProblem<dim> &, std::size_t, double, double);                 \
+      const OneStepProblem<dim> &, std::size_t, const FrozenPoint &,           \
+      const std::array<double, dim> &);                                        \
+  template LinearPoint<dim> linear_point<dim>(const OneStepProblem<dim> &,     \
+                                              std::size_t, double, double);    \
   template bool has_frozen_law<dim>(const OneStepProblem<dim> &, std::size_t); \
   template double point_strength<dim>(const OneStepProblem<dim> &,             \
                                       std::size_t);                            \
-  template double sliding_speed<dim>(const OneStepProblem<dim> &,              \
-                                     std::size_t,                              \
+  template double sliding_speed<dim>(const OneStepProblem<dim> &, std::size_t, \
                                      const std::array<double, dim> &);         \
   template Reach reach_of<dim>(const Interaction &, const double *);           \
   template double effective_opening<dim>(const Interaction &, const double *)

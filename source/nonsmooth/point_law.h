@@ -7,10 +7,9 @@
 namespace nsfd
 {
   /** Where a point ended in its local problem. */
-  enum class PointStatus : std::uint8_t
-  {
+  enum class PointStatus : std::uint8_t {
     prescribed,
-    open,   ///< no contact impulse
+    open, ///< no contact impulse
     stick,
     slide
   };
@@ -19,14 +18,12 @@ namespace nsfd
    * How far a point is open, in m: its effective opening, or, for laws with
    * two damage scalars, <u_N>_+ and |u_T|.
    */
-  struct Reach
-  {
+  struct Reach {
     double opening = 0., slip = 0.;
   };
 
   /** R_coh = normal <u*_N>_+ n + tangential u*_T, in Pa/m. */
-  struct Secant
-  {
+  struct Secant {
     double normal = 0., tangential = 0.;
 
     static constexpr Secant rigid()
@@ -37,8 +34,7 @@ namespace nsfd
   };
 
   /** The secant state of a point: fixes its law to a monotone one. */
-  struct FrozenPoint
-  {
+  struct FrozenPoint {
     Secant secant;
     double threshold = 0.; ///< s, friction impulse bound
     double lift = 0.; ///< of the contact by sliding, m/s: U_N >= target + lift
@@ -47,14 +43,13 @@ namespace nsfd
   };
 
   template <int dim>
-  struct LocalSolution
-  {
+  struct LocalSolution {
     std::array<double, dim> impulse{}, velocity{};
     FrozenPoint frozen;
-    Reach reach; ///< at the end of the step
+    Reach reach;                 ///< at the end of the step
     double contact_impulse = 0.; ///< P_c,N
     bool damages = false;        ///< a largest reach grows
-    bool coupled = false; ///< the frozen part follows the local velocity
+    bool coupled = false;        ///< the frozen part follows the local velocity
     PointStatus status = PointStatus::open;
   };
 
@@ -69,12 +64,11 @@ namespace nsfd
    * solve of Gauss-Seidel and the map whose fixed point is the solution.
    */
   template <int dim>
-  LocalSolution<dim> solve_point(const OneStepProblem<dim> &problem,
-                                 std::size_t point,
-                                 const std::array<double, dim> &local_velocity,
-                                 double majorant_normal,
-                                 double majorant_tangential,
-                                 const Reach &start);
+  LocalSolution<dim>
+  solve_point(const OneStepProblem<dim> &problem, std::size_t point,
+              const std::array<double, dim> &local_velocity,
+              double majorant_normal, double majorant_tangential,
+              const Reach &start);
 
   /**
    * A two-sided spring, for the steps that do not damage it: against R = (R_N,
@@ -83,11 +77,10 @@ namespace nsfd
    * open points without any law, kappa = 0.
    */
   template <int dim>
-  struct LinearPoint
-  {
-    std::array<double, dim> offset{};         ///< y_0, m
-    double slope = 0.;                        ///< s
-    double normal = 0., tangential = 0.;      ///< kappa
+  struct LinearPoint {
+    std::array<double, dim> offset{};                      ///< y_0, m
+    double slope = 0.;                                     ///< s
+    double normal = 0., tangential = 0.;                   ///< kappa
     double normal_majorant = 0., tangential_majorant = 0.; ///< R
     Secant secant;
     double largest = -1.; ///< d_m^2; negative: the law is not linear
@@ -95,8 +88,7 @@ namespace nsfd
     bool exists() const { return largest >= 0.; }
 
     /** False, and nothing done, if the step would damage the point. */
-    bool solve(const OneStepProblem<dim> &problem,
-               const std::size_t point,
+    bool solve(const OneStepProblem<dim> &problem, const std::size_t point,
                const std::array<double, dim> &local,
                LocalSolution<dim> &solution) const
     {
@@ -106,7 +98,7 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c) {
         P[c] = -(c == 0 ? normal : tangential) * (offset[c] + slope * local[c]);
         U[c] =
-          local[c] + (c == 0 ? normal_majorant : tangential_majorant) * P[c];
+            local[c] + (c == 0 ? normal_majorant : tangential_majorant) * P[c];
         const double u = problem.jump_free[point * dim + c] + h_theta * U[c];
         if (c > 0)
           slip += u * u;
@@ -114,7 +106,7 @@ namespace nsfd
           square = u * u;
       }
       square +=
-        problem.interactions[problem.interaction[point]].shear_weight * slip;
+          problem.interactions[problem.interaction[point]].shear_weight * slip;
       if (!(square <= largest))
         return false;
       solution.impulse = P;
@@ -129,19 +121,16 @@ namespace nsfd
 
   template <int dim>
   LinearPoint<dim> linear_point(const OneStepProblem<dim> &problem,
-                                std::size_t point,
-                                double majorant_normal,
+                                std::size_t point, double majorant_normal,
                                 double majorant_tangential);
 
   /** The same with damage and friction threshold frozen: a convex problem. */
   template <int dim>
   LocalSolution<dim>
-  solve_frozen_point(const OneStepProblem<dim> &problem,
-                     std::size_t point,
+  solve_frozen_point(const OneStepProblem<dim> &problem, std::size_t point,
                      const FrozenPoint &frozen,
                      const std::array<double, dim> &local_velocity,
-                     double majorant_normal,
-                     double majorant_tangential);
+                     double majorant_normal, double majorant_tangential);
 
   /** A secant state makes the law of the point convex. */
   template <int dim>
@@ -153,12 +142,9 @@ namespace nsfd
    */
   template <int dim>
   std::array<double, dim>
-  frozen_slopes(const OneStepProblem<dim> &problem,
-                std::size_t point,
-                const FrozenPoint &frozen,
-                const LocalSolution<dim> &solution,
-                double majorant_normal,
-                double majorant_tangential);
+  frozen_slopes(const OneStepProblem<dim> &problem, std::size_t point,
+                const FrozenPoint &frozen, const LocalSolution<dim> &solution,
+                double majorant_normal, double majorant_tangential);
 
   /**
    * U of the frozen law at the impulse @p impulse inside its domain: the
@@ -166,8 +152,7 @@ namespace nsfd
    */
   template <int dim>
   std::array<double, dim>
-  frozen_velocity(const OneStepProblem<dim> &problem,
-                  std::size_t point,
+  frozen_velocity(const OneStepProblem<dim> &problem, std::size_t point,
                   const FrozenPoint &frozen,
                   const std::array<double, dim> &impulse);
 
@@ -178,8 +163,7 @@ namespace nsfd
    */
   template <int dim>
   FrozenPoint frozen_state(const OneStepProblem<dim> &problem,
-                           std::size_t point,
-                           const Reach &end,
+                           std::size_t point, const Reach &end,
                            double contact_impulse);
 
   /**
@@ -187,30 +171,27 @@ namespace nsfd
    * largest opening has left of it (plateau).
    */
   template <int dim>
-  double point_strength(const OneStepProblem<dim> &problem,
-                        std::size_t point);
+  double point_strength(const OneStepProblem<dim> &problem, std::size_t point);
 
   /** Cohesive traction densities and energies of a point over a step. */
   template <int dim>
-  struct PointEnergies
-  {
+  struct PointEnergies {
     std::array<double, dim> cohesive_traction{}; ///< R_coh, with viscosity, Pa
-    double viscous_traction = 0.; ///< its viscous part
-    Reach history;    ///< largest reach after the step
-    double beta = 1.; ///< after the step
-    double stored = 0.;          ///< after the step, J/m^2, overlap included
-    double stored_old = 0.;      ///< before
-    double damage = 0.;          ///< dissipated in the step, J/m^2
-    double viscous = 0.;         ///< dissipated by viscosity, J/m^2
+    double viscous_traction = 0.;                ///< its viscous part
+    Reach history;                ///< largest reach after the step
+    double beta = 1.;             ///< after the step
+    double stored = 0.;           ///< after the step, J/m^2, overlap included
+    double stored_old = 0.;       ///< before
+    double damage = 0.;           ///< dissipated in the step, J/m^2
+    double viscous = 0.;          ///< dissipated by viscosity, J/m^2
     double overlap_released = 0.; ///< spring energy dropped at first damage
   };
 
   template <int dim>
-  PointEnergies<dim>
-  point_energies(const OneStepProblem<dim> &problem,
-                 std::size_t point,
-                 const std::array<double, dim> &velocity,
-                 const FrozenPoint &frozen);
+  PointEnergies<dim> point_energies(const OneStepProblem<dim> &problem,
+                                    std::size_t point,
+                                    const std::array<double, dim> &velocity,
+                                    const FrozenPoint &frozen);
 
   /** Stored at the start of the step, overlap included, in J/m^2. */
   template <int dim>
@@ -223,8 +204,7 @@ namespace nsfd
 
   /** Effective opening sqrt(<u_N>_+^2 + r^2 |u_T|^2). */
   template <int dim>
-  double effective_opening(const Interaction &interaction,
-                           const double *jump);
+  double effective_opening(const Interaction &interaction, const double *jump);
 
   /** The same, or opening and slip apart, as the law asks for. */
   template <int dim>

@@ -1,16 +1,15 @@
 #pragma once
 
-#include "nsfd/core/registry.h"
 #include "delassus/dynamics.h"
+#include "nsfd/core/registry.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
 #include "point_law.h"
 
 namespace nsfd
 {
   /** How far a solve has to go, and how much it may cost. */
-  struct SolverControl
-  {
-    double tolerance = 1e-8;              ///< of the relative natural map
+  struct SolverControl {
+    double tolerance = 1e-8;               ///< of the relative natural map
     unsigned int maximum_iterations = 200; ///< Newton steps, or 100 sweeps each
     unsigned int idle_rounds = 2; ///< line searches that did not halve the
                                   ///< error before the solve is given up
@@ -31,8 +30,7 @@ namespace nsfd
   {
   public:
     LawEvaluation(const OneStepProblem<dim> &problem,
-                  const Dynamics<dim> &dynamics,
-                  double energy_scale,
+                  const Dynamics<dim> &dynamics, double energy_scale,
                   double tolerance);
 
     /** Recompute U = U_free + W P and everything that follows. */
@@ -55,17 +53,17 @@ namespace nsfd
     void update_laws(const std::vector<double> &impulse);
 
     double error = 0.;
-    std::vector<double> velocity;  ///< U
-    std::vector<double> defect;    ///< P - P*
+    std::vector<double> velocity; ///< U
+    std::vector<double> defect;   ///< P - P*
     std::vector<LocalSolution<dim>> solutions;
 
     /** The law at the last solution of a point, if it is linear there. */
     const LinearPoint<dim> *linear(const std::size_t point) const
     {
       return linear_[point].exists() && !solutions[point].damages &&
-                 !is_frozen()
-               ? &linear_[point]
-               : nullptr;
+                     !is_frozen()
+                 ? &linear_[point]
+                 : nullptr;
     }
     std::size_t worst_point = 0;
     double worst_error = 0.;
@@ -98,8 +96,7 @@ namespace nsfd
   public:
     virtual ~NonsmoothSolver() = default;
     virtual SolverReport solve(const OneStepProblem<dim> &problem,
-                               Dynamics<dim> &dynamics,
-                               double energy_scale,
+                               Dynamics<dim> &dynamics, double energy_scale,
                                const SolverControl &control,
                                std::vector<double> &impulse,
                                LawEvaluation<dim> &evaluation) = 0;
@@ -124,6 +121,5 @@ namespace nsfd
   void gauss_seidel(const OneStepProblem<dim> &problem,
                     const Dynamics<dim> &dynamics,
                     const std::vector<std::vector<unsigned int>> &colours,
-                    unsigned int count,
-                    std::vector<double> &impulse);
+                    unsigned int count, std::vector<double> &impulse);
 } // namespace nsfd

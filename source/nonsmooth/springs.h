@@ -2,8 +2,8 @@
 
 #include "core/bracketed_root.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,7 @@ namespace nsfd::springs
    * exact rule is the difference quotient of the potential
    * b <u>_+^2/2 + c <-u>_+^2/2 between u_k and u' = x0 + s U.
    */
-  struct NormalSpring
-  {
+  struct NormalSpring {
     double tension, compression; // b, c
     double offset, slope;        // x0, s
     double old;                  // u_k
@@ -110,12 +109,12 @@ namespace nsfd::springs
           const double r = 2. * traction * old - other * old * old;
           if (mine > 0.) {
             const double root =
-              std::sqrt(std::max(0., square(traction) - mine * r));
+                std::sqrt(std::max(0., square(traction) - mine * r));
             x = (traction + (opens ? root : -root)) / mine;
           } else // a traction that only tends to zero
             x = (opens ? traction < 0. : traction > 0.)
-                  ? r / (2. * traction)
-                  : (opens ? infinity : -infinity);
+                    ? r / (2. * traction)
+                    : (opens ? infinity : -infinity);
         }
       }
       return (x - offset) / slope;
@@ -128,8 +127,7 @@ namespace nsfd::springs
    * (1-theta)/theta, it is v, or v / (1 + v / limit) where the rate dependency
    * is limited.
    */
-  struct NormalLaw
-  {
+  struct NormalLaw {
     NormalSpring spring;
     double viscosity, start; // c, U_0
     double limit = infinity;
@@ -164,8 +162,7 @@ namespace nsfd::springs
       if (!drags(velocity))
         return spring.derivative(velocity);
       const double v = viscosity * (velocity - start);
-      return spring.derivative(velocity) +
-             viscosity / square(1. + v / limit);
+      return spring.derivative(velocity) + viscosity / square(1. + v / limit);
     }
 
     /** U - U_loc + a R(U) = 0, a >= 0. */
@@ -177,9 +174,8 @@ namespace nsfd::springs
       const double low = solve_dragged(local, a);
       if (limit == infinity || a == 0.)
         return low;
-      return between(low, spring.solve(local, a), [&](const double U) {
-        return local - U - a * at(U);
-      });
+      return between(low, spring.solve(local, a),
+                     [&](const double U) { return local - U - a * at(U); });
     }
 
     /** U with R(U) = traction. */
@@ -188,13 +184,13 @@ namespace nsfd::springs
       if (viscosity == 0. || traction <= spring.at(start))
         return spring.inverse(traction);
       const double low =
-        spring.solve(start + traction / viscosity, 1. / viscosity);
+          spring.solve(start + traction / viscosity, 1. / viscosity);
       if (limit == infinity)
         return low;
       if (spring.tension == 0.)
         return traction < limit
-                 ? start + traction / (viscosity * (1. - traction / limit))
-                 : infinity;
+                   ? start + traction / (viscosity * (1. - traction / limit))
+                   : infinity;
       return between(low, spring.inverse(traction),
                      [&](const double U) { return traction - at(U); });
     }
@@ -207,8 +203,7 @@ namespace nsfd::springs
     }
 
     template <typename Function>
-    double between(const double low, const double high,
-                   const Function &f) const
+    double between(const double low, const double high, const Function &f) const
     {
       const double width = high - low;
       const auto shifted = [&](const double x) { return f(low + x); };
@@ -216,14 +211,13 @@ namespace nsfd::springs
       if (!(f_low > 0.) || !(width > 0.))
         return low;
       return f_high >= 0.
-               ? high
-               : low + bracketed_root(shifted, 0., width, f_low, f_high);
+                 ? high
+                 : low + bracketed_root(shifted, 0., width, f_low, f_high);
     }
   };
 
   /** Tangential cohesive traction b tau (y0 + s U_T), per component. */
-  struct TangentialSpring
-  {
+  struct TangentialSpring {
     double stiffness, slope;
   };
 
@@ -231,29 +225,27 @@ namespace nsfd::springs
   double velocity_slope(const OneStepProblem<dim> &problem)
   {
     return problem.rule == CohesionRule::end_velocity
-             ? problem.time_step
-             : problem.time_step * problem.theta;
+               ? problem.time_step
+               : problem.time_step * problem.theta;
   }
 
   template <int dim>
   NormalSpring normal_spring(const OneStepProblem<dim> &problem,
-                             const std::size_t i,
-                             const double secant)
+                             const std::size_t i, const double secant)
   {
     const double old = problem.jump_old[i * dim];
     return {secant,
             problem.compression_stiffness[i],
             problem.rule == CohesionRule::end_velocity
-              ? old
-              : problem.jump_free[i * dim],
+                ? old
+                : problem.jump_free[i * dim],
             velocity_slope(problem),
             old,
             problem.rule == CohesionRule::exact};
   }
 
   template <int dim>
-  NormalLaw normal_law(const OneStepProblem<dim> &problem,
-                       const std::size_t i,
+  NormalLaw normal_law(const OneStepProblem<dim> &problem, const std::size_t i,
                        const double secant)
   {
     const NormalSpring spring = normal_spring<dim>(problem, i, secant);
@@ -261,22 +253,24 @@ namespace nsfd::springs
       return {spring, 0., 0.};
     return {spring, problem.viscosity[i] * problem.theta,
             (problem.jump_old[i * dim] - problem.jump_free[i * dim]) /
-              (problem.time_step * problem.theta),
+                (problem.time_step * problem.theta),
             problem.interactions[problem.interaction[i]].viscous_limit};
   }
 
   /** y0 of the tangential spring R_T = b tau (y0 + s U_T). */
   template <int dim>
   double tangential_offset(const OneStepProblem<dim> &problem,
-                           const std::size_t i,
-                           const unsigned int c)
+                           const std::size_t i, const unsigned int c)
   {
     const double old = problem.jump_old[i * dim + c],
                  end = problem.jump_free[i * dim + c];
     switch (problem.rule) {
-    case CohesionRule::exact: return (old + end) / 2.;
-    case CohesionRule::end_velocity: return old;
-    default: return end;
+    case CohesionRule::exact:
+      return (old + end) / 2.;
+    case CohesionRule::end_velocity:
+      return old;
+    default:
+      return end;
     }
   }
 
@@ -285,7 +279,7 @@ namespace nsfd::springs
                                      const double secant)
   {
     return {secant, problem.rule == CohesionRule::exact
-                      ? velocity_slope(problem) / 2.
-                      : velocity_slope(problem)};
+                        ? velocity_slope(problem) / 2.
+                        : velocity_slope(problem)};
   }
 } // namespace nsfd::springs

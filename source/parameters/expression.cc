@@ -1,7 +1,7 @@
 #include "nsfd/parameters/expression.h"
 
-#include "formula.h"
 #include "bad_values.h"
+#include "formula.h"
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -16,8 +16,9 @@
 namespace nsfd
 {
   /**
-   * A number, a function, or a parser with its variables. muParser keeps its byte code and
-   * stack inside, hence `mutable`: evaluation is not for several threads.
+   * A number, a function, or a parser with its variables. muParser keeps its
+   * byte code and stack inside, hence `mutable`: evaluation is not for several
+   * threads.
    */
   struct Expression::Compiled {
     std::string text;

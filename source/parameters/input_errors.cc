@@ -212,8 +212,7 @@ namespace nsfd
     std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string &candidate : candidates) {
       const std::size_t distance =
-          edit_distance(lower_case(word), lower_case(candidate),
-                        best_distance);
+          edit_distance(lower_case(word), lower_case(candidate), best_distance);
       if (distance < best_distance && distance < candidate.size()) {
         best = candidate;
         best_distance = distance;

@@ -152,8 +152,7 @@ namespace nsfd
 
   void ParameterSection::assign(ParameterEntry entry)
   {
-    const auto [place, is_new] =
-        entry_of_.emplace(entry.name, entries_.size());
+    const auto [place, is_new] = entry_of_.emplace(entry.name, entries_.size());
     if (is_new)
       entries_.push_back(std::move(entry));
     else
@@ -228,8 +227,10 @@ namespace nsfd
                    fmt::format("`{}` is not an entry of {} in this scene",
                                entry.name, description()),
                    did_you_mean(entry.name, names,
-                                valid.empty() ? "it has no entries"
-                                              : fmt::format("it knows: {}", fmt::join(valid, ", "))));
+                                valid.empty()
+                                    ? "it has no entries"
+                                    : fmt::format("it knows: {}",
+                                                  fmt::join(valid, ", "))));
     }
   }
 

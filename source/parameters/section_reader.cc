@@ -370,11 +370,10 @@ namespace nsfd
     const std::string word = collapse_blanks(value->text());
     if (std::find(choices.begin(), choices.end(), word) != choices.end())
       return word;
-    errors_.error(
-        value->location(),
-        fmt::format("{} = {} is not one of: {}", name, word,
-                    fmt::join(choices, ", ")),
-        did_you_mean(word, choices));
+    errors_.error(value->location(),
+                  fmt::format("{} = {} is not one of: {}", name, word,
+                              fmt::join(choices, ", ")),
+                  did_you_mean(word, choices));
     return default_text.empty() ? choices.front() : default_text;
   }
 
@@ -395,9 +394,8 @@ namespace nsfd
                       for_example(example_value(name, "", unit)));
         return {};
       }
-      set_name(*formula.compiled, section_.name().empty()
-                                      ? name
-                                      : section_.name() + "/" + name);
+      set_name(*formula.compiled,
+               section_.name().empty() ? name : section_.name() + "/" + name);
       return Expression(formula.compiled);
     }
     if (formula.unit)

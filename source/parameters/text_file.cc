@@ -20,7 +20,7 @@ namespace nsfd
                                     : 0u;
       };
       const unsigned int first = byte(0);
-      const std::size_t length = first < 0x80              ? 1
+      const std::size_t length = first < 0x80             ? 1
                                  : (first & 0xe0) == 0xc0 ? 2
                                  : (first & 0xf0) == 0xe0 ? 3
                                  : (first & 0xf8) == 0xf0 ? 4
@@ -117,16 +117,15 @@ namespace nsfd
       file.problem = "is not a text file";
       file.advice = "name a text file";
     } else if (strange != std::string::npos) {
-      file.problem = fmt::format(
-          "is not UTF-8: the byte {:#04x} belongs to no character",
-          static_cast<unsigned int>(
-              static_cast<unsigned char>(file.content[strange])));
+      file.problem =
+          fmt::format("is not UTF-8: the byte {:#04x} belongs to no character",
+                      static_cast<unsigned int>(
+                          static_cast<unsigned char>(file.content[strange])));
       file.advice = "save the file as UTF-8, or write ASCII letters";
       file.line =
-          1 + unsigned(std::count(file.content.begin(),
-                                  file.content.begin() +
-                                      std::ptrdiff_t(strange),
-                                  '\n'));
+          1 + unsigned(std::count(
+                  file.content.begin(),
+                  file.content.begin() + std::ptrdiff_t(strange), '\n'));
     }
     if (!file.problem.empty())
       file.content.clear();

@@ -14,7 +14,7 @@ namespace nsfd
     constexpr std::size_t statements = 20000;
     constexpr std::size_t constants = 1000;
     constexpr std::size_t name = 80; ///< bytes; names become names of files
-  } // namespace text_limits
+  }                                  // namespace text_limits
 
   /** The content of a text file, or why there is none. */
   struct TextFile {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/discretization/bodies.h"
 #include "crack_shape.h"
+#include "nsfd/discretization/bodies.h"
 
 #include <algorithm>
 #include <numeric>

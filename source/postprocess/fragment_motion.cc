@@ -1,8 +1,8 @@
 #include "fragment_motion.h"
 
+#include "bodies/moving_bodies.h"
 #include "core/gather.h"
 #include "discretization/body_shape.h"
-#include "bodies/moving_bodies.h"
 
 #include "core/order_free_sum.h"
 
@@ -15,8 +15,7 @@ namespace nsfd
 
   /** A cell, or a rigid body of large motions, about its own centre. */
   template <int dim>
-  struct FragmentMotion<dim>::Body
-  {
+  struct FragmentMotion<dim>::Body {
     unsigned int cell = 0; ///< the first one
     double mass = 0., kinetic = 0.;
     Vec3 centre{}, velocity{};
@@ -26,15 +25,13 @@ namespace nsfd
 
   /** Where a fragment is and how fast, known to all its pieces. */
   template <int dim>
-  struct FragmentMotion<dim>::Place
-  {
+  struct FragmentMotion<dim>::Place {
     Vec3 centre, velocity;
   };
 
   /** What a piece adds to its fragment, first turn. */
   template <int dim>
-  struct FragmentMotion<dim>::Amounts
-  {
+  struct FragmentMotion<dim>::Amounts {
     unsigned int number = 0;
     unsigned long long cells = 0;
     OrderFreeSum mass, volume, kinetic, surface;
@@ -56,8 +53,7 @@ namespace nsfd
 
   /** Second turn, about the centre of the fragment. */
   template <int dim>
-  struct FragmentMotion<dim>::Motions
-  {
+  struct FragmentMotion<dim>::Motions {
     static constexpr unsigned int n_spins = dim == 2 ? 1 : 3,
                                   n_inertias = dim == 2 ? 1 : 6;
     unsigned int number = 0;
@@ -67,9 +63,8 @@ namespace nsfd
     void add(const Body &body, const Place &place)
     {
       const Vec3 r = body.centre - place.centre;
-      const Vec3 L =
-          body.angular_momentum +
-          body.mass * cross(r, body.velocity - place.velocity);
+      const Vec3 L = body.angular_momentum +
+                     body.mass * cross(r, body.velocity - place.velocity);
       Mat3 J = body.inertia;
       for (unsigned int i = 0; i < 3; ++i)
         for (unsigned int j = 0; j < 3; ++j)
@@ -132,9 +127,9 @@ namespace nsfd
       numbers_.erase(std::unique(numbers_.begin(), numbers_.end()),
                      numbers_.end());
       for (const unsigned int number : number_of_body)
-        piece_.push_back(
-            unsigned(std::lower_bound(numbers_.begin(), numbers_.end(), number) -
-                     numbers_.begin()));
+        piece_.push_back(unsigned(
+            std::lower_bound(numbers_.begin(), numbers_.end(), number) -
+            numbers_.begin()));
     }
 
     unsigned int of_cell(const unsigned int cell) const { return piece_[cell]; }
@@ -173,10 +168,10 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  FragmentMotion<dim>::FragmentMotion(
-      const Discretization<dim> &discretization,
-      const Communicator &communicator, const MovingBodies<dim> *moving,
-      const State &start)
+  FragmentMotion<dim>::FragmentMotion(const Discretization<dim> &discretization,
+                                      const Communicator &communicator,
+                                      const MovingBodies<dim> *moving,
+                                      const State &start)
       : discretization_(discretization), communicator_(communicator),
         moving_(moving)
   {
@@ -201,10 +196,9 @@ namespace nsfd
   }
 
   template <int dim>
-  auto
-  FragmentMotion<dim>::cell_body(const unsigned int cell,
-                                 const std::vector<double> &displacement,
-                                 const std::vector<double> &velocity) const
+  auto FragmentMotion<dim>::cell_body(const unsigned int cell,
+                                      const std::vector<double> &displacement,
+                                      const std::vector<double> &velocity) const
       -> Body
   {
     const auto &shape = discretization_.shape(cell);
@@ -254,8 +248,8 @@ namespace nsfd
     for (unsigned int a = 0; a < 3; ++a)
       for (unsigned int b = 0; b < 3; ++b)
         body.inertia[a][b] = (a == b ? trace : 0.) - moment[a][b];
-    body.kinetic = 0.5 * (body.mass * dot(body.velocity, body.velocity) +
-                          vibration);
+    body.kinetic =
+        0.5 * (body.mass * dot(body.velocity, body.velocity) + vibration);
     return body;
   }
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "bodies/fragments.h"
 #include "nsfd/discretization/discretization.h"
 #include "records/fragment_record.h"
-#include "bodies/fragments.h"
 #include "state/state.h"
 
 #include <memory>

@@ -105,8 +105,7 @@ namespace nsfd
       return;
     std::string rows;
     for (const FragmentRecord &record : records_)
-      rows += (rows.empty() ? "" : "\n") +
-              line(state.step, state.time, record);
+      rows += (rows.empty() ? "" : "\n") + line(state.step, state.time, record);
     file_->write(rows);
   }
 

@@ -5,10 +5,10 @@ namespace nsfd
   namespace
   {
     const std::vector<std::string> fixed_columns = {
-        "step",    "time",      "time_step", "kinetic",       "elastic",
-        "cohesive", "damage",   "friction",  "viscous",       "plastic",
-        "impact",  "numerical", "work",      "ledger_defect", "broken_area",
-        "fragments", "active",  "newton",    "krylov",        "residual"};
+        "step",      "time",      "time_step", "kinetic",       "elastic",
+        "cohesive",  "damage",    "friction",  "viscous",       "plastic",
+        "impact",    "numerical", "work",      "ledger_defect", "broken_area",
+        "fragments", "active",    "newton",    "krylov",        "residual"};
 
     std::vector<std::string> columns(const std::vector<std::string> &driven,
                                      const unsigned int dimension)
@@ -75,13 +75,14 @@ namespace nsfd
   {
     const std::size_t n_fixed = fixed_columns.size();
     std::vector<HistoryRow> rows;
-    for (const auto &x : TableFile::read(path, n_fixed + n_reactions, n_bytes)) {
+    for (const auto &x :
+         TableFile::read(path, n_fixed + n_reactions, n_bytes)) {
       HistoryRow &row = rows.emplace_back();
       row.step = unsigned(x[0]);
       row.time = x[1];
       row.time_step = x[2];
-      row.energy = {x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10], x[11],
-                    x[12]};
+      row.energy = {x[3], x[4], x[5],  x[6],  x[7],
+                    x[8], x[9], x[10], x[11], x[12]};
       row.ledger_defect = x[13];
       row.broken_area = x[14];
       row.fragments = unsigned(x[15]);

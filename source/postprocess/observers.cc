@@ -134,7 +134,8 @@ namespace nsfd
       for (std::size_t i = 0; i < all.size(); i += n) {
         auto &line = lines.emplace_back(
             std::vector<double>{double(state.step), state.time});
-        line.insert(line.end(), all.begin() + long(i), all.begin() + long(i + n));
+        line.insert(line.end(), all.begin() + long(i),
+                    all.begin() + long(i + n));
       }
       std::sort(lines.begin(), lines.end());
       for (const auto &line : lines)

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "mesh/mesh_builder.h"
 #include "nsfd/core/communicator.h"
 #include "nsfd/discretization/discretization.h"
-#include "mesh/mesh_builder.h"
 #include "nsfd/records/observable_record.h"
 #include "nsfd/records/run_record.h"
 #include "state/state.h"
@@ -57,8 +57,7 @@ namespace nsfd
     void remember(Archive &archive);
 
   private:
-    struct Files
-    {
+    struct Files {
       std::unique_ptr<TableFile> rows, profile; ///< of rank 0, or null
     };
     std::string path(std::size_t k, const char *ending) const;

@@ -1,12 +1,12 @@
 #include "report.h"
 
-#include "visualization/body_view.h"
 #include "report_charts.h"
 #include "report_cost.h"
 #include "report_html.h"
+#include "visualization/body_view.h"
 
-#include "progress.h"
 #include "core/output_folder.h"
+#include "progress.h"
 
 #include <fmt/format.h>
 
@@ -96,8 +96,9 @@ namespace nsfd
              (bad                    ? "bad\">⚠ "
               : certificate->is_ok() ? "good\">✓ "
                                      : "open\">– ") +
-             completed + "; certificate: " +
-             escape_markup(certificate->verdict()) + "</p>\n";
+             completed +
+             "; certificate: " + escape_markup(certificate->verdict()) +
+             "</p>\n";
     }
 
     std::string headline(const Report &report)
@@ -224,9 +225,9 @@ namespace nsfd
                     s.dimension == 3 ? "" : "area per metre of depth");
       physics.add("fragments", count(s.fragments));
       physics.add("work of loads", energy(e.work),
-                  s.pressure_work ? "of it pressure in cracks: " +
-                                        energy(*s.pressure_work)
-                                  : "");
+                  s.pressure_work
+                      ? "of it pressure in cracks: " + energy(*s.pressure_work)
+                      : "");
       physics.add("simulated time", engineering(s.final_time, "s", 4));
       physics.add_group("dissipated by");
       for (const auto &line : dissipated_lines()) {
@@ -244,26 +245,23 @@ namespace nsfd
       Table trust;
       if (s.viscous_traction_max)
         trust.add("largest viscous traction",
-                        engineering(*s.viscous_traction_max, "Pa", 4),
-                        "added to the strength of the law");
+                  engineering(*s.viscous_traction_max, "Pa", 4),
+                  "added to the strength of the law");
       if (s.positive_friction_work != 0.)
-        trust.add("positive friction work",
-                        energy(s.positive_friction_work),
-                        "energy that friction created");
+        trust.add("positive friction work", energy(s.positive_friction_work),
+                  "energy that friction created");
       if (s.rigid_drift_max != 0.)
-        trust.add("drift of rigid rows",
-                        engineering(s.rigid_drift_max, "m"));
+        trust.add("drift of rigid rows", engineering(s.rigid_drift_max, "m"));
       trust.add("steps", count(s.steps),
-                      s.steps > 0 ? "mean step " +
-                                        engineering(s.final_time / s.steps, "s")
-                                  : "");
+                s.steps > 0
+                    ? "mean step " + engineering(s.final_time / s.steps, "s")
+                    : "");
       trust.add("wall time", Progress::duration(s.wall_seconds),
-                      s.setup_seconds > 0.
-                          ? "of it " + Progress::duration(s.setup_seconds) +
-                                " to set up"
-                          : "");
-      trust.add("largest memory",
-                      fmt::format("{:.0f} MB", s.peak_memory_mb));
+                s.setup_seconds > 0.
+                    ? "of it " + Progress::duration(s.setup_seconds) +
+                          " to set up"
+                    : "");
+      trust.add("largest memory", fmt::format("{:.0f} MB", s.peak_memory_mb));
 
       Table errors;
       for (const auto &[name, value] : s.errors)
@@ -343,9 +341,8 @@ namespace nsfd
                          LineChart::palette(n_lines), n_lines >= 8);
           ++n_lines;
         }
-        html += figures.figure({fmt::format("observable_{}_{}", record.name,
-                                            ++number),
-                                chart});
+        html += figures.figure(
+            {fmt::format("observable_{}_{}", record.name, ++number), chart});
       }
       return html;
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "records/run_findings.h"
 #include "nsfd/records/run_record.h"
+#include "records/run_findings.h"
 
 #include <string>
 #include <vector>

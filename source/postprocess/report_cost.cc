@@ -40,9 +40,8 @@ namespace nsfd
       for (const auto &[owner, bytes] : s.cost.memory)
         table.add_share(owner, engineering(bytes, "B"),
                         peak > 0. ? bytes / peak : 0.);
-      return table.card(
-          fmt::format("Memory by owner, at most {:.0f} MB resident",
-                      s.peak_memory_mb));
+      return table.card(fmt::format(
+          "Memory by owner, at most {:.0f} MB resident", s.peak_memory_mb));
     }
 
     std::string iterations(const Summary &s)
@@ -90,18 +89,16 @@ namespace nsfd
                   engineering(cost.flops / cost.seconds, "flop/s"),
                   engineering(cost.product_flops_per_second, "flop/s") +
                       " in a small dense product");
-        table.add("data per second",
-                  engineering(cost.bytes / cost.seconds, "B/s"),
-                  engineering(cost.copy_bytes_per_second, "B/s") +
-                      " in a copy");
-        table.add("share of the nearer limit",
-                  cost.share_of_limit() > 1. ? "all"
-                                             : percent(cost.share_of_limit()),
-                  std::string(cost.limited_by_copy() ? "the copy"
-                                                     : "the product") +
-                      (cost.share_of_limit() > 1.
-                           ? "; it was measured while the machine was busier"
-                           : ""));
+        table.add(
+            "data per second", engineering(cost.bytes / cost.seconds, "B/s"),
+            engineering(cost.copy_bytes_per_second, "B/s") + " in a copy");
+        table.add(
+            "share of the nearer limit",
+            cost.share_of_limit() > 1. ? "all" : percent(cost.share_of_limit()),
+            std::string(cost.limited_by_copy() ? "the copy" : "the product") +
+                (cost.share_of_limit() > 1.
+                     ? "; it was measured while the machine was busier"
+                     : ""));
       }
       return table.card("One application of W");
     }
@@ -116,8 +113,8 @@ namespace nsfd
                        ? engineering(value / s.steps, "") + " per step"
                        : "");
     const std::string cards = times(s) + iterations(s) + messages(s.cost) +
-                              hot_loop(s.cost) +
-                              memory(s) + counters.card("Counters");
+                              hot_loop(s.cost) + memory(s) +
+                              counters.card("Counters");
     return cards.empty() ? "" : section("Cost", row_of(cards));
   }
 } // namespace nsfd

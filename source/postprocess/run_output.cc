@@ -5,12 +5,12 @@
 
 #include "core/archive.h"
 #include "core/cost.h"
+#include "core/output_folder.h"
 #include "core/stopwatch.h"
-#include "nsfd/scene/scene_input.h"
 #include "field_output.h"
 #include "fragment_output.h"
 #include "history_file.h"
-#include "core/output_folder.h"
+#include "nsfd/scene/scene_input.h"
 #include "progress.h"
 #include "report.h"
 #include "summary_file.h"
@@ -21,11 +21,12 @@
 namespace nsfd
 {
   template <int dim>
-  RunOutput<dim>::RunOutput(
-      const SceneInput &input, const RunInfo &info, const bool quiet,
-      const bool verbose, const Discretization<dim> &discretization,
-      const Communicator &communicator,
-      const std::vector<ObservableRecord> &observables, const bool resumes)
+  RunOutput<dim>::RunOutput(const SceneInput &input, const RunInfo &info,
+                            const bool quiet, const bool verbose,
+                            const Discretization<dim> &discretization,
+                            const Communicator &communicator,
+                            const std::vector<ObservableRecord> &observables,
+                            const bool resumes)
       : input_(input), info_(info), communicator_(communicator)
   {
     const std::string &directory = input.output.directory;
@@ -39,11 +40,11 @@ namespace nsfd
             directory + "/history.csv", driven_, dim);
       }
       progress_ =
-          verbose ? std::make_unique<Progress>(std::cout, input.time.end,
-                                               Progress::Mode::lines, 1)
-                  : std::make_unique<Progress>(
-                        std::cout, input.time.end,
-                        Progress::mode_for_stdout(quiet));
+          verbose
+              ? std::make_unique<Progress>(std::cout, input.time.end,
+                                           Progress::Mode::lines, 1)
+              : std::make_unique<Progress>(std::cout, input.time.end,
+                                           Progress::mode_for_stdout(quiet));
     }
     if (input.output.fields || input.output.report)
       fields_ = std::make_unique<FieldOutput<dim>>(
@@ -54,8 +55,8 @@ namespace nsfd
   RunOutput<dim>::~RunOutput() = default;
 
   template <int dim>
-  void RunOutput<dim>::set_fragments(
-      std::unique_ptr<FragmentOutput<dim>> fragments)
+  void
+  RunOutput<dim>::set_fragments(std::unique_ptr<FragmentOutput<dim>> fragments)
   {
     fragments_ = std::move(fragments);
   }

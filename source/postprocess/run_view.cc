@@ -1,11 +1,11 @@
 #include "run_view.h"
 
 #include "core/gather.h"
-#include "mesh/owned_cells.h"
 #include "face_pieces.h"
+#include "mesh/owned_cells.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "discretization/cell_geometry.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
 
@@ -136,8 +136,7 @@ namespace nsfd
   CellStresses<dim> &RunViewOf<dim>::stresses() const
   {
     if (!stresses_)
-      stresses_ =
-          std::make_unique<CellStresses<dim>>(discretization_, *state_);
+      stresses_ = std::make_unique<CellStresses<dim>>(discretization_, *state_);
     return *stresses_;
   }
 
@@ -206,9 +205,8 @@ namespace nsfd
     result.beta = state_->beta[i];
     result.contact = state_->contact[i] != 0;
     if (result.contact && row_->time_step > 0.)
-      result.pressure =
-          std::max(0., state_->impulse[i * dim]) /
-          (discretization_.points().weight[i] * row_->time_step);
+      result.pressure = std::max(0., state_->impulse[i * dim]) /
+                        (discretization_.points().weight[i] * row_->time_step);
     if (result.contact && !state_->point_force.empty())
       result.pressure = std::max(0., state_->point_force[i * dim]) /
                         discretization_.points().weight[i];
@@ -296,9 +294,11 @@ namespace nsfd
   double RunViewOf<dim>::broken_beta(const std::size_t i) const
   {
     const PointOrigin origin = discretization_.origins()[i];
-    return origin.kind == PointOrigin::Kind::interface
-               ? input_.interfaces[origin.block].broken_beta()
-               : 0.;
+    return origin.kind == PointOrigin::Kind::interface ? input_
+                                                             .interfaces
+                                                                 [origin.block]
+                                                             .broken_beta()
+                                                       : 0.;
   }
 
   template <int dim>
@@ -309,8 +309,8 @@ namespace nsfd
     if (known != samplers_.end())
       return known->second;
     return samplers_
-        .emplace(&shape, Sampler<dim>(discretization_.element(),
-                                      shape.slot_places))
+        .emplace(&shape,
+                 Sampler<dim>(discretization_.element(), shape.slot_places))
         .first->second;
   }
 
@@ -422,8 +422,7 @@ namespace nsfd
                                   const dealii::Point<dim> &x) const
   {
     constexpr double slack = 1e-9;
-    if (x.distance(discretization_.centre(body)) >
-        reach_[body] * (1. + slack))
+    if (x.distance(discretization_.centre(body)) > reach_[body] * (1. + slack))
       return {};
     const ReferenceCell cell = discretization_.element().reference_cell();
     const auto corners = discretization_.corners(body);
@@ -549,8 +548,8 @@ namespace nsfd
           continue;
         const unsigned int slot = unsigned(s - bodies.first_slot[b]);
         const Sampler<dim> &sampler = slots_of(b);
-        const auto gradient = sampler.gradient(
-            slot, corners, now.displacement.data() + node);
+        const auto gradient =
+            sampler.gradient(slot, corners, now.displacement.data() + node);
         SidePoint side;
         for (unsigned int c = 0; c < dim; ++c) {
           side.position[c] = points.position[i * dim + c];
@@ -558,14 +557,12 @@ namespace nsfd
         }
         side.sign = bodies.slot_sign[s];
         side.area = points.weight[i];
-        side.density =
-            input_.materials[discretization_.material_of(b)].density;
+        side.density = input_.materials[discretization_.material_of(b)].density;
         side.gradient = wide<dim>(gradient.data());
-        side.velocity = in_space<dim>(
-            sampler.value(slot, now.velocity.data() + node));
-        side.stress = discretization_.stress(
-            b, sampler.position(slot, corners),
-            gradient.data());
+        side.velocity =
+            in_space<dim>(sampler.value(slot, now.velocity.data() + node));
+        side.stress = discretization_.stress(b, sampler.position(slot, corners),
+                                             gradient.data());
         side.traction = traction(i);
         // as the displacements: in the middle of the step
         const double bulk = input_.time.bulk_theta();

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "discretization/body_shape.h"
 #include "bodies/cell_stresses.h"
+#include "discretization/body_shape.h"
 #include "discretization/cell_sampler.h"
 
 #include "mesh/mesh_builder.h"
@@ -29,8 +29,7 @@ namespace nsfd
               const MeshGroups<dim> &groups);
 
     /** @p previous: before the step that ends in @p state, or null. */
-    void show(const State &state, const State *previous,
-              const HistoryRow &row);
+    void show(const State &state, const State *previous, const HistoryRow &row);
     /** What was shown is gone. */
     void forget();
 
@@ -66,14 +65,12 @@ namespace nsfd
 
   private:
     /** Nodal values at t_k + theta h, of a cell as of all. */
-    struct Motion
-    {
+    struct Motion {
       std::vector<double> displacement, velocity, acceleration;
       double time = 0.;
     };
     /** A slot of a body on a block of the scene. */
-    struct Slot
-    {
+    struct Slot {
       unsigned int body, slot;
     };
 

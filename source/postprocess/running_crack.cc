@@ -11,8 +11,7 @@ namespace nsfd
   namespace
   {
     /** a_d and a_s of a speed. */
-    struct Contraction
-    {
+    struct Contraction {
       Contraction(const double v, const double pressure, const double shear)
           : d_square(1. - v * v / (pressure * pressure)),
             s_square(1. - v * v / (shear * shear)), d(std::sqrt(d_square)),
@@ -36,8 +35,7 @@ namespace nsfd
   {
     const double mu = young / (2. * (1. + poisson));
     shear_ = std::sqrt(mu / density);
-    pressure_ =
-        shear_ * std::sqrt(2. * (1. - poisson_) / (1. - 2. * poisson_));
+    pressure_ = shear_ * std::sqrt(2. * (1. - poisson_) / (1. - 2. * poisson_));
     double low = 0.5 * shear_, high = shear_;
     for (unsigned int k = 0; k < 60; ++k) {
       const double v = 0.5 * (low + high);
@@ -69,8 +67,7 @@ namespace nsfd
     if (square < 1e-7)
       return 1.;
     const Contraction a(v, pressure_, shear_);
-    return square * (sliding ? a.s : a.d) /
-           ((1. - poisson_) * a.determinant());
+    return square * (sliding ? a.s : a.d) / ((1. - poisson_) * a.determinant());
   }
 
   double RunningCrack::opening_function(const double v) const

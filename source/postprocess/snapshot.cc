@@ -1,7 +1,7 @@
 #include "snapshot.h"
 
-#include "core/gather.h"
 #include "bodies/cell_stresses.h"
+#include "core/gather.h"
 #include "discretization/cell_sampler.h"
 
 #include "discretization/cell_geometry.h"
@@ -81,10 +81,11 @@ namespace nsfd
       CellStresses<dim>(discretization, state)
           .visit_all(displacement_, velocity_,
                      [&](const unsigned int body, const Point<dim> &,
-                         const double JxW, const std::array<double, 6> &stress) {
-            stress_[body] += JxW * von_mises(stress);
-            volume[body] += JxW;
-          });
+                         const double JxW,
+                         const std::array<double, 6> &stress) {
+                       stress_[body] += JxW * von_mises(stress);
+                       volume[body] += JxW;
+                     });
       for (std::size_t b = 0; b < n_bodies_; ++b)
         stress_[b] /= volume[b];
     }

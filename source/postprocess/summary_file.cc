@@ -132,8 +132,9 @@ namespace nsfd
         for (std::size_t k = 0; k < record.last.size(); ++k)
           last[record.columns[k].name] = number(record.last[k]);
         for (std::size_t k = 0; k < record.peak.size(); ++k)
-          peak[record.columns[k].name] = {{"value", number(record.peak[k])},
-                                          {"time", number(record.peak_time[k])}};
+          peak[record.columns[k].name] = {
+              {"value", number(record.peak[k])},
+              {"time", number(record.peak_time[k])}};
         json[record.name] = {
             {"type", record.type}, {"last", last}, {"peak", peak}};
       }

@@ -51,9 +51,9 @@ namespace nsfd
     rows_.write(fmt::format("{}", fmt::join(row, ",")));
   }
 
-  std::vector<std::vector<double>>
-  TableFile::read(const std::string &path, const std::size_t n_columns,
-                  const std::uintmax_t n_bytes)
+  std::vector<std::vector<double>> TableFile::read(const std::string &path,
+                                                   const std::size_t n_columns,
+                                                   const std::uintmax_t n_bytes)
   {
     const std::string text = read_rows(path, n_bytes);
     std::istringstream lines(text);
@@ -63,9 +63,9 @@ namespace nsfd
     while (std::getline(lines, line)) {
       rows.push_back(numbers_of(line, n_columns));
       if (rows.back().empty() || text.back() != '\n')
-        throw std::runtime_error(fmt::format(
-            "'{}', line {}, is not what it was at the checkpoint", path,
-            rows.size() + 1));
+        throw std::runtime_error(
+            fmt::format("'{}', line {}, is not what it was at the checkpoint",
+                        path, rows.size() + 1));
     }
     return rows;
   }

@@ -1,8 +1,8 @@
 #include "vtu.h"
 
 #include "core/archive.h"
-#include "visualization/markup.h"
 #include "core/output_folder.h"
+#include "visualization/markup.h"
 
 #include <fmt/format.h>
 

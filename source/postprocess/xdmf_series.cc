@@ -3,8 +3,8 @@
 #include "core/hdf5_file.h"
 
 #include "core/archive.h"
-#include "visualization/markup.h"
 #include "core/output_folder.h"
+#include "visualization/markup.h"
 
 #include <fmt/format.h>
 
@@ -91,11 +91,10 @@ namespace nsfd
     void reserve(const std::string &name, const bool anew,
                  const std::size_t bytes)
     {
-      const int file =
-          open(name.c_str(),
-               O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC |
-                   (anew ? O_TRUNC : 0),
-               0666);
+      const int file = open(name.c_str(),
+                            O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC |
+                                (anew ? O_TRUNC : 0),
+                            0666);
       int failure = errno;
       if (file >= 0) {
         struct stat status = {};

@@ -38,9 +38,9 @@ namespace nsfd
       line.value = "t = " + engineering(facts.time, "s", 6);
       line.verdict = within(facts.completed);
       if (!facts.completed)
-        line.remark = "not reached: " + (facts.failure.empty()
-                                             ? "no reason was recorded"
-                                             : facts.failure);
+        line.remark =
+            "not reached: " +
+            (facts.failure.empty() ? "no reason was recorded" : facts.failure);
       // what follows a line break is advice that is printed elsewhere
       line.remark = line.remark.substr(0, line.remark.find('\n'));
       return line;
@@ -64,8 +64,8 @@ namespace nsfd
         lines.push_back(
             residual_of("residual", facts.residual, facts.tolerance));
       if (facts.static_steps > 0)
-        lines.push_back(residual_of("imbalance", facts.imbalance,
-                                    facts.static_tolerance));
+        lines.push_back(
+            residual_of("imbalance", facts.imbalance, facts.static_tolerance));
       if (facts.smooth_steps > 0)
         lines.push_back(unmeasured_line(
             "residual", "scheme = arkode solves no contact problem; its "
@@ -96,10 +96,10 @@ namespace nsfd
                            rounding_of_positions(facts) +
                            (turns ? 1e-3 * facts.penetration_bound : 0.);
       if (facts.steps == 0 && facts.penetration > noise)
-        return unmeasured_line(
-            "penetration", length_text(facts.penetration) +
-                               ": equilibria have no speed of approach to "
-                               "bound it");
+        return unmeasured_line("penetration",
+                               length_text(facts.penetration) +
+                                   ": equilibria have no speed of approach to "
+                                   "bound it");
       if (facts.steps + facts.static_steps == 0)
         return facts.smooth_steps > 0
                    ? no_line("penetration", "nothing can touch")
@@ -180,7 +180,8 @@ namespace nsfd
         if (facts.solution_jumps > 0)
           line.remark =
               facts.follows_jumps
-                  ? "no equilibrium continues the last one: from there on it is "
+                  ? "no equilibrium continues the last one: from there on it "
+                    "is "
                     "a motion, and its energies are those of one"
               : facts.takes_jumps
                   ? "no equilibrium continues the last one: the next one was "
@@ -191,23 +192,24 @@ namespace nsfd
         lines.push_back(line);
       }
       if (facts.steps + facts.static_steps == 0)
-        lines.push_back(facts.smooth_steps > 0
-                            ? no_line("uniqueness", "nothing can soften")
-                            : unmeasured_line("uniqueness", "no step was accepted"));
+        lines.push_back(
+            facts.smooth_steps > 0
+                ? no_line("uniqueness", "nothing can soften")
+                : unmeasured_line("uniqueness", "no step was accepted"));
     }
 
     Line zone_of(const RunFacts &facts)
     {
       if (!facts.zone)
         return no_line("cohesive zone", facts.softens ? "no point has softened"
-                                                   : "nothing can soften");
+                                                      : "nothing can soften");
       const ZoneResolution &zone = *facts.zone;
       if (!(zone.length > 0.))
         return no_line("cohesive zone", "between rigid bodies alone");
-      Line line = line_of("cohesive zone", zone.points(),
-                          points_per_cohesive_length,
-                          within(zone.points() >= points_per_cohesive_length),
-                          "{:.3g} points", "at least ");
+      Line line =
+          line_of("cohesive zone", zone.points(), points_per_cohesive_length,
+                  within(zone.points() >= points_per_cohesive_length),
+                  "{:.3g} points", "at least ");
       line.remark = fmt::format("length {} in {}", length_text(zone.length),
                                 zone.interface);
       if (line.verdict == Verdict::bad)
@@ -223,18 +225,16 @@ namespace nsfd
     {
       if (accepted(facts) == 0)
         return unmeasured_line("taken again",
-                          fmt::format("{} attempts, no step was accepted",
-                                      facts.rejected + facts.redone));
+                               fmt::format("{} attempts, no step was accepted",
+                                           facts.rejected + facts.redone));
       const double again = double(facts.rejected + facts.redone);
       const double kept = double(accepted(facts));
       Line line = line_of("taken again", again, kept, within(again < kept),
-                          "{:.0f} steps",
-                          "less than ");
+                          "{:.0f} steps", "less than ");
       if (line.verdict == Verdict::bad)
         line.remark = std::string("most attempts are lost: ") +
-                      (facts.automatic_steps
-                           ? "set Time/step to a shorter time"
-                           : "shorten Time/step");
+                      (facts.automatic_steps ? "set Time/step to a shorter time"
+                                             : "shorten Time/step");
       else if (again > 0.)
         line.remark = fmt::format("{} not solved, {} too long", facts.rejected,
                                   facts.redone);
@@ -244,8 +244,8 @@ namespace nsfd
 
   const char *text_of(const CertificateLine::Verdict verdict)
   {
-    return verdict == Verdict::ok    ? "ok"
-           : verdict == Verdict::bad ? "not ok"
+    return verdict == Verdict::ok     ? "ok"
+           : verdict == Verdict::bad  ? "not ok"
            : verdict == Verdict::none ? "none"
                                       : "not measured";
   }
@@ -302,8 +302,8 @@ namespace nsfd
     while (begin < text.size()) {
       // to the next blank that does not follow a number
       std::size_t end = text.find(' ', begin);
-      while (end != std::string::npos && end > begin &&
-             text[end - 1] >= '0' && text[end - 1] <= '9')
+      while (end != std::string::npos && end > begin && text[end - 1] >= '0' &&
+             text[end - 1] <= '9')
         end = text.find(' ', end + 1);
       const std::string word = text.substr(begin, end - begin);
       const bool first = columns == indent;
@@ -330,10 +330,9 @@ namespace nsfd
     }
     std::string text = "certificate: " + certificate.verdict() + "\n";
     for (const Line &line : certificate.lines) {
-      std::string row =
-          fmt::format("  {:<{}}  {:<{}}  {:<{}}  {:<12}", line.name, name,
-                      line.value, value, line.bound, bound,
-                      text_of(line.verdict));
+      std::string row = fmt::format("  {:<{}}  {:<{}}  {:<{}}  {:<12}",
+                                    line.name, name, line.value, value,
+                                    line.bound, bound, text_of(line.verdict));
       const bool fits = row.size() + 2 + line.remark.size() <= 80;
       if (fits)
         row += "  " + line.remark;

@@ -9,8 +9,7 @@
 namespace nsfd
 {
   /** How well the cohesive zones of a run were resolved, at the worst point. */
-  struct ZoneResolution
-  {
+  struct ZoneResolution {
     double length = 0., spacing = 0.; ///< cohesive length; of points, m
     std::string interface;            ///< its block
 
@@ -18,16 +17,14 @@ namespace nsfd
   };
 
   /** What a line of the energy balance gave that must not give any. */
-  struct GivenEnergy
-  {
-    std::string line;               ///< "friction"
-    double share = 0., bound = 0.;  ///< over the largest energy
-    std::string advice;             ///< what gives less; may be empty
+  struct GivenEnergy {
+    std::string line;              ///< "friction"
+    double share = 0., bound = 0.; ///< over the largest energy
+    std::string advice;            ///< what gives less; may be empty
   };
 
   /** What a run knows of itself when it ends. */
-  struct RunFacts
-  {
+  struct RunFacts {
     bool completed = false;
     std::string failure;
     double time = 0.;
@@ -42,8 +39,8 @@ namespace nsfd
     double penetration_excess = 0.; ///< of a point above its own bound, m
     double displacement = 0.;       ///< largest, m
     double extent = 0.;             ///< largest coordinate, m
-    bool softens = false; ///< some face has a cohesive law
-    bool brittle = false; ///< the traction of one of them jumps to zero
+    bool softens = false;           ///< some face has a cohesive law
+    bool brittle = false;         ///< the traction of one of them jumps to zero
     bool automatic_steps = false; ///< step = auto
     bool follows_jumps = false;   ///< at solution jump = dynamic
     bool takes_jumps = false;     ///< at solution jump = relax
@@ -56,8 +53,7 @@ namespace nsfd
   };
 
   /** A number of a run, what it must be, and what to do if it is not. */
-  struct CertificateLine
-  {
+  struct CertificateLine {
     enum class Verdict {
       ok,
       bad,
@@ -76,8 +72,7 @@ namespace nsfd
   const char *text_of(CertificateLine::Verdict verdict);
 
   /** What may be said of a run, line by line. */
-  struct Certificate
-  {
+  struct Certificate {
     std::vector<CertificateLine> lines;
 
     /** "ok", "2 lines are not ok", ... */

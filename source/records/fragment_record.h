@@ -9,8 +9,7 @@ namespace nsfd
    * energies and areas are per metre of depth, and only spin[2] and
    * inertia[2][2] are not zero.
    */
-  struct FragmentRecord
-  {
+  struct FragmentRecord {
     unsigned int number = 0;
     unsigned long long cells = 0;
     double mass = 0.;   ///< kg, kg/m

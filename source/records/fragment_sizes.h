@@ -11,8 +11,7 @@ namespace nsfd
    * How large the fragments are. Sizes are diameters of the disc or ball of the
    * same volume, m; masses in kg (kg/m in two dimensions).
    */
-  struct FragmentSizes
-  {
+  struct FragmentSizes {
     std::vector<double> sizes; ///< of all, falling: the k-th is N(>=s) = k + 1
     double mean_size = 0., median_size = 0.;
     double mean_size_by_mass = 0.; ///< sum m s / sum m

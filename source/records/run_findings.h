@@ -8,8 +8,7 @@
 namespace nsfd
 {
   /** What is judged and gathered at the end of a run, as far as there is. */
-  struct RunFindings
-  {
+  struct RunFindings {
     std::optional<Certificate> certificate;
     std::optional<FragmentSizes> fragment_sizes;
   };

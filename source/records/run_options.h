@@ -5,8 +5,7 @@
 namespace nsfd
 {
   /** What was asked for on the command line of a run. */
-  struct RunOptions
-  {
+  struct RunOptions {
     std::string command_line;
     /// the same for a shell, to go on after a stop
     std::string resume_line;

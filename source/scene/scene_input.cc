@@ -23,9 +23,8 @@ namespace nsfd
 
   bool has_crack_pressure(const SceneInput &input)
   {
-    return std::any_of(input.interfaces.begin(), input.interfaces.end(),
-                       [](const InterfaceInput &block) {
-                         return bool(block.crack_pressure);
-                       });
+    return std::any_of(
+        input.interfaces.begin(), input.interfaces.end(),
+        [](const InterfaceInput &block) { return bool(block.crack_pressure); });
   }
 } // namespace nsfd

@@ -53,7 +53,8 @@ namespace nsfd
     mesh_of(model_).signals.weight.connect(
         [this](const Cell &cell, const Status) -> unsigned int {
           const auto weight = [this](const Cell &one) -> unsigned int {
-            return one->is_active() && one->active_cell_index() < weights_.size()
+            return one->is_active() &&
+                           one->active_cell_index() < weights_.size()
                        ? weights_[one->active_cell_index()]
                        : 0;
           };
@@ -74,17 +75,16 @@ namespace nsfd
     weights_.assign(mesh_of(model_).n_active_cells(), 0);
     const auto &bodies = model_.discretization->bodies();
     std::vector<unsigned int> changed(bodies.size(), 0);
-    for_all_places(bodies, state.beta.size(),
-                   [&](const std::size_t body, unsigned int,
-                       const std::size_t point, unsigned int) {
-                     changed[body] += state.beta[point] < 1.;
-                   });
+    for_all_places(
+        bodies, state.beta.size(),
+        [&](const std::size_t body, unsigned int, const std::size_t point,
+            unsigned int) { changed[body] += state.beta[point] < 1.; });
     const auto cells = owned_cells(mesh_of(model_));
     for (std::size_t b = 0; b < cells.size(); ++b)
       weights_[cells[b]->active_cell_index()] =
           1000 * changed[b] /
-          std::max(1u, unsigned(bodies.first_slot[b + 1] -
-                                bodies.first_slot[b]));
+          std::max(1u,
+                   unsigned(bodies.first_slot[b + 1] - bodies.first_slot[b]));
   }
 
   template <int dim>
@@ -173,15 +173,14 @@ namespace nsfd
     if (rounds_ > 0) // a level per round, and one for what the finer mesh sees
       return rounds_ <= input_.adaptivity->levels;
     return looked_ < 0. ||
-           next.time - looked_ >=
-               0.25 * model_.discretization->crossing_time();
+           next.time - looked_ >= 0.25 * model_.discretization->crossing_time();
   }
 
   template <int dim>
   void AdaptiveMesh<dim>::change(State &state)
   {
-    const double before = stored(state.energy),
-                 damage = dissipated(state), area = broken_area(state);
+    const double before = stored(state.energy), damage = dissipated(state),
+                 area = broken_area(state);
     StateTransfer<dim> transfer(input_, mesh_of(model_),
                                 mesh_state(model_, state));
     weigh_cells(state);
@@ -216,9 +215,9 @@ namespace nsfd
           !(state.opening_max[i] > 0.)) // broken from the start
         continue;
       const double d = problem.opening_factor[i] * state.opening_max[i];
-      const double density =
-          state.beta[i] > 0. ? law->energy(d) - law->traction(d) * d / 2.
-                             : law->toughness();
+      const double density = state.beta[i] > 0.
+                                 ? law->energy(d) - law->traction(d) * d / 2.
+                                 : law->toughness();
       terms[i] = problem.weight[i] * problem.strength_factor[i] /
                  problem.opening_factor[i] * density;
     }
@@ -238,8 +237,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void
-  AdaptiveMesh<dim>::fill_counters(std::map<std::string, double> &c) const
+  void AdaptiveMesh<dim>::fill_counters(std::map<std::string, double> &c) const
   {
     c["mesh_changes"] = changes_;
     c["largest_cells"] = double(largest_cells_);

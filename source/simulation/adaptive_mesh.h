@@ -42,8 +42,8 @@ namespace nsfd
     /**
      * Whether the mesh is good enough for a step from @p state to @p next, as
      * far as it is looked at: no wave gets further than a quarter of the
-     * smallest cell in between. If it is not, it changes, with @p state on it, and the step is to be taken
-     * again. Collective.
+     * smallest cell in between. If it is not, it changes, with @p state on it,
+     * and the step is to be taken again. Collective.
      */
     bool follow(State &state, const State &next);
 
@@ -66,8 +66,8 @@ namespace nsfd
     std::vector<unsigned int> weights_; ///< by active cell index
     bool is_due(const State &next) const;
 
-    unsigned int rounds_ = 0; ///< changes in the present step
-    double looked_ = -1.;     ///< s, when the indicators were asked last
+    unsigned int rounds_ = 0;    ///< changes in the present step
+    double looked_ = -1.;        ///< s, when the indicators were asked last
     unsigned int coarsened_ = 0; ///< step in which cells might grow last
     unsigned int changes_ = 0;
     unsigned long long largest_cells_ = 0;

@@ -89,7 +89,8 @@ namespace nsfd
       family.longest = communicator.max(family.longest);
     for (unsigned int block = 0; block < families.size(); ++block)
       for (unsigned int m = 0; m < input.materials.size(); ++m)
-        if (communicator.any(touches[block * input.materials.size() + m] != 0) &&
+        if (communicator.any(touches[block * input.materials.size() + m] !=
+                             0) &&
             !input.materials[m].rigid)
           families[block].materials.push_back(m);
     constexpr unsigned int n_rows = 1 + 2 * dim;
@@ -177,8 +178,7 @@ namespace nsfd
           problem.strength_factor[i] * problem.opening_factor[i] * slope;
       for (unsigned int c = 0; c < dim; ++c) {
         scale[i * dim + c] =
-            h *
-            std::sqrt(input.time.theta * chi * scaled * points.weight[i]);
+            h * std::sqrt(input.time.theta * chi * scaled * points.weight[i]);
         // any direction, the same on both ranks of a shared face
         const auto &face = points.faces[points.face_of[i]];
         x[i * dim + c] =

@@ -3,13 +3,13 @@
 #include "group_report.h"
 #include "motion_report.h"
 
+#include "advice.h"
 #include "core/exit_code.h"
-#include "nsfd/scene/scene_input.h"
 #include "mesh/mesh_builder.h"
+#include "nsfd/postprocess/observable.h"
+#include "nsfd/scene/scene_input.h"
 #include "records/certificate.h"
 #include "records/engineering.h"
-#include "advice.h"
-#include "nsfd/postprocess/observable.h"
 #include "time_integration/moreau_jean.h"
 
 #include <deal.II/fe/fe.h>
@@ -28,7 +28,7 @@ namespace nsfd
   namespace
   {
     constexpr double points_wanted = points_per_cohesive_length;
-    constexpr double share_wanted = 0.9;  // of the modulus, while intact
+    constexpr double share_wanted = 0.9; // of the modulus, while intact
     constexpr unsigned int most_points = 10;
 
     void line(const char *name, const std::string &text)
@@ -94,8 +94,7 @@ namespace nsfd
     };
 
     template <int dim>
-    void
-    Advisor<dim>::choose_material(const std::vector<unsigned int> &among)
+    void Advisor<dim>::choose_material(const std::vector<unsigned int> &among)
     {
       young = 0.;
       for (const unsigned int m : among)
@@ -111,10 +110,9 @@ namespace nsfd
     template <int dim>
     std::string Advisor<dim>::in_crossings(const double h) const
     {
-      return crossing > 0.
-                 ? fmt::format("{} = {:.3g} crossings", engineering(h, "s"),
-                               h / crossing)
-                 : engineering(h, "s");
+      return crossing > 0. ? fmt::format("{} = {:.3g} crossings",
+                                         engineering(h, "s"), h / crossing)
+                           : engineering(h, "s");
     }
 
     template <int dim>
@@ -124,25 +122,24 @@ namespace nsfd
       choose_material(materials);
       const auto &block = input.interfaces[b];
       const auto &law = *block.law;
-      std::cout << fmt::format(
-          "  interface  {}: {}, strength {}, toughness {}", block.name,
-          block.law_name, engineering(law.strength(), "Pa", 4),
-          engineering(law.toughness(), "J/m²", 4));
+      std::cout << fmt::format("  interface  {}: {}, strength {}, toughness {}",
+                               block.name, block.law_name,
+                               engineering(law.strength(), "Pa", 4),
+                               engineering(law.toughness(), "J/m²", 4));
       if (!law.extrinsic())
-        std::cout << ", C_N "
-                  << engineering(law.normal_stiffness(), "Pa/m", 4);
+        std::cout << ", C_N " << engineering(law.normal_stiffness(), "Pa/m", 4);
       std::cout << "\n";
       if (young > 0.) {
         // a front runs through the softer side where it is shorter
         print_resolution(
             law, families[b].longest,
             extremes[*std::min_element(
-                              materials.begin(), materials.end(),
-                              [&](const unsigned int m, const unsigned int n) {
-                                return extremes[m].softest.young <
-                                       extremes[n].softest.young;
-                              })]
-                     .softest);
+                         materials.begin(), materials.end(),
+                         [&](const unsigned int m, const unsigned int n) {
+                           return extremes[m].softest.young <
+                                  extremes[n].softest.young;
+                         })]
+                .softest);
         // the compliance of some named faces belongs to the scene
         if (!law.extrinsic() &&
             families[b].density > 0.5 * mesh.interface_density)
@@ -155,10 +152,9 @@ namespace nsfd
 
     /** (49)-(52) of [AM06]. */
     template <int dim>
-    void Advisor<dim>::print_resolution(const CohesiveLaw &law,
-                                        const double longest,
-                                        const MaterialExtremes::Moduli &softest)
-        const
+    void Advisor<dim>::print_resolution(
+        const CohesiveLaw &law, const double longest,
+        const MaterialExtremes::Moduli &softest) const
     {
       const double length =
           cohesive_length(softest.young, softest.poisson, law);
@@ -167,12 +163,11 @@ namespace nsfd
       const double points = edges * per_edge;
       const bool is_resolved = points >= points_wanted;
       line("resolution",
-           fmt::format(
-               "cohesive length {} = {:.3g} edges = {:.3g} points{}",
-               engineering(length, "m"), edges, points,
-               is_resolved
-                   ? ": resolved"
-                   : fmt::format("; it takes {} points", points_wanted)));
+           fmt::format("cohesive length {} = {:.3g} edges = {:.3g} points{}",
+                       engineering(length, "m"), edges, points,
+                       is_resolved ? ": resolved"
+                                   : fmt::format("; it takes {} points",
+                                                 points_wanted)));
       if (is_resolved)
         return;
       line("",
@@ -185,8 +180,7 @@ namespace nsfd
              fmt::format(
                  "edges of {}, or a strength of {} at this toughness",
                  engineering(length * per_edge / points_wanted, "m"),
-                 engineering(law.strength() *
-                                 std::sqrt(points / points_wanted),
+                 engineering(law.strength() * std::sqrt(points / points_wanted),
                              "Pa")));
     }
 
@@ -196,13 +190,12 @@ namespace nsfd
                                     const FaceFamily &family) const
     {
       const double C_N = law.normal_stiffness();
-      const double needed = smallest_stiffness(
-          plane_young, family.density, dim, law.stiffness_ratio(),
-          share_wanted);
+      const double needed =
+          smallest_stiffness(plane_young, family.density, dim,
+                             law.stiffness_ratio(), share_wanted);
       const unsigned int points = input.discretization.interface_points;
-      const auto bounds =
-          stiffness_bounds(needed, young, poisson, law, family.longest, points,
-                           points_wanted);
+      const auto bounds = stiffness_bounds(
+          needed, young, poisson, law, family.longest, points, points_wanted);
       line("C_N L/E",
            fmt::format("{:.3g} (L = {}, the longest of these faces); both "
                        "at this toughness and shape:",
@@ -436,8 +429,8 @@ namespace nsfd
       advisor.unique_steps.push_back(std::isfinite(unique) ? unique : 0.);
     }
     const State softening = all_softening(state, discretization, input);
-    advisor.contraction = contraction_number(input, stepper.problem(),
-                                             softening, dynamics, step);
+    advisor.contraction =
+        contraction_number(input, stepper.problem(), softening, dynamics, step);
     if (advisor.contraction >= 1.)
       advisor.contraction_step =
           step_of_contraction(input, stepper.problem(), softening, dynamics,

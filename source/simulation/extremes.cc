@@ -5,8 +5,8 @@
 #include "sharp_front.h"
 
 #include "core/archive.h"
-#include "nsfd/scene/scene_input.h"
 #include "discretization/cell_geometry.h"
+#include "nsfd/scene/scene_input.h"
 #include "records/engineering.h"
 
 #include <deal.II/base/symmetric_tensor.h>

@@ -1,7 +1,7 @@
 #include "group_report.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "mesh/named_mesh.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 
@@ -52,11 +52,12 @@ namespace nsfd
       };
       const Where &where = *use.where;
       if (where.kind == Where::Kind::between_groups)
-        return is_cells && (is_meant(where.materials[0]) ||
-                            is_meant(where.materials[1]));
+        return is_cells &&
+               (is_meant(where.materials[0]) || is_meant(where.materials[1]));
       if (where.kind != Where::Kind::group || !is_meant(where.name))
         return false;
-      return is_cells == (use.is_about_cells || !has_faces_of(mesh, where.name));
+      return is_cells ==
+             (use.is_about_cells || !has_faces_of(mesh, where.name));
     }
 
     std::string blocks_that_name(const NamedMesh &mesh,
@@ -100,10 +101,10 @@ namespace nsfd
     if (!input.mesh.named)
       return lines;
     const NamedMesh &mesh = *input.mesh.named;
-    lines.push_back({"cells", count_of_shapes(mesh) +
-                                  (input.mesh.split_simplices
-                                       ? ", split at their midpoints"
-                                       : "")});
+    lines.push_back(
+        {"cells",
+         count_of_shapes(mesh) +
+             (input.mesh.split_simplices ? ", split at their midpoints" : "")});
     const std::vector<Use> uses = all_uses(input);
     constexpr unsigned int n_shown = 12; // of those that nothing names
     unsigned int n_unused = 0;
@@ -116,9 +117,8 @@ namespace nsfd
         lines.push_back({"group", describe(mesh, group) + ", not used"});
     }
     if (n_unused > n_shown)
-      lines.push_back(
-          {"group", fmt::format("and {} more that are not used",
-                                n_unused - n_shown)});
+      lines.push_back({"group", fmt::format("and {} more that are not used",
+                                            n_unused - n_shown)});
     add_notes(mesh, lines);
     return lines;
   }
@@ -141,9 +141,9 @@ namespace nsfd
         words.resize(n_shown);
       return n == 0 ? "none"
                     : fmt::format("{}{}", fmt::join(words, ", "),
-                                  n > n_shown ? fmt::format(" and {} more",
-                                                            n - n_shown)
-                                              : "");
+                                  n > n_shown
+                                      ? fmt::format(" and {} more", n - n_shown)
+                                      : "");
     };
     lines.push_back({"groups", fmt::format("used: {}; not used: {}", list(used),
                                            list(unused))});

@@ -5,9 +5,9 @@
 #include "input/formula_check.h"
 
 #include "core/cost.h"
-#include "parameters/place_of.h"
-#include "discretization/point_factors.h"
 #include "discretization/node_coordinates.h"
+#include "discretization/point_factors.h"
+#include "parameters/place_of.h"
 
 #include <deal.II/grid/tria.h>
 
@@ -74,10 +74,9 @@ namespace nsfd
       return false;
     }
     charge_memory("blocks of the bodies");
-    method =
-        input.time.scheme == Scheme::arkode ? "arkode"
-        : input.solver.method == "auto"     ? "chain"
-                                            : input.solver.method;
+    method = input.time.scheme == Scheme::arkode ? "arkode"
+             : input.solver.method == "auto"     ? "chain"
+                                                 : input.solver.method;
     build_stepper(input);
     if (input.statics)
       quasi_static = std::make_unique<QuasiStatic<dim>>(input, communicator,
@@ -183,8 +182,9 @@ namespace nsfd
 
   /** As of materials that own no cell: of faces, and of broken ones. */
   template <int dim>
-  void Model<dim>::warn_of_unused_interfaces(
-      const SceneInput &input, const Communicator &communicator) const
+  void
+  Model<dim>::warn_of_unused_interfaces(const SceneInput &input,
+                                        const Communicator &communicator) const
   {
     const auto &origins = discretization->origins();
     const std::size_t n_blocks = input.interfaces.size();
@@ -199,9 +199,9 @@ namespace nsfd
             block.broken.at(discretization->position(i)) != 0.;
     }
     // a mesh of single cells has no faces for anyone
-    const bool any_faces = communicator.any(
-        std::any_of(has_faces.begin(), has_faces.end(),
-                    [](const char has) { return has != 0; }));
+    const bool any_faces =
+        communicator.any(std::any_of(has_faces.begin(), has_faces.end(),
+                                     [](const char has) { return has != 0; }));
     std::vector<std::string> warnings;
     for (std::size_t b = 0; b < n_blocks; ++b) {
       const InterfaceInput &block = input.interfaces[b];
@@ -209,8 +209,9 @@ namespace nsfd
       if (!any_faces && block.where.kind == Where::Kind::all)
         continue;
       if (!communicator.any(has_faces[b]))
-        warnings.push_back(name + ": no face; `where` holds nowhere, or only "
-                                  "where an earlier section does" +
+        warnings.push_back(name +
+                           ": no face; `where` holds nowhere, or only "
+                           "where an earlier section does" +
                            after_semicolon(groups->missing(block.where)));
       else if (block.has_broken && !communicator.any(has_broken[b]))
         warnings.push_back(name + "/broken: no point of its faces is broken");
@@ -220,9 +221,10 @@ namespace nsfd
 
   /** Bonds act through the bulk of cells, and rigid ones have none. */
   template <int dim>
-  void Model<dim>::find_impossible_bonds(
-      const SceneInput &input, const Communicator &communicator,
-      std::vector<std::string> &problems) const
+  void
+  Model<dim>::find_impossible_bonds(const SceneInput &input,
+                                    const Communicator &communicator,
+                                    std::vector<std::string> &problems) const
   {
     const auto &points = discretization->points();
     const auto is_rigid = [&](const int body) {
@@ -278,10 +280,11 @@ namespace nsfd
     if (input.may_move() &&
         !demand_fewer("end", input.time.end - until, dynamic_step(input)))
       return;
-    control = quasi_static ? std::make_unique<StepControl>(
-                                 input.statics->until, input.statics->step,
-                                 input.time.maximum_halvings)
-                           : dynamic_control(input, 0.);
+    control = quasi_static
+                  ? std::make_unique<StepControl>(input.statics->until,
+                                                  input.statics->step,
+                                                  input.time.maximum_halvings)
+                  : dynamic_control(input, 0.);
   }
 
   /** All bonds that the scene may have. */
@@ -291,9 +294,9 @@ namespace nsfd
     const auto &origins = discretization->origins();
     std::vector<std::uint8_t> joined(origins.size(), 0);
     for (std::size_t i = 0; i < origins.size(); ++i)
-      joined[i] = origins[i].kind == PointOrigin::Kind::interface &&
-                  input.interfaces[origins[i].block].intact ==
-                    IntactFaces::bonded;
+      joined[i] =
+          origins[i].kind == PointOrigin::Kind::interface &&
+          input.interfaces[origins[i].block].intact == IntactFaces::bonded;
     bonded->set_bonds(joined);
   }
 
@@ -327,8 +330,8 @@ namespace nsfd
                                    const Communicator &communicator,
                                    std::vector<std::string> &problems)
   {
-    const double limit = stable_limit(
-        input, communicator, std::numeric_limits<double>::infinity());
+    const double limit = stable_limit(input, communicator,
+                                      std::numeric_limits<double>::infinity());
     if (dynamic_step(input) > limit)
       problems.push_back(fmt::format(
           "Time/step is {:.4g} s, and the symplectic scheme is stable up to "
@@ -361,7 +364,8 @@ namespace nsfd
     if (input.iterates())
       path = "element-wise";
     else if (input.has_bonded_faces())
-      path = input.time.scheme == Scheme::symplectic ? "element-wise" : "global";
+      path =
+          input.time.scheme == Scheme::symplectic ? "element-wise" : "global";
     else if (input.solver.path != "auto")
       path = input.solver.path;
     else
@@ -405,9 +409,9 @@ namespace nsfd
       return;
     }
     if (path == "global")
-      dynamics = make_sparse_dynamics<dim>(
-          communicator, bodies, points, input.solver.linear_solver,
-          node_coordinates(*discretization));
+      dynamics = make_sparse_dynamics<dim>(communicator, bodies, points,
+                                           input.solver.linear_solver,
+                                           node_coordinates(*discretization));
     else
       dynamics = make_elementwise_dynamics<dim>(communicator, bodies, points);
   }

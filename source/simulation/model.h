@@ -4,8 +4,8 @@
 #include "time_integration/large_motion.h"
 
 #include "delassus/bonded.h"
-#include "nsfd/scene/scene_input.h"
 #include "mesh/mesh_builder.h"
+#include "nsfd/scene/scene_input.h"
 #include "time_integration/moreau_jean.h"
 #include "time_integration/quasi_static.h"
 #include "time_integration/step_control.h"
@@ -37,9 +37,9 @@ namespace nsfd
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
-    LargeMotion<dim> *large_motion = nullptr; ///< the same, or null
+    LargeMotion<dim> *large_motion = nullptr;         ///< the same, or null
     InelasticMotion<dim> *inelastic_motion = nullptr; ///< the same, or null
-    std::unique_ptr<QuasiStatic<dim>> quasi_static; ///< or null
+    std::unique_ptr<QuasiStatic<dim>> quasi_static;   ///< or null
 
     /** Steps in time from @p start on. */
     std::unique_ptr<StepControl> dynamic_control(const SceneInput &input,

@@ -78,8 +78,7 @@ namespace nsfd
     archive.on_root("seconds_and_calls", values);
     const MessageCounts so_far = sent();
     std::vector<double> counts = {so_far.messages, so_far.message_bytes,
-                                  so_far.collectives,
-                                  so_far.collective_bytes};
+                                  so_far.collectives, so_far.collective_bytes};
     archive.on_root("sent", counts);
     if (!archive.reads())
       return;
@@ -113,7 +112,7 @@ namespace nsfd
     if (communicator.size() > 1)
       MPI_Barrier(communicator.mpi());
     const MachineLimits limits =
-      communicator.size() > 1 ? measure_machine(one) : alone;
+        communicator.size() > 1 ? measure_machine(one) : alone;
     cost.copy_bytes_per_second = limits.copy_bytes_per_second;
     cost.product_flops_per_second = limits.product_flops_per_second;
     if (communicator.size() > 1) {
@@ -172,14 +171,16 @@ namespace nsfd
   {
     const auto &t = model.stepper->timings();
     std::vector<std::pair<std::string, double>> stages = {
-        {"set-up", setup},           {"loads and free motion", t.assembly},
-        {"nonsmooth solve", t.solve}, {"update of bodies", t.update},
-        {"energy ledger", t.ledger}, {"output", output}};
+        {"set-up", setup},
+        {"loads and free motion", t.assembly},
+        {"nonsmooth solve", t.solve},
+        {"update of bodies", t.update},
+        {"energy ledger", t.ledger},
+        {"output", output}};
     if (model.large_motion)
-      stages.insert(
-          stages.begin() + 2,
-          {"contact search",
-           model.large_motion->motion_counters().search_seconds});
+      stages.insert(stages.begin() + 2,
+                    {"contact search",
+                     model.large_motion->motion_counters().search_seconds});
     if (model.quasi_static) {
       const auto &q = model.quasi_static->timings();
       stages.insert(stages.begin() + 1,

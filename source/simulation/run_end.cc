@@ -2,8 +2,8 @@
 
 #include "visualization/energy_lines.h"
 
-#include "records/engineering.h"
 #include "postprocess/progress.h"
+#include "records/engineering.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "records/certificate.h"
 #include "nsfd/records/run_record.h"
+#include "records/certificate.h"
 
 #include <string>
 

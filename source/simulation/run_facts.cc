@@ -88,9 +88,8 @@ namespace nsfd
       const TimeInput &time = input.time;
       switch (line) {
       case WatchedLine::friction:
-        return time.sliding == Sliding::velocity
-                   ? "set sliding = energy safe"
-                   : "lower Solver/tolerance";
+        return time.sliding == Sliding::velocity ? "set sliding = energy safe"
+                                                 : "lower Solver/tolerance";
       case WatchedLine::impact:
         return time.contact_target != ContactTarget::energy_safe
                    ? "set contact target = energy safe"
@@ -114,8 +113,9 @@ namespace nsfd
                                           const EnergyWatch &watch,
                                           const State &state)
     {
-      // what the rules of explicit steps, end points, interior penalty and frames
-      // of large motions make comes and goes: as well as curves can be read
+      // what the rules of explicit steps, end points, interior penalty and
+      // frames of large motions make comes and goes: as well as curves can be
+      // read
       constexpr double of_pure_rules = 1e-2;
       const double scale = std::max(watch.scale, state.largest_energy);
       const auto share = [scale](const double energy) {
@@ -127,7 +127,8 @@ namespace nsfd
         if (!has_line(line, input, state))
           continue;
         GivenEnergy given;
-        given.line = line == WatchedLine::scheme ? "time scheme" : name_of(line);
+        given.line =
+            line == WatchedLine::scheme ? "time scheme" : name_of(line);
         given.share = share(watch.given[k]);
         given.bound = energy_round_off;
         if (line == WatchedLine::joints || line == WatchedLine::supports)
@@ -181,8 +182,8 @@ namespace nsfd
         facts.brittle |= std::isinf(block.law->steepest_softening());
       }
     extremes.fill(facts);
-    facts.follows_jumps = input.statics &&
-                          input.statics->at_jump == SolutionJump::dynamic;
+    facts.follows_jumps =
+        input.statics && input.statics->at_jump == SolutionJump::dynamic;
     facts.takes_jumps =
         input.statics && input.statics->at_jump == SolutionJump::relax;
     facts.maximum_halvings = input.time.maximum_halvings;
@@ -192,9 +193,9 @@ namespace nsfd
     facts.rejected = counter("rejected_steps");
     facts.redone = counter("redone_steps") + counter("shortened_load_steps");
     if (facts.softens)
-      facts.zone = zone_resolution(input, *model.discretization,
-                                   model.stepper->problem(), state,
-                                   communicator);
+      facts.zone =
+          zone_resolution(input, *model.discretization,
+                          model.stepper->problem(), state, communicator);
     return facts;
   }
 

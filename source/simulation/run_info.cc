@@ -1,9 +1,9 @@
 #include "run_info.h"
 
 #include "core/version.h"
-#include "simulation.h"
 #include "group_report.h"
 #include "motion_report.h"
+#include "simulation.h"
 
 #include <deal.II/fe/fe.h>
 

@@ -3,28 +3,28 @@
 #include "adaptive_mesh.h"
 #include "checkpoint/checkpoints.h"
 #include "extremes.h"
+#include "input/formula_check.h"
 #include "model.h"
 #include "run_costs.h"
 #include "run_end.h"
 #include "run_facts.h"
 #include "run_info.h"
 #include "run_totals.h"
-#include "input/formula_check.h"
 #include "static_run.h"
 
+#include "bodies/fragments.h"
+#include "check.h"
 #include "core/cost.h"
+#include "core/exit_code.h"
+#include "core/output_folder.h"
 #include "core/stop_request.h"
 #include "core/stopwatch.h"
-#include "core/exit_code.h"
 #include "postprocess/fragment_output.h"
-#include "bodies/fragments.h"
-#include "core/output_folder.h"
-#include "postprocess/run_output.h"
-#include "verification/case_observer.h"
-#include "check.h"
 #include "postprocess/observers.h"
+#include "postprocess/run_output.h"
 #include "time_integration/remember_state.h"
 #include "time_integration/smooth_motion.h"
+#include "verification/case_observer.h"
 
 #include <fmt/format.h>
 
@@ -93,7 +93,7 @@ namespace nsfd
       std::unique_ptr<RunOutput<dim>> output_;
       std::unique_ptr<StaticRun<dim>> static_run_; ///< or null
       bool is_static_ = false; ///< the steps are those of static_run_
-      std::unique_ptr<SmoothMotion<dim>> smooth_; ///< or null
+      std::unique_ptr<SmoothMotion<dim>> smooth_;   ///< or null
       std::unique_ptr<AdaptiveMesh<dim>> adaptive_; ///< or null
       std::unique_ptr<Checkpoints<dim>> checkpoints_;
       EarlierTotals earlier_; ///< before the checkpoint, if resumed
@@ -102,12 +102,12 @@ namespace nsfd
       Summary summary_;
       RunCosts<dim> costs_;
       SolvedSteps solved_steps_;
-      EnergyWatch watch_; ///< of the lines that must not give energy
+      EnergyWatch watch_;          ///< of the lines that must not give energy
       EnergyLines watched_energy_; ///< after the step that it has seen last
       double start_wall_, last_step_ = 0.;
       unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
       unsigned long long released_ = 0; ///< bonds, in accepted steps
-      unsigned int attempts_ = 0; // at the present step, all rejected
+      unsigned int attempts_ = 0;       // at the present step, all rejected
       double redo_until_ = 0., redo_step_ = 0.;
       unsigned int stored_at_ = 0; ///< step of the last checkpoint
       bool stored_ = false;        ///< it is on the disk
@@ -154,8 +154,8 @@ namespace nsfd
       model_.dynamics->reinit(model_.control->step(), input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
       if (input_.adaptivity) {
-        adaptive_ = std::make_unique<AdaptiveMesh<dim>>(input_, communicator_,
-                                                        model_);
+        adaptive_ =
+            std::make_unique<AdaptiveMesh<dim>>(input_, communicator_, model_);
         state_ = found ? adaptive_->restore(stored_cells(*found, communicator_))
                        : adaptive_->start();
         describe_mesh();
@@ -197,11 +197,10 @@ namespace nsfd
     {
       bool ours = true;
       if (communicator_.is_root())
-        ours = resumes ? OutputFolder::instance().claim(
-                             input_.output.directory,
-                             OutputFolder::Claim::go_on)
-                       : claim_directory(input_.output.directory,
-                                         options_.force);
+        ours = resumes
+                   ? OutputFolder::instance().claim(input_.output.directory,
+                                                    OutputFolder::Claim::go_on)
+                   : claim_directory(input_.output.directory, options_.force);
       return !communicator_.any(!ours);
     }
 
@@ -252,14 +251,13 @@ namespace nsfd
     {
       const double end = is_static_ ? input_.statics->until : input_.time.end;
       if (!(end > state_.time * (1. + 1e-12)))
-        throw BadCheckpoint(
-            fmt::format("Time/end = {:.6g} s is not after t = {:.6g} s", end,
-                        state_.time));
-      model_.control =
-          is_static_ ? std::make_unique<StepControl>(
-                           end, input_.statics->step,
-                           input_.time.maximum_halvings, state_.time)
-                     : model_.dynamic_control(input_, state_.time);
+        throw BadCheckpoint(fmt::format(
+            "Time/end = {:.6g} s is not after t = {:.6g} s", end, state_.time));
+      model_.control = is_static_
+                           ? std::make_unique<StepControl>(
+                                 end, input_.statics->step,
+                                 input_.time.maximum_halvings, state_.time)
+                           : model_.dynamic_control(input_, state_.time);
     }
 
     template <int dim>
@@ -660,9 +658,9 @@ namespace nsfd
       try {
         const stop_request::Interruptible step(communicator_.size());
         report = smooth_ ? smooth_->advance(state_, h, next)
-                         : model_.stepper->advance(
-                               state_, h, next,
-                               SolverControl().idle_rounds << doublings);
+                         : model_.stepper->advance(state_, h, next,
+                                                   SolverControl().idle_rounds
+                                                       << doublings);
       } catch (const StepRejected &rejected) {
         if (has_bad_formulas(failure))
           return false;
@@ -840,9 +838,9 @@ namespace nsfd
       s.peak_memory_mb = peak_memory_mb();
       charge_memory("fields and curves");
       s.cost = costs_.finish(*model_.dynamics);
-      const Certificate certificate = certify(
-          run_facts(input_, model_, solved_steps_, *extremes_, watch_, state_, s,
-                    communicator_));
+      const Certificate certificate =
+          certify(run_facts(input_, model_, solved_steps_, *extremes_, watch_,
+                            state_, s, communicator_));
       certified_ = certificate.is_ok();
       output_->write_summary(s, certificate);
       if (communicator_.is_root() && !options_.quiet)
@@ -927,10 +925,10 @@ namespace nsfd
     void Simulation<dim>::print_end(const Certificate &certificate) const
     {
       const auto &output = input_.output;
-      std::cout << run_end_text(
-          summary_, certificate, state_.broken_area,
-          output.directory + (output.report ? "/report.html" : "/"),
-          options_.verbose);
+      std::cout << run_end_text(summary_, certificate, state_.broken_area,
+                                output.directory +
+                                    (output.report ? "/report.html" : "/"),
+                                options_.verbose);
     }
   } // namespace
 

@@ -1,7 +1,7 @@
 #include "zone_resolution.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "advice.h"
+#include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
 #include <algorithm>
@@ -14,7 +14,8 @@ namespace nsfd
   {
     constexpr double unknown = std::numeric_limits<double>::infinity();
 
-    /** Of the elastic bodies on this rank beside a face, at an average point. */
+    /** Of the elastic bodies on this rank beside a face, at an average point.
+     */
     template <int dim>
     double length_at(const SceneInput &input,
                      const Discretization<dim> &discretization,

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/state/point_kind.h"
 #include "nsfd/records/run_record.h"
+#include "nsfd/state/point_kind.h"
 
 #include <array>
 #include <cstdint>
@@ -11,8 +11,7 @@
 namespace nsfd
 {
   /** What pressed on a place of a surface in a step of a large motion. */
-  struct SurfaceTouch
-  {
+  struct SurfaceTouch {
     bool obstacle = false;       ///< or another body
     unsigned int block = 0;      ///< of the obstacles, or of the contacts
     unsigned int material_2 = 0; ///< of the body that has the place
@@ -26,8 +25,7 @@ namespace nsfd
    * Everything that changes in time, as plain values: copied and swapped.
    * Bodies: q, v by unknown. Points: dim components in the local frame.
    */
-  struct State
-  {
+  struct State {
     unsigned int step = 0;
     double time = 0.;
     double last_step = 0.; ///< that led here, s; 0 at the start
@@ -39,7 +37,7 @@ namespace nsfd
     std::vector<double> slip_max; ///< largest |u_T| of laws with two damage
                                   ///< scalars, m; empty if there are none
     std::vector<double> beta;
-    std::vector<double> slip;              ///< accumulated |u_T| in contact
+    std::vector<double> slip; ///< accumulated |u_T| in contact
     /// by sliding, m and m/s: contact is at u_N = dilated - worn; empty if the
     /// scene has neither dilatancy nor wear
     std::vector<double> dilated, worn, dilation_speed, wear_speed;
@@ -54,11 +52,11 @@ namespace nsfd
     std::vector<double> pressure; ///< in cracks in the last step, Pa; empty if
                                   ///< the scene has none
     std::optional<double> viscous_traction; ///< largest so far, Pa; if any
-    EnergyLines energy;                  ///< dissipated lines and work: sums
+    EnergyLines energy;                     ///< dissipated lines and work: sums
     double initial_energy = 0., largest_energy = 0.;
     double penetration = 0., penetration_excess = 0., rigid_drift = 0.,
            positive_friction_work = 0., broken_area = 0.,
-           pressure_work = 0.; ///< of cracks, a part of the work
+           pressure_work = 0.;       ///< of cracks, a part of the work
     std::vector<double> point_force; ///< of an equilibrium, N; empty if the
                                      ///< state is none
     // Of large motions, empty without: per rigid body centre, velocity,

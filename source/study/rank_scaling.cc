@@ -77,11 +77,12 @@ namespace nsfd
 
   std::vector<std::string> rank_head()
   {
-    return {"setting",       "unknowns",       "ranks",
-            "ms per step",   "gain",           "gain of a copy",
-            "of a product",  "share of the lesser",
-            "messages",      "kB",             "reductions",
-            "waiting"};
+    return {"setting",      "unknowns",
+            "ranks",        "ms per step",
+            "gain",         "gain of a copy",
+            "of a product", "share of the lesser",
+            "messages",     "kB",
+            "reductions",   "waiting"};
   }
 
   std::vector<std::string> rank_cells(const RankRow &row)

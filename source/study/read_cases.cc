@@ -2,9 +2,9 @@
 
 #include "study_numbers.h"
 
-#include "parameters/parameter_file.h"
 #include "input/read_scene.h"
 #include "nsfd/verification/verification_case.h"
+#include "parameters/parameter_file.h"
 
 #include <fmt/format.h>
 
@@ -106,10 +106,10 @@ namespace nsfd
           if (number && *number >= 1. && *number <= 1e6 &&
               *number == std::floor(*number))
             return unsigned(*number);
-          errors.error({study.file, 0, 0, 0, value},
-                       fmt::format("Study/ranks: `{}` is no number of ranks",
-                                   value),
-                       "write for example: set Study/ranks = 1, 2, 4");
+          errors.error(
+              {study.file, 0, 0, 0, value},
+              fmt::format("Study/ranks: `{}` is no number of ranks", value),
+              "write for example: set Study/ranks = 1, 2, 4");
         }
       return study.ranks;
     }

@@ -1,7 +1,7 @@
 #include "study_input.h"
 
-#include "parameters/parameter_file.h"
 #include "nsfd/parameters/section_reader.h"
+#include "parameters/parameter_file.h"
 
 #include <fmt/format.h>
 

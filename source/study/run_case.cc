@@ -251,8 +251,8 @@ namespace nsfd
     do {
       const bool first = result.solve.empty();
       const std::string output = first ? folder : again;
-      result.exit_code = run_process(command(scene, output, one.ranks),
-                                     one.ranks > 1, log);
+      result.exit_code =
+          run_process(command(scene, output, one.ranks), one.ranks > 1, log);
       result.status = status_of(result.exit_code);
       const bool found = add_summary(output + "/summary.json", result);
       if (result.done() && !found) {

@@ -2,10 +2,10 @@
 #include "study_command.h"
 #include "study_results.h"
 
-#include "core/version.h"
 #include "core/exit_code.h"
-#include "parameters/input_errors.h"
 #include "core/output_folder.h"
+#include "core/version.h"
+#include "parameters/input_errors.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -143,8 +143,8 @@ namespace nsfd
     {
       std::error_code error;
       const fs::path folder(directory);
-      const bool used = fs::is_directory(folder, error) &&
-                        !fs::is_empty(folder, error);
+      const bool used =
+          fs::is_directory(folder, error) && !fs::is_empty(folder, error);
       if (used && !command.force && !command.resume) {
         err << "the output directory `" << directory
             << "` exists already: nothing was run.\n"

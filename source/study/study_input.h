@@ -38,7 +38,7 @@ namespace nsfd
     std::string size;  ///< formula: what errors are a power of
     std::map<std::string, std::string> expected_orders; ///< error to formula
     double order_tolerance = 0.15;
-    std::vector<double> targets; ///< errors at which costs are compared
+    std::vector<double> targets;        ///< errors at which costs are compared
     std::vector<StudyDiagram> diagrams; ///< beside those of errors
 
     std::string echo; ///< the sections of the study, complete

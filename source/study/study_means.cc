@@ -62,8 +62,8 @@ namespace nsfd
               square += (value - mean.mean) * (value - mean.mean);
             mean.deviation = std::sqrt(square / (n - 1.));
             const boost::math::students_t t(n - 1.);
-            mean.half_width = boost::math::quantile(t, 0.975) *
-                              mean.deviation / std::sqrt(n);
+            mean.half_width =
+                boost::math::quantile(t, 0.975) * mean.deviation / std::sqrt(n);
           }
           means.push_back(mean);
         }
@@ -78,15 +78,16 @@ namespace nsfd
       std::size_t end = first;
       while (end < means.size() && means[end].error == means[first].error)
         ++end;
-      text += fmt::format("\n{}: mean, 95 % interval of it, standard deviation, "
-                          "runs\n",
-                          means[first].error);
+      text +=
+          fmt::format("\n{}: mean, 95 % interval of it, standard deviation, "
+                      "runs\n",
+                      means[first].error);
       bool all_overlap = true;
       for (std::size_t i = first; i < end; ++i) {
-        text += fmt::format("  {:<24} {:12.5g} +- {:<10.2g} {:10.2g} {:4}\n",
-                            means[i].setting, means[i].mean,
-                            means[i].half_width, means[i].deviation,
-                            means[i].count);
+        text +=
+            fmt::format("  {:<24} {:12.5g} +- {:<10.2g} {:10.2g} {:4}\n",
+                        means[i].setting, means[i].mean, means[i].half_width,
+                        means[i].deviation, means[i].count);
         for (std::size_t j = first; j < i; ++j)
           all_overlap = all_overlap && overlap(means[i], means[j]);
       }

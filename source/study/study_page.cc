@@ -4,10 +4,10 @@
 
 #include "postprocess/report_html.h"
 
-#include "records/engineering.h"
 #include "core/output_folder.h"
-#include "visualization/svg.h"
+#include "records/engineering.h"
 #include "study_results.h"
+#include "visualization/svg.h"
 
 #include <fmt/format.h>
 
@@ -304,9 +304,9 @@ namespace nsfd
     std::string means_html(const StudyResults &study)
     {
       const std::string text = means_text(study);
-      return text.empty() ? ""
-                          : section("Means", "<pre>" + escape_markup(text) +
-                                                 "</pre>\n");
+      return text.empty()
+                 ? ""
+                 : section("Means", "<pre>" + escape_markup(text) + "</pre>\n");
     }
 
     std::string ranks_html(const StudyResults &study)
@@ -316,12 +316,13 @@ namespace nsfd
         rows.push_back(rank_cells(row));
       return rows.empty()
                  ? ""
-                 : section("Ranks",
-                           "<p class=\"muted\">Time of the first rank; messages, "
-                           "kB and reductions per rank and step, at most; what "
-                           "a copy and a small dense product gain on the same "
-                           "ranks is measured at the end of each run.</p>\n" +
-                               table(rank_head(), rows));
+                 : section(
+                       "Ranks",
+                       "<p class=\"muted\">Time of the first rank; messages, "
+                       "kB and reductions per rank and step, at most; what "
+                       "a copy and a small dense product gain on the same "
+                       "ranks is measured at the end of each run.</p>\n" +
+                           table(rank_head(), rows));
     }
 
     /** "1, 2, 4 ranks" */
@@ -385,11 +386,13 @@ namespace nsfd
                                  return std::abs(r.numerical_dissipation);
                                }));
     for (const StudyDiagram &diagram : study.input.diagrams)
-      diagrams.add("diagram_" + diagram.abscissa, quantity_chart(study, diagram));
+      diagrams.add("diagram_" + diagram.abscissa,
+                   quantity_chart(study, diagram));
     const std::string content =
         headline(study) + section("Diagrams", diagrams.html()) +
-        order_rows(study) + ranks_html(study) + means_html(study) + cost_rows_html(study) + case_rows(study) +
-        provenance(study) + "<details><summary>Section Study</summary><pre>" +
+        order_rows(study) + ranks_html(study) + means_html(study) +
+        cost_rows_html(study) + case_rows(study) + provenance(study) +
+        "<details><summary>Section Study</summary><pre>" +
         escape_markup(study.input.echo) + "</pre></details>\n";
     write_file_atomically(directory + "/study.html",
                           page(study.input.title, content));

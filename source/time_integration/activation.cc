@@ -119,12 +119,14 @@ namespace nsfd
     return dynamics.communicator().any(any);
   }
 
-  template std::vector<double>
-  strength_shares(const Dynamics<2> &, const std::vector<PointOrigin> &,
-                  const std::vector<double> &, const OneStepProblem<2> &);
-  template std::vector<double>
-  strength_shares(const Dynamics<3> &, const std::vector<PointOrigin> &,
-                  const std::vector<double> &, const OneStepProblem<3> &);
+  template std::vector<double> strength_shares(const Dynamics<2> &,
+                                               const std::vector<PointOrigin> &,
+                                               const std::vector<double> &,
+                                               const OneStepProblem<2> &);
+  template std::vector<double> strength_shares(const Dynamics<3> &,
+                                               const std::vector<PointOrigin> &,
+                                               const std::vector<double> &,
+                                               const OneStepProblem<3> &);
   template bool activate(const Dynamics<2> &, const std::vector<PointOrigin> &,
                          const std::vector<double> &, OneStepProblem<2> &);
   template bool activate(const Dynamics<3> &, const std::vector<PointOrigin> &,

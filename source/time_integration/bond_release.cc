@@ -42,7 +42,7 @@ namespace nsfd
                              problem.opening_factor[i];
       const double r2 = interaction.shear_weight;
       const double compliance =
-        opening / (utilisation * point_strength<dim>(problem, i));
+          opening / (utilisation * point_strength<dim>(problem, i));
       next.kind[i] = PointKind::cohesive;
       next.opening_max[i] = opening;
       for (unsigned int c = 0; c < dim; ++c) {
@@ -51,8 +51,8 @@ namespace nsfd
           u = compliance * std::max(0., traction[0]);
         else
           u = r2 > 0. ? compliance * traction[c] / r2 : 0.;
-        next.impulse[i * dim + c] = -problem.weight[i] * problem.time_step *
-                                    traction[c] / utilisation;
+        next.impulse[i * dim + c] =
+            -problem.weight[i] * problem.time_step * traction[c] / utilisation;
       }
       return problem.weight[i] * point_strength<dim>(problem, i) * opening / 2.;
     }
@@ -61,10 +61,9 @@ namespace nsfd
   std::vector<std::uint8_t> bonded_points(const State &state)
   {
     std::vector<std::uint8_t> bonded(state.kind.size());
-    std::transform(state.kind.begin(), state.kind.end(), bonded.begin(),
-                   [](const PointKind kind) {
-                     return kind == PointKind::bonded;
-                   });
+    std::transform(
+        state.kind.begin(), state.kind.end(), bonded.begin(),
+        [](const PointKind kind) { return kind == PointKind::bonded; });
     return bonded;
   }
 
@@ -107,14 +106,14 @@ namespace nsfd
       if (now < 1.)
         continue;
       const double before =
-        utilisation(problem, i, &old.bond_traction[i * dim]);
+          utilisation(problem, i, &old.bond_traction[i * dim]);
       report.overshoot = std::max(report.overshoot, now - 1.);
       if (now > before)
         report.share =
-          std::min(report.share, std::max(0., 1. - before) / (now - before));
+            std::min(report.share, std::max(0., 1. - before) / (now - before));
       if (i < problem.n_owned) {
-        in_bonds[i] = bulk.bond_energy(i, &next.jump[i * dim],
-                                       &elastic[i * dim]);
+        in_bonds[i] =
+            bulk.bond_energy(i, &next.jump[i * dim], &elastic[i * dim]);
         ++released;
       }
       const double stored = start_law(problem, i, now, traction, next);

@@ -7,11 +7,10 @@
 namespace nsfd
 {
   /** What a step has done to the bonds. */
-  struct BondReport
-  {
+  struct BondReport {
     unsigned int released = 0; ///< points that leave the bond
-    double overshoot = 0.; ///< largest mean traction over strength, less 1
-    double share = 1.;     ///< of the step in which the first one reached it
+    double overshoot = 0.;     ///< largest mean traction over strength, less 1
+    double share = 1.; ///< of the step in which the first one reached it
   };
 
   /** Points of @p state that are bonded, for BondedDynamics::set_bonds(). */

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nonsmooth/point_law.h"
 #include "moreau_jean.h"
+#include "nonsmooth/point_law.h"
 #include "state/state.h"
 
 #include <algorithm>
@@ -30,11 +30,8 @@ namespace nsfd
    * broken once they carry a thousandth.
    */
   template <int dim>
-  bool remember_damage(const PointEnergies<dim> &energies,
-                       const std::size_t i,
-                       const bool lets_go,
-                       const State &old,
-                       State &next)
+  bool remember_damage(const PointEnergies<dim> &energies, const std::size_t i,
+                       const bool lets_go, const State &old, State &next)
   {
     next.opening_max[i] = energies.history.opening;
     if (!next.slip_max.empty())
@@ -58,11 +55,10 @@ namespace nsfd
   inline void close_books(const State &old, State &next, StepReport &report)
   {
     const EnergyLines &energy = next.energy;
-    next.largest_energy =
-        std::max({old.largest_energy, energy.kinetic, energy.elastic,
-                  energy.cohesive, std::abs(energy.work), energy.damage,
-                  energy.impact, energy.friction, energy.viscous,
-                  energy.plastic});
+    next.largest_energy = std::max(
+        {old.largest_energy, energy.kinetic, energy.elastic, energy.cohesive,
+         std::abs(energy.work), energy.damage, energy.impact, energy.friction,
+         energy.viscous, energy.plastic});
     const double defect = energy.kinetic + energy.elastic + energy.cohesive +
                           energy.damage + energy.friction + energy.viscous +
                           energy.plastic + energy.impact + energy.numerical -

@@ -1,8 +1,8 @@
 #include "driven_motion.h"
 
+#include "discretization/node_coordinates.h"
 #include "discretization/point_places.h"
 #include "nsfd/scene/scene_input.h"
-#include "discretization/node_coordinates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +70,8 @@ namespace nsfd
     choose_rows();
   }
 
-  /** A motion that jumps across the face between two cells is each one's own. */
+  /** A motion that jumps across the face between two cells is each one's own.
+   */
   template <int dim>
   bool DrivenMotion<dim>::jumps_at(const std::size_t i,
                                    const dealii::Point<dim> &place,
@@ -82,7 +83,8 @@ namespace nsfd
         for (const double t : {0., 0.3 * end, 0.7 * end, end}) {
           if (motion == nullptr)
             continue;
-          const double here = motion->at(place, t), there = motion->at(inside, t);
+          const double here = motion->at(place, t),
+                       there = motion->at(inside, t);
           if (std::abs(here - there) >
               1e-6 * std::max(std::abs(here), std::abs(there)))
             return true;
@@ -96,8 +98,7 @@ namespace nsfd
                                     const std::vector<Row> &rows)
   {
     const unsigned int n = trace.cols;
-    struct Rest
-    {
+    struct Rest {
       std::size_t component;
       std::vector<double> x; ///< what is left of the row
       double before, now;    ///< its square
@@ -159,13 +160,14 @@ namespace nsfd
     const auto &bodies = discretization_.bodies();
     chosen_.assign(n * dim, 1);
     std::vector<std::vector<Row>> rows(bodies.size());
-    for_all_places(bodies, n,
-                   [&](const std::size_t body, const unsigned int slot,
-                       const std::size_t point, unsigned int) {
-                     for (unsigned int c = 0; c < dim; ++c)
-                       if (velocity(point, c) || displacement(point, c))
-                         rows[body].push_back({point * dim + c, slot * dim + c});
-                   });
+    for_all_places(
+        bodies, n,
+        [&](const std::size_t body, const unsigned int slot,
+            const std::size_t point, unsigned int) {
+          for (unsigned int c = 0; c < dim; ++c)
+            if (velocity(point, c) || displacement(point, c))
+              rows[body].push_back({point * dim + c, slot * dim + c});
+        });
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const BodyClass &body = bodies.classes[bodies.class_of[b]];
       if (!body.rigid) // else held evenly by all points, least impulses decide

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/parameters/expression.h"
 #include "nsfd/discretization/discretization.h"
+#include "nsfd/parameters/expression.h"
 
 #include <vector>
 

@@ -28,8 +28,7 @@ namespace nsfd
     const std::vector<double> &at_end() const { return end_.force; }
 
   private:
-    struct Known
-    {
+    struct Known {
       std::vector<double> force; ///< N, by unknown
       bool known = false;
       unsigned int step = 0;

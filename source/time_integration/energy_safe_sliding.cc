@@ -1,7 +1,7 @@
 #include "energy_safe_sliding.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,7 @@ namespace nsfd
     {
       std::array<double, dim> U;
       std::copy_n(velocity, dim, U.begin());
-      const auto energies =
-          point_energies<dim>(problem, i, U, solution.frozen);
+      const auto energies = point_energies<dim>(problem, i, U, solution.frozen);
       const double wh = problem.weight[i] * problem.time_step;
       double work = 0.;
       for (unsigned int c = 1; c < dim; ++c)
@@ -60,8 +59,7 @@ namespace nsfd
   void EnergySafeSliding<dim>::apply(const std::vector<double> &old_velocity,
                                      OneStepProblem<dim> &problem) const
   {
-    std::fill(problem.sliding_offset.begin(), problem.sliding_offset.end(),
-              0.);
+    std::fill(problem.sliding_offset.begin(), problem.sliding_offset.end(), 0.);
     if (!always_ && mean_.empty())
       return;
     const double factor = (1. - theta_) / theta_;

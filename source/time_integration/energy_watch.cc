@@ -96,8 +96,7 @@ namespace nsfd
     if (sums.size() != 2 * n_watched_lines + 2)
       throw BadCheckpoint("energy_watch has another number of values");
     std::copy_n(sums.begin(), n_watched_lines, fallen.begin());
-    std::copy_n(sums.begin() + n_watched_lines, n_watched_lines,
-                given.begin());
+    std::copy_n(sums.begin() + n_watched_lines, n_watched_lines, given.begin());
     noise = sums[2 * n_watched_lines];
     scale = sums.back();
   }

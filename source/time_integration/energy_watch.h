@@ -9,8 +9,7 @@ namespace nsfd
   struct SceneInput;
 
   /** Lines of the energy balance that must not give energy. */
-  enum class WatchedLine : unsigned int
-  {
+  enum class WatchedLine : unsigned int {
     friction,
     damage,
     impact,
@@ -37,14 +36,13 @@ namespace nsfd
    * What each line took in one step, in J: negative where it gave. `worst` is
    * the point of this rank that gave most, or no_point.
    */
-  struct LineChanges
-  {
+  struct LineChanges {
     static constexpr std::size_t no_point = std::size_t(-1);
 
     std::array<double, n_watched_lines> taken{};
     std::array<std::size_t, n_watched_lines> worst{};
     double impulses = 0.; ///< sum R P^2 over the points, see LawEvaluation, J
-    double noise = 0.; ///< what the residual of the solver leaves open, J
+    double noise = 0.;    ///< what the residual of the solver leaves open, J
     double scale = 0.; ///< the largest energy so far, or what the loads would
                        ///< give in this step without impulses, J
   };
@@ -54,8 +52,7 @@ namespace nsfd
    * back in any stretch of steps: the largest fall of its sum from where it
    * was highest; of joints and supports, the largest size of their sum.
    */
-  struct EnergyWatch
-  {
+  struct EnergyWatch {
     std::array<double, n_watched_lines> fallen{}, given{};
     double noise = 0.; ///< sum over the steps
     double scale = 0.; ///< the largest one

@@ -118,8 +118,8 @@ namespace nsfd
       P *= h_;
     const auto joints =
         this->has_extrinsic_
-            ? strength_shares(this->dynamics_,
-                              this->discretization_.origins(), impulse, problem)
+            ? strength_shares(this->dynamics_, this->discretization_.origins(),
+                              impulse, problem)
             : std::vector<double>();
     std::vector<unsigned int> springs = interaction_;
     springs.swap(problem.interaction); // of the laws
@@ -140,11 +140,10 @@ namespace nsfd
         const Interaction &law = interactions_[interaction_[i]];
         before = envelope.load(last, reach_of<dim>(law, &old_->jump[i * dim]));
         after = envelope.load(last, reach);
-        const double harmless =
-            std::max(last.opening, envelope.law.mixed()
-                                       ? 0.
-                                       : envelope.law.elastic_limit() /
-                                             envelope.l);
+        const double harmless = std::max(
+            last.opening, envelope.law.mixed()
+                              ? 0.
+                              : envelope.law.elastic_limit() / envelope.l);
         damages = damages || reach.opening > harmless * (1. + least_growth) ||
                   reach.slip > last.slip * (1. + least_growth);
         certain = envelope.is_elastic_to_the_peak(last);
@@ -155,8 +154,7 @@ namespace nsfd
       if (share < result.share) {
         result.share = share;
         result.point = i;
-        result.certain =
-            certain && after > 1. + (1. - Passage::least_share);
+        result.certain = certain && after > 1. + (1. - Passage::least_share);
       }
     }
     problem.interaction.swap(springs);

@@ -206,8 +206,8 @@ namespace nsfd
     {
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
-      report.solver = iterate(old, h, this->solver_control(idle_rounds), next,
-                              evaluation);
+      report.solver =
+          iterate(old, h, this->solver_control(idle_rounds), next, evaluation);
     }
     save_problem<dim>(this->input_, this->problem_, this->dynamics_,
                       *evaluation, report.solver, old.step + 1, old.time);

@@ -3,8 +3,8 @@
 #include "bond_release.h"
 #include "step_data.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 
@@ -55,9 +55,9 @@ namespace nsfd
         // below the elastic limit there is nothing to remember
         // (just below, so that round-off does not damage it)
         Reach history = reach_of<dim>(interaction, &state.jump[i * dim]);
-        history.opening = std::max(
-            (1. - 1e-14) * interaction.law->elastic_limit() / factor,
-            history.opening);
+        history.opening =
+            std::max((1. - 1e-14) * interaction.law->elastic_limit() / factor,
+                     history.opening);
         state.opening_max[i] = history.opening;
         if (!state.slip_max.empty())
           state.slip_max[i] = history.slip;
@@ -124,8 +124,7 @@ namespace nsfd
     energy.kinetic = half_product(dynamics, Operator::mass, state.velocity);
     energy.elastic =
         half_product(dynamics, Operator::stiffness, state.displacement);
-    energy.cohesive =
-        stored_in_points(dynamics.communicator(), problem, state);
+    energy.cohesive = stored_in_points(dynamics.communicator(), problem, state);
   }
 
   template <int dim>
@@ -228,11 +227,9 @@ namespace nsfd
       const Communicator &, const OneStepProblem<dim> &, const State &);       \
   template void set_points(const SceneInput &, const Discretization<dim> &,    \
                            const OneStepProblem<dim> &, State &);              \
-  template State initial_state(const SceneInput &,                             \
-                               const Discretization<dim> &,                    \
-                               const Dynamics<dim> &,                          \
-                               const OneStepProblem<dim> &,                    \
-                               BondedDynamics<dim> *)
+  template State initial_state(                                                \
+      const SceneInput &, const Discretization<dim> &, const Dynamics<dim> &,  \
+      const OneStepProblem<dim> &, BondedDynamics<dim> *)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

@@ -11,8 +11,8 @@ namespace nsfd
   /**
    * State at t = 0: fields of the materials, gaps to obstacles, intact and
    * broken points, stored energies. @p problem is the constant data of the
-   * points. Jumps of bonded faces are in the elastic energy: their bonds are set
-   * in @p bonded (null: there are none). Collective.
+   * points. Jumps of bonded faces are in the elastic energy: their bonds are
+   * set in @p bonded (null: there are none). Collective.
    */
   template <int dim>
   State initial_state(const SceneInput &input,

@@ -1,7 +1,7 @@
 #include "large_motion.h"
 
-#include "core/gather.h"
 #include "common_books.h"
+#include "core/gather.h"
 #include "crack_pressure.h"
 #include "driven_motion.h"
 #include "energy_safe_sliding.h"
@@ -36,9 +36,8 @@ namespace nsfd
         bodies_(bodies), lifts_(has_sliding_lift(input))
   {
     if (!input.contacts.empty() || !input.obstacles.empty())
-      contacts_ = std::make_unique<SurfaceContacts<dim>>(input, discretization,
-                                                         bodies,
-                                                         dynamics.communicator());
+      contacts_ = std::make_unique<SurfaceContacts<dim>>(
+          input, discretization, bodies, dynamics.communicator());
   }
 
   template <int dim>
@@ -107,9 +106,8 @@ namespace nsfd
     if (this->input_.pins.empty())
       return own;
     auto all = gather_all(this->dynamics_.communicator(), own);
-    std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
-      return a.pin < b.pin;
-    });
+    std::sort(all.begin(), all.end(),
+              [](const auto &a, const auto &b) { return a.pin < b.pin; });
     return all;
   }
 
@@ -152,8 +150,8 @@ namespace nsfd
     if (!old_.slip_max.empty())
       insert_rows(old_.slip_max, 1, 0.);
     if (lifts_)
-      for (auto *array : {&old_.dilated, &old_.worn, &old_.dilation_speed,
-                          &old_.wear_speed})
+      for (auto *array :
+           {&old_.dilated, &old_.worn, &old_.dilation_speed, &old_.wear_speed})
         insert_rows(*array, 1, 0.);
     if (this->crack_pressure_)
       insert_rows(old_.pressure, 1, 0.);
@@ -247,8 +245,7 @@ namespace nsfd
     mesh_jumps_ = bodies_.jumps(old.displacement);
     crack_impulse_.clear();
     if (this->crack_pressure_) {
-      this->crack_pressure_->evaluate(old, old.time + theta * h,
-                                      next.pressure);
+      this->crack_pressure_->evaluate(old, old.time + theta * h, next.pressure);
       crack_impulse_ = this->crack_pressure_->impulse(next.pressure, h);
       insert_rows(crack_impulse_, dim, 0.);
       insert_rows(next.pressure, 1, 0.);
@@ -301,8 +298,7 @@ namespace nsfd
         const std::size_t i = bodies_.mesh_point(j);
         double value = 0.;
         for (unsigned int d = 0; d < dim; ++d)
-          value +=
-              frame[(i * dim + a) * dim + d] * mesh_jumps_[j * dim + d];
+          value += frame[(i * dim + a) * dim + d] * mesh_jumps_[j * dim + d];
         old_.jump[i * dim + a] = value;
       }
     for (std::size_t k = 0; k < rows.size(); ++k)
@@ -349,10 +345,10 @@ namespace nsfd
   }
 
   /**
-   * (134), (136) for contacts of surfaces: gap + h (gamma_1 rate + gamma_2 U_N),
-   * the rate that of the start of the step, where a contact that rests has
-   * none, and U_N that of the motion at hand. What has once been active in a
-   * step stays so, or the iteration could go round.
+   * (134), (136) for contacts of surfaces: gap + h (gamma_1 rate + gamma_2
+   * U_N), the rate that of the start of the step, where a contact that rests
+   * has none, and U_N that of the motion at hand. What has once been active in
+   * a step stays so, or the iteration could go round.
    */
   template <int dim>
   void LargeMotion<dim>::forecast(const double h, const bool first)
@@ -397,8 +393,7 @@ namespace nsfd
     }
     const auto &rows = bodies_.rows();
     for (std::size_t k = 0; k < rows.size(); ++k)
-      for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere;
-           ++a)
+      for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere; ++a)
         for (unsigned int d = 0; d < dim; ++d) {
           const std::size_t c = bodies_.row_point(k) * dim + a;
           impulse_[c] += rows[k].share * bodies_.points().frame[c * dim + d] *
@@ -457,9 +452,9 @@ namespace nsfd
                         step_problem_.free_velocity);
       dynamics.set_free_velocity(&this->v_free_);
       if (round == 0)
-        energy_scale_ = 2. * old.energy.kinetic +
-                        all.sum(bodies_.kinetic_products(this->v_free_,
-                                                         this->v_free_));
+        energy_scale_ =
+            2. * old.energy.kinetic +
+            all.sum(bodies_.kinetic_products(this->v_free_, this->v_free_));
       evaluation = std::make_unique<LawEvaluation<dim>>(
           step_problem_, dynamics, energy_scale_, control.tolerance);
       const auto solver = SolverRegistry<dim>::instance().create(
@@ -480,8 +475,8 @@ namespace nsfd
       const double change =
           all.sum(bodies_.kinetic_products(difference, difference));
       ++motion_counters_.iterations;
-      motion_counters_.most_iterations =
-          std::max<unsigned long long>(motion_counters_.most_iterations, round + 1);
+      motion_counters_.most_iterations = std::max<unsigned long long>(
+          motion_counters_.most_iterations, round + 1);
       if (change <= rest * rest * energy_scale_)
         return total;
       if (round == most_newton_steps || !std::isfinite(change))
@@ -519,8 +514,8 @@ namespace nsfd
       report.solver =
           iterate(old, h, this->solver_control(idle_rounds), evaluation);
     }
-    save_problem<dim>(this->input_, step_problem_, this->dynamics_,
-                      *evaluation, report.solver, old.step + 1, old.time);
+    save_problem<dim>(this->input_, step_problem_, this->dynamics_, *evaluation,
+                      report.solver, old.step + 1, old.time);
     if (!report.solver.converged)
       this->reject(h, old.time, report.solver, evaluation->worst_point);
     const Stopwatch watch(this->timings_.ledger);
@@ -556,8 +551,8 @@ namespace nsfd
     relative_velocity(bodies_.velocity(), next.time, next.relative_velocity);
     next.jump.resize(impulse_.size());
     for (std::size_t k = 0; k < impulse_.size(); ++k)
-      next.jump[k] = step_problem_.jump_free[k] +
-                     h * theta * next.relative_velocity[k];
+      next.jump[k] =
+          step_problem_.jump_free[k] + h * theta * next.relative_velocity[k];
     bodies_.finish(next);
     const Communicator &all = this->dynamics_.communicator();
     this->ledger_->book(step_problem_, evaluation, origins_,
@@ -581,8 +576,8 @@ namespace nsfd
     for (std::size_t k = 0; k < bodies_.n_own_rows(); ++k) {
       double &work = result.emplace_back();
       const auto before = obstacle_velocity(k, old_.time),
-                 after = obstacle_velocity(k, old_.time +
-                                                  step_problem_.time_step);
+                 after =
+                     obstacle_velocity(k, old_.time + step_problem_.time_step);
       for (unsigned int a = 0; a < dim; ++a)
         work += impulse_[bodies_.row_point(k) * dim + a] *
                 (theta * after[a] + (1. - theta) * before[a]);
@@ -592,8 +587,7 @@ namespace nsfd
 
   /** What a contact leaves to its place. */
   template <int dim>
-  struct LargeMotion<dim>::SurfaceMemory
-  {
+  struct LargeMotion<dim>::SurfaceMemory {
     std::size_t index, place, twin; ///< index of the row
     std::array<double, dim> impulse;
     double slip, overlap, approach, worn, wear_speed;
@@ -616,9 +610,8 @@ namespace nsfd
       memory.twin = row.twin;
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int d = 0; d < dim; ++d)
-          memory.impulse[d] +=
-              bodies_.points().frame[(i * dim + a) * dim + d] *
-              next.impulse[i * dim + a];
+          memory.impulse[d] += bodies_.points().frame[(i * dim + a) * dim + d] *
+                               next.impulse[i * dim + a];
       memory.slip = next.slip[i];
       memory.overlap = next.released_overlap[i];
       memory.approach = next.approach[i];
@@ -649,9 +642,8 @@ namespace nsfd
       values[place] = std::max(values[place], value);
     };
     auto rows = gather_all(this->dynamics_.communicator(), own_memory(next));
-    std::sort(rows.begin(), rows.end(), [](const auto &a, const auto &b) {
-      return a.index < b.index;
-    });
+    std::sort(rows.begin(), rows.end(),
+              [](const auto &a, const auto &b) { return a.index < b.index; });
     for (const SurfaceMemory &row : rows) {
       for (unsigned int d = 0; d < dim; ++d)
         next.surface_impulse[row.place * dim + d] += row.impulse[d];
@@ -671,8 +663,7 @@ namespace nsfd
 
   /** The contacts of this rank that carried something. */
   template <int dim>
-  std::vector<SurfaceTouch>
-  LargeMotion<dim>::touches(const State &next) const
+  std::vector<SurfaceTouch> LargeMotion<dim>::touches(const State &next) const
   {
     std::vector<SurfaceTouch> result;
     const auto &points = bodies_.points();
@@ -692,8 +683,8 @@ namespace nsfd
         touch.position[d] = points.position[i * dim + d];
         touch.normal[d] = points.frame[i * dim * dim + d];
         for (unsigned int a = 0; a < dim; ++a)
-          touch.impulse[d] += points.frame[(i * dim + a) * dim + d] *
-                              next.impulse[i * dim + a];
+          touch.impulse[d] +=
+              points.frame[(i * dim + a) * dim + d] * next.impulse[i * dim + a];
       }
     }
     return result;

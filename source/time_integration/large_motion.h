@@ -37,8 +37,7 @@ namespace nsfd
     StepReport advance(const State &old, double time_step, State &next,
                        unsigned int idle_rounds) override;
 
-    struct MotionCounters
-    {
+    struct MotionCounters {
       unsigned long long iterations = 0, most_iterations = 0;
       double search_seconds = 0.;
     };

@@ -3,8 +3,8 @@
 #include "common_books.h"
 #include "step_data.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "moreau_jean.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <array>
@@ -24,10 +24,10 @@ namespace nsfd
       numerical,
       motion,
       broken,
-      joint,   ///< work of rows of joints, a part of impact or numerical
-      support, ///< of supports beyond their prescribed velocity, of the work
+      joint,    ///< work of rows of joints, a part of impact or numerical
+      support,  ///< of supports beyond their prescribed velocity, of the work
       impulses, ///< sum R P^2, R the majorants: what the residual relates to
-      viscous ///< only where a point of the scene has_rates()
+      viscous   ///< only where a point of the scene has_rates()
     };
 
     /** All points of one step, one after the other. */
@@ -74,9 +74,8 @@ namespace nsfd
       double moved(const std::size_t k) const
       {
         const double theta = problem_.theta;
-        return problem_.time_step *
-               (theta * next_.relative_velocity[k] +
-                (1. - theta) * old_.relative_velocity[k]);
+        return problem_.time_step * (theta * next_.relative_velocity[k] +
+                                     (1. - theta) * old_.relative_velocity[k]);
       }
       void book_prescribed(std::size_t i, const Vector &U_theta);
       void book_law(std::size_t i, const Vector &U_theta,
@@ -100,12 +99,11 @@ namespace nsfd
     bool has_rates(const SceneInput &input, const OneStepProblem<dim> &problem)
     {
       return has_opening_viscosity(input) ||
-             std::any_of(problem.interactions.begin(),
-                         problem.interactions.end(),
-                         [](const Interaction &interaction) {
-                           return interaction.law &&
-                                  interaction.law->rate_dependent();
-                         });
+             std::any_of(
+                 problem.interactions.begin(), problem.interactions.end(),
+                 [](const Interaction &interaction) {
+                   return interaction.law && interaction.law->rate_dependent();
+                 });
     }
 
     template <int dim>
@@ -143,7 +141,8 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c) {
         const double P = next_.impulse[i * dim + c];
         put(impulses, i,
-            (c == 0 ? problem_.majorant_normal : problem_.majorant_tangential)[i] *
+            (c == 0 ? problem_.majorant_normal
+                    : problem_.majorant_tangential)[i] *
                 P * P);
         U[c] = next_.relative_velocity[i * dim + c];
         U_theta[c] = work_theta_ * U[c] +
@@ -291,9 +290,8 @@ namespace nsfd
     {
       const auto &solution = evaluation_.solutions[i];
       const bool breaks = remember_damage<dim>(
-          energies, i,
-          problem_.kind[i] == PointKind::rigid && solution.damages, old_,
-          next_);
+          energies, i, problem_.kind[i] == PointKind::rigid && solution.damages,
+          old_, next_);
       if (breaks)
         put(broken, i, problem_.weight[i]);
       if (problem_.kind[i] != PointKind::cohesive &&
@@ -312,8 +310,8 @@ namespace nsfd
      * into a contact, and h times the largest approach speed at an activation.
      * In every step the solver leaves R (P - P*) of the velocity that the law
      * asks for. A point that was forecast to stay open may have come in during
-     * the last step, with the speed of its end: then the longer of the two steps
-     * counts.
+     * the last step, with the speed of its end: then the longer of the two
+     * steps counts.
      */
     template <int dim>
     void PointBook<dim>::book_penetration(const std::size_t i)
@@ -332,11 +330,10 @@ namespace nsfd
         const bool came_in = !old_.contact[i] && old_.jump[i * dim] < 0.;
         const double way = came_in ? std::max(h, old_.last_step) : h;
         approach = std::max(approach, -way * old_.relative_velocity[i * dim]);
-      }
-      else if (depth > 0.) // the forecast did not see it come
+      } else if (depth > 0.) // the forecast did not see it come
         approach = std::max(approach, -h * next_.relative_velocity[i * dim]);
-      approach +=
-          h * problem_.majorant_normal[i] * std::abs(evaluation_.defect[i * dim]);
+      approach += h * problem_.majorant_normal[i] *
+                  std::abs(evaluation_.defect[i * dim]);
       penetration = std::max(penetration, depth);
       // speeds change within a step: bounds hold to first order in its length
       excess = std::max(excess, depth - 1.001 * (released + approach));
@@ -358,10 +355,10 @@ namespace nsfd
    * Energies, what theta > 1/2 and viscosity take, and the work of the loads.
    */
   template <int dim>
-  BodyEnergies
-  Ledger<dim>::book_bodies(const std::vector<double> &forces, const double h,
-                           const State &old, const State &next,
-                           const ElasticForces<dim> *elastic) const
+  BodyEnergies Ledger<dim>::book_bodies(const std::vector<double> &forces,
+                                        const double h, const State &old,
+                                        const State &next,
+                                        const ElasticForces<dim> *elastic) const
   {
     using Operator = typename Dynamics<dim>::Operator;
     const auto &communicator = dynamics_.communicator();
@@ -377,9 +374,9 @@ namespace nsfd
         terms[i] *= x[i];
       return communicator.sum(terms);
     };
-    const auto change_of = [&](const std::vector<double> &after,
-                               const std::vector<double> &before)
-        -> const std::vector<double> & {
+    const auto change_of =
+        [&](const std::vector<double> &after,
+            const std::vector<double> &before) -> const std::vector<double> & {
       change.resize(n);
       for (std::size_t i = 0; i < n; ++i)
         change[i] = after[i] - before[i];
@@ -395,9 +392,8 @@ namespace nsfd
       result.elastic = 0.5 * energy(Operator::stiffness, next.displacement);
     if (!elastic && theta_ > 0.5) {
       const double share = theta_ - 0.5;
-      result.of_mass =
-          share *
-          energy(Operator::mass, change_of(next.velocity, old.velocity));
+      result.of_mass = share * energy(Operator::mass,
+                                      change_of(next.velocity, old.velocity));
       result.of_strain =
           share * energy(Operator::stiffness,
                          change_of(next.displacement, old.displacement));
@@ -405,23 +401,23 @@ namespace nsfd
     if (dynamics_.is_viscous()) {
       change.resize(n);
       for (std::size_t i = 0; i < n; ++i)
-        change[i] =
-            theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i];
+        change[i] = theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i];
       result.viscous = h * energy(Operator::damping, change);
     }
     if (discretization_.has_loads()) {
       for (std::size_t i = 0; i < n; ++i)
-        terms[i] = kick * forces[i] * (theta_ * next.velocity[i] +
-                                       (1. - theta_) * old.velocity[i]);
+        terms[i] =
+            kick * forces[i] *
+            (theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i]);
       result.work = communicator.sum(terms);
     }
     return result;
   }
 
   /**
-   * What the bodies take from k v.K q_k of the mean velocity, k the kick, beyond
-   * their own change of energy: (k (v_k + v)/2 - dq).K q_k - dq.K dq / 2. It
-   * comes and goes.
+   * What the bodies take from k v.K q_k of the mean velocity, k the kick,
+   * beyond their own change of energy: (k (v_k + v)/2 - dq).K q_k - dq.K dq
+   * / 2. It comes and goes.
    */
   template <int dim>
   double Ledger<dim>::symplectic_share(const double kick,
@@ -489,8 +485,7 @@ namespace nsfd
           std::max(old.viscous_traction.value_or(0.),
                    communicator.max(points.viscous_traction));
     }
-    energy.numerical +=
-        sums[numerical] + bodies.of_mass + bodies.of_strain;
+    energy.numerical += sums[numerical] + bodies.of_mass + bodies.of_strain;
     energy.work += sums[motion] + bodies.work;
     next.pressure_work = old.pressure_work;
     if (has_crack_pressure(discretization_.input())) {

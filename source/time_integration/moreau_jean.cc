@@ -1,6 +1,5 @@
 #include "moreau_jean.h"
 
-#include "nonsmooth/linear_spring.h"
 #include "activation.h"
 #include "bond_release.h"
 #include "common_books.h"
@@ -10,6 +9,7 @@
 #include "energy_safe_sliding.h"
 #include "initial_state.h"
 #include "ledger.h"
+#include "nonsmooth/linear_spring.h"
 #include "save_problem.h"
 #include "step_data.h"
 #include "uniqueness.h"
@@ -31,19 +31,16 @@ namespace nsfd
                               Dynamics<dim> &dynamics,
                               NonsmoothSolver<dim> &solver,
                               BondedDynamics<dim> *bonded)
-    : input_(input)
-    , discretization_(discretization)
-    , dynamics_(dynamics)
-    , solver_(solver)
-    , bonded_(bonded)
-    , problem_(constant_data(input, discretization))
-    , uniqueness_(std::make_unique<UniquenessBound<dim>>(input, dynamics))
-    , ledger_(std::make_unique<Ledger<dim>>(input, discretization, dynamics,
-                                            *uniqueness_))
-    , motion_(std::make_unique<DrivenMotion<dim>>(input, discretization))
-    , crack_pressure_(CrackPressure<dim>::make(input, discretization))
-    , sliding_(std::make_unique<EnergySafeSliding<dim>>(input))
-    , forces_(discretization.bodies().n_dofs(), 0.)
+      : input_(input), discretization_(discretization), dynamics_(dynamics),
+        solver_(solver), bonded_(bonded),
+        problem_(constant_data(input, discretization)),
+        uniqueness_(std::make_unique<UniquenessBound<dim>>(input, dynamics)),
+        ledger_(std::make_unique<Ledger<dim>>(input, discretization, dynamics,
+                                              *uniqueness_)),
+        motion_(std::make_unique<DrivenMotion<dim>>(input, discretization)),
+        crack_pressure_(CrackPressure<dim>::make(input, discretization)),
+        sliding_(std::make_unique<EnergySafeSliding<dim>>(input)),
+        forces_(discretization.bodies().n_dofs(), 0.)
   {
     if (input.has_viscous_bodies())
       dynamics.set_viscous_theta(input.time.work_theta());
@@ -85,8 +82,7 @@ namespace nsfd
   }
 
   template <int dim>
-  double MoreauJean<dim>::unique_step(const State &old,
-                                      const State &next) const
+  double MoreauJean<dim>::unique_step(const State &old, const State &next) const
   {
     return uniqueness_->largest_step(problem_, old, next);
   }
@@ -116,9 +112,9 @@ namespace nsfd
   }
 
   template <int dim>
-  StepReport
-  MoreauJean<dim>::advance(const State &old, const double h, State &next,
-                           const unsigned int idle_rounds)
+  StepReport MoreauJean<dim>::advance(const State &old, const double h,
+                                      State &next,
+                                      const unsigned int idle_rounds)
   {
     {
       const Stopwatch watch(timings_.assembly);
@@ -139,9 +135,9 @@ namespace nsfd
     dynamics_.apply(Dynamics<dim>::Operator::mass, v_free_.data(),
                     work_.data());
     const double energy_scale =
-      2. * old.energy.kinetic +
-      dynamics_.communicator().dot(v_free_.data(), work_.data(),
-                                   v_free_.size());
+        2. * old.energy.kinetic + dynamics_.communicator().dot(v_free_.data(),
+                                                               work_.data(),
+                                                               v_free_.size());
     LawEvaluation<dim> evaluation(problem_, dynamics_, energy_scale,
                                   input_.solver.tolerance);
     StepReport report;
@@ -171,15 +167,14 @@ namespace nsfd
     if (elastic_forces_)
       elastic_forces_->finish(next);
     ledger_->book(
-      problem_, evaluation, discretization_.origins(),
-      ledger_->book_bodies(forces_, h, old, next, elastic_forces_.get()), old,
-      next, report);
+        problem_, evaluation, discretization_.origins(),
+        ledger_->book_bodies(forces_, h, old, next, elastic_forces_.get()), old,
+        next, report);
     check_books(h, old.time, energy_scale, next, report,
                 evaluation.worst_point);
     relate_defect(energy_scale, next, report);
     if (bulk_) {
-      const BondReport bonds =
-        release_bonds(problem_, *bulk_, old, next);
+      const BondReport bonds = release_bonds(problem_, *bulk_, old, next);
       report.released = bonds.released;
       report.overshoot = bonds.overshoot;
       report.share = bonds.share;
@@ -194,18 +189,17 @@ namespace nsfd
                                const std::size_t worst_point) const
   {
     throw StepRejected(fmt::format(
-      "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "
-      "after {} Newton steps and {} sweeps; worst face {}",
-      h, time, report.residual, report.newton, report.sweeps,
-      describe(worst_point)));
+        "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "
+        "after {} Newton steps and {} sweeps; worst face {}",
+        h, time, report.residual, report.newton, report.sweeps,
+        describe(worst_point)));
   }
 
   /** They close for any impulses, unless these have lost their digits. */
   template <int dim>
   void MoreauJean<dim>::check_books(const double h, const double time,
                                     const double energy_scale,
-                                    const State &next,
-                                    const StepReport &report,
+                                    const State &next, const StepReport &report,
                                     const std::size_t worst_point) const
   {
     // what is not a number is not within the bound
@@ -213,10 +207,10 @@ namespace nsfd
     if (!(report.ledger_defect * next.largest_energy <=
           1e-6 * std::max(next.largest_energy, energy_scale)))
       throw StepRejected(fmt::format(
-        "the energies of the step of {:.4g} at t = {:.6g} do not add up "
-        "(relative defect {:.1e}): rows that ask for the same have made "
-        "impulses too large; worst face {}",
-        h, time, report.ledger_defect, describe(worst_point)));
+          "the energies of the step of {:.4g} at t = {:.6g} do not add up "
+          "(relative defect {:.1e}): rows that ask for the same have made "
+          "impulses too large; worst face {}",
+          h, time, report.ledger_defect, describe(worst_point)));
     starts_cold_ = false;
   }
 
@@ -227,38 +221,37 @@ namespace nsfd
   {
     LineChanges &changes = report.changes;
     changes.taken[std::size_t(WatchedLine::scheme)] =
-      next.energy.numerical - old.energy.numerical;
+        next.energy.numerical - old.energy.numerical;
     // at rest there is no energy but what the loads would give in a step
     changes.scale = std::max(next.largest_energy, energy_scale);
     // |P - P*|_R times |U|_(1/R): impulses of rows that ask for the same may be
     // far larger than what moves
     changes.noise =
-      report.solver.residual *
-      std::max(energy_scale, std::sqrt(energy_scale * changes.impulses));
-    const double bound =
-      energy_round_off * changes.scale + changes.noise +
-      // no line is known better than the balance closes
-      10. * report.ledger_defect * next.largest_energy;
+        report.solver.residual *
+        std::max(energy_scale, std::sqrt(energy_scale * changes.impulses));
+    const double bound = energy_round_off * changes.scale + changes.noise +
+                         // no line is known better than the balance closes
+                         10. * report.ledger_defect * next.largest_energy;
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
       const bool two_sided =
-        line == WatchedLine::joints || line == WatchedLine::supports;
+          line == WatchedLine::joints || line == WatchedLine::supports;
       const double given =
-        two_sided ? std::abs(changes.taken[k]) : -changes.taken[k];
-      // velocities of rows are known to the tolerance, impulses of rows that ask
-      // for the same to less, and `numerical` is a difference of large numbers
-      // in very long steps: the certificate holds their sum, a step is given up
-      // only where hardly any digits are left
+          two_sided ? std::abs(changes.taken[k]) : -changes.taken[k];
+      // velocities of rows are known to the tolerance, impulses of rows that
+      // ask for the same to less, and `numerical` is a difference of large
+      // numbers in very long steps: the certificate holds their sum, a step is
+      // given up only where hardly any digits are left
       const bool of_digits = two_sided || line == WatchedLine::scheme;
       if (given <= (of_digits ? 1e-4 * changes.scale + bound : bound) ||
           !never_gives(line, input_))
         continue;
       starts_cold_ = true;
       throw StepRejected(fmt::format(
-        "the step of {:.4g} s at t = {:.6g} s would give {:.3g} J to `{}`, "
-        "{:.1e} of the largest energy; worst face {}",
-        next.time - old.time, old.time, given, name_of(line),
-        given / changes.scale, describe(changes.worst[k])));
+          "the step of {:.4g} s at t = {:.6g} s would give {:.3g} J to `{}`, "
+          "{:.1e} of the largest energy; worst face {}",
+          next.time - old.time, old.time, given, name_of(line),
+          given / changes.scale, describe(changes.worst[k])));
     }
   }
 
@@ -313,15 +306,16 @@ namespace nsfd
       v_free_[i] += old.velocity[i];
     if (crack_pressure_)
       dynamics_.add_velocity_change(
-        crack_pressure_->impulse(pressure, h).data(), v_free_.data());
+          crack_pressure_->impulse(pressure, h).data(), v_free_.data());
     dynamics_.relative_velocity(v_free_.data(), problem_.free_velocity.data());
     dynamics_.set_free_velocity(&v_free_);
   }
 
   template <int dim>
-  void MoreauJean<dim>::set_problem_of_step(
-    const std::vector<PointOrigin> &origins, const State &old, const double h,
-    OneStepProblem<dim> &problem) const
+  void
+  MoreauJean<dim>::set_problem_of_step(const std::vector<PointOrigin> &origins,
+                                       const State &old, const double h,
+                                       OneStepProblem<dim> &problem) const
   {
     set_step(input_, discretization_, origins, dynamics_, *motion_, old, h,
              problem);
@@ -329,19 +323,16 @@ namespace nsfd
   }
 
   template <int dim>
-  SolverReport MoreauJean<dim>::solve(NonsmoothSolver<dim> &solver,
-                                      OneStepProblem<dim> &problem,
-                                      const std::vector<PointOrigin> &origins,
-                                      const SolverControl &control,
-                                      const double energy_scale,
-                                      const State &old,
-                                      std::vector<double> &impulse,
-                                      LawEvaluation<dim> &evaluation)
+  SolverReport MoreauJean<dim>::solve(
+      NonsmoothSolver<dim> &solver, OneStepProblem<dim> &problem,
+      const std::vector<PointOrigin> &origins, const SolverControl &control,
+      const double energy_scale, const State &old, std::vector<double> &impulse,
+      LawEvaluation<dim> &evaluation)
   {
     SolverReport report;
     for (unsigned int round = 0;; ++round) {
-      const SolverReport part = solver.solve(
-        problem, dynamics_, energy_scale, control, impulse, evaluation);
+      const SolverReport part = solver.solve(problem, dynamics_, energy_scale,
+                                             control, impulse, evaluation);
       report.go_on_with(part);
       ++counters_.solves;
       if (!part.converged || round > 30)
@@ -381,7 +372,7 @@ namespace nsfd
           const LinearSpring spring(problem, *law, k);
           if (spring.stiffness > 0. &&
               spring.compliance() <
-                last_bit * evaluation.majorant(k / dim, k % dim))
+                  last_bit * evaluation.majorant(k / dim, k % dim))
             next.relative_velocity[k] = spring.velocity(next.impulse[k]);
         }
     }
@@ -402,8 +393,8 @@ namespace nsfd
     next.displacement.resize(v_free_.size());
     for (std::size_t i = 0; i < v_free_.size(); ++i)
       next.displacement[i] =
-        old.displacement[i] +
-        h * (theta * next.velocity[i] + (1. - theta) * old.velocity[i]);
+          old.displacement[i] +
+          h * (theta * next.velocity[i] + (1. - theta) * old.velocity[i]);
     next.relative_velocity = evaluation.velocity;
     set_stiff_velocities(problem_, evaluation, next);
     if (bonded_) { // W has no rows there
@@ -416,7 +407,7 @@ namespace nsfd
     next.jump.resize(old.jump.size());
     for (std::size_t k = 0; k < old.jump.size(); ++k)
       next.jump[k] =
-        problem_.jump_free[k] + h * theta * next.relative_velocity[k];
+          problem_.jump_free[k] + h * theta * next.relative_velocity[k];
   }
 
   template <int dim>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
-#include "nonsmooth/solver.h"
 #include "energy_watch.h"
+#include "nonsmooth/solver.h"
+#include "nsfd/discretization/discretization.h"
 #include "state/state.h"
 
 #include <memory>
@@ -36,12 +36,11 @@ namespace nsfd
   };
 
   /** What an accepted step reports besides its state. */
-  struct StepReport
-  {
+  struct StepReport {
     SolverReport solver;
-    double ledger_defect = 0.; ///< of this step, relative
-    LineChanges changes;       ///< of the energy balance
-    unsigned int active = 0;   ///< points in contact or damaging
+    double ledger_defect = 0.;  ///< of this step, relative
+    LineChanges changes;        ///< of the energy balance
+    unsigned int active = 0;    ///< points in contact or damaging
     bool beyond_unique = false; ///< step above the uniqueness bound
     unsigned int released = 0;  ///< points that leave their bond
     double overshoot = 0.; ///< their largest traction over the strength, less 1
@@ -60,8 +59,7 @@ namespace nsfd
     /** @p bonded is @p dynamics if the scene has bonded faces, else null. */
     MoreauJean(const SceneInput &input,
                const Discretization<dim> &discretization,
-               Dynamics<dim> &dynamics,
-               NonsmoothSolver<dim> &solver,
+               Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver,
                BondedDynamics<dim> *bonded = nullptr);
     virtual ~MoreauJean();
 
@@ -79,9 +77,9 @@ namespace nsfd
      * problem was not solved to the tolerance. @p idle_rounds as in
      * SolverControl: how soon the solver may give up.
      */
-    virtual StepReport advance(const State &old, double time_step, State &next,
-                               unsigned int idle_rounds =
-                                 SolverControl().idle_rounds);
+    virtual StepReport
+    advance(const State &old, double time_step, State &next,
+            unsigned int idle_rounds = SolverControl().idle_rounds);
 
     /**
      * Up to which a step has one solution, by the points that soften at
@@ -100,13 +98,11 @@ namespace nsfd
 
     const OneStepProblem<dim> &problem() const { return problem_; }
 
-    struct Timings
-    {
+    struct Timings {
       double assembly = 0., solve = 0., update = 0., ledger = 0.;
     };
     const Timings &timings() const { return timings_; }
-    struct Counters
-    {
+    struct Counters {
       unsigned long long solves = 0, newton = 0, krylov = 0, sweeps = 0,
                          law_sweeps = 0, line_searches = 0, load_assemblies = 0,
                          activation_rounds = 0, sliding_rounds = 0;
@@ -135,10 +131,8 @@ namespace nsfd
     SolverReport solve(NonsmoothSolver<dim> &solver,
                        OneStepProblem<dim> &problem,
                        const std::vector<PointOrigin> &origins,
-                       const SolverControl &control,
-                       double energy_scale,
-                       const State &old,
-                       std::vector<double> &impulse,
+                       const SolverControl &control, double energy_scale,
+                       const State &old, std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation);
     [[noreturn]] void reject(double time_step, double time,
                              const SolverReport &report,
@@ -150,8 +144,8 @@ namespace nsfd
      * Notes what the lines of the balance took. @throws StepRejected where one
      * gave energy that its rule cannot give: line, step and place.
      */
-    void watch_energy(double energy_scale, const State &old,
-                      const State &next, StepReport &report) const;
+    void watch_energy(double energy_scale, const State &old, const State &next,
+                      StepReport &report) const;
     void move(const State &old, const LawEvaluation<dim> &evaluation,
               State &next) const;
     virtual std::string describe(std::size_t point) const;

@@ -62,9 +62,9 @@ namespace nsfd
       double result = traction_along(point, history, reach);
       for (unsigned int k = 0; k <= samples; ++k) {
         const double s = first * std::pow(last / first, double(k) / samples);
-        result = std::max(
-            result, traction_along(point, history,
-                                   {s * reach.opening, s * reach.slip}));
+        result = std::max(result,
+                          traction_along(point, history,
+                                         {s * reach.opening, s * reach.slip}));
       }
       return result;
     }
@@ -79,9 +79,9 @@ namespace nsfd
   double PointEnvelope::load(const Reach &history, const Reach &reach) const
   {
     if (law.mixed()) {
-      const double far =
-          20. * std::max({length(reach), length(history),
-                          law.peak_opening() / l, law.mixed()->peak_slip() / l});
+      const double far = 20. * std::max({length(reach), length(history),
+                                         law.peak_opening() / l,
+                                         law.mixed()->peak_slip() / l});
       const double carries = largest_along(*this, history, reach, far);
       const double x = l * history.opening, y = l * history.slip;
       const double size = length(reach);
@@ -116,9 +116,8 @@ namespace nsfd
   double largest_on_the_way(const PointEnvelope &point, const Reach &history,
                             const Reach &end)
   {
-    return point.law.mixed()
-               ? largest_along(point, history, end, length(end))
-               : largest(point, history.opening, end.opening);
+    return point.law.mixed() ? largest_along(point, history, end, length(end))
+                             : largest(point, history.opening, end.opening);
   }
 
   Passage passage(const PointEnvelope &point, const Reach &history,

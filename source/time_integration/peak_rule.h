@@ -5,8 +5,7 @@
 namespace nsfd
 {
   /** The envelope of one point: T(d) = a T_0(l d), see CohesiveLaw. */
-  struct PointEnvelope
-  {
+  struct PointEnvelope {
     const CohesiveLaw &law;
     double a, l; ///< factors of strength and opening
 
@@ -28,9 +27,9 @@ namespace nsfd
     bool is_elastic_to_the_peak(const Reach &history) const;
   };
 
-  /** How a point went along its law in a step from equilibrium to equilibrium. */
-  struct Passage
-  {
+  /** How a point went along its law in a step from equilibrium to equilibrium.
+   */
+  struct Passage {
     /// tractions at both ends over the largest on the way; 1 without damage
     double start = 1., end = 1.;
 

@@ -62,8 +62,7 @@ namespace nsfd
                                                      discretization.points())
                     : make_sparse_dynamics<dim>(
                           communicator, discretization.bodies(),
-                          discretization.points(),
-                          solver.linear_solver,
+                          discretization.points(), solver.linear_solver,
                           node_coordinates(discretization));
     dynamics_->reinit(h_, 1.);
     solver_ = SolverRegistry<dim>::instance().create(
@@ -155,8 +154,8 @@ namespace nsfd
     const EnergyLeft left =
         ledger_->book(*relaxation_, forces_old, old, next, report.step);
     report.left_over = left.energy;
-    report.jumps = !report.stable ||
-                   std::abs(left.energy) > jump_share * left.turnover;
+    report.jumps =
+        !report.stable || std::abs(left.energy) > jump_share * left.turnover;
     const auto [seen, point] = relaxation_->least_passage(next, path);
     report.peak_seen = -communicator_.max(-seen);
     report.skips_peak = report.peak_seen < Passage::least_share;
@@ -260,15 +259,13 @@ namespace nsfd
   {
     // round-off of floating cells is seen in the jumps by (h/crossing)^2
     const double ratio = h_ / crossing_,
-                 tolerance = std::max(0.1 * goal_,
-                                      1e-15 * ratio * ratio);
+                 tolerance = std::max(0.1 * goal_, 1e-15 * ratio * ratio);
     ++counters_.rounds;
     const SolverReport solve = relaxation_->relax(q, h_, tolerance);
     report.solver.add_work(solve);
     solved_ = solve.converged;
     report.solver.residual = relaxation_->imbalance();
-    report.solver.converged =
-        solved_ && relaxation_->imbalance() <= goal_;
+    report.solver.converged = solved_ && relaxation_->imbalance() <= goal_;
     return solved_ && !report.solver.converged;
   }
 
@@ -340,10 +337,11 @@ namespace nsfd
   }
 
   /**
-   * Springs in place of the laws, damaged as far as they have been opened, again
-   * and again: as a motion goes that a damper slows down. Where equilibria of
-   * the laws lie on its way it comes to the first of them; from there on the
-   * laws themselves are solved. Damage that grows faster and faster is hurried.
+   * Springs in place of the laws, damaged as far as they have been opened,
+   * again and again: as a motion goes that a damper slows down. Where
+   * equilibria of the laws lie on its way it comes to the first of them; from
+   * there on the laws themselves are solved. Damage that grows faster and
+   * faster is hurried.
    */
   template <int dim>
   void QuasiStatic<dim>::follow_damped(std::vector<double> &q,
@@ -364,9 +362,8 @@ namespace nsfd
         const double decay = (1. - growth / last) / stretch;
         if (growth < near * decay)
           break;
-        stretch = 2. * faster * stretch * decay > 1.
-                      ? std::max(1., 0.5 / decay)
-                      : faster * stretch;
+        stretch = 2. * faster * stretch * decay > 1. ? std::max(1., 0.5 / decay)
+                                                     : faster * stretch;
       } else
         stretch = 1.;
       last = growth;

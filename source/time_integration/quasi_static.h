@@ -110,11 +110,11 @@ namespace nsfd
     std::unique_ptr<NonsmoothSolver<dim>> solver_;
     std::unique_ptr<Relaxation<dim>> relaxation_;
     std::unique_ptr<StaticLedger<dim>> ledger_;
-    double crossing_, h_; ///< s, of a cell; pseudo-time step of the rounds
-    double first_h_;      ///< of every solve
-    double goal_ = 0.;    ///< of the rounds: share of the forces left over
+    double crossing_, h_;      ///< s, of a cell; pseudo-time step of the rounds
+    double first_h_;           ///< of every solve
+    double goal_ = 0.;         ///< of the rounds: share of the forces left over
     std::vector<double> held_; ///< where springs in place of laws balance
-    bool solved_ = true;  ///< the point laws, in the last round
+    bool solved_ = true;       ///< the point laws, in the last round
     Counters counters_;
   };
 } // namespace nsfd

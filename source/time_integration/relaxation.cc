@@ -147,8 +147,8 @@ namespace nsfd
     const auto &problem = this->problem_;
     double stiffness = 0.;
     for (unsigned int m = 0; m < this->input_.materials.size(); ++m)
-      stiffness = std::max(stiffness,
-                           this->discretization_.extremes(m).stiffest.young);
+      stiffness =
+          std::max(stiffness, this->discretization_.extremes(m).stiffest.young);
     stiffness /= this->discretization_.cell_size();
     support_.resize(problem.n_points);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
@@ -210,8 +210,8 @@ namespace nsfd
       at_.time = time_ - h;
       dynamics.reinit(h, 1.);
       set_step(this->input_, this->discretization_,
-               this->discretization_.origins(), dynamics, *this->motion_, at_, h,
-               this->problem_);
+               this->discretization_.origins(), dynamics, *this->motion_, at_,
+               h, this->problem_);
       constrain(h);
       if (this->has_extrinsic_ && !joint_loads_known_) {
         std::vector<double> impulse = force_;

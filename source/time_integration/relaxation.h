@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/scene/scene_input.h"
 #include "moreau_jean.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <utility>
 #include <vector>
@@ -63,7 +63,7 @@ namespace nsfd
       /// of the step until the first point comes to its peak that is not there
       /// yet, by straight lines; 1: none does
       double share = 1.;
-      bool certain = false; ///< lines are right: it is elastic to its peak
+      bool certain = false;  ///< lines are right: it is elastic to its peak
       std::size_t point = 0; ///< local, where this rank has the first one
     };
     /** Collective, after held rounds that have settled. */
@@ -148,11 +148,11 @@ namespace nsfd
     std::vector<char> let_go_;   ///< extrinsic points that opened in this step
     std::vector<double> force_, pressure_, residual_;
     std::vector<LocalSolution<dim>> solutions_;
-    bool holds_ = false;      ///< laws are springs
-    std::vector<Reach> held_; ///< histories of these springs
-    std::vector<Interaction> interactions_;  ///< of the laws
-    std::vector<unsigned int> interaction_;  ///< of the points in these
-    std::vector<double> joint_loads_; ///< over the strength, at the start
+    bool holds_ = false;                    ///< laws are springs
+    std::vector<Reach> held_;               ///< histories of these springs
+    std::vector<Interaction> interactions_; ///< of the laws
+    std::vector<unsigned int> interaction_; ///< of the points in these
+    std::vector<double> joint_loads_;       ///< over the strength, at the start
     bool joint_loads_known_ = false;
     std::vector<double> support_; ///< w kappa of the points, N/m
     double round_off_ = 0., point_round_off_ = 0.; ///< as the next two

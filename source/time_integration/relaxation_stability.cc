@@ -28,7 +28,8 @@ namespace nsfd
                (x * x + y * y);
       };
       return a * l *
-             std::max(0., (secant(1. - step) - secant(1. + step)) / (2. * step));
+             std::max(0.,
+                      (secant(1. - step) - secant(1. + step)) / (2. * step));
     }
   } // namespace
 
@@ -76,16 +77,14 @@ namespace nsfd
       const double size = std::sqrt(
           w_h2 * (mixed ? softening_slope(*mixed, a, l, solution.reach)
                         : softening_slope(*interaction.law, a, l, d)));
-      const double tangential =
-          mixed ? 1.
-                : std::sqrt(interaction.stiffness_ratio *
-                            interaction.shear_weight);
+      const double tangential = mixed ? 1.
+                                      : std::sqrt(interaction.stiffness_ratio *
+                                                  interaction.shear_weight);
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
         const double u = problem.jump_free[k] + h_ * solution.velocity[c];
         if (D[k] > 0.)
-          direction[k] = size / d *
-                         (c == 0 ? std::max(0., u) : tangential * u);
+          direction[k] = size / d * (c == 0 ? std::max(0., u) : tangential * u);
       }
     }
     if (!communicator.any(any))

@@ -9,8 +9,8 @@ namespace nsfd
   void RowSystem<dim>::set(const std::vector<double> &D)
   {
     D_ = D;
-    empty_ = !dynamics_.communicator().any(
-      std::any_of(D.begin(), D.end(), [](const double d) { return d >= 0.; }));
+    empty_ = !dynamics_.communicator().any(std::any_of(
+        D.begin(), D.end(), [](const double d) { return d >= 0.; }));
     if (!empty_)
       dynamics_.prepare_preconditioner(D_);
     for (auto *vector : {&r_, &z_, &p_, &Wp_})

@@ -16,8 +16,9 @@ namespace nsfd
   {
   public:
     RowSystem(Dynamics<dim> &dynamics, std::size_t n_owned)
-      : dynamics_(dynamics), n_owned_(n_owned * dim)
-    {}
+        : dynamics_(dynamics), n_owned_(n_owned * dim)
+    {
+    }
 
     /** D >= 0 of the rows that take part, negative elsewhere. Collective. */
     void set(const std::vector<double> &D);

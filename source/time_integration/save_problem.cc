@@ -1,8 +1,8 @@
 #include "save_problem.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/condense.h"
 #include "nonsmooth/frictional_contact/fclib.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 

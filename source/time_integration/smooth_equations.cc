@@ -12,22 +12,18 @@ namespace nsfd
 {
   template <int dim>
   SmoothEquations<dim>::SmoothEquations(
-    const SceneInput &input, const Discretization<dim> &discretization,
-    Dynamics<dim> &dynamics, const State &start)
-    : input_(input)
-    , discretization_(discretization)
-    , dynamics_(dynamics)
-    , communicator_(dynamics.communicator())
-    , motion_(input, discretization)
-    , free_(make_elementwise_dynamics<dim>(
-        dynamics.communicator(), discretization.bodies(),
-        discretization.points()))
-    , problem_(constant_data(input, discretization))
-    , kind_(start.kind)
-    , n_(discretization.bodies().n_dofs())
-    , n_rows_(discretization.points().n_points * dim)
-    , joined_(*free_, discretization.points().n_owned)
-    , shifted_(dynamics, discretization.points().n_owned)
+      const SceneInput &input, const Discretization<dim> &discretization,
+      Dynamics<dim> &dynamics, const State &start)
+      : input_(input), discretization_(discretization), dynamics_(dynamics),
+        communicator_(dynamics.communicator()), motion_(input, discretization),
+        free_(make_elementwise_dynamics<dim>(dynamics.communicator(),
+                                             discretization.bodies(),
+                                             discretization.points())),
+        problem_(constant_data(input, discretization)), kind_(start.kind),
+        n_(discretization.bodies().n_dofs()),
+        n_rows_(discretization.points().n_points * dim),
+        joined_(*free_, discretization.points().n_owned),
+        shifted_(dynamics, discretization.points().n_owned)
   {
     free_->reinit(0., 1.);
     if (input.has_bonded_faces())
@@ -74,8 +70,8 @@ namespace nsfd
 
   template <int dim>
   double SmoothEquations<dim>::motion(const std::size_t point,
-                                              const unsigned int c,
-                                              const double t) const
+                                      const unsigned int c,
+                                      const double t) const
   {
     if (const Expression *velocity = motion_.velocity(point, c))
       return motion_.at(*velocity, point, t);
@@ -100,8 +96,7 @@ namespace nsfd
 
   /** For the work and the reactions alone. */
   template <int dim>
-  void SmoothEquations<dim>::set_motion_rate(const double t,
-                                                     Values &rate) const
+  void SmoothEquations<dim>::set_motion_rate(const double t, Values &rate) const
   {
     const double d = 1e-3 * input_.time.end;
     for (std::size_t k = 0; k < n_rows_; ++k) {
@@ -112,9 +107,8 @@ namespace nsfd
       const auto g = [&](const double at) {
         return motion(k / dim, k % dim, at);
       };
-      rate[k] =
-        (8. * (g(t + d) - g(t - d)) - (g(t + 2. * d) - g(t - 2. * d))) /
-        (12. * d);
+      rate[k] = (8. * (g(t + d) - g(t - d)) - (g(t + 2. * d) - g(t - 2. * d))) /
+                (12. * d);
     }
   }
 
@@ -171,14 +165,13 @@ namespace nsfd
     velocity_scale_ = communicator_.max(velocity_scale_);
     displacement_scale_ = velocity_scale_ * crossing;
     energy_scale_ = mass * velocity_scale_ * velocity_scale_;
-    inner_step_ =
-      1e-2 * (speed > 0. ? discretization_.crossing_time() : end);
+    inner_step_ = 1e-2 * (speed > 0. ? discretization_.crossing_time() : end);
   }
 
   /** @p result: v with the impulses that joints and driven boundaries need. */
   template <int dim>
   void SmoothEquations<dim>::project(const double t, const double *v,
-                                             Values &result)
+                                     Values &result)
   {
     result.assign(v, v + n_);
     if (joined_.empty())
@@ -188,14 +181,13 @@ namespace nsfd
     for (std::size_t k = 0; k < n_rows_; ++k)
       rows_[k] = given_[k] - rows_[k];
     counters.iterations += joined_.solve(
-      rows_, 1e-14 * velocity_scale_ * std::sqrt(double(n_rows_)), mu_);
+        rows_, 1e-14 * velocity_scale_ * std::sqrt(double(n_rows_)), mu_);
     free_->add_velocity_change(mu_.data(), result.data());
   }
 
   /** force -= H^T w C H q. */
   template <int dim>
-  void SmoothEquations<dim>::add_springs(const double *q,
-                                                 Values &force) const
+  void SmoothEquations<dim>::add_springs(const double *q, Values &force) const
   {
     Values jump(n_rows_, 0.), sum(n_);
     bool any = false;
@@ -205,10 +197,10 @@ namespace nsfd
       const bool elastic = kind_[i] == PointKind::elastic;
       any |= elastic;
       for (unsigned int c = 0; c < dim; ++c)
-        jump[i * dim + c] *= !elastic ? 0.
-                                      : -problem_.weight[i] *
-                                          joint.normal_stiffness *
-                                          (c == 0 ? 1. : joint.stiffness_ratio);
+        jump[i * dim + c] *=
+            !elastic ? 0.
+                     : -problem_.weight[i] * joint.normal_stiffness *
+                           (c == 0 ? 1. : joint.stiffness_ratio);
     }
     if (!communicator_.any(any))
       return;
@@ -220,7 +212,7 @@ namespace nsfd
   /** Without the forces of joints and driven boundaries. */
   template <int dim>
   auto SmoothEquations<dim>::acceleration(const double t, const double *q)
-    -> const Values &
+      -> const Values &
   {
     dynamics_.apply(Operator::stiffness, q, force_.data());
     const Values &external = loads(t);
@@ -234,7 +226,7 @@ namespace nsfd
   /** lambda: forces of the rows, W lambda = g' - H a. */
   template <int dim>
   void SmoothEquations<dim>::set_reaction_forces(const double t,
-                                                         const double *a)
+                                                 const double *a)
   {
     if (joined_.empty())
       return;
@@ -247,13 +239,13 @@ namespace nsfd
       rows_[k] = rate[k] - rows_[k];
     }
     counters.iterations += joined_.solve(
-      rows_, 1e-13 * communicator_.max(scale) * std::sqrt(double(n_rows_)),
-      lambda_);
+        rows_, 1e-13 * communicator_.max(scale) * std::sqrt(double(n_rows_)),
+        lambda_);
   }
 
   template <int dim>
   void SmoothEquations<dim>::evaluate(const double t, const Vector &y,
-                                              Vector &rate)
+                                      Vector &rate)
   {
     ++counters.evaluations;
     project(t, velocity(y), v_);
@@ -283,13 +275,12 @@ namespace nsfd
    * springs as rows of compliance 1 / (gamma^2 w C). x_q = b_q + gamma w.
    */
   template <int dim>
-  void SmoothEquations<dim>::solve_shifted(const double gamma,
-                                                   const Vector &b, Vector &x)
+  void SmoothEquations<dim>::solve_shifted(const double gamma, const Vector &b,
+                                           Vector &x)
   {
     ++counters.linear_solves;
     const auto spring = [&](const std::size_t k) {
-      const auto &joint =
-        problem_.interactions[problem_.interaction[k / dim]];
+      const auto &joint = problem_.interactions[problem_.interaction[k / dim]];
       return problem_.weight[k / dim] * joint.normal_stiffness *
              (k % dim == 0 ? 1. : joint.stiffness_ratio);
     };
@@ -303,7 +294,7 @@ namespace nsfd
       shifted_.set(D);
     }
     Values w(n_), momentum(n_), product(n_), P(n_rows_, 0.), U(n_rows_),
-      jump(n_rows_);
+        jump(n_rows_);
     dynamics_.apply(Operator::mass, velocity(b), momentum.data());
     dynamics_.apply(Operator::stiffness, displacement(b), product.data());
     for (std::size_t k = 0; k < n_; ++k)
@@ -319,7 +310,7 @@ namespace nsfd
         norm = std::max(norm, std::abs(U[k]));
       }
       counters.iterations += shifted_.solve(
-        U, 1e-13 * communicator_.max(norm) * std::sqrt(double(n_rows_)), P);
+          U, 1e-13 * communicator_.max(norm) * std::sqrt(double(n_rows_)), P);
       dynamics_.add_velocity_change(P.data(), w.data());
     }
     for (std::size_t k = 0; k < n_; ++k)

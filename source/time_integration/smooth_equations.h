@@ -77,7 +77,6 @@ namespace nsfd
     double inner_step_ = 0.;
     double loads_time_ = 0.;
     bool loads_known_ = false;
-    Values loads_, given_, mu_, lambda_, rows_, force_, rate_, v_,
-      body_;
+    Values loads_, given_, mu_, lambda_, rows_, force_, rate_, v_, body_;
   };
 } // namespace nsfd

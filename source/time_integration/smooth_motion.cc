@@ -32,7 +32,7 @@ namespace nsfd
     Equations(const SceneInput &input,
               const Discretization<dim> &discretization,
               Dynamics<dim> &dynamics, const State &start)
-      : SmoothEquations<dim>(input, discretization, dynamics, start)
+        : SmoothEquations<dim>(input, discretization, dynamics, start)
     {
       reactions.assign(discretization.driven_boundaries().size() * dim, 0.);
     }
@@ -53,8 +53,9 @@ namespace nsfd
     const double tolerance = this->input_.time.tolerance;
     using Solver = dealii::SUNDIALS::ARKode<Vector>;
     const typename Solver::AdditionalData data(
-      t, t + h, std::min(this->inner_step_, h), 2. * h, 1e-12 * h, this->input_.time.order,
-      10, false, false, true, 0, tolerance, tolerance);
+        t, t + h, std::min(this->inner_step_, h), 2. * h, 1e-12 * h,
+        this->input_.time.order, 10, false, false, true, 0, tolerance,
+        tolerance);
     Solver solver(data, this->communicator_.mpi());
     void *memory = nullptr;
     // what fails in a callback must not leave through C code
@@ -72,7 +73,8 @@ namespace nsfd
       }
       return 0;
     };
-    const auto rate = [&, this](const double at, const Vector &in, Vector &out) {
+    const auto rate = [&, this](const double at, const Vector &in,
+                                Vector &out) {
       return guard([&] { this->evaluate(at, in, out); });
     };
     if (this->input_.time.implicit_pairs) {
@@ -80,14 +82,14 @@ namespace nsfd
       solver.jacobian_times_vector = [](const Vector &, Vector &, double,
                                         const Vector &,
                                         const Vector &) { return 0; };
-      solver.solve_linearized_system =
-        [&](auto &, auto &, Vector &x, const Vector &b, double) {
-          return guard([&] {
-            double gamma = 0.;
-            ARKStepGetCurrentGamma(memory, &gamma);
-            this->solve_shifted(gamma, b, x);
-          });
-        };
+      solver.solve_linearized_system = [&](auto &, auto &, Vector &x,
+                                           const Vector &b, double) {
+        return guard([&] {
+          double gamma = 0.;
+          ARKStepGetCurrentGamma(memory, &gamma);
+          this->solve_shifted(gamma, b, x);
+        });
+      };
     } else
       solver.explicit_function = rate;
     Vector tolerances(y);
@@ -107,9 +109,9 @@ namespace nsfd
     } catch (const std::exception &) {
       if (stopped)
         throw StopRequested();
-      throw StepRejected(fmt::format(
-        "ARKODE could not go on between t = {:.6g} and {:.6g}{}", t, t + h,
-        failure.empty() ? "" : ": " + failure));
+      throw StepRejected(
+          fmt::format("ARKODE could not go on between t = {:.6g} and {:.6g}{}",
+                      t, t + h, failure.empty() ? "" : ": " + failure));
     }
     long int steps = 0;
     ARKStepGetNumSteps(memory, &steps);
@@ -160,26 +162,30 @@ namespace nsfd
     carry_history(old, next);
     next.step = old.step + 1;
     next.time = t;
-    next.displacement.assign(this->displacement(y), this->displacement(y) + this->n_);
+    next.displacement.assign(this->displacement(y),
+                             this->displacement(y) + this->n_);
     this->project(t, this->velocity(y), next.velocity);
     next.jump.resize(this->n_rows_);
     next.relative_velocity.resize(this->n_rows_);
     this->free_->relative_velocity(next.displacement.data(), next.jump.data());
     this->free_->relative_velocity(next.velocity.data(),
-                             next.relative_velocity.data());
-    this->set_reaction_forces(t, this->acceleration(t, next.displacement.data()).data());
+                                   next.relative_velocity.data());
+    this->set_reaction_forces(
+        t, this->acceleration(t, next.displacement.data()).data());
 
     next.impulse.assign(this->n_rows_, 0.);
     Values stored(this->problem_.n_owned, 0.);
     double drift = 0.;
     for (std::size_t i = 0; i < this->kind_.size(); ++i) {
-      const auto &joint = this->problem_.interactions[this->problem_.interaction[i]];
+      const auto &joint =
+          this->problem_.interactions[this->problem_.interaction[i]];
       double square = 0.;
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
         const double u = next.jump[k];
         if (this->kind_[i] == PointKind::elastic) {
-          const double pull = this->problem_.weight[i] * joint.normal_stiffness *
+          const double pull = this->problem_.weight[i] *
+                              joint.normal_stiffness *
                               (c == 0 ? 1. : joint.stiffness_ratio) * u;
           next.impulse[k] = -h * pull;
           if (i < this->problem_.n_owned)
@@ -189,14 +195,17 @@ namespace nsfd
           square += u * u;
         }
       }
-      if (this->discretization_.origins()[i].kind == PointOrigin::Kind::interface)
+      if (this->discretization_.origins()[i].kind ==
+          PointOrigin::Kind::interface)
         drift = std::max(drift, std::sqrt(square));
     }
-    next.rigid_drift = std::max(old.rigid_drift, this->communicator_.max(drift));
+    next.rigid_drift =
+        std::max(old.rigid_drift, this->communicator_.max(drift));
 
     const auto half = [&](const Operator op, const Values &x) {
       this->dynamics_.apply(op, x.data(), this->body_.data());
-      return this->communicator_.dot(x.data(), this->body_.data(), this->n_) / 2.;
+      return this->communicator_.dot(x.data(), this->body_.data(), this->n_) /
+             2.;
     };
     next.energy = old.energy;
     next.energy.kinetic = half(Operator::mass, next.velocity);
@@ -213,22 +222,25 @@ namespace nsfd
       const PointOrigin origin = this->discretization_.origins()[i];
       if (origin.kind != PointOrigin::Kind::motion)
         continue;
-      const std::size_t d = std::size_t(
-        std::find(driven.begin(), driven.end(), origin.block) - driven.begin());
+      const std::size_t d =
+          std::size_t(std::find(driven.begin(), driven.end(), origin.block) -
+                      driven.begin());
       for (unsigned int c = 0; c < dim; ++c)
         terms[(d * dim + c) * n_owned + i] = next.impulse[i * dim + c] / h;
     }
     if (!reactions.empty())
-      reactions = this->communicator_.sums(terms.data(), reactions.size(), n_owned);
+      reactions =
+          this->communicator_.sums(terms.data(), reactions.size(), n_owned);
   }
 
   template <int dim>
   SmoothMotion<dim>::SmoothMotion(const SceneInput &input,
                                   const Discretization<dim> &discretization,
                                   Dynamics<dim> &dynamics, const State &start)
-    : equations_(std::make_unique<Equations>(input, discretization, dynamics,
-                                             start))
-  {}
+      : equations_(
+            std::make_unique<Equations>(input, discretization, dynamics, start))
+  {
+  }
 
   template <int dim>
   SmoothMotion<dim>::~SmoothMotion() = default;

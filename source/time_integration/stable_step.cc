@@ -54,7 +54,7 @@ namespace nsfd
       // of L^{-1} K L^{-T}, M = L L^T
       const Block L = cholesky(body.mass);
       const Block A =
-        forward_solve(L, forward_solve(L, body.stiffness).transposed());
+          forward_solve(L, forward_solve(L, body.stiffness).transposed());
       largest = std::max(largest, largest_eigenpair(A)[0]);
     }
     return step_of(largest);
@@ -73,8 +73,7 @@ namespace nsfd
     std::vector<double> alpha, beta;
     const auto norm = [&] {
       dynamics.apply(Operator::mass, w.data(), Mw.data());
-      return std::sqrt(
-        std::max(0., communicator.dot(w.data(), Mw.data(), n)));
+      return std::sqrt(std::max(0., communicator.dot(w.data(), Mw.data(), n)));
     };
     double length = norm(), bound = 0.;
     for (unsigned int k = 0; k < 300 && length > 0.; ++k) {

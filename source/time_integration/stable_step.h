@@ -21,6 +21,6 @@ namespace nsfd
    * Collective.
    */
   template <int dim>
-  double stable_step(const Dynamics<dim> &dynamics, double enough =
-                     std::numeric_limits<double>::infinity());
+  double stable_step(const Dynamics<dim> &dynamics,
+                     double enough = std::numeric_limits<double>::infinity());
 } // namespace nsfd

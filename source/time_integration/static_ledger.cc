@@ -110,8 +110,8 @@ namespace nsfd
       const Secant b =
           frozen_state<dim>(problem_, i, reach_of<dim>(interaction, u), 0.)
               .secant;
-      traction[0] = (u[0] > 0. ? b.normal : problem_.compression_stiffness[i]) *
-                    u[0];
+      traction[0] =
+          (u[0] > 0. ? b.normal : problem_.compression_stiffness[i]) * u[0];
       for (unsigned int c = 1; c < dim; ++c)
         traction[c] = b.tangential * u[c];
       return traction;

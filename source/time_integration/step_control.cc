@@ -14,16 +14,13 @@ namespace nsfd
     constexpr double round_off = 1e-8;
   } // namespace
 
-  StepControl::StepControl(const double end,
-                           const double base,
+  StepControl::StepControl(const double end, const double base,
                            const unsigned int maximum_halvings,
                            const double start)
-    : end_(end)
-    , ceiling_(std::numeric_limits<double>::infinity())
-    , n_base_(static_cast<unsigned long long>(
-        std::fmax(1., std::ceil((end - start) / base * (1. - round_off)))))
-    , maximum_level_(maximum_halvings)
-    , start_(start)
+      : end_(end), ceiling_(std::numeric_limits<double>::infinity()),
+        n_base_(static_cast<unsigned long long>(
+            std::fmax(1., std::ceil((end - start) / base * (1. - round_off))))),
+        maximum_level_(maximum_halvings), start_(start)
   {
     base_ = (end - start) / double(n_base_);
   }
@@ -34,7 +31,7 @@ namespace nsfd
       return end_;
     return start_ +
            (double(base_count_) + std::ldexp(double(position_), -int(level_))) *
-             base_;
+               base_;
   }
 
   double StepControl::step() const { return std::ldexp(base_, -int(level_)); }

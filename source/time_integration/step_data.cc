@@ -3,9 +3,9 @@
 #include "cohesive_laws/stiffened_law.h"
 #include "driven_motion.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "cohesive_laws/friction_weight.h"
 #include "discretization/point_factors.h"
+#include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
 #include <algorithm>
@@ -82,9 +82,8 @@ namespace nsfd
 
     /** Joints, springs in compression, contact by forecast. */
     template <int dim>
-    void set_point(const TimeInput &time, const double extent,
-                   const State &old, const std::size_t i,
-                   OneStepProblem<dim> &problem)
+    void set_point(const TimeInput &time, const double extent, const State &old,
+                   const std::size_t i, OneStepProblem<dim> &problem)
     {
       constexpr auto all_components = std::uint8_t((1u << dim) - 1u);
       const double h = problem.time_step;
@@ -202,8 +201,8 @@ namespace nsfd
       for (std::size_t j = 0; j < origins.size(); ++j) {
         if (origins[j].kind != PointOrigin::Kind::motion)
           continue;
-        const std::size_t i = point_of_step(
-            j, points.n_owned, problem.n_points - points.n_points);
+        const std::size_t i = point_of_step(j, points.n_owned,
+                                            problem.n_points - points.n_points);
         problem.mask[i] = 0;
         for (unsigned int c = 0; c < dim; ++c) {
           if (!motion.drives(j, c))
@@ -293,12 +292,12 @@ namespace nsfd
       case PointOrigin::Kind::interface: {
         problem.interaction[i] = origin.block;
         if (origin.compliance != 1.) {
-          const auto [place, is_new] = stiffer_ones.emplace(
-              std::pair(origin.block, origin.compliance),
-              unsigned(problem.interactions.size()));
+          const auto [place, is_new] =
+              stiffer_ones.emplace(std::pair(origin.block, origin.compliance),
+                                   unsigned(problem.interactions.size()));
           if (is_new)
-            problem.interactions.push_back(stiffer(
-                problem.interactions[origin.block], origin.compliance));
+            problem.interactions.push_back(
+                stiffer(problem.interactions[origin.block], origin.compliance));
           problem.interaction[i] = place->second;
         }
         const PointFactors factors = point_factors<dim>(
@@ -353,13 +352,11 @@ namespace nsfd
   template OneStepProblem<3> constant_data(const SceneInput &,
                                            const Discretization<3> &);
   template void set_step(const SceneInput &, const Discretization<2> &,
-                         const std::vector<PointOrigin> &,
-                         const Dynamics<2> &, const DrivenMotion<2> &,
-                         const State &, double,
+                         const std::vector<PointOrigin> &, const Dynamics<2> &,
+                         const DrivenMotion<2> &, const State &, double,
                          OneStepProblem<2> &);
   template void set_step(const SceneInput &, const Discretization<3> &,
-                         const std::vector<PointOrigin> &,
-                         const Dynamics<3> &, const DrivenMotion<3> &,
-                         const State &, double,
+                         const std::vector<PointOrigin> &, const Dynamics<3> &,
+                         const DrivenMotion<3> &, const State &, double,
                          OneStepProblem<3> &);
 } // namespace nsfd

@@ -1,7 +1,7 @@
 #include "uniqueness.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
 #include <algorithm>
@@ -94,9 +94,9 @@ namespace nsfd
                           const double end)
     {
       const auto &interaction = problem.interactions[problem.interaction[i]];
-      const double opening = std::max(state.opening_max[i] * (1. - 1e-6),
-                                      interaction.law->peak_opening() /
-                                          problem.opening_factor[i]);
+      const double opening =
+          std::max(state.opening_max[i] * (1. - 1e-6),
+                   interaction.law->peak_opening() / problem.opening_factor[i]);
       const auto reaches = [&](const double t) {
         double square = 0.;
         for (unsigned int c = 0; c < dim; ++c) {
@@ -175,10 +175,10 @@ namespace nsfd
                                      const double h) const
   {
     const auto &law = *problem.interactions[problem.interaction[point]].law;
-    const double slope =
-        law.mixed() ? std::max(law.steepest_softening(),
-                               law.mixed()->steepest_shear_softening())
-                    : law.steepest_softening();
+    const double slope = law.mixed()
+                             ? std::max(law.steepest_softening(),
+                                        law.mixed()->steepest_shear_softening())
+                             : law.steepest_softening();
     return h * h * theta_ * chi_ * problem.strength_factor[point] *
            problem.opening_factor[point] * slope *
            flexibility_[dynamics_.points().face_of[point]];
@@ -227,8 +227,7 @@ namespace nsfd
 
   template <int dim>
   double UniquenessBound<dim>::next_step(const OneStepProblem<dim> &problem,
-                                         const State &state,
-                                         const double h,
+                                         const State &state, const double h,
                                          const double share) const
   {
     double result = h;

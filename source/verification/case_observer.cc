@@ -1,7 +1,7 @@
 #include "case_observer.h"
 
-#include "core/gather.h"
 #include "bodies/cell_stresses.h"
+#include "core/gather.h"
 #include "postprocess/face_pieces.h"
 
 #include "core/archive.h"

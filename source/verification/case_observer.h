@@ -1,9 +1,9 @@
 #pragma once
 
-#include "nsfd/scene/scene_input.h"
 #include "nsfd/discretization/discretization.h"
-#include "postprocess/crack_shape.h"
+#include "nsfd/scene/scene_input.h"
 #include "nsfd/verification/verification_case.h"
+#include "postprocess/crack_shape.h"
 #include "state/state.h"
 
 #include <map>
@@ -50,7 +50,7 @@ namespace nsfd
 
     VerificationCase &case_;
     const TimeInput &time_;
-    double time_step_ = 0.; ///< the last one
+    double time_step_ = 0.;                ///< the last one
     std::optional<bool> has_rigid_bodies_; ///< of large motions, on any rank
     std::vector<double> first_beta_; ///< at the start, if the case asks for it
     const Discretization<dim> &discretization_;

@@ -58,10 +58,10 @@ namespace nsfd
       text += fmt::format(" {} {:.3g} MB,", owner, bytes / 1e6);
     text += fmt::format(" at most {:.0f} MB resident\n", peak_memory_mb);
     if (cost.applications > 0.)
-      text += fmt::format("  one application of W: {:.3g} us, {:.3g} Mflop, "
-                          "{:.3g} MB",
-                          1e6 * cost.seconds, 1e-6 * cost.flops,
-                          1e-6 * cost.bytes);
+      text +=
+          fmt::format("  one application of W: {:.3g} us, {:.3g} Mflop, "
+                      "{:.3g} MB",
+                      1e6 * cost.seconds, 1e-6 * cost.flops, 1e-6 * cost.bytes);
     if (cost.has_limits()) {
       const char *limit = cost.limited_by_copy() ? "copy" : "product";
       text += fmt::format(
@@ -71,11 +71,11 @@ namespace nsfd
           1e-9 * cost.product_flops_per_second,
           1e-9 * cost.bytes / cost.seconds, 1e-9 * cost.copy_bytes_per_second);
       // both are measured on a machine that may do something else meanwhile
-      text += cost.share_of_limit() > 1.
-                  ? fmt::format("faster than the nearer limit ({}) came out",
-                                limit)
-                  : fmt::format("{:.0f} % of the nearer limit ({})",
-                                100. * cost.share_of_limit(), limit);
+      text +=
+          cost.share_of_limit() > 1.
+              ? fmt::format("faster than the nearer limit ({}) came out", limit)
+              : fmt::format("{:.0f} % of the nearer limit ({})",
+                            100. * cost.share_of_limit(), limit);
     }
     return text + (cost.applications > 0. ? "\n" : "");
   }

@@ -26,8 +26,7 @@ namespace nsfd
     explicit Units(const unsigned int dimension)
         : energy(dimension == 3 ? "J" : "J/m"),
           force(dimension == 3 ? "N" : "N/m"),
-          area(dimension == 3 ? "m²" : "m"),
-          mass(dimension == 3 ? "g" : "g/m"),
+          area(dimension == 3 ? "m²" : "m"), mass(dimension == 3 ? "g" : "g/m"),
           broken(dimension == 3 ? "broken area" : "broken length")
     {
     }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "records/engineering.h"
 #include "markup.h"
 #include "nsfd/records/run_record.h"
+#include "records/engineering.h"
 
 #include <array>
 #include <string>

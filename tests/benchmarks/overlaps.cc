@@ -3,8 +3,8 @@
 // Reads fields that a run with `set format = hdf5` in section `Output` has left
 // and looks at all pairs of cells with different values of the cell data DATA
 // (default: fragment), by separating axes: nothing of the contact search of the
-// run is in it. Cells are taken as convex and straight, as they are for degree 1.
-// Prints one line per time and, last, the deepest of all.
+// run is in it. Cells are taken as convex and straight, as they are for
+// degree 1. Prints one line per time and, last, the deepest of all.
 #include "../unit/separating_axes.h"
 
 #include "core/hdf5_file.h"
@@ -43,8 +43,7 @@ namespace
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   }
 
-  struct Body
-  {
+  struct Body {
     Convex shape;
     Vector3 low, high;
     double owner = 0.;
@@ -132,9 +131,8 @@ namespace
 
   double deepest(std::vector<Body> all)
   {
-    std::sort(all.begin(), all.end(), [](const Body &a, const Body &b) {
-      return a.low[0] < b.low[0];
-    });
+    std::sort(all.begin(), all.end(),
+              [](const Body &a, const Body &b) { return a.low[0] < b.low[0]; });
     double result = 0.;
     for (std::size_t a = 0; a < all.size(); ++a)
       for (std::size_t b = a + 1;
@@ -143,8 +141,8 @@ namespace
             all[b].high[1] < all[a].low[1] || all[a].high[2] < all[b].low[2] ||
             all[b].high[2] < all[a].low[2])
           continue;
-        result = std::max(result,
-                          -separation(all[a].shape, all[b].shape).distance);
+        result =
+            std::max(result, -separation(all[a].shape, all[b].shape).distance);
       }
     return result;
   }

@@ -7,18 +7,18 @@
 #include <vector>
 
 /**
- * The expanding ring of prm/verification/ring.prm once more, without any part of
- * nsfd: bars of two lumped masses, central differences, the linear law with
- * unloading to the origin, inelastic contact, periodic. It answers one question:
- * are the sizes of fragments those of the model, where they are not those of the
- * published fits? In units of c, R, E and t_0; G = 1, so that s_0 = 1.
+ * The expanding ring of prm/verification/ring.prm once more, without any part
+ * of nsfd: bars of two lumped masses, central differences, the linear law with
+ * unloading to the origin, inelastic contact, periodic. It answers one
+ * question: are the sizes of fragments those of the model, where they are not
+ * those of the published fits? In units of c, R, E and t_0; G = 1, so that s_0
+ * = 1.
  */
 namespace
 {
-  struct Result
-  {
-    double size = 0.;      ///< mean, over s_0
-    double per_face = 0.;  ///< dissipated over G and broken faces
+  struct Result {
+    double size = 0.;     ///< mean, over s_0
+    double per_face = 0.; ///< dissipated over G and broken faces
     unsigned int broken = 0;
   };
 
@@ -34,7 +34,8 @@ namespace
   public:
     Ring(const double rate, const double cell, const unsigned int n,
          const double scatter, const unsigned int seed)
-        : n_(n), cell_(cell), turn_(rate * cell * n), time_((1. - scatter) / rate)
+        : n_(n), cell_(cell), turn_(rate * cell * n),
+          time_((1. - scatter) / rate)
     {
       std::mt19937 generator(seed);
       std::uniform_real_distribution<double> noise(-scatter, scatter);
@@ -152,9 +153,10 @@ namespace
 
 int main()
 {
-  fmt::print("| x | scatter | cells per size | size / s_0, 4 seeds | over Zhou "
-             "| over Levy | dissipated per face / G |\n|---|---|---|---|---|---|"
-             "---|\n");
+  fmt::print(
+      "| x | scatter | cells per size | size / s_0, 4 seeds | over Zhou "
+      "| over Levy | dissipated per face / G |\n|---|---|---|---|---|---|"
+      "---|\n");
   for (const double x : {1., 10., 31.6, 100., 316.})
     for (const double scatter : {0.01, 1e-3, 1e-5})
       print(x, scatter, 14);

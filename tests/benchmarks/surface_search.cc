@@ -19,8 +19,7 @@ namespace
   constexpr double gap = 0.02, reach = 0.05; // in sizes of a cell
 
   template <int dim>
-  struct Heap
-  {
+  struct Heap {
     Surfaces<dim> surfaces;
     std::vector<double> x;
   };
@@ -70,8 +69,7 @@ namespace
     return heap;
   }
 
-  struct Cost
-  {
+  struct Cost {
     double search = 0., kept = 0.; ///< us per facet
   };
 

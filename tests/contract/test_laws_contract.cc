@@ -1,8 +1,8 @@
 #include "../unit/make_law.h"
 
-#include "nsfd/scene/scene_input.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 
@@ -305,8 +305,7 @@ namespace test_laws_contract
 
     Reach history() const
     {
-      return {problem.opening_max[0],
-              law_.mixed() ? problem.slip_max[0] : 0.};
+      return {problem.opening_max[0], law_.mixed() ? problem.slip_max[0] : 0.};
     }
 
     void prepare()

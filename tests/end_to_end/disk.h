@@ -15,9 +15,8 @@ namespace end_to_end
         : place_(place)
     {
       std::filesystem::create_directories(place);
-      mounted_ =
-          mount("nsfd", place.c_str(), "tmpfs", 0, ("size=" + size).c_str()) ==
-          0;
+      mounted_ = mount("nsfd", place.c_str(), "tmpfs", 0,
+                       ("size=" + size).c_str()) == 0;
     }
     ~Disk()
     {

@@ -13,7 +13,8 @@ namespace end_to_end::test_adaptivity
 {
   namespace
   {
-    const std::string waves = R"(# waves.prm - a hit plate whose mesh follows its waves; a seam tears.
+    const std::string waves =
+        R"(# waves.prm - a hit plate whose mesh follows its waves; a seam tears.
 set dimension = 2
 subsection Mesh
   set type         = rectangle
@@ -105,8 +106,7 @@ end
         launch.ranks = ranks;
         const Result more =
             good_run(workspace, name + "_" + std::to_string(ranks), launch);
-        EXPECT_EQ(counter(more, "mesh_changes"),
-                  counter(one, "mesh_changes"));
+        EXPECT_EQ(counter(more, "mesh_changes"), counter(one, "mesh_changes"));
         expect_below(name + " on " + std::to_string(ranks) + " ranks",
                      energy_difference(one.history, more.history), 1e-9);
       }
@@ -132,12 +132,12 @@ end
       std::vector<double> error;
       for (const unsigned int n : {4u, 8u, 16u}) {
         const Result result = good_run(
-            workspace,
-            "p" + std::to_string(degree) + "n" + std::to_string(n),
+            workspace, "p" + std::to_string(degree) + "n" + std::to_string(n),
             {file,
              {"Discretization/degree=" + std::to_string(degree),
               "Constants/n=" + std::to_string(n), "Time/end=0.05 ms",
-              "Time/step=" + std::to_string(degree < 3 ? 16 : 1) + " us * 4 / n"}});
+              "Time/step=" + std::to_string(degree < 3 ? 16 : 1) +
+                  " us * 4 / n"}});
         EXPECT_GT(result.summary["cells"].get<double>(), 1.5 * n * n);
         error.push_back(result.error("displacement_L2"));
       }

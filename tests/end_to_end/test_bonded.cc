@@ -77,8 +77,7 @@ namespace end_to_end::test_bonded
           {scene("mode"),
            {"Mesh/cells=" + cells + ", 1",
             "Discretization/degree=" + std::to_string(degree),
-            "Interface: joints/law=bonded", no_fields,
-            "Time/step=0.2 us"}});
+            "Interface: joints/law=bonded", no_fields, "Time/step=0.2 us"}});
       ASSERT_TRUE(result.completed());
       errors.push_back(result.error("displacement_L2"));
     }

@@ -29,8 +29,8 @@ namespace end_to_end::test_certificate
     }
 
     /** Something was said while it ran. */
-    bool has_note(const Workspace &workspace,
-                  const std::filesystem::path &file, const std::string &setting)
+    bool has_note(const Workspace &workspace, const std::filesystem::path &file,
+                  const std::string &setting)
     {
       return nsfd(workspace, {file.string(), "--force", "--set", setting,
                               "--set", "Output/report=false"})
@@ -58,9 +58,9 @@ namespace end_to_end::test_certificate
     const Result result =
         good_run(workspace, "ball", {scene("ball"), {}, 1, true});
     EXPECT_TRUE(result.summary.at("certificate").at("ok").get<bool>());
-    for (const char *line : {"end", "residual", "penetration", "ledger defect",
-                             "given by impact", "given by time scheme",
-                             "uniqueness", "taken again"})
+    for (const char *line :
+         {"end", "residual", "penetration", "ledger defect", "given by impact",
+          "given by time scheme", "uniqueness", "taken again"})
       EXPECT_EQ(verdict(result, line), "ok") << line;
     EXPECT_EQ(verdict(result, "cohesive zone"), "none");
     const auto &residual =
@@ -105,18 +105,16 @@ namespace end_to_end::test_certificate
         good_run(workspace, "static", {scene("static_crossed")});
     EXPECT_EQ(verdict(result, "imbalance"), "ok");
     EXPECT_EQ(verdict(result, "solution jumps"), "ok");
-    EXPECT_EQ(verdict(result, "residual"), "no such line")
-        << "no step in time";
+    EXPECT_EQ(verdict(result, "residual"), "no such line") << "no step in time";
   }
 
   TEST(Certificates, OfAnIntegrator)
   {
     const Workspace workspace;
-    const Result result =
-        good_run(workspace, "smooth",
-                 {scene("mode"),
-                  {"Time/scheme=arkode", "Time/pairs=explicit",
-                   "Time/step=20 us"}});
+    const Result result = good_run(
+        workspace, "smooth",
+        {scene("mode"),
+         {"Time/scheme=arkode", "Time/pairs=explicit", "Time/step=20 us"}});
     EXPECT_EQ(verdict(result, "residual"), "not measured");
     EXPECT_FALSE(result.summary.at("certificate").at("ok").get<bool>());
     EXPECT_EQ(result.summary.at("certificate").at("verdict"),
@@ -128,9 +126,8 @@ namespace end_to_end::test_certificate
   TEST(Certificates, OfAFallingWall)
   {
     const Workspace workspace;
-    const Result result = good_run(workspace, "wall",
-                                   {benchmark("falling_wall"),
-                                    {"Time/end=0.5 s"}});
+    const Result result = good_run(
+        workspace, "wall", {benchmark("falling_wall"), {"Time/end=0.5 s"}});
     EXPECT_GT(result.number("penetration_max"), 1e-4);
     EXPECT_EQ(verdict(result, "penetration"), "ok");
     EXPECT_EQ(verdict(result, "ledger defect"), "ok");
@@ -210,13 +207,11 @@ subsection Time
   set step = 20 us
 end
 )");
-    const Result far =
-        run(workspace, "far", {file, {"Constants/D=0.04"}});
+    const Result far = run(workspace, "far", {file, {"Constants/D=0.04"}});
     ASSERT_TRUE(far.completed()) << far.description();
     EXPECT_EQ(verdict(far, "strain"), "not ok");
     EXPECT_TRUE(has_note(workspace, file, "Constants/D=0.04"));
-    const Result near =
-        run(workspace, "near", {file, {"Constants/D=0.001"}});
+    const Result near = run(workspace, "near", {file, {"Constants/D=0.001"}});
     EXPECT_EQ(verdict(near, "strain"), "ok");
   }
 
@@ -276,11 +271,12 @@ subsection Time
 end
 )");
     for (const char *height : {"0", "0.1", "1e4", "-777.7"}) {
-      const Result result =
-          run(workspace, std::string("rest") + height, {file, {std::string("Constants/Y=") + height}});
+      const Result result = run(workspace, std::string("rest") + height,
+                                {file, {std::string("Constants/Y=") + height}});
       ASSERT_TRUE(result.completed()) << result.description();
-      for (const char *line : {"penetration", "ledger defect", "given by friction",
-                               "given by impact", "given by time scheme"})
+      for (const char *line :
+           {"penetration", "ledger defect", "given by friction",
+            "given by impact", "given by time scheme"})
         EXPECT_EQ(verdict(result, line), "ok")
             << line << " at " << height << "\n"
             << result.outcome.out;
@@ -334,8 +330,7 @@ end
     ASSERT_TRUE(far.completed()) << far.description();
     EXPECT_EQ(verdict(far, "way of a step"), "not ok");
     EXPECT_TRUE(has_note(workspace, file, "Time/step=3 ms"));
-    const Result near =
-        run(workspace, "near", {file, {"Time/step=0.5 ms"}});
+    const Result near = run(workspace, "near", {file, {"Time/step=0.5 ms"}});
     EXPECT_EQ(verdict(near, "way of a step"), "ok");
   }
 
@@ -355,24 +350,23 @@ end
   TEST(Certificates, SurviveARestart)
   {
     const Workspace workspace;
-    const Launch what = {quickstart(),
-                         {"Mesh/cells=12, 9", "Time/step=0.8 us",
-                          "Time/end=40 us"}};
+    const Launch what = {
+        quickstart(),
+        {"Mesh/cells=12, 9", "Time/step=0.8 us", "Time/end=40 us"}};
     const Result whole = good_run(workspace, "whole", what);
     const Launch stored = storing(what, 20);
     good_run(workspace, "resumed", stored);
     std::filesystem::remove(newest(workspace.path() / "resumed"));
     const Result after = resume(workspace, "resumed", stored);
     ASSERT_TRUE(after.completed()) << after.description();
-    EXPECT_EQ(whole.summary.at("certificate"),
-              after.summary.at("certificate"));
+    EXPECT_EQ(whole.summary.at("certificate"), after.summary.at("certificate"));
   }
 
   TEST(Certificates, AreNotOnAQuietTerminal)
   {
     const Workspace workspace;
-    const Outcome outcome = nsfd(
-        workspace, {scene("ball").string(), "--quiet", "--set", "Time/end=0.1"});
+    const Outcome outcome = nsfd(workspace, {scene("ball").string(), "--quiet",
+                                             "--set", "Time/end=0.1"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(outcome.out, "");
   }

@@ -25,7 +25,8 @@ namespace end_to_end::test_command_line
 
     const std::string stop_scene = scene("stop").string();
     const std::string paper_figure =
-        (fs::path(NSFD_SOURCE_DIR) / "prm" / "paper" / "figure_03.prm").string();
+        (fs::path(NSFD_SOURCE_DIR) / "prm" / "paper" / "figure_03.prm")
+            .string();
     const std::string fracture_scene =
         (quickstart().parent_path() / "benchmarks/fracture_everywhere.prm")
             .string();
@@ -177,8 +178,8 @@ end
     const std::string help = nsfd(workspace, {"--help"}).out;
     for (const char *word :
          {"--set", "--output", "--force", "--check", "--print-parameters",
-          "--list", "--version", "--help", "--quiet", "--resume", "nsfd law", "nsfd solve",
-          "nsfd study"})
+          "--list", "--version", "--help", "--quiet", "--resume", "nsfd law",
+          "nsfd solve", "nsfd study"})
       EXPECT_NE(help.find(word), std::string::npos) << word;
   }
 

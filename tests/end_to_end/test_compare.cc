@@ -63,12 +63,12 @@ namespace end_to_end::test_compare
     const Outcome outcome = nsfd(workspace, {"compare", "a", "b"});
     EXPECT_EQ(outcome.exit_code, 0) << "differences are no error";
     for (const char *text :
-         {"parameters: 1 of ", "Interface: midline/toughness  0.5 J/m^2  0.4 J/m^2",
+         {"parameters: 1 of ",
+          "Interface: midline/toughness  0.5 J/m^2  0.4 J/m^2",
           "energy/kinetic", "dissipated/damage", "certificate",
           "curves over t = ", "fragments"})
-      EXPECT_NE(outcome.out.find(text), std::string::npos)
-          << text << "\n"
-          << outcome.out;
+      EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n"
+                                                           << outcome.out;
     EXPECT_EQ(outcome.out.find("Output/directory"), std::string::npos);
     EXPECT_EQ(all_files(workspace), before) << "nothing is written";
   }
@@ -96,11 +96,10 @@ namespace end_to_end::test_compare
           json.at("curves").begin(), json.at("curves").end(),
           [&](const auto &curve) { return curve.at("name") == name; });
       ASSERT_NE(found, json.at("curves").end());
-      expect_below(std::string("difference of ") + name,
-                   std::abs(found->at("largest").get<double>() *
-                                energy / largest -
-                            1.),
-                   1e-12, "the same sum");
+      expect_below(
+          std::string("difference of ") + name,
+          std::abs(found->at("largest").get<double>() * energy / largest - 1.),
+          1e-12, "the same sum");
       EXPECT_LE(found->at("mean"), found->at("largest"));
     }
     const auto number = std::find_if(
@@ -161,9 +160,9 @@ namespace end_to_end::test_compare
     const Outcome outcome =
         nsfd(workspace, {"compare", "kept/a.json", "kept/b.json"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    for (const char *text : {"parameters: not beside every summary",
-                             "curves: not beside every summary",
-                             "energy/kinetic"})
+    for (const char *text :
+         {"parameters: not beside every summary",
+          "curves: not beside every summary", "energy/kinetic"})
       EXPECT_NE(outcome.out.find(text), std::string::npos) << outcome.out;
   }
 
@@ -183,9 +182,8 @@ namespace end_to_end::test_compare
       const Outcome outcome = nsfd(workspace, arguments);
       EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
       for (const std::string &text : texts)
-        EXPECT_NE(outcome.err.find(text), std::string::npos)
-            << text << "\n"
-            << outcome.err;
+        EXPECT_NE(outcome.err.find(text), std::string::npos) << text << "\n"
+                                                             << outcome.err;
       EXPECT_FALSE(fs::exists(workspace.path() / "none"));
     };
     expect_refused({"a", "nowhere"}, {"no folder or file nowhere"});

@@ -63,14 +63,12 @@ namespace end_to_end::test_folders
 
     fs::copy_file(small.file, directory / "scene.prm");
     const std::vector<std::string> mine = {"thesis.csv", "logo.svg",
-                                           "notes.vtu", "my.json",
-                                           "page.html"};
+                                           "notes.vtu", "my.json", "page.html"};
     for (const std::string &name : mine)
       write_text(directory / name, "mine");
     const std::string before = read_text(directory / "history.csv");
-    const Outcome outcome =
-        run_in(workspace, directory, {"--force"},
-               with(scene_inside, {"Time/end=0.5 ns"}));
+    const Outcome outcome = run_in(workspace, directory, {"--force"},
+                                   with(scene_inside, {"Time/end=0.5 ns"}));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_LT(read_text(directory / "history.csv").size(), before.size());
     for (const std::string &name : mine)
@@ -177,18 +175,20 @@ namespace end_to_end::test_folders
   TEST(FolderDisk, Full)
   {
     const Workspace workspace;
-    const Launch writing = with(small, {"Output/fields every steps=1",
-                                        "Time/step=0.05 crossings"});
+    const Launch writing = with(
+        small, {"Output/fields every steps=1", "Time/step=0.05 crossings"});
     struct Case {
       const char *name, *format;
       unsigned int ranks;
     };
-    for (const Case &one : {Case{"vtu", "vtu", 1}, {"hdf5", "hdf5", 1},
-                            {"hdf5_start", "hdf5", 1}, {"two", "vtu", 2}}) {
+    for (const Case &one : {Case{"vtu", "vtu", 1},
+                            {"hdf5", "hdf5", 1},
+                            {"hdf5_start", "hdf5", 1},
+                            {"two", "vtu", 2}}) {
       SCOPED_TRACE(one.name);
       const fs::path place = workspace.path() / one.name;
-      const Disk disk(place, one.name == std::string("hdf5_start") ? "60k"
-                                                                  : "400k");
+      const Disk disk(place,
+                      one.name == std::string("hdf5_start") ? "60k" : "400k");
       if (!disk.mounted())
         GTEST_SKIP() << "no right to mount a disk";
       Launch launch =
@@ -221,16 +221,15 @@ namespace end_to_end::test_folders
   TEST(Folders, StrictRuns)
   {
     const Workspace workspace;
-    const Launch bad = {scene("midplane"), {"Time/step=2 crossings",
-                                            "Mesh/cells=6, 6"}};
+    const Launch bad = {scene("midplane"),
+                        {"Time/step=2 crossings", "Mesh/cells=6, 6"}};
     const Outcome lax = run_in(workspace, workspace.path() / "lax", {}, bad);
     EXPECT_EQ(lax.exit_code, 0) << lax.err;
     ASSERT_FALSE(
         json_of(workspace.path() / "lax" / "summary.json")["certificate"]["ok"]
             .get<bool>());
-    EXPECT_EQ(
-        run_in(workspace, workspace.path() / "strict", {"--strict"}, bad)
-            .exit_code,
-        7);
+    EXPECT_EQ(run_in(workspace, workspace.path() / "strict", {"--strict"}, bad)
+                  .exit_code,
+              7);
   }
 } // namespace end_to_end::test_folders

@@ -17,8 +17,7 @@ namespace end_to_end::test_fragments
     const Launch breaking = {quickstart(),
                              {"Mesh/cells=12, 9", "Time/step=0.4 us",
                               "Constants/turn=60 us", "Constants/pull=4 m/s",
-                              "Time/end=120 us",
-                              "Output/fields every=20 us"}};
+                              "Time/end=120 us", "Output/fields every=20 us"}};
 
     std::string fragments_text(const Result &result)
     {
@@ -71,11 +70,11 @@ namespace end_to_end::test_fragments
     for (const auto &number : sizes.at("histogram").at("numbers"))
       numbers += number.get<double>();
     EXPECT_EQ(numbers, double(last.size()));
-    expect_below("total mass",
-                 std::abs(sizes.at("total_mass").get<double>() -
-                          rows["mass"][0]) /
-                     rows["mass"][0],
-                 1e-14, "round-off");
+    expect_below(
+        "total mass",
+        std::abs(sizes.at("total_mass").get<double>() - rows["mass"][0]) /
+            rows["mass"][0],
+        1e-14, "round-off");
     EXPECT_GT(result.summary["cost"]["parts"]["motion of fragments"]["calls"],
               6);
   }
@@ -87,8 +86,8 @@ namespace end_to_end::test_fragments
     const std::string one = fragments_text(good_run(workspace, "one", what));
     for (const unsigned int ranks : {2u, 3u}) {
       what.ranks = ranks;
-      EXPECT_TRUE(one == fragments_text(good_run(
-                             workspace, std::to_string(ranks), what)))
+      EXPECT_TRUE(one == fragments_text(
+                             good_run(workspace, std::to_string(ranks), what)))
           << ranks << " ranks";
     }
   }

@@ -14,8 +14,8 @@ namespace end_to_end::test_law
   namespace
   {
     const std::vector<std::string> all_files = {"curve.csv", "energies.svg",
-                                                "law.svg", "parameters.prm",
-                                                "run.json", "summary.json"};
+                                                "law.svg",   "parameters.prm",
+                                                "run.json",  "summary.json"};
 
     nlohmann::json summary_of(const fs::path &directory)
     {
@@ -196,18 +196,20 @@ namespace end_to_end::test_law
 
     // what viscosity takes is the same whatever it is
     const auto held = run("figure_08");
-    EXPECT_EQ(files("figure_08"),
-              (Files{"bar.svg", "curve.csv", "energies.svg", "floor.svg",
-                     "parameters.prm", "run.json", "speeds.svg", "summary.json"}));
+    EXPECT_EQ(
+        files("figure_08"),
+        (Files{"bar.svg", "curve.csv", "energies.svg", "floor.svg",
+               "parameters.prm", "run.json", "speeds.svg", "summary.json"}));
     EXPECT_NEAR(held["viscous"].get<double>(), excess, 2e-9);
     const auto pulled = run("figure_06_viscous");
     EXPECT_GT(pulled["viscous"].get<double>(), excess);
     EXPECT_NEAR(pulled["numerical"].get<double>(), 0., 1e-10);
 
     const auto swings = run("figure_06_dynamic");
-    EXPECT_EQ(files("figure_06_dynamic"),
-              (Files{"bar.svg", "curve.csv", "energies.svg", "grip.svg",
-                     "parameters.prm", "run.json", "slopes.svg", "summary.json"}));
+    EXPECT_EQ(
+        files("figure_06_dynamic"),
+        (Files{"bar.svg", "curve.csv", "energies.svg", "grip.svg",
+               "parameters.prm", "run.json", "slopes.svg", "summary.json"}));
     // M/(S theta h^2) + theta k = 3/8 of the exact rule, theta = 1/2
     EXPECT_NEAR(swings["unique_step"].get<double>(), std::sqrt(8.), 1e-12);
     EXPECT_EQ(swings["ambiguous_steps"], 0);

@@ -80,7 +80,6 @@ namespace end_to_end::test_meshes
     }
   } // namespace
 
-
   TEST(Meshes, UniformStressIsExactOnMeshesOfFiles)
   {
     for (const char *file :
@@ -90,11 +89,12 @@ namespace end_to_end::test_meshes
         const Workspace workspace;
         const Result result = run_text(
             workspace, "patch",
-            plate(file,
-                  joined + pulled(along ? "left end" : "bottom", component,
-                                  "-1 MPa") +
-                      pulled(along ? "right end" : "top", component, "1 MPa"),
-                  statics + "  set equilibrium tolerance = 1e-13\n"));
+            plate(
+                file,
+                joined +
+                    pulled(along ? "left end" : "bottom", component, "-1 MPa") +
+                    pulled(along ? "right end" : "top", component, "1 MPa"),
+                statics + "  set equilibrium tolerance = 1e-13\n"));
         ASSERT_TRUE(result.completed()) << result.description();
         double worst = 0.;
         unsigned int n_points = 0;
@@ -119,8 +119,8 @@ namespace end_to_end::test_meshes
       const Workspace workspace;
       const std::string load =
           pulled("bottom", "y", "-1 MPa") + pulled("top", "y", "1 MPa");
-      const Result whole = run_text(workspace, "whole",
-                                    plate(file, joined + load, statics));
+      const Result whole =
+          run_text(workspace, "whole", plate(file, joined + load, statics));
       const Result cracked =
           run_text(workspace, "cracked",
                    plate(file, open_crack + joined + load, statics));
@@ -166,10 +166,10 @@ namespace end_to_end::test_meshes
   {
     const Workspace workspace;
     const Outcome outcome =
-        check(workspace, plate("plate_second_order.msh",
-                               open_crack + joined +
-                                   pulled("right end", "x", "1 MPa"),
-                               statics));
+        check(workspace,
+              plate("plate_second_order.msh",
+                    open_crack + joined + pulled("right end", "x", "1 MPa"),
+                    statics));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     for (const char *line :
          {"cells      86 triangles",
@@ -180,9 +180,8 @@ namespace end_to_end::test_meshes
           "Boundary: right end",
           "group      seam (curve 13): 4 faces between cells, not used",
           "mesh note  86 cells are of higher order"})
-      EXPECT_NE(outcome.out.find(line), std::string::npos)
-          << line << "\n"
-          << outcome.out;
+      EXPECT_NE(outcome.out.find(line), std::string::npos) << line << "\n"
+                                                           << outcome.out;
   }
 
   TEST(Meshes, BadFilesStopBeforeTheFirstStep)
@@ -194,8 +193,8 @@ namespace end_to_end::test_meshes
     const std::string good = mesh_file("plate_41_binary.msh");
     text.replace(text.find(good), good.size(), "bad.msh");
     for (const std::string &content :
-         {std::string("nothing of a mesh\n"),
-          whole.substr(0, whole.size() / 3), std::string()}) {
+         {std::string("nothing of a mesh\n"), whole.substr(0, whole.size() / 3),
+          std::string()}) {
       write_text(bad, content);
       const Outcome outcome = check(workspace, text);
       EXPECT_EQ(outcome.exit_code, 1);
@@ -223,15 +222,21 @@ namespace end_to_end::test_meshes
   {
     const Workspace workspace;
     const std::string acts = (workspace.path() / "acted").string();
-    write_text(workspace.path() / "beam.geo",
-               "Point(1) = {0, 0, 0, 1};\n"
-               "SystemCall \"touch " + acts + "\";\n"
-               "Printf(\"written\") > \"" + acts + "\";\n"
-               "Include \"more.geo\";\n");
+    write_text(workspace.path() / "beam.geo", "Point(1) = {0, 0, 0, 1};\n"
+                                              "SystemCall \"touch " +
+                                                  acts +
+                                                  "\";\n"
+                                                  "Printf(\"written\") > \"" +
+                                                  acts +
+                                                  "\";\n"
+                                                  "Include \"more.geo\";\n");
     write_text(workspace.path() / "more.geo",
                "Field[1] = ExternalProcess;\n"
-               "Field[1].CommandLine = \"touch " + acts + "\";\n"
-               "Save \"" + acts + "\";\n");
+               "Field[1].CommandLine = \"touch " +
+                   acts +
+                   "\";\n"
+                   "Save \"" +
+                   acts + "\";\n");
     write_text(workspace.path() / "beam.geo.opt",
                "SystemCall \"touch " + acts + "\";\n");
     write_text(workspace.path() / "beam.prm",
@@ -246,13 +251,13 @@ namespace end_to_end::test_meshes
       const Outcome outcome = nsfd(workspace, {"beam.prm", option});
       EXPECT_EQ(outcome.exit_code, 1);
       for (const char *part :
-           {"beam.prm:4: error: `beam.geo`: line 2: `SystemCall` runs a command",
+           {"beam.prm:4: error: `beam.geo`: line 2: `SystemCall` runs a "
+            "command",
             "line 3: `Printf`", "line 1 of `more.geo`: a field of type",
             "line 2 of `more.geo`: the option `CommandLine`",
             "line 3 of `more.geo`: `Save` writes a file"})
-        EXPECT_NE(outcome.err.find(part), std::string::npos)
-            << part << "\n"
-            << outcome.err;
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << part << "\n"
+                                                             << outcome.err;
       EXPECT_EQ(files_below(workspace.path()), before);
     }
   }

@@ -74,7 +74,8 @@ end
     const Result one = good_run(workspace, "one", launch);
     for (const unsigned int ranks : {2u, 4u}) {
       launch.ranks = ranks;
-      expect_same_files(one, good_run(workspace, std::to_string(ranks), launch));
+      expect_same_files(one,
+                        good_run(workspace, std::to_string(ranks), launch));
     }
   }
 
@@ -101,15 +102,14 @@ end
     ASSERT_EQ(crack.size(), result.history.size());
     for (std::size_t k = 0; k < result.history.size(); ++k) {
       // the history counts what has broken since the start
-      EXPECT_NEAR(crack["length"][k],
-                  2. + result.history["broken_area"][k], 1e-9)
+      EXPECT_NEAR(crack["length"][k], 2. + result.history["broken_area"][k],
+                  1e-9)
           << k;
       ASSERT_EQ(crack["step"][k], result.history["step"][k]);
     }
     ASSERT_EQ(grip.size(), 1 + (result.history.size() - 1) / 3);
     for (std::size_t k = 1; k < grip.size(); ++k)
-      EXPECT_EQ(grip["force_y"][k],
-                result.history["reaction_top_y"][3 * k]);
+      EXPECT_EQ(grip["force_y"][k], result.history["reaction_top_y"][3 * k]);
     // one straight crack, open to x = 2 from the start on
     EXPECT_EQ(crack["crossings_1"].front(), 1.);
     EXPECT_EQ(crack["crossings_2"].front(), 0.);
@@ -168,9 +168,10 @@ end
     const auto &force = result.summary["observables"]["force"]["last"];
     const double weight = 4e3;
     for (const auto *last : {&pressure, &force}) {
-      expect_below("weight",
-                   std::abs((*last)["force_y"].get<double>() / weight / 10. -
-                            1.), 1e-6, "at rest");
+      expect_below(
+          "weight",
+          std::abs((*last)["force_y"].get<double>() / weight / 10. - 1.), 1e-6,
+          "at rest");
       expect_below("friction",
                    std::abs((*last)["force_x"].get<double>() / weight + 1.),
                    1e-6, "at rest");
@@ -179,9 +180,8 @@ end
     expect_below("mean", std::abs(pressure["mean"].get<double>() - 1e4), 1e-2,
                  "weight over area");
     // moments about the centre of the floor: F_x at half the height
-    expect_below("centre",
-                 std::abs(pressure["centre_x"].get<double>() - 2.05), 1e-3,
-                 "0.5 * 1/10 ahead of the middle");
+    expect_below("centre", std::abs(pressure["centre_x"].get<double>() - 2.05),
+                 1e-3, "0.5 * 1/10 ahead of the middle");
     const History profile = observed(result, "pressure_profile");
     double sum = 0.;
     for (std::size_t k = 0; k < profile.size(); ++k)
@@ -196,7 +196,9 @@ end
   {
     const Workspace workspace;
     const fs::path file = workspace.path() / "stack.prm";
-    write_text(file, R"(# stack.prm - a rigid slab on an elastic one on a floor that is not quite level.
+    write_text(
+        file,
+        R"(# stack.prm - a rigid slab on an elastic one on a floor that is not quite level.
 set dimension = 2
 set motion    = large
 
@@ -260,10 +262,9 @@ end
       return result.summary["observables"][name]["last"][column].get<double>();
     };
     const double lower = 4e3, upper = 4e3; // kg/m
-    for (const auto &[name, mass] :
-         {std::pair("pressure", lower + upper),
-          std::pair("floor force", lower + upper),
-          std::pair("joint force", upper)}) {
+    for (const auto &[name, mass] : {std::pair("pressure", lower + upper),
+                                     std::pair("floor force", lower + upper),
+                                     std::pair("joint force", upper)}) {
       expect_below("weight", std::abs(last(name, "force_y") / mass / 10. - 1.),
                    1e-6, name);
       expect_below("friction", std::abs(last(name, "force_x") / mass + 1.),
@@ -312,8 +313,8 @@ end
                                "the mesh"),
               std::string::npos)
         << outside.err;
-    const Outcome unknown = nsfd(workspace, {launch.file.string(), "--set",
-                                             "Observable: grip/on=topp"});
+    const Outcome unknown = nsfd(
+        workspace, {launch.file.string(), "--set", "Observable: grip/on=topp"});
     EXPECT_EQ(unknown.exit_code, 1);
     EXPECT_NE(unknown.err.find("on = topp"), std::string::npos) << unknown.err;
     EXPECT_NE(unknown.err.find("`top`"), std::string::npos) << unknown.err;

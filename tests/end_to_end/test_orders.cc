@@ -67,8 +67,8 @@ namespace end_to_end::test_orders
           good_run(workspace, pairs,
                    {scene("mode"),
                     {"Time/scheme=arkode", "Time/pairs=" + pairs,
-                     "Time/integration tolerance=1e-11",
-                     "Time/step=20 us", "Output/fields=false"}});
+                     "Time/integration tolerance=1e-11", "Time/step=20 us",
+                     "Output/fields=false"}});
       // 32 quadratic cells, less than with steps of 0.05 crossings
       expect_below(pairs + ": displacement", result.error("displacement_L2"),
                    4e-5);
@@ -125,20 +125,17 @@ namespace end_to_end::test_orders
         // per period: the error of the step is a tenth of that of space
         const double steps = degree == 1 ? 400. : 1600.;
         const auto error = [&](const unsigned int n) {
-          const Result result =
-              good_run(workspace,
-                       row.name + std::to_string(degree) + std::to_string(n),
-                       {scene("transverse_wave"),
-                        {"Material: laminate/axis=" + row.axis,
-                         "Verification/wave=" + row.wave,
-                         "Discretization/degree=" + std::to_string(degree),
-                         "Constants/n=" + std::to_string(n),
-                         "Time/end=" + std::to_string(1.125e6 / row.speed) + " us",
-                         "Time/step=" + std::to_string(1e6 / row.speed / steps) +
-                             " us",
-                         "Output/fields=false"}});
-          EXPECT_NEAR(result.error("exact_speed"), row.speed,
-                      1e-7 * row.speed);
+          const Result result = good_run(
+              workspace, row.name + std::to_string(degree) + std::to_string(n),
+              {scene("transverse_wave"),
+               {"Material: laminate/axis=" + row.axis,
+                "Verification/wave=" + row.wave,
+                "Discretization/degree=" + std::to_string(degree),
+                "Constants/n=" + std::to_string(n),
+                "Time/end=" + std::to_string(1.125e6 / row.speed) + " us",
+                "Time/step=" + std::to_string(1e6 / row.speed / steps) + " us",
+                "Output/fields=false"}});
+          EXPECT_NEAR(result.error("exact_speed"), row.speed, 1e-7 * row.speed);
           return result.error("displacement_L2");
         };
         const unsigned int n = degree == 1 ? 32 : 8;
@@ -158,17 +155,17 @@ namespace end_to_end::test_orders
     for (const std::string law : {"rigid", "bonded"})
       for (const auto &[theta, order] :
            {std::pair("0.5", 2.), std::pair("1", 1.)}) {
-        const auto error = [&, theta = theta, order = order](const std::string &step) {
-          return good_run(workspace, law + theta + step,
-                          {scene("damped_wave"),
-                           {"Discretization/degree=4", "Constants/n=8",
-                            std::string("Time/theta=") + theta,
-                            "Time/step=" + step + " us",
-                            "Interface: all/law=" + law,
-                            std::string("Solver/path=") +
-                                (order == 1. && law == "rigid" ? "global"
-                                                               : "auto"),
-                            "Output/fields=false"}})
+        const auto error = [&, theta = theta,
+                            order = order](const std::string &step) {
+          return good_run(
+                     workspace, law + theta + step,
+                     {scene("damped_wave"),
+                      {"Discretization/degree=4", "Constants/n=8",
+                       std::string("Time/theta=") + theta,
+                       "Time/step=" + step + " us", "Interface: all/law=" + law,
+                       std::string("Solver/path=") +
+                           (order == 1. && law == "rigid" ? "global" : "auto"),
+                       "Output/fields=false"}})
               .error("displacement_L2");
         };
         const double coarse = error("5"), fine = error("2.5");
@@ -207,9 +204,9 @@ namespace end_to_end::test_orders
     };
     for (const Row &row : {Row{"0.5", 2.}, Row{"0.75", 1.}}) {
       const auto error = [&](const std::string &step) {
-        return manufactured(workspace, "theta" + row.theta + "_" + step, 4, 4,
-                            {"Time/theta=" + row.theta,
-                             "Time/step=" + step + " us"})
+        return manufactured(
+                   workspace, "theta" + row.theta + "_" + step, 4, 4,
+                   {"Time/theta=" + row.theta, "Time/step=" + step + " us"})
             .error("displacement_L2");
       };
       const double coarse = error("12.5"), fine = error("6.25");

@@ -219,17 +219,16 @@ namespace end_to_end::test_ranks
   TEST(Ranks, ExplicitBondsAreTheSameBitForBit)
   {
     const Workspace workspace;
-    const std::vector<std::string> set = {
-        "Mesh/cells=8, 8", "Time/end=9 ns", "Output/fields=false"};
+    const std::vector<std::string> set = {"Mesh/cells=8, 8", "Time/end=9 ns",
+                                          "Output/fields=false"};
     const auto file = benchmark("fracture_extrinsic");
     const Result one = good_run(workspace, "1 rank", {file, set});
     EXPECT_GT(one.counter("released_bonds"), 0.);
     for (const unsigned int ranks : {2u, 3u}) {
-      const Result other = good_run(
-          workspace, std::to_string(ranks) + " ranks", {file, set, ranks});
+      const Result other = good_run(workspace, std::to_string(ranks) + " ranks",
+                                    {file, set, ranks});
       EXPECT_EQ(energy_difference(one.history, other.history), 0.);
-      EXPECT_EQ(other.counter("released_bonds"),
-                one.counter("released_bonds"));
+      EXPECT_EQ(other.counter("released_bonds"), one.counter("released_bonds"));
     }
   }
 
@@ -262,8 +261,7 @@ namespace end_to_end::test_ranks
                           ? scene(row.name)
                           : benchmark(row.name);
     const Workspace workspace;
-    const Result one =
-        good_run(workspace, "1 rank", {file, row.element_wise});
+    const Result one = good_run(workspace, "1 rank", {file, row.element_wise});
     ASSERT_TRUE(one.completed());
     for (const unsigned int n : {2u, 3u}) {
       const Result several = good_run(workspace, std::to_string(n) + " ranks",
@@ -272,7 +270,8 @@ namespace end_to_end::test_ranks
       EXPECT_TRUE(one.history_text == several.history_text)
           << "history.csv of " << n << " ranks differs by "
           << energy_difference(one.history, several.history);
-      for (const char *key : {"errors", "penetration_max", "fragments", "steps"})
+      for (const char *key :
+           {"errors", "penetration_max", "fragments", "steps"})
         EXPECT_EQ(one.summary[key], several.summary[key]) << key;
       EXPECT_TRUE(records(one, "fields") == records(several, "fields"))
           << "fields of " << n << " ranks";

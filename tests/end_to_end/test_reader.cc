@@ -66,9 +66,10 @@ end
     expect(check(bodies + "subsection Interface: none\n" + no_place +
                  "  set law = rigid\nend\n" + rigid + end),
            0, "a.prm:15: warning: Interface: none: no face");
-    expect(check(bodies + "subsection Interface: i\n  set where = abs(x - 1) < "
-                          "0.1\n  set law = camacho-ortiz\n  set strength = 1\n"
-                          "  set toughness = 1\n  set broken = y > 2\nend\n" +
+    expect(check(bodies +
+                 "subsection Interface: i\n  set where = abs(x - 1) < "
+                 "0.1\n  set law = camacho-ortiz\n  set strength = 1\n"
+                 "  set toughness = 1\n  set broken = y > 2\nend\n" +
                  rigid + end),
            0, "a.prm:20: warning: Interface: i/broken: no point");
   }
@@ -90,8 +91,10 @@ end
     rigid_only.erase(begin,
                      rigid_only.find("subsection Material: hard") - begin);
     expect(check(rigid_only + joined + end), 0, "");
-    expect(check(rigid_only + "subsection Interface: all\n  set law = bonded\n"
-                              "end\n" + end),
+    expect(check(rigid_only +
+                 "subsection Interface: all\n  set law = bonded\n"
+                 "end\n" +
+                 end),
            1, "a.prm:10: error: law = bonded joins bodies that deform");
     const Workspace workspace;
     write_text(workspace.path() / "a.prm", rigid_only + joined + end);
@@ -100,16 +103,21 @@ end
 
   TEST(Reader, FormulasWithoutValueNameThemselves)
   {
-    expect(check(bodies + rigid + "subsection Boundary: left\n"
-                                  "  set velocity x = 1 / x\nend\n" + end),
-           1, "a.prm:19: error: Boundary: left/velocity x = 1 / x is infinite "
-              "at (0, ");
+    expect(check(bodies + rigid +
+                 "subsection Boundary: left\n"
+                 "  set velocity x = 1 / x\nend\n" +
+                 end),
+           1,
+           "a.prm:19: error: Boundary: left/velocity x = 1 / x is infinite "
+           "at (0, ");
     // in the middle of the run: the last good state is kept
     const Workspace workspace;
     write_text(workspace.path() / "a.prm",
-               bodies + rigid + "subsection Boundary: left\n"
-                                "  set traction x = sqrt((t - 0.3)*(t - 0.7))"
-                                "\nend\n" + end);
+               bodies + rigid +
+                   "subsection Boundary: left\n"
+                   "  set traction x = sqrt((t - 0.3)*(t - 0.7))"
+                   "\nend\n" +
+                   end);
     const Outcome run = nsfd(workspace, {"a.prm", "--quiet"});
     expect(run, 3, "Boundary: left/traction x = ");
     EXPECT_NE(run.err.find("is not a number at ("), std::string::npos);

@@ -93,8 +93,7 @@ namespace end_to_end::test_restart
         {"heap", {benchmark("falling_wall"), {"Time/end=60 ms"}}},
         {"heavy_top", {scene("heavy_top"), {"Time/end=0.1 s"}}},
         {"impactor",
-         {benchmark("impactor"),
-          {"Body: beam/cells=20, 2", "Time/end=60 us"}}},
+         {benchmark("impactor"), {"Body: beam/cells=20, 2", "Time/end=60 us"}}},
         {"plastic_bar", {scene("plastic_bar"), {"Time/end=40 us"}}},
         {"plastic_breaking", with(breaking, plastic)},
         {"viscoplastic_large",
@@ -146,10 +145,9 @@ namespace end_to_end::test_restart
           {"Mesh/cells=20, 4", "Discretization/degree=1", "Time/end=500 us",
            "Time/step=5 us"}}},
         {"adaptive_springs",
-         with(breaking,
-              {"Time/end=60 us", "Adaptivity/levels=1",
-               "Adaptivity/coarsen every steps=5",
-               "Indicator: front/type=process zone"})},
+         with(breaking, {"Time/end=60 us", "Adaptivity/levels=1",
+                         "Adaptivity/coarsen every steps=5",
+                         "Indicator: front/type=process zone"})},
     };
 
     class RestartTest : public testing::TestWithParam<RestartRow>
@@ -173,9 +171,8 @@ namespace end_to_end::test_restart
         EXPECT_EQ(a.summary["counters"].value(name, 0.),
                   b.summary["counters"].value(name, 0.))
             << name;
-      for (const char *name :
-           {"fields.pvd", "interfaces.pvd", "fields.xdmf", "interfaces.xdmf",
-            "fragments.csv"})
+      for (const char *name : {"fields.pvd", "interfaces.pvd", "fields.xdmf",
+                               "interfaces.xdmf", "fragments.csv"})
         EXPECT_EQ(read_text(a.directory / name), read_text(b.directory / name));
       EXPECT_TRUE(snapshots(a.directory, "fields") ==
                   snapshots(b.directory, "fields"));
@@ -255,10 +252,7 @@ namespace end_to_end::test_restart
   TEST(Restart, OnOtherRanksAfterLargeMotions)
   {
     const std::vector<std::tuple<Launch, unsigned int, unsigned int>> rows = {
-        {{benchmark("push_back"),
-          {"Mesh/cells=6, 6", "Time/end=17 ns"}},
-         2,
-         3},
+        {{benchmark("push_back"), {"Mesh/cells=6, 6", "Time/end=17 ns"}}, 2, 3},
         {{benchmark("heap_of_bricks"), {"Time/end=0.1 s"}}, 3, 1},
         {{scene("plastic_bar"), {"Time/end=10 us"}}, 1, 2}};
     for (const auto &[launch, first, second] : rows) {

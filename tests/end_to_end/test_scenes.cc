@@ -49,8 +49,8 @@ namespace end_to_end::test_scenes
       for (const auto &folder : fs::directory_iterator(
                fs::path(NSFD_SOURCE_DIR) / "source/verification"))
         if (fs::exists(folder.path() / "bounds.json")) {
-          const auto scenes = nlohmann::json::parse(
-              read_text(folder.path() / "bounds.json"));
+          const auto scenes =
+              nlohmann::json::parse(read_text(folder.path() / "bounds.json"));
           all.insert(scenes.begin(), scenes.end());
         }
       return all;
@@ -248,9 +248,9 @@ namespace end_to_end::test_scenes
   TEST(Scenes, QuickstartWithAutomaticSteps)
   {
     const Workspace workspace;
-    const Result result = good_run(
-        workspace, "auto",
-        {quickstart(), {"Time/step=auto", "Output/fields=false"}});
+    const Result result =
+        good_run(workspace, "auto",
+                 {quickstart(), {"Time/step=auto", "Output/fields=false"}});
     ASSERT_TRUE(result.completed());
     expect_sound_history(result);
     EXPECT_EQ(result.counter("steps_beyond_uniqueness"), 0.);
@@ -311,9 +311,8 @@ namespace end_to_end::test_scenes
           {"Interface: plane/law=ppr-extrinsic", "Interface: plane/alpha=3"}}) {
       std::vector<std::string> set = {"Output/fields=false"};
       set.insert(set.end(), law.begin(), law.end());
-      const Result result =
-          good_run(workspace, "strip, " + law[0].substr(18),
-                   {scene("strip"), set});
+      const Result result = good_run(workspace, "strip, " + law[0].substr(18),
+                                     {scene("strip"), set});
       ASSERT_TRUE(result.completed());
       speed[law[0]] = result.error("speed_over_rayleigh");
       expect_below(law[0] + ": speed over Rayleigh speed", speed[law[0]], 1.);
@@ -338,10 +337,9 @@ namespace end_to_end::test_scenes
     for (const auto &[scene, row] : all_bounds().items()) {
       const auto variants = row.value("variants", nlohmann::json::object());
       for (const auto &[name, variant] : variants.items())
-        result.push_back({name, scene,
-                          variant.at("set").get<std::vector<std::string>>(),
-                          bounds_of(variant),
-                          variant.value("energy scale", 0.)});
+        result.push_back(
+            {name, scene, variant.at("set").get<std::vector<std::string>>(),
+             bounds_of(variant), variant.value("energy scale", 0.)});
     }
     return result;
   }
@@ -369,7 +367,8 @@ namespace end_to_end::test_scenes
     expect_sound_history(result, variant.energy_scale);
   }
 
-  INSTANTIATE_TEST_SUITE_P(Table, SceneVariantTest, testing::ValuesIn(all_variants()),
+  INSTANTIATE_TEST_SUITE_P(Table, SceneVariantTest,
+                           testing::ValuesIn(all_variants()),
                            [](const auto &info) {
                              return info.param.scene + "_" + info.param.name;
                            });

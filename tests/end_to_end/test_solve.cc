@@ -101,8 +101,8 @@ namespace end_to_end::test_solve
   TEST_P(SolveTest, OwnProblems)
   {
     const Workspace workspace;
-    const Outcome outcome = nsfd(
-        workspace, {"solve", problems().string(), "--solver", GetParam()});
+    const Outcome outcome =
+        nsfd(workspace, {"solve", problems().string(), "--solver", GetParam()});
     const std::vector<std::string> failed = unsolved(outcome.out);
     for (const std::string &name : failed)
       EXPECT_TRUE(GetParam() == std::string("dual newton") &&

@@ -175,9 +175,7 @@ namespace end_to_end::test_solvers
       double bound;
     };
     const Scene scenes[] = {
-        {"midplane",
-         {"Mesh/cells=10, 10", "Time/step=0.1 crossings"},
-         1e-6},
+        {"midplane", {"Mesh/cells=10, 10", "Time/step=0.1 crossings"}, 1e-6},
         {"quickstart", {"Time/end=70 us"}, 1e-6},
         {"stop", {}, 1e-8},
         {"step_load", {}, 1e-7}};
@@ -186,8 +184,8 @@ namespace end_to_end::test_solvers
       const Result reference = solve(workspace, row.name, row.set, choices[0]);
       ASSERT_TRUE(reference.completed());
       for (const char *const method : {"fixed point", "anderson"}) {
-        const Result other = solve(workspace, row.name, row.set,
-                                   {method, "element-wise"});
+        const Result other =
+            solve(workspace, row.name, row.set, {method, "element-wise"});
         ASSERT_TRUE(other.completed());
         expect_below(row.name + ", " + method + ": damage",
                      std::abs(other.dissipated("damage") -
@@ -212,8 +210,8 @@ namespace end_to_end::test_solvers
         for (const std::string tolerance : {"1e-8", "1e-10"}) {
           const Workspace workspace;
           const Result result =
-              solve(workspace, name, {"Obstacle: plane/point=0, 0"},
-                    choices[i], tolerance);
+              solve(workspace, name, {"Obstacle: plane/point=0, 0"}, choices[i],
+                    tolerance);
           ASSERT_TRUE(result.completed());
           for (const char *const error :
                name == "incline"

@@ -55,8 +55,7 @@ namespace end_to_end::test_stability
     }
 
     /** All blocks stay where they are. */
-    void expect_rest(const Result &result, const double mass,
-                     const double fall)
+    void expect_rest(const Result &result, const double mass, const double fall)
     {
       double kinetic = 0.;
       for (const double value : result.history["kinetic"])
@@ -78,10 +77,9 @@ namespace end_to_end::test_stability
     const double of_mesh = stiffest.error("displacement_L2");
     double first = 0., krylov_at_1e2 = 0.;
     for (const char *ratio : {"1e2", "1e3", "1e4", "1e5", "1e6", "1e7"}) {
-      const Result result =
-          good_run(workspace, ratio,
-                   launch("stiff_interface",
-                          {std::string("Constants/ratio=") + ratio}));
+      const Result result = good_run(
+          workspace, ratio,
+          launch("stiff_interface", {std::string("Constants/ratio=") + ratio}));
       ASSERT_TRUE(result.completed());
       const double excess = result.error("displacement_L2") - of_mesh,
                    scale = std::stod(ratio);
@@ -107,16 +105,15 @@ namespace end_to_end::test_stability
   {
     const Workspace workspace;
     for (const double e : {0., 0.5, 1.}) {
-      const Result result =
-          good_run(workspace, "e = " + std::to_string(e),
-                   launch("density_ratio",
-                          {"Constants/e=" + std::to_string(e)}));
+      const Result result = good_run(
+          workspace, "e = " + std::to_string(e),
+          launch("density_ratio", {"Constants/e=" + std::to_string(e)}));
       ASSERT_TRUE(result.completed());
       const double m1 = 1., m2 = 1e6, u1 = 3., u2 = -1.;
       const double v1 = u1 - (1. + e) * m2 / (m1 + m2) * (u1 - u2),
                    v2 = u2 + (1. + e) * m1 / (m1 + m2) * (u1 - u2),
-                   lost = 0.5 * (1. - e * e) * m1 * m2 / (m1 + m2) *
-                          (u1 - u2) * (u1 - u2);
+                   lost = 0.5 * (1. - e * e) * m1 * m2 / (m1 + m2) * (u1 - u2) *
+                          (u1 - u2);
       const auto fields = snapshots(result.directory, "fields");
       ASSERT_GE(fields.size(), 2u);
       double low = 1e9, high = -1e9; // the light block moves back at v_1
@@ -125,10 +122,8 @@ namespace end_to_end::test_stability
         low = std::min(low, velocity[i]);
         high = std::max(high, velocity[i]);
       }
-      expect_below("impulse", std::abs((u1 - low) /
-                                           (u1 - v1) - 1.), 1e-8);
-      expect_below("velocity of the heavy block",
-                   std::abs(high - v2), 1e-8);
+      expect_below("impulse", std::abs((u1 - low) / (u1 - v1) - 1.), 1e-8);
+      expect_below("velocity of the heavy block", std::abs(high - v2), 1e-8);
       expect_below("energy lost, over that of the light block",
                    std::abs(result.dissipated("impact") - lost) / 4.5, 1e-8);
     }
@@ -138,14 +133,14 @@ namespace end_to_end::test_stability
   TEST(Stability, HeavyOnLightStandsStill)
   {
     const Workspace workspace;
-    for (const auto &[ratio, mu] : std::map<std::string, std::string>{
-             {"1e4", "0.5"}, {"1e6", "0"}}) {
+    for (const auto &[ratio, mu] :
+         std::map<std::string, std::string>{{"1e4", "0.5"}, {"1e6", "0"}}) {
       const double heavy = std::stod(ratio);
-      const Result result = good_run(
-          workspace, ratio,
-          launch("heavy_on_light",
-                 {"Constants/ratio=" + ratio, "Constants/mu=" + mu},
-                 0.5 * heavy)); // m g^2 h^2 / 2
+      const Result result =
+          good_run(workspace, ratio,
+                   launch("heavy_on_light",
+                          {"Constants/ratio=" + ratio, "Constants/mu=" + mu},
+                          0.5 * heavy)); // m g^2 h^2 / 2
       ASSERT_TRUE(result.completed());
       expect_rest(result, heavy, 0.1);
       expect_below("ratio " + ratio + ", force of the floor",
@@ -161,8 +156,11 @@ namespace end_to_end::test_stability
       const Result result =
           good_run(workspace, mu,
                    {scene("incline"),
-                    {std::string("Obstacle: plane/friction=") + mu}, 1, false,
-                    120., 1.});
+                    {std::string("Obstacle: plane/friction=") + mu},
+                    1,
+                    false,
+                    120.,
+                    1.});
       ASSERT_TRUE(result.completed());
       for (const char *key : {"velocity", "position", "normal_reaction"})
         expect_below(std::string("mu = ") + mu + ", " + key, result.error(key),
@@ -184,11 +182,11 @@ namespace end_to_end::test_stability
       const double scale = result.history.largest_energy();
       for (const double friction : result.history["friction"])
         EXPECT_GE(friction, -1e-9 * scale);
-      expect_below(std::string("mu = ") + mu + ", energy over work",
-                   mechanical_energy(result.history,
-                                     result.history.size() - 1) /
-                       result.history["work"].back(),
-                   1., "nothing is created");
+      expect_below(
+          std::string("mu = ") + mu + ", energy over work",
+          mechanical_energy(result.history, result.history.size() - 1) /
+              result.history["work"].back(),
+          1., "nothing is created");
     }
   }
 
@@ -208,18 +206,16 @@ namespace end_to_end::test_stability
     expect_below("theta = 1, energy of the springs, over the elastic one",
                  std::abs(history["cohesive"].back() - cohesive) / elastic,
                  2e-6, "round-off times the square of the steps");
-    expect_below("theta = 1, force of the support",
-                 std::abs(std::abs(history["reaction_left_x"].back()) / 5e4 -
-                          1.),
-                 1e-8);
+    expect_below(
+        "theta = 1, force of the support",
+        std::abs(std::abs(history["reaction_left_x"].back()) / 5e4 - 1.), 1e-8);
     expect_below("theta = 1, kinetic energy",
                  history["kinetic"].back() / elastic, 1e-9);
 
-    const Result half =
-        good_run(workspace, "theta = 1/2",
-                 launch("large_step",
-                        {"Constants/theta=0.5", "Constants/steps=100",
-                         "Time/cohesion rule=exact"}));
+    const Result half = good_run(
+        workspace, "theta = 1/2",
+        launch("large_step", {"Constants/theta=0.5", "Constants/steps=100",
+                              "Time/cohesion rule=exact"}));
     ASSERT_TRUE(half.completed());
     double largest = 0.;
     for (std::size_t i = 0; i < half.history.size(); ++i)
@@ -235,7 +231,8 @@ namespace end_to_end::test_stability
   TEST(Stability, Incompressible)
   {
     const Workspace workspace;
-    const auto too_stiff = [&](const std::string &degree, const std::string &nu) {
+    const auto too_stiff = [&](const std::string &degree,
+                               const std::string &nu) {
       const Result result =
           run(workspace, degree + "_" + nu,
               launch("incompressible", {"Discretization/degree=" + degree,
@@ -246,8 +243,7 @@ namespace end_to_end::test_stability
       expect_below("degree " + degree + ", nu = " + nu + ": ledger",
                    result.number("ledger_defect_max"),
                    1e-9 + 1e-12 * 2. * n / (1. - 2. * n), "round-off");
-      const double E = 1e6, P = 1e3, l = 4., c = 0.5,
-                   I = 2. * c * c * c / 3.;
+      const double E = 1e6, P = 1e3, l = 4., c = 0.5, I = 2. * c * c * c / 3.;
       const double exact = P * P * l * l * l * (1. - n * n) / (6. * E * I) +
                            0.6 * (1. + n) * P * P * l / (c * E);
       return 1. - result.history["elastic"].back() / exact;
@@ -270,15 +266,15 @@ namespace end_to_end::test_stability
     const Workspace workspace;
     for (const char *nu : {"0.4999", "0.499999"})
       for (const char *degree : {"1", "2"})
-        expect_below(std::string("nu = ") + nu + ", degree " + degree,
-                     good_run(workspace, std::string(nu) + "_" + degree,
-                              {scene("patch_crossed"),
-                               {"plane=strain",
-                                std::string("Material: triangle/Poisson ratio=") +
-                                    nu,
-                                std::string("Discretization/degree=") + degree}})
-                         .error("modulus"),
-                     5e-9, "tolerance of the solver on single steps");
+        expect_below(
+            std::string("nu = ") + nu + ", degree " + degree,
+            good_run(workspace, std::string(nu) + "_" + degree,
+                     {scene("patch_crossed"),
+                      {"plane=strain",
+                       std::string("Material: triangle/Poisson ratio=") + nu,
+                       std::string("Discretization/degree=") + degree}})
+                .error("modulus"),
+            5e-9, "tolerance of the solver on single steps");
   }
 
   // Edges from 1e-6 to 1, angles of 0.06 degrees, and steps as long as the
@@ -290,13 +286,13 @@ namespace end_to_end::test_stability
     struct Row {
       const char *degree, *split;
     };
-    for (const Row &row : {Row{"1", "false"}, Row{"2", "false"},
-                           Row{"3", "true"}}) {
-      const Result result = good_run(
-          workspace, row.degree,
-          launch("slivers",
-                 {std::string("Discretization/degree=") + row.degree,
-                  std::string("Mesh/split simplices=") + row.split}));
+    for (const Row &row :
+         {Row{"1", "false"}, Row{"2", "false"}, Row{"3", "true"}}) {
+      const Result result =
+          good_run(workspace, row.degree,
+                   launch("slivers",
+                          {std::string("Discretization/degree=") + row.degree,
+                           std::string("Mesh/split simplices=") + row.split}));
       ASSERT_TRUE(result.completed());
       EXPECT_EQ(result.number("steps"), 20.);
       expect_below(std::string("degree ") + row.degree + ": elastic energy",
@@ -320,8 +316,7 @@ namespace end_to_end::test_stability
     const Workspace workspace;
     const auto error = [&](const int degree, const int points) {
       const Result result = good_run(
-          workspace,
-          std::to_string(degree) + "_" + std::to_string(points),
+          workspace, std::to_string(degree) + "_" + std::to_string(points),
           {scene("manufactured"),
            {"Discretization/degree=" + std::to_string(degree),
             "Discretization/interface points=" + std::to_string(points),
@@ -348,11 +343,10 @@ namespace end_to_end::test_stability
   {
     const Workspace workspace;
     for (const char *e : {"0", "0.5", "1"}) {
-      const Result result =
-          good_run(workspace, std::string("e = ") + e,
-                   launch("half_impact",
-                          {std::string("Obstacle: wall/restitution=") + e,
-                           "Output/fields=false"}));
+      const Result result = good_run(
+          workspace, std::string("e = ") + e,
+          launch("half_impact", {std::string("Obstacle: wall/restitution=") + e,
+                                 "Output/fields=false"}));
       ASSERT_TRUE(result.completed());
       double rise = 0.;
       for (std::size_t i = 0; i < result.history.size(); ++i)
@@ -367,9 +361,9 @@ namespace end_to_end::test_stability
   TEST(Stability, AllIntact)
   {
     const Workspace workspace;
-    Launch rigid = launch("all_intact", {"Interface: faces/where=x > 9",
-                                         "Interface: z/where=all",
-                                         "Interface: z/law=rigid"});
+    Launch rigid = launch("all_intact",
+                          {"Interface: faces/where=x > 9",
+                           "Interface: z/where=all", "Interface: z/law=rigid"});
     const auto intact = [&](const std::string &ratio) {
       return good_run(workspace, ratio,
                       launch("all_intact", {"Constants/ratio=" + ratio}));
@@ -400,8 +394,8 @@ namespace end_to_end::test_stability
       const char *name;
       double mass, area;
     };
-    for (const Row &row : {Row{"four_points", 2000., 1.},
-                           Row{"tower", 1e4, 1.}, Row{"wall", 1e4, 10.}}) {
+    for (const Row &row : {Row{"four_points", 2000., 1.}, Row{"tower", 1e4, 1.},
+                           Row{"wall", 1e4, 10.}}) {
       SCOPED_TRACE(row.name);
       const Workspace workspace;
       const Result result = good_run(
@@ -409,11 +403,10 @@ namespace end_to_end::test_stability
           launch(row.name, {}, 0.5 * row.mass * 0.01)); // m g^2 h^2 / 2
       ASSERT_TRUE(result.completed());
       expect_rest(result, row.mass, 0.1);
-      expect_below(std::string(row.name) + ", sum of the reactions",
-                   std::abs(floor_traction(result) * row.area /
-                                (row.mass * 10.) -
-                            1.),
-                   1e-8);
+      expect_below(
+          std::string(row.name) + ", sum of the reactions",
+          std::abs(floor_traction(result) * row.area / (row.mass * 10.) - 1.),
+          1e-8);
     }
   }
 
@@ -440,8 +433,7 @@ namespace end_to_end::test_stability
     for (const char *step : {"0.1 ms", "1 us"}) {
       const Result caught =
           good_run(workspace, std::string("caught, ") + step,
-                   launch("painleve",
-                          {std::string("Constants/step=") + step}));
+                   launch("painleve", {std::string("Constants/step=") + step}));
       ASSERT_TRUE(caught.completed());
       expect_below("p", std::abs(caught.error("exact_p") + 0.1258827), 1e-7);
       expect_below("spin of the impact without a collision",
@@ -466,10 +458,9 @@ namespace end_to_end::test_stability
   {
     const Workspace workspace;
     for (const char *mu : {"10", "1e3"}) {
-      const Result result =
-          good_run(workspace, mu,
-                   {scene("oblique"),
-                    {std::string("Obstacle: wall/friction=") + mu}});
+      const Result result = good_run(
+          workspace, mu,
+          {scene("oblique"), {std::string("Obstacle: wall/friction=") + mu}});
       ASSERT_TRUE(result.completed());
       for (const char *key : {"normal", "tangential", "energy"})
         expect_below(std::string("mu = ") + mu + ", " + key, result.error(key),

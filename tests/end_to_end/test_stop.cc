@@ -85,9 +85,10 @@ namespace end_to_end::test_stop
          command_of(endless, workspace.path() / "run", {}))
       if (word != "--quiet")
         command += "'" + word + "' ";
-    Process process({"sh", "-c",
-                     "{ " + command + " 2> said; echo $? > code; } | head -n 1"},
-                    workspace.path());
+    Process process(
+        {"sh", "-c",
+         "{ " + command + " 2> said; echo $? > code; } | head -n 1"},
+        workspace.path());
     const Outcome outcome = process.wait(60.);
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(read_text(workspace.path() / "code"), "4\n");

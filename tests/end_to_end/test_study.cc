@@ -237,8 +237,9 @@ namespace end_to_end::test_study
               two["operator_applications_per_step"].get<double>());
     EXPECT_GT(two["collectives_per_step"].get<double>(), 0.);
     EXPECT_EQ(one["errors"], two["errors"]);
-    EXPECT_NE(read_text(workspace.path() / "s" / "study.html").find("<h2>Ranks"),
-              std::string::npos);
+    EXPECT_NE(
+        read_text(workspace.path() / "s" / "study.html").find("<h2>Ranks"),
+        std::string::npos);
   }
 
   TEST(Study, NumbersOfRanksAreChecked)

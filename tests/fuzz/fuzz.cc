@@ -27,7 +27,8 @@
 #include <sstream>
 #include <thread>
 
-int nsfd_main(int argc, char **argv); // of source/app/main.cc, see CMakeLists.txt
+int nsfd_main(int argc,
+              char **argv); // of source/app/main.cc, see CMakeLists.txt
 
 namespace nsfd::fuzz
 {
@@ -109,9 +110,8 @@ namespace nsfd::fuzz
     };
 
     Fuzzer::Fuzzer(const Options &options)
-        : options_(options),
-          scratch_(fs::temp_directory_path() /
-                   fmt::format("nsfd_fuzz_{}", getpid())),
+        : options_(options), scratch_(fs::temp_directory_path() /
+                                      fmt::format("nsfd_fuzz_{}", getpid())),
           seeds_(read_seeds(options))
     {
       fs::create_directories(scratch_);
@@ -133,14 +133,13 @@ namespace nsfd::fuzz
       const fs::path folder = scratch_ / "good";
       fs::create_directories(folder);
       fs::copy_file(seeds_.at("checkpoint").front(), folder / "scene.prm");
-      Child run(::nsfd_main, {"nsfd", "scene.prm", "--output", "run", "--quiet"},
-                folder, folder / "log", Limits());
+      Child run(::nsfd_main,
+                {"nsfd", "scene.prm", "--output", "run", "--quiet"}, folder,
+                folder / "log", Limits());
       while (!run.ended())
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      if (run.outcome().code != 0 ||
-          !fs::exists(folder / "run/checkpoint.h5"))
-        throw std::runtime_error("no checkpoint: " +
-                                 read_file(folder / "log"));
+      if (run.outcome().code != 0 || !fs::exists(folder / "run/checkpoint.h5"))
+        throw std::runtime_error("no checkpoint: " + read_file(folder / "log"));
     }
 
     Fuzzer::Job Fuzzer::make(const std::size_t number) const
@@ -160,8 +159,8 @@ namespace nsfd::fuzz
       const fs::path prm = fs::path(options_.source) / "prm";
       for (const auto &entry : fs::directory_iterator(prm))
         if (entry.is_directory())
-          fs::create_directory_symlink(entry.path(), job.folder / "prm" /
-                                                         entry.path().filename());
+          fs::create_directory_symlink(
+              entry.path(), job.folder / "prm" / entry.path().filename());
       for (const auto &entry : fs::directory_iterator(seed.parent_path()))
         if (entry.path().extension() == ".prm")
           fs::create_symlink(entry.path(), inner / entry.path().filename());
@@ -179,8 +178,8 @@ namespace nsfd::fuzz
         command.insert(command.end(), {"mutant.prm", "--check"});
       } else if (job.kind == "law") {
         write_file(inner / "mutant.prm", mutate(true));
-        command.insert(command.end(), {"law", "mutant.prm", "--output", "run",
-                                       "--quiet"});
+        command.insert(command.end(),
+                       {"law", "mutant.prm", "--output", "run", "--quiet"});
       } else if (job.kind == "study") {
         write_file(inner / "mutant.prm", mutate(true));
         command.insert(command.end(),
@@ -188,10 +187,18 @@ namespace nsfd::fuzz
       } else if (job.kind == "set") {
         fs::copy_file(seed, inner / "mutant.prm");
         static const std::vector<std::string> names = {
-            "Mesh/cells", "Time/end", "Time/step", "Time/theta", "dimension",
-            "Discretization/degree", "Mesh/refinements", "Output/fields every",
-            "Boundary: left/velocity x", "Material: bulk/density",
-            "Mesh/upper corner", "Constants/a"};
+            "Mesh/cells",
+            "Time/end",
+            "Time/step",
+            "Time/theta",
+            "dimension",
+            "Discretization/degree",
+            "Mesh/refinements",
+            "Output/fields every",
+            "Boundary: left/velocity x",
+            "Material: bulk/density",
+            "Mesh/upper corner",
+            "Constants/a"};
         std::string assignment =
             names[below(random, names.size())] + "=" + extreme_value(random);
         job.done = assignment;
@@ -202,8 +209,8 @@ namespace nsfd::fuzz
                        {"mutant.prm", "--check", "--set", assignment});
       } else if (job.kind == "mesh") {
         const std::string extension = seed.extension().string();
-        const bool is_text = seed.filename().string().find("binary") ==
-                             std::string::npos;
+        const bool is_text =
+            seed.filename().string().find("binary") == std::string::npos;
         write_file(inner / ("mutant" + extension), mutate(is_text));
         write_file(inner / "mutant.prm",
                    "subsection Mesh\n set type = file\n set file = mutant" +
@@ -221,12 +228,12 @@ namespace nsfd::fuzz
         const Mutant mutant = mutate_bytes(content, random);
         job.done = mutant.done;
         write_file(inner / "run/checkpoint.h5", mutant.content);
-        command.insert(command.end(), {"scene.prm", "--output", "run",
-                                       "--quiet", "--resume"});
+        command.insert(command.end(),
+                       {"scene.prm", "--output", "run", "--quiet", "--resume"});
       } else { // stored
         write_file(inner / "mutant.hdf5", mutate(false));
-        command.insert(command.end(), {"solve", "mutant.hdf5", "--tolerance",
-                                       "0.1"});
+        command.insert(command.end(),
+                       {"solve", "mutant.hdf5", "--tolerance", "0.1"});
       }
       job.child = std::make_unique<Child>(::nsfd_main, command, inner,
                                           job.folder / "log", Limits());
@@ -262,10 +269,10 @@ namespace nsfd::fuzz
         for (const std::string &word : job.command)
           command += " '" + word + "'";
         const std::string log = read_file(job.folder / "log");
-        fmt::print("FAULT {} ({}): {}\n  {}\n  {}\n  {}\n", job.number,
-                   job.kind, fault, job.done, command,
-                   log.substr(log.size() - std::min<std::size_t>(
-                                               log.size(), 400)));
+        fmt::print(
+            "FAULT {} ({}): {}\n  {}\n  {}\n  {}\n", job.number, job.kind,
+            fault, job.done, command,
+            log.substr(log.size() - std::min<std::size_t>(log.size(), 400)));
         if (!options_.keep.empty()) {
           const fs::path kept =
               fs::path(options_.keep) / fs::path(job.folder).filename();

@@ -90,29 +90,28 @@ namespace nsfd::fuzz
 
     std::string odd_formula(Random &random)
     {
-      static const std::vector<std::string> formulas = {
-          "1 / x",
-          "sqrt(-1 - x^2)",
-          "1 / (t - t)",
-          "x / 0",
-          "ln(0)",
-          "exp(1e6)",
-          "tan(pi / 2) ^ 100",
-          "if(x > 0, 1 / 0, 0)",
-          "random()",
-          "pow(x)",
-          "1 m + 1 s",
-          "2 ^ 3 ^ 4 ^ 5 ^ 6",
-          "(((x)",
-          "x > 1 > 2",
-          "1 1/",
-          "-",
-          "x y",
-          "1e",
-          "5 kg/m^99",
-          "min()",
-          "a ? b",
-          "%s%n"};
+      static const std::vector<std::string> formulas = {"1 / x",
+                                                        "sqrt(-1 - x^2)",
+                                                        "1 / (t - t)",
+                                                        "x / 0",
+                                                        "ln(0)",
+                                                        "exp(1e6)",
+                                                        "tan(pi / 2) ^ 100",
+                                                        "if(x > 0, 1 / 0, 0)",
+                                                        "random()",
+                                                        "pow(x)",
+                                                        "1 m + 1 s",
+                                                        "2 ^ 3 ^ 4 ^ 5 ^ 6",
+                                                        "(((x)",
+                                                        "x > 1 > 2",
+                                                        "1 1/",
+                                                        "-",
+                                                        "x y",
+                                                        "1e",
+                                                        "5 kg/m^99",
+                                                        "min()",
+                                                        "a ? b",
+                                                        "%s%n"};
       switch (below(random, 6)) {
       case 0:
         return "1" + repeated(" + 1", 300000);
@@ -277,11 +276,10 @@ namespace nsfd::fuzz
              const auto places = entries(other);
              if (places.empty())
                return false;
-             const std::string value = right_side(other[any_of(places,
-                                                               random)]);
-             return change_entry(lines, random, [&](const std::string &) {
-               return value;
-             });
+             const std::string value =
+                 right_side(other[any_of(places, random)]);
+             return change_entry(lines, random,
+                                 [&](const std::string &) { return value; });
            }},
           {"section deleted",
            [](Lines &lines, const Lines &, Random &random) {
@@ -296,8 +294,8 @@ namespace nsfd::fuzz
              while (end < lines.size() && lines[end].compare(0, 3, "end") != 0)
                ++end;
              lines.erase(lines.begin() + std::ptrdiff_t(begin),
-                         lines.begin() + std::ptrdiff_t(std::min(
-                                             end + 1, lines.size())));
+                         lines.begin() +
+                             std::ptrdiff_t(std::min(end + 1, lines.size())));
              return true;
            }},
       };
@@ -312,15 +310,46 @@ namespace nsfd::fuzz
 
   std::string extreme_value(Random &random)
   {
-    static const std::vector<std::string> values = {
-        "0",      "-1",       "1e300",      "1e-300",      "1e400",
-        "-1e400", "0x10",     "nan",        "inf",         "1e17",
-        "1e3",    "0.5",      "4294967296", "-2147483649", "18446744073709551616",
-        "5000",   "20",       "1e-30",      "1e30",        "1,1,1,1,1,1",
-        ",",      "1e9",      "2",          "3",           "1000000",
-        "-0",     "1e-30 m",  "1e300 Pa",   "1e-300 kg/m^3", "true",
-        "all",    "/dev/zero", "/",         "..",          "/dev/stdin",
-        "auto",   "none",     "1 crossings", "1e17 s",     "1 furlong"};
+    static const std::vector<std::string> values = {"0",
+                                                    "-1",
+                                                    "1e300",
+                                                    "1e-300",
+                                                    "1e400",
+                                                    "-1e400",
+                                                    "0x10",
+                                                    "nan",
+                                                    "inf",
+                                                    "1e17",
+                                                    "1e3",
+                                                    "0.5",
+                                                    "4294967296",
+                                                    "-2147483649",
+                                                    "18446744073709551616",
+                                                    "5000",
+                                                    "20",
+                                                    "1e-30",
+                                                    "1e30",
+                                                    "1,1,1,1,1,1",
+                                                    ",",
+                                                    "1e9",
+                                                    "2",
+                                                    "3",
+                                                    "1000000",
+                                                    "-0",
+                                                    "1e-30 m",
+                                                    "1e300 Pa",
+                                                    "1e-300 kg/m^3",
+                                                    "true",
+                                                    "all",
+                                                    "/dev/zero",
+                                                    "/",
+                                                    "..",
+                                                    "/dev/stdin",
+                                                    "auto",
+                                                    "none",
+                                                    "1 crossings",
+                                                    "1e17 s",
+                                                    "1 furlong"};
     return any_of(values, random);
   }
 
@@ -334,8 +363,8 @@ namespace nsfd::fuzz
     for (std::size_t n = 1 + below(random, 3); n > 0; --n) {
       const TextMutation &mutation = any_of(text_mutations(), random);
       if (!lines.empty() && mutation.change(lines, other, random))
-        mutant.done += (mutant.done.empty() ? "" : ", ") +
-                       std::string(mutation.name);
+        mutant.done +=
+            (mutant.done.empty() ? "" : ", ") + std::string(mutation.name);
     }
     mutant.content = join(lines);
     return mutant;

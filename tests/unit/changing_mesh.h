@@ -1,7 +1,7 @@
 #pragma once
 
-#include "simulation/adaptive_mesh.h"
 #include "make_scene.h"
+#include "simulation/adaptive_mesh.h"
 
 #include "nsfd/adaptivity/indicator.h"
 #include "nsfd/parameters/section_reader.h"

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/parameters/section_reader.h"
 #include "parameters/input_errors.h"
 #include "parameters/parameter_file.h"
-#include "nsfd/parameters/section_reader.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include <memory>
 #include <sstream>

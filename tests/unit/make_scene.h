@@ -4,11 +4,11 @@
 #include "time_integration/large_motion.h"
 
 #include "delassus/bonded.h"
-#include "input/read_scene.h"
-#include "nsfd/discretization/discretization.h"
-#include "mesh/mesh_builder.h"
 #include "discretization/node_coordinates.h"
+#include "input/read_scene.h"
+#include "mesh/mesh_builder.h"
 #include "nonsmooth/solver.h"
+#include "nsfd/discretization/discretization.h"
 #include "time_integration/moreau_jean.h"
 
 #include <memory>
@@ -72,14 +72,13 @@ namespace nsfd
         } else if (input->has_bonded_faces()) {
           const auto &bodies = discretization->bodies();
           const auto &points = discretization->points();
-          auto joined =
-              input->time.scheme == Scheme::symplectic
-                  ? make_explicit_bonded_dynamics<dim>(communicator, bodies,
-                                                       points)
-                  : make_bonded_dynamics<dim>(
-                        communicator, bodies, points,
-                        input->solver.linear_solver,
-                        node_coordinates(*discretization));
+          auto joined = input->time.scheme == Scheme::symplectic
+                            ? make_explicit_bonded_dynamics<dim>(communicator,
+                                                                 bodies, points)
+                            : make_bonded_dynamics<dim>(
+                                  communicator, bodies, points,
+                                  input->solver.linear_solver,
+                                  node_coordinates(*discretization));
           bonded = joined.get();
           dynamics = std::move(joined);
         } else if (input->solver.path == "global")
@@ -147,7 +146,7 @@ namespace nsfd
       std::unique_ptr<MeshGroups<dim>> groups;
       std::unique_ptr<Discretization<dim>> discretization;
       std::unique_ptr<Dynamics<dim>> dynamics;
-      BondedDynamics<dim> *bonded = nullptr; ///< the same, or null
+      BondedDynamics<dim> *bonded = nullptr;     ///< the same, or null
       std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
       /// of small motions with materials that remember, or null
       std::unique_ptr<InelasticBodies<dim>> inelastic;

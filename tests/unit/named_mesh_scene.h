@@ -101,8 +101,7 @@ namespace nsfd
       static Where where(const std::string &group)
       {
         Where result;
-        result.kind =
-            group == "all" ? Where::Kind::all : Where::Kind::group;
+        result.kind = group == "all" ? Where::Kind::all : Where::Kind::group;
         result.name = group;
         return result;
       }

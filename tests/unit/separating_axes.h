@@ -20,14 +20,13 @@ namespace nsfd
               a[0] * b[1] - a[1] * b[0]};
     }
 
-    /** A convex body: corners, normals of its sides, directions of its edges. */
-    struct Convex
-    {
+    /** A convex body: corners, normals of its sides, directions of its edges.
+     */
+    struct Convex {
       std::vector<Vector3> corners, normals, edges;
     };
 
-    struct Separation
-    {
+    struct Separation {
       double distance = -1e300; ///< below zero: the depth of the overlap
       Vector3 normal{};         ///< from the first body to the second
       bool of_edges = false;    ///< across an edge of each body

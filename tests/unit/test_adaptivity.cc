@@ -39,14 +39,17 @@ subsection Material: block
   set density       = 2
 end
 subsection Interface: all
-)" + (c.bonded ? "  set law = camacho-ortiz\n  set toughness = 1\n"
-               : "  set law = michel-suquet\n  set stiffness = 100\n") +
+)" +
+             (c.bonded ? "  set law = camacho-ortiz\n  set toughness = 1\n"
+                       : "  set law = michel-suquet\n  set stiffness = 100\n") +
              R"(  set strength = 1
 end
 subsection Obstacle: floor
   set where  = bottom
-  set point  = )" + (space ? "0, -0.1, 0" : "0, -0.1") + R"(
-  set normal = )" + (space ? "0, 1, 0" : "0, 1") + R"(
+  set point  = )" +
+             (space ? "0, -0.1, 0" : "0, -0.1") + R"(
+  set normal = )" +
+             (space ? "0, 1, 0" : "0, 1") + R"(
 end
 subsection Boundary: roof
   set where      = top
@@ -87,8 +90,7 @@ end
         const auto now = mesh.momenta();
         for (unsigned int d = 0; d + 1 < now.size(); ++d)
           ASSERT_NEAR(now[d], momenta[d], 1e-12 * momenta.back()) << d;
-        ASSERT_LE(mesh.state.energy.kinetic,
-                  before.kinetic * (1. + 1e-12));
+        ASSERT_LE(mesh.state.energy.kinetic, before.kinetic * (1. + 1e-12));
         // the books stay closed
         ASSERT_NEAR(closed(mesh.state.energy), closed(before),
                     1e-12 * before.kinetic);

@@ -300,8 +300,7 @@ end
          "  set quasi-static until = 11 ns",
          "quasi-static until", "set quasi-static until = 11 ns"},
         {"jump_without_quasi_static", "set theta = 0.5",
-         "set at solution jump = relax",
-         "it belongs to scheme = quasi-static",
+         "set at solution jump = relax", "it belongs to scheme = quasi-static",
          "set at solution jump = relax"},
         {"tolerance_without_equilibrium", "set theta = 0.5",
          "set equilibrium tolerance = 1e-9",
@@ -338,7 +337,8 @@ end
         {"misspelt_choice", "set mass = consistent", "set mass = consistant",
          "did you mean `consistent`?", "set mass = consistant"},
         {"method", "set method = auto", "set method = magic",
-         "method = magic is not one of: auto, anderson, chain, contacts alone, dual newton, fixed point, gauss seidel, interior point",
+         "method = magic is not one of: auto, anderson, chain, contacts alone, "
+         "dual newton, fixed point, gauss seidel, interior point",
          "set method = magic"},
         {"unknown_law", "camacho-ortiz", "camacho-ortis",
          "did you mean `camacho-ortiz`?", "set law = camacho-ortis"},
@@ -347,7 +347,7 @@ end
          "faces of the law `bonded` never open", "set friction = 0.1"},
         {"scheme", "set theta = 0.5", "set scheme = newmark",
          "scheme = newmark is not one of: moreau-jean, symplectic, arkode, "
-           "quasi-static",
+         "quasi-static",
          "set scheme = newmark"},
         {"mesh_type", "set type = rectangle", "set type = rectangel",
          "did you mean `rectangle`?", "set type = rectangel"},

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-// All bodies joined by stiffnesses, symmetric or not, small or huge: factors and
-// iterations against what defines the solution; the motions of a node that
+// All bodies joined by stiffnesses, symmetric or not, small or huge: factors
+// and iterations against what defines the solution; the motions of a node that
 // stretch no stiff spring, counted by hand.
 
 using namespace nsfd;
@@ -26,8 +26,7 @@ namespace test_body_system
    *     --+--      faces 0-2 and 1-3 the normal y;
    *     0 | 1      unit mass, one point per face.
    */
-  struct Vertex
-  {
+  struct Vertex {
     std::vector<std::size_t> first_dof{0, 2, 4, 6, 8};
     std::vector<FaceRows> faces;
     SparseRows K;
@@ -51,15 +50,14 @@ namespace test_body_system
             face.dofs.push_back(2 * b + c);
         const bool upright = f < 2;
         // unknowns: ux, uy of the first body, ux, uy of the second
-        face.rows = upright
-                      ? std::vector<double>{-1, 0, 1, 0, 0, -1, 0, 1}
-                      : std::vector<double>{0, -1, 0, 1, -1, 0, 1, 0};
+        face.rows = upright ? std::vector<double>{-1, 0, 1, 0, 0, -1, 0, 1}
+                            : std::vector<double>{0, -1, 0, 1, -1, 0, 1, 0};
         for (int k = 0; k < 2; ++k)
           for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b)
               dense[face.dofs[a] * 8 + face.dofs[b]] +=
-                (k == 0 ? normal[f] : tangential[f]) * face.rows[k * 4 + a] *
-                face.rows[k * 4 + b];
+                  (k == 0 ? normal[f] : tangential[f]) * face.rows[k * 4 + a] *
+                  face.rows[k * 4 + b];
         faces.push_back(face);
       }
       K.start = {0};
@@ -186,7 +184,7 @@ namespace test_body_system
     Scene<dim> scene(block<dim>());
     const auto &dynamics = *scene.dynamics;
     BodySystem<dim> factor(dynamics, scene.time_step, 1.),
-      iteration(dynamics, scene.time_step, 1., 0);
+        iteration(dynamics, scene.time_step, 1., 0);
     std::vector<double> b(dynamics.bodies().n_dofs()), x, y, dU, dV, dP, dQ;
     const auto &resistance = factor.impedance();
     std::mt19937 random(7);
@@ -199,7 +197,7 @@ namespace test_body_system
         // what the velocities oppose: S times a velocity, as Newton's
         // method has it
         std::vector<double> change(dynamics.points().n_points * dim, 0.),
-          velocity(change.size());
+            velocity(change.size());
         for (double &value : velocity)
           value = any(random);
         for (std::size_t j = 0; j < change.size(); ++j)
@@ -211,7 +209,7 @@ namespace test_body_system
         EXPECT_GT(iteration.respond(b, change, y, dV, dQ, 1e-12), 1u);
         // the definition, whatever S is
         EXPECT_LE(imbalance(iteration, dynamics, b, y, dQ), 1e-10)
-          << "dim " << dim << ", stiffness " << stiff;
+            << "dim " << dim << ", stiffness " << stiff;
         double largest = 0., difference = 0.;
         for (std::size_t k = 0; k < x.size(); ++k) {
           largest = std::max(largest, std::abs(x[k]));
@@ -219,7 +217,7 @@ namespace test_body_system
         }
         // round-off times the condition of K in the factor
         EXPECT_LE(difference, (stiff > 1e3 ? 1e-7 : 1e-10) * largest)
-          << "dim " << dim << ", stiffness " << stiff;
+            << "dim " << dim << ", stiffness " << stiff;
       }
   }
 

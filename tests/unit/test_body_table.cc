@@ -36,8 +36,7 @@ namespace test_body_table
       }
       // one rank alone numbers its cells as the table does
       EXPECT_EQ(table.cell_of_global[scene.discretization->global_cell(c)], c);
-      EXPECT_EQ(table.bodies[b].material,
-                scene.discretization->material_of(c));
+      EXPECT_EQ(table.bodies[b].material, scene.discretization->material_of(c));
     }
     for (unsigned int b = 0; b < table.bodies.size(); ++b) {
       EXPECT_EQ(n_cells[b], table.is_rigid(b) ? 24u : 1u);

@@ -66,22 +66,21 @@ end
            std::to_string(degree) + "\nend\n";
   }
 
-  struct Case
-  {
+  struct Case {
     std::string name, text;
   };
 
   const std::vector<Case> plane_cases = {
-    {"quads", mesh("rectangle", "3, 2", "3, 2", 1) + solid},
-    {"cubic quads", mesh("rectangle", "3, 2", "2, 2", 3) + solid},
-    {"thin quads", mesh("rectangle", "3, 0.003", "3, 2", 2) + solid},
-    {"triangles", mesh("crossed triangles", "3, 2", "2, 1", 2) + solid},
-    {"contrast", mesh("rectangle", "3, 2", "3, 2", 2) + soft_half + solid},
+      {"quads", mesh("rectangle", "3, 2", "3, 2", 1) + solid},
+      {"cubic quads", mesh("rectangle", "3, 2", "2, 2", 3) + solid},
+      {"thin quads", mesh("rectangle", "3, 0.003", "3, 2", 2) + solid},
+      {"triangles", mesh("crossed triangles", "3, 2", "2, 1", 2) + solid},
+      {"contrast", mesh("rectangle", "3, 2", "3, 2", 2) + soft_half + solid},
   };
 
   const std::vector<Case> space_cases = {
-    {"hexes", mesh("brick", "3, 2, 1", "2, 2, 1", 1) + solid},
-    {"tets", mesh("tetrahedra", "3, 2, 1", "1, 1, 1", 1) + solid},
+      {"hexes", mesh("brick", "3, 2, 1", "2, 2, 1", 1) + solid},
+      {"tets", mesh("tetrahedra", "3, 2, 1", "1, 1, 1", 1) + solid},
   };
 
   /** Stick all points together and prepare a step. */
@@ -148,7 +147,7 @@ end
         for (unsigned int i = 0; i < block.rows; ++i)
           for (unsigned int j = 0; j < block.cols; ++j)
             alone[bodies.first_dof[b] + i] +=
-              block(i, j) * x[bodies.first_dof[b] + j];
+                block(i, j) * x[bodies.first_dof[b] + j];
       }
     };
     Vector x = random_vector(n, random), Kx, Bx, g(n), Kg, Bg;
@@ -168,7 +167,7 @@ end
       double s = 0., value = ratio;
       for (const double sign : {-1., 1.}) {
         const double trial =
-          A != 0. ? (-B + sign * root) / (2. * A) : (B != 0. ? -C / B : 0.);
+            A != 0. ? (-B + sign * root) / (2. * A) : (B != 0. ? -C / B : 0.);
         const double at = (a + 2. * trial * c + trial * trial * d) /
                           (b + 2. * trial * e + trial * trial * f);
         if (std::isfinite(at) && at < value) {
@@ -221,7 +220,7 @@ end
     for (std::size_t k = 0; k < n; ++k)
       back[k] -= x[k];
     EXPECT_LE(std::sqrt(dot(back, back) / dot(x, x)), 1e-7)
-      << "the contrast of 1e6 leaves less";
+        << "the contrast of 1e6 leaves less";
   }
 
   /** A linear field: no jump, the exact traction, the exact energy. */
@@ -233,11 +232,11 @@ end
     Scene<dim> scene(one.text);
     bond(scene);
     const auto u = scene.discretization->interpolate(
-      [](const dealii::Point<dim> &x, unsigned int, double *value) {
-        for (unsigned int c = 0; c < dim; ++c)
-          value[c] = 0.;
-        value[0] = 0.3 * x[0] + 0.2 * x[1];
-      });
+        [](const dealii::Point<dim> &x, unsigned int, double *value) {
+          for (unsigned int c = 0; c < dim; ++c)
+            value[c] = 0.;
+          value[0] = 0.3 * x[0] + 0.2 * x[1];
+        });
     const std::size_t n = u.size();
     Vector Ku(n);
     scene.dynamics->apply(Operator::stiffness, u.data(), Ku.data());
@@ -361,10 +360,10 @@ end
     Scene<2> scene(mesh("rectangle", "2, 1", "2, 1", 1) + rigid_half + solid);
     bond(scene);
     const auto u = scene.discretization->interpolate(
-      [](const dealii::Point<2> &x, unsigned int, double *value) {
-        value[0] = std::max(0., x[0] - 1.);
-        value[1] = 0.;
-      });
+        [](const dealii::Point<2> &x, unsigned int, double *value) {
+          value[0] = std::max(0., x[0] - 1.);
+          value[1] = 0.;
+        });
     Vector traction(scene.state.jump.size());
     BulkTraction<2>(*scene.dynamics).evaluate(u.data(), traction.data());
     const double expected = 0.3 / (1.3 * 0.4) + 2. / 2.6; // lambda + 2 mu
@@ -375,13 +374,14 @@ end
         EXPECT_NEAR(traction[i * 2], expected, 1e-12);
       }
     EXPECT_TRUE(any);
-    EXPECT_THROW(bond(*std::make_unique<Scene<2>>(
-                   mesh("rectangle", "3, 1", "3, 1", 1) +
-                   "subsection Material: stone\n  set model = rigid\n  set "
-                   "density = 1\nend\nsubsection Interface: all\n  set law = "
-                   "bonded\nend\nsubsection Time\n  set end = 1\n  set step = "
-                   "0.1\nend\n")),
-                 std::invalid_argument); // by the reader
+    EXPECT_THROW(
+        bond(*std::make_unique<Scene<2>>(
+            mesh("rectangle", "3, 1", "3, 1", 1) +
+            "subsection Material: stone\n  set model = rigid\n  set "
+            "density = 1\nend\nsubsection Interface: all\n  set law = "
+            "bonded\nend\nsubsection Time\n  set end = 1\n  set step = "
+            "0.1\nend\n")),
+        std::invalid_argument); // by the reader
   }
 
   /** Halves that are apart at the start: the bond stores it, and knows it. */

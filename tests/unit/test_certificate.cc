@@ -42,7 +42,8 @@ namespace nsfd::test_certificate
       facts.limits.thickness = 0.1;
       facts.limits.joints = 1e-15;
       facts.limits.joint_theta = 0.5;
-      facts.limits.front = SharpFront{1e5, 0., 1e6, 1e-6, "Boundary: left", true, 1e10, 0.};
+      facts.limits.front =
+          SharpFront{1e5, 0., 1e6, 1e-6, "Boundary: left", true, 1e10, 0.};
       return facts;
     }
 
@@ -111,7 +112,9 @@ namespace nsfd::test_certificate
          },
          Verdict::bad, "out of nothing"},
         {"GivenUnknown", "given by friction",
-         [](RunFacts &f) { f.given = {{"friction", nan_value, 1e-9, ""}}; },
+         [](RunFacts &f) {
+           f.given = {{"friction", nan_value, 1e-9, ""}};
+         },
          Verdict::bad, ""},
         {"Uniqueness", "uniqueness", [](RunFacts &f) { f.beyond_unique = 7; },
          Verdict::bad, "in 7 of 100 steps"},
@@ -128,7 +131,9 @@ namespace nsfd::test_certificate
          },
          Verdict::bad, "set at solution jump = dynamic"},
         {"Zone", "cohesive zone",
-         [](RunFacts &f) { f.zone = ZoneResolution{1e-3, 1e-3, "all"}; },
+         [](RunFacts &f) {
+           f.zone = ZoneResolution{1e-3, 1e-3, "all"};
+         },
          // a strength of sqrt(1 / 2.5)
          Verdict::bad, "points every 400 µm, or a strength 0.63 times"},
         {"Attempts", "taken again", [](RunFacts &f) { f.rejected = 99; },
@@ -188,8 +193,8 @@ namespace nsfd::test_certificate
           << other.name;
   }
 
-  INSTANTIATE_TEST_SUITE_P(Faults, CertificateTest,
-                           testing::ValuesIn(faults), [](const auto &info) {
+  INSTANTIATE_TEST_SUITE_P(Faults, CertificateTest, testing::ValuesIn(faults),
+                           [](const auto &info) {
                              return std::string(info.param.name);
                            });
 

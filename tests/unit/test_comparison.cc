@@ -30,8 +30,9 @@ namespace nsfd::test_comparison
       run.numbers = {{"final_time", end},
                      {"energy/kinetic", kinetic.back()},
                      {"counters/newton", 3. * n}};
-      run.parameters = "subsection Time\n  set end = 1\n  set step = " +
-                       std::to_string(n) + "\nend\n";
+      run.parameters =
+          "subsection Time\n  set end = 1\n  set step = " + std::to_string(n) +
+          "\nend\n";
       return run;
     }
 

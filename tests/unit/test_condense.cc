@@ -2,9 +2,9 @@
 #include "breaking_plate.h"
 #include "make_scene.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/condense.h"
 #include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

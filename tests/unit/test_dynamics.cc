@@ -1,8 +1,8 @@
 #include "delassus/block_inverse.h"
 #include "make_scene.h"
 
-#include "nsfd/linear_algebra/block_kernels.h"
 #include "delassus/inner_solver.h"
+#include "nsfd/linear_algebra/block_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -680,10 +680,11 @@ end
           continue;
         for (unsigned int c = 0; c < dim; ++c) {
           const std::size_t j = k - k % dim + c;
-          J[k * dim + c] = c == k % dim ? -1. / (D[k] + R[k]) :
-                           D[j] < 0.    ? 0. :
-                                       0.2 * noise[k * dim + c] /
-                                         std::sqrt((D[k] + R[k]) * (D[j] + R[j]));
+          J[k * dim + c] = c == k % dim ? -1. / (D[k] + R[k])
+                           : D[j] < 0.
+                               ? 0.
+                               : 0.2 * noise[k * dim + c] /
+                                     std::sqrt((D[k] + R[k]) * (D[j] + R[j]));
         }
       }
       EXPECT_GT(inner->solve_inner({D, 1e-6, 400, &J, &R, shift}, f, y), 0u);

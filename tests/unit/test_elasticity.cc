@@ -191,8 +191,8 @@ namespace test_elasticity
     Random random;
     for (const double nu : {-0.5, 0., 0.3, 0.49}) {
       const Rotation Q = random.rotation();
-      const auto transverse = in_space(
-          like_isotropic(3., nu, {{Q[0][0], Q[1][0], Q[2][0]}}));
+      const auto transverse =
+          in_space(like_isotropic(3., nu, {{Q[0][0], Q[1][0], Q[2][0]}}));
       const auto plain = in_space(isotropic(3., nu));
       const double size = plain.lambda + 2. * plain.mu;
       const Gradient3 gradient = random.gradient();
@@ -200,8 +200,7 @@ namespace test_elasticity
                    b = plain.stress(gradient.data());
       for (unsigned int k = 0; k < 6; ++k)
         EXPECT_NEAR(a[k], b[k], 1e-14 * 10. * size);
-      EXPECT_NEAR(transverse.pressure_wave_speed(),
-                  plain.pressure_wave_speed(),
+      EXPECT_NEAR(transverse.pressure_wave_speed(), plain.pressure_wave_speed(),
                   1e-13 * plain.pressure_wave_speed());
       EXPECT_NEAR(transverse.shear_wave_speed(), plain.shear_wave_speed(),
                   1e-13 * plain.pressure_wave_speed());
@@ -228,8 +227,7 @@ namespace test_elasticity
 
         // the strain across that leaves no stress there
         const Gradient3 across = {{0., 0., 0., 0., 0., 0., 0., 0., 1.}};
-        gradient[8] =
-            -space[2] / in_space(material).stress(across.data())[2];
+        gradient[8] = -space[2] / in_space(material).stress(across.data())[2];
         const Stress free = in_space(material).stress(gradient.data());
         const Stress plane =
             LinearElasticity<2>(material, true).stress(flat.data());
@@ -275,8 +273,8 @@ namespace test_elasticity
       MaterialInput material = laminate({{0., 1., 0.}});
       auto &c = *material.transverse;
       c.transverse_poisson = nu_T;
-      const double bound = std::sqrt((1. - nu_T) * c.axial_young /
-                                     c.transverse_young / 2.);
+      const double bound =
+          std::sqrt((1. - nu_T) * c.axial_young / c.transverse_young / 2.);
       for (const double share : {-0.999, 0.5, 0.999}) {
         c.axial_poisson = share * bound;
         for (unsigned int n = 0; n < 200; ++n) {
@@ -394,7 +392,8 @@ end
     return replaced(text, "CELLS", dim == 2 ? "2, 2" : "1, 1, 1");
   }
 
-  std::string transverse(const std::string &axis, const std::string &nu_A = "0.3",
+  std::string transverse(const std::string &axis,
+                         const std::string &nu_A = "0.3",
                          const std::string &nu_T = "0.45")
   {
     return "  set model = transversely isotropic\n  set axis = " + axis +
@@ -455,8 +454,7 @@ end
     EXPECT_EQ(complaints(scene_of(transverse("1, 0, 0", "1.96"))), "");
     expect_words(complaints(scene_of(transverse("1, 0, 0", "0", "1"))),
                  {"transverse Poisson ratio = 1", "less than 1"});
-    expect_words(complaints(scene_of(transverse("1, 0, 0"),
-                                     2),
+    expect_words(complaints(scene_of(transverse("1, 0, 0"), 2),
                             {"Material: m/axial shear modulus=0"}),
                  {"axial shear modulus = 0 must be positive"});
   }
@@ -487,9 +485,9 @@ end
     expect_words(complaints(scene_of(viscous), {"Time/scheme=symplectic",
                                                 "Interface: all/law=bonded"}),
                  {"explicit forces", "moreau-jean"});
-    expect_words(complaints(scene_of(viscous),
-                            {"Material: m/shear viscosity=-1"}),
-                 {"must not be negative"});
+    expect_words(
+        complaints(scene_of(viscous), {"Material: m/shear viscosity=-1"}),
+        {"must not be negative"});
     expect_words(complaints(scene_of("  set model = rigid\n"
                                      "  set shear viscosity = 1")),
                  {"the material is rigid"});
@@ -512,8 +510,9 @@ end
                  {"Material: m/Young modulus = 1 - 2 * x", "must be positive",
                   "falls to -0.7887"});
     expect_words(trouble("1 / (x - x)"), {"not a number"});
-    expect_words(trouble("1", "x"),
-                 {"Poisson ratio = x", "above -1 and below 0.5", "rises to 0.8943"});
+    expect_words(
+        trouble("1", "x"),
+        {"Poisson ratio = x", "above -1 and below 0.5", "rises to 0.8943"});
     expect_words(complaints(scene_of("  set Young modulus = 1 + t\n"
                                      "  set Poisson ratio = 0.3")),
                  {"depends on t"});

@@ -157,7 +157,8 @@ end
   TEST(OrderFreeSum, DoesNotKnowTheOrder)
   {
     std::mt19937 random(5);
-    std::uniform_real_distribution<double> mantissa(-1., 1.), power(-200., 200.);
+    std::uniform_real_distribution<double> mantissa(-1., 1.),
+        power(-200., 200.);
     std::vector<double> terms;
     for (unsigned int k = 0; k < 2000; ++k)
       terms.push_back(std::ldexp(mantissa(random), int(power(random)) / 3));
@@ -210,10 +211,16 @@ end
     Scene<2> scene(text, {GetParam()});
     const std::array<double, 2> length = {{1., 1.5}};
     std::array<Flight, 2> flights;
-    flights[0] = {{0.5, 0.5, 0.}, {-30., 4., 0.}, {2., -1., 0.},
-                  {0., 0., 7.},   turn_about_z(is_small ? 0. : 2.)};
-    flights[1] = {{1.75, 0.5, 0.}, {5., 0., 0.}, {-3., 0.5, 0.},
-                  {0., 0., -0.4},  turn_about_z(is_small ? 0. : -0.3)};
+    flights[0] = {{0.5, 0.5, 0.},
+                  {-30., 4., 0.},
+                  {2., -1., 0.},
+                  {0., 0., 7.},
+                  turn_about_z(is_small ? 0. : 2.)};
+    flights[1] = {{1.75, 0.5, 0.},
+                  {5., 0., 0.},
+                  {-3., 0.5, 0.},
+                  {0., 0., -0.4},
+                  turn_about_z(is_small ? 0. : -0.3)};
     fly(scene, flights);
     const auto records = measure(scene);
     if (!scene.communicator.is_root())
@@ -241,22 +248,25 @@ end
     }
   }
 
-  INSTANTIATE_TEST_SUITE_P(
-      Cells, BlocksTest,
-      testing::Values("Discretization/degree=1", "Discretization/degree=2",
-                      "Discretization/degree=3", "Mesh/type=crossed triangles",
-                      "Material: block/model=rigid"));
+  INSTANTIATE_TEST_SUITE_P(Cells, BlocksTest,
+                           testing::Values("Discretization/degree=1",
+                                           "Discretization/degree=2",
+                                           "Discretization/degree=3",
+                                           "Mesh/type=crossed triangles",
+                                           "Material: block/model=rigid"));
 
   TEST(FragmentMotion, OfBlocksInSpace)
   {
     Scene<3> scene(space_blocks);
-    const Mat3 turn =
-        rotation(normalized(Quaternion{{0.3, -0.5, 0.7, 0.2}}));
+    const Mat3 turn = rotation(normalized(Quaternion{{0.3, -0.5, 0.7, 0.2}}));
     std::array<Flight, 2> flights;
-    flights[0] = {{0.5, 0.5, 0.25}, {-3., 4., 2.}, {2., -1., 5.},
-                  {0.5, -3., 7.},  turn};
-    flights[1] = {{1.75, 0.5, 0.25}, {5., 0., 1.}, {-3., 0.5, 0.},
-                  {1., 2., -0.4},   turn_about_z(0.)};
+    flights[0] = {
+        {0.5, 0.5, 0.25}, {-3., 4., 2.}, {2., -1., 5.}, {0.5, -3., 7.}, turn};
+    flights[1] = {{1.75, 0.5, 0.25},
+                  {5., 0., 1.},
+                  {-3., 0.5, 0.},
+                  {1., 2., -0.4},
+                  turn_about_z(0.)};
     fly(scene, flights);
     const auto records = measure(scene);
     if (!scene.communicator.is_root())
@@ -351,8 +361,7 @@ end
       const auto unit =
           mesh.interpolate([c](const dealii::Point<2> &, unsigned int,
                                double *v) { v[c] = 1.; });
-      momentum[c] =
-          scene.communicator.dot(unit.data(), Mv.data(), unit.size());
+      momentum[c] = scene.communicator.dot(unit.data(), Mv.data(), unit.size());
     }
     if (!scene.communicator.is_root())
       return;

@@ -1,7 +1,7 @@
 #include "materials/matrix_log.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "bodies/history_cell.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "core/machine_memory.h"
+#include "input/read_scene.h"
 #include "parameters/bad_values.h"
 #include "parameters/place_of.h"
-#include "input/read_scene.h"
 #include "parameters/text_file.h"
 #include "time_integration/step_control.h"
 
@@ -92,7 +92,8 @@ end
           fs::temp_directory_path() / fmt::format("nsfd_hostile_{}", getpid());
       Folder() { fs::create_directories(path); }
       ~Folder() { fs::remove_all(path); }
-      std::string file(const std::string &name, const std::string &content) const
+      std::string file(const std::string &name,
+                       const std::string &content) const
       {
         std::ofstream(path / name, std::ios::binary) << content;
         return (path / name).string();
@@ -132,9 +133,9 @@ end
         ++n_entries;
         std::string text;
         for (std::size_t j = 0; j < lines.size(); ++j)
-          text += (j == i ? lines[j].substr(0, lines[j].find('=') + 1)
-                          : lines[j]) +
-                  "\n";
+          text +=
+              (j == i ? lines[j].substr(0, lines[j].find('=') + 1) : lines[j]) +
+              "\n";
         InputErrors errors;
         EXPECT_EQ(read_scene_text(text, path, {}, errors), nullptr)
             << path << ":" << i + 1;
@@ -151,16 +152,17 @@ end
   {
     const std::string value = "traction x = 1 MPa";
     expect_in("300 bytes, more than 80",
-              report_of(with("Boundary: left", "Boundary: " +
-                                                   std::string(290, 'a'))));
-    expect_in("bad.prm:20: error: this line has",
-              report_of(with(value, "traction x = " +
-                                        std::string(1000000, '1'))));
-    expect_in("this line has 1200",
-              report_of(with(value, "traction x = 1" +
-                                        repeated(" + 1", 300000))));
-    expect_in("this formula has 12",
-              report_of(with(value, "traction x = 1" + repeated(" + 1", 3000))));
+              report_of(with("Boundary: left",
+                             "Boundary: " + std::string(290, 'a'))));
+    expect_in(
+        "bad.prm:20: error: this line has",
+        report_of(with(value, "traction x = " + std::string(1000000, '1'))));
+    expect_in(
+        "this line has 1200",
+        report_of(with(value, "traction x = 1" + repeated(" + 1", 300000))));
+    expect_in(
+        "this formula has 12",
+        report_of(with(value, "traction x = 1" + repeated(" + 1", 3000))));
     expect_in("this statement of several lines has",
               report_of(with(value, "traction x = 1" +
                                         repeated(" + \\\n 1", 300000))));
@@ -195,8 +197,10 @@ end
     expect_in("too large or too small", report_of(with("1 GPa", "1e400")));
     expect_in("beyond 1e+45",
               report_of(with("traction x = 1 MPa", "traction x = 1e300")));
-    for (const char *cells : {"-1, 1", "1e400, 1", "0.5, 1", "1e10, 1", "nan, 1"})
-      expect_in("bad.prm:9: error: cells", report_of(with("10, 1\nend", std::string(cells) + "\nend")));
+    for (const char *cells :
+         {"-1, 1", "1e400, 1", "0.5, 1", "1e10, 1", "nan, 1"})
+      expect_in("bad.prm:9: error: cells",
+                report_of(with("10, 1\nend", std::string(cells) + "\nend")));
   }
 
   TEST(HostileInput, MeshesBeyondTheMemoryAreRefused)
@@ -204,9 +208,9 @@ end
     // 1e9 cells take terabytes
     expect_in("bad.prm:9: error: the mesh would have 1e+09 cells",
               report_of(with("10, 1\nend", "100000, 10000\nend")));
-    expect_in("the mesh would have 1.1e+13 cells after 20 refinements",
-              report_of(with("10, 1\nend",
-                             "10, 1\n  set refinements = 20\nend")));
+    expect_in(
+        "the mesh would have 1.1e+13 cells after 20 refinements",
+        report_of(with("10, 1\nend", "10, 1\n  set refinements = 20\nend")));
     EXPECT_GT(available_memory(), 1e6);
   }
 
@@ -234,7 +238,8 @@ end
     expect_in("is not UTF-8: the byte 0xff", report_of_file(file));
     expect_in("is not a text file",
               report_of_file(folder.file("b.prm", std::string("a\0b", 3))));
-    for (const char *bad : {"\xc3", "\xed\xa0\x80", "\xc0\xaf", "\xf5\x80\x80\x80"})
+    for (const char *bad :
+         {"\xc3", "\xed\xa0\x80", "\xc0\xaf", "\xf5\x80\x80\x80"})
       EXPECT_EQ(find_non_utf8("a" + std::string(bad)), 1u);
     EXPECT_EQ(find_non_utf8("\u00b5 \u20ac \U0001d54f"), std::string::npos);
     InputErrors errors;
@@ -256,8 +261,8 @@ end
   TEST(HostileInput, FormulasWithoutValueTellWhere)
   {
     InputErrors errors;
-    const auto scene = read_scene_text(with("1 MPa", "1 / (x - 2)"), "nan.prm",
-                                       {}, errors);
+    const auto scene =
+        read_scene_text(with("1 MPa", "1 / (x - 2)"), "nan.prm", {}, errors);
     ASSERT_NE(scene, nullptr) << errors.report();
     take_bad_values();
     scene->boundaries[0].traction[0](1., 0., 0., 0.);

@@ -1,6 +1,6 @@
 // Energies of finite strain and cells that store them.
-#include "nsfd/scene/scene_input.h"
 #include "bodies/finite_cell.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 
@@ -679,23 +679,25 @@ namespace test_hyperelastic
       const auto crushed = turned(cell, 0.5, 0.4), whole = turned(cell, 0.4),
                  longer = turned(cell, 0.5, 3.);
       for (const auto &u : {crushed, whole, longer}) {
-        ASSERT_TRUE(cell.finite->symmetric_tangent({whole.data(), u.data(), 0.5}, K.data()));
+        ASSERT_TRUE(cell.finite->symmetric_tangent(
+            {whole.data(), u.data(), 0.5}, K.data()));
         EXPECT_TRUE(definite(K, n, 1e-13 * young));
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < i; ++j)
             EXPECT_EQ(K[i * n + j], K[j * n + i]);
       }
-      ASSERT_TRUE(cell.finite->tangent({crushed.data(), crushed.data(), 0.5}, exact.data()));
+      ASSERT_TRUE(cell.finite->tangent({crushed.data(), crushed.data(), 0.5},
+                                       exact.data()));
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < i; ++j)
           exact[i * n + j] = exact[j * n + i] =
               (exact[i * n + j] + exact[j * n + i]) / 2.;
       EXPECT_FALSE(definite(exact, n, 1e-13 * young));
       // at rest both are the same: half of the stiffness of small strain
-      ASSERT_TRUE(cell.finite->symmetric_tangent({whole.data(), whole.data(),
-                                                 0.5}, K.data()));
-      ASSERT_TRUE(
-          cell.finite->tangent({whole.data(), whole.data(), 0.5}, exact.data()));
+      ASSERT_TRUE(cell.finite->symmetric_tangent(
+          {whole.data(), whole.data(), 0.5}, K.data()));
+      ASSERT_TRUE(cell.finite->tangent({whole.data(), whole.data(), 0.5},
+                                       exact.data()));
       for (unsigned int i = 0; i < n * n; ++i)
         EXPECT_NEAR(K[i], exact[i], 1e-13 * young);
     });

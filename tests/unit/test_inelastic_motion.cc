@@ -204,8 +204,8 @@ end
                   other.state.material_history[i], 1e-8);
   }
 
-  // Soft plastic, viscous (one modulus from place to place) and rigid cells fall
-  // on a wall; the seam breaks.
+  // Soft plastic, viscous (one modulus from place to place) and rigid cells
+  // fall on a wall; the seam breaks.
   const std::string mixed = R"(
 set dimension = 2
 subsection Mesh

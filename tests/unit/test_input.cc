@@ -1,8 +1,8 @@
 #include "app/command_line.h"
-#include "parameters/parameter_file.h"
 #include "input/read_scene.h"
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nonsmooth/solver.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
+#include "parameters/parameter_file.h"
 
 #include <gtest/gtest.h>
 
@@ -172,8 +172,8 @@ end
           units::acceleration, units::density, units::pressure,
           units::energy_per_area, units::stiffness_per_area,
           units::viscosity_per_length, units::damage_viscosity,
-          units::wear_coefficient, units::mass_per_area,
-          units::mass_per_length, units::inertia, units::inertia_per_length}) {
+          units::wear_coefficient, units::mass_per_area, units::mass_per_length,
+          units::inertia, units::inertia_per_length}) {
       ASSERT_FALSE(example(unit).empty()) << describe(unit);
       EXPECT_NE(read_number(example(unit), unit), 0.) << describe(unit);
     }

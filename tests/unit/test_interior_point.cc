@@ -7,9 +7,9 @@
 #include <vector>
 
 // Interior points on steps that Newton's method and sweeps find hard: broken,
-// closed and rubbing faces, long steps, rigid rows, large friction, kappa(beta).
-// Judged by the natural map; where the step has one solution, all solvers agree
-// on velocities.
+// closed and rubbing faces, long steps, rigid rows, large friction,
+// kappa(beta). Judged by the natural map; where the step has one solution, all
+// solvers agree on velocities.
 
 using namespace nsfd;
 using nsfd::test::Scene;
@@ -66,10 +66,10 @@ namespace test_interior_point
   {
     for (const std::string mu : {"0.1", "0.5", "1", "10"})
       for (const std::string step : {"0.5", "2", "20"}) {
-        Scene<2> scene(square(springs),
-                       with("interior point",
-                            {"Interface: faces/friction=" + mu,
-                             "Time/step=" + step + " crossings"}));
+        Scene<2> scene(
+            square(springs),
+            with("interior point", {"Interface: faces/friction=" + mu,
+                                    "Time/step=" + step + " crossings"}));
         for (unsigned int k = 0; k < 4; ++k) {
           StepReport report;
           ASSERT_NO_THROW(report = scene.advance())
@@ -107,11 +107,11 @@ namespace test_interior_point
   {
     // C L/E = 1e3 and 1e5, every face in contact or open
     for (const std::string stiffness : {"5e3", "5e5"}) {
-      Scene<2> scene(square(springs),
-                     with("interior point",
-                          {"Interface: faces/friction=0.5",
-                           "Interface: faces/stiffness=" + stiffness,
-                           "Interface: faces/intact faces=unilateral"}));
+      Scene<2> scene(
+          square(springs),
+          with("interior point", {"Interface: faces/friction=0.5",
+                                  "Interface: faces/stiffness=" + stiffness,
+                                  "Interface: faces/intact faces=unilateral"}));
       for (unsigned int k = 0; k < 3; ++k)
         EXPECT_NO_THROW(scene.advance()) << stiffness << ", step " << k;
     }
@@ -128,10 +128,10 @@ namespace test_interior_point
         set where = all
         set law   = rigid
     )";
-    Scene<2> scene(square(contact),
-                   with("interior point",
-                        {"Interface: faces/where=abs(x - 0.4) < 1e-6 || "
-                         "abs(y - 0.6) < 1e-6"}));
+    Scene<2> scene(
+        square(contact),
+        with("interior point", {"Interface: faces/where=abs(x - 0.4) < 1e-6 || "
+                                "abs(y - 0.6) < 1e-6"}));
     for (unsigned int k = 0; k < 4; ++k) {
       StepReport report;
       ASSERT_NO_THROW(report = scene.advance()) << k;
@@ -142,11 +142,11 @@ namespace test_interior_point
   TEST(InteriorPoint, KeepsEnergyWithRestitution)
   {
     // broken faces with e = 0.5, theta in the allowed range
-    Scene<2> scene(square(springs),
-                   with("interior point", {"Interface: faces/friction=0.3",
-                                           "Interface: faces/restitution=0.5",
-                                           "Time/theta=0.5",
-                                           "Time/step=0.5 crossings"}));
+    Scene<2> scene(
+        square(springs),
+        with("interior point", {"Interface: faces/friction=0.3",
+                                "Interface: faces/restitution=0.5",
+                                "Time/theta=0.5", "Time/step=0.5 crossings"}));
     const double start = scene.energy();
     for (unsigned int k = 0; k < 6; ++k) {
       scene.advance();

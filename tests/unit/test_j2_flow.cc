@@ -1,5 +1,5 @@
-#include "nsfd/scene/scene_input.h"
 #include "materials/j2_flow.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

@@ -43,8 +43,7 @@ namespace test_large_motion
     const auto end = momenta(scene);
     const double size = norm(start[0]) + 1e-3 * norm(start[1]);
     EXPECT_LT(norm(difference(end[0], start[0])), tolerance * size);
-    EXPECT_LT(norm(difference(end[1], start[1])),
-              tolerance * norm(start[1]));
+    EXPECT_LT(norm(difference(end[1], start[1])), tolerance * norm(start[1]));
   }
 
   // --- tumbling
@@ -151,7 +150,8 @@ end
   {
     // by 170 degrees about the origin, at rest and in motion
     const std::vector<std::string> turned = {
-        "Constants/c=cos(170/180 * pi)", "Constants/s=sin(170/180 * pi)",
+        "Constants/c=cos(170/180 * pi)",
+        "Constants/s=sin(170/180 * pi)",
         "Material: rubber/initial displacement x=(c - 1) * x - s * y",
         "Material: rubber/initial displacement y=s * x + (c - 1) * y",
         "Material: rubber/initial velocity x="
@@ -329,7 +329,8 @@ end
     return result;
   }
 
-  /** How far one has to move for two convex quads to be apart; 0 if they are. */
+  /** How far one has to move for two convex quads to be apart; 0 if they are.
+   */
   double overlap(const Corners &a, const Corners &b)
   {
     double depth = 1e300;
@@ -403,8 +404,8 @@ end
     double bound = 0.;
     const State &state = scene.state;
     for (std::size_t i = 0; i < state.surface_approach.size(); ++i)
-      bound = std::max(bound,
-                       state.surface_overlap[i] + state.surface_approach[i]);
+      bound =
+          std::max(bound, state.surface_overlap[i] + state.surface_approach[i]);
     EXPECT_GT(bound, 0.);
     // a corner that meets a corner is seen once it is inside: h v more
     EXPECT_LE(deepest, 2. * bound);
@@ -436,8 +437,7 @@ end
    * upper one, along y, falls on the upper edge of the lower one, along x. No
    * corner comes near the other brick.
    */
-  struct CrossedBricks
-  {
+  struct CrossedBricks {
     std::array<std::string, 3> low_u = {"0", "r * (y - z) - y",
                                         "r * (y + z) - z"},
                                high_u = {"aside + r * (x - (z - 1)) - x", "0",
@@ -456,8 +456,8 @@ subsection Constants
   set r     = sqrt(0.5)
   set co    = cos(170 / 180 * pi)
   set si    = sin(170 / 180 * pi)
-  set gap   = )" + gap + "\n  set aside = " +
-                           aside + R"(
+  set gap   = )" + gap +
+                           "\n  set aside = " + aside + R"(
 end
 subsection Mesh
   set type = bodies
@@ -610,8 +610,8 @@ end
     const auto nodal = scene.discretization->to_nodal(scene.state.displacement);
     const auto low = convex(scene, 0, nodal).corners,
                high = convex(scene, 1, nodal).corners;
-    const test::Vector3 n = test::cross(difference(low[7], low[6]),
-                                        difference(high[2], high[0]));
+    const test::Vector3 n =
+        test::cross(difference(low[7], low[6]), difference(high[2], high[0]));
     return -test::dot(n, difference(high[0], low[6])) / norm(n);
   }
 
@@ -731,8 +731,8 @@ end
       text += "subsection Body: " + std::to_string(k) +
               "\n  set type = brick\n  set cells = 1, 1, 1\n"
               "  set lower corner = " +
-              corner(0.5, 0.75, 0.8) + "  set upper corner = " +
-              corner(1.5, 1.25, 1.2) + "end\n";
+              corner(0.5, 0.75, 0.8) +
+              "  set upper corner = " + corner(1.5, 1.25, 1.2) + "end\n";
     }
     // about the centre of each, first by a, then by b about another axis
     const std::string X = "(mod(x, 2) - 1)", Y = "(mod(y, 2) - 1)",
@@ -791,8 +791,8 @@ end
       const double *x = &scene.state.rigid[13 * a],
                    *y = &scene.state.rigid[13 * b];
       return norm({x[3] - y[3], x[4] - y[4], x[5] - y[5]}) +
-             radius * (norm({x[10], x[11], x[12]}) +
-                       norm({y[10], y[11], y[12]}));
+             radius *
+                 (norm({x[10], x[11], x[12]}) + norm({y[10], y[11], y[12]}));
     };
     double deepest = 0., fastest = 0.;
     for (unsigned int k = 0; k < 800; ++k) {

@@ -1,8 +1,8 @@
 #include "law_checks.h"
 #include "make_scene.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 
 using namespace nsfd;
 using namespace nsfd::test;
@@ -58,8 +58,8 @@ namespace test_law_fremond
     expect_relative(law->final_opening(), d_0);
     expect_relative(law->strength(), 2. * d_0);
     EXPECT_TRUE(std::isinf(law->steepest_softening()));
-    for (const double d : {0., 0.3 * d_0, d_0 * (1. - 1e-9),
-                           d_0 * (1. + 1e-9), 2. * d_0}) {
+    for (const double d :
+         {0., 0.3 * d_0, d_0 * (1. - 1e-9), d_0 * (1. + 1e-9), 2. * d_0}) {
       EXPECT_EQ(law->beta(d), brittle->beta(d));
       EXPECT_NEAR(law->energy(d), brittle->energy(d), 1e-10);
     }
@@ -68,14 +68,13 @@ namespace test_law_fremond
   // f = b^2, g = (1 - b)^2: chi = b C d^2 - 2 w (1 - b), damage at once
   TEST(Fremond, AnotherPotential)
   {
-    const auto law =
-        fremond({{"surface energy function", "(1 - beta)^2"}});
+    const auto law = fremond({{"surface energy function", "(1 - beta)^2"}});
     EXPECT_EQ(law->elastic_limit(), 0.);
     for (const double d : {0.1, 0.5, 1., 3., 10.}) {
       const double b = 6. / (6. + 2. * d * d);
       expect_relative(law->beta(d), b * b, 1e-10);
-      expect_relative(law->energy(d),
-                      b * b * d * d + 3. * (1. - b) * (1. - b), 1e-10);
+      expect_relative(law->energy(d), b * b * d * d + 3. * (1. - b) * (1. - b),
+                      1e-10);
     }
   }
 

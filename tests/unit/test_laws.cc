@@ -1,7 +1,7 @@
 #include "make_law.h"
 
-#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "cohesive_laws/friction_weight.h"
+#include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/cohesive_laws/scatter.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "law_checks.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <optional>
 
@@ -47,17 +47,17 @@ namespace test_laws_two_scalars
       }
     // shear alone
     const double y = 1. / std::sqrt(2.);
-    expect_relative(tangential(mixed, 0., y * delta_t), 0.857764 * phi / delta_t,
-                    1e-6);
+    expect_relative(tangential(mixed, 0., y * delta_t),
+                    0.857764 * phi / delta_t, 1e-6);
     expect_relative(mixed.peak_slip(), y * delta_t);
     expect_relative(mixed.tangential_energy(0., 1e3 * delta_t, 0.), phi);
     expect_relative(mixed.steepest_shear_softening(),
                     0.892521 * phi / delta_t / delta_t, 1e-6);
     const double h = 1e-5 * delta_t, at = std::sqrt(1.5) * delta_t;
-    expect_relative((tangential(mixed, 0., at - h) -
-                     tangential(mixed, 0., at + h)) /
-                        (2. * h),
-                    mixed.steepest_shear_softening(), 1e-6);
+    expect_relative(
+        (tangential(mixed, 0., at - h) - tangential(mixed, 0., at + h)) /
+            (2. * h),
+        mixed.steepest_shear_softening(), 1e-6);
     // dissipated so far in mode I
     for (const auto &[x, share] :
          {std::make_pair(5., 0.959572), {10., 0.999501}})
@@ -76,15 +76,14 @@ namespace test_laws_two_scalars
 
   TEST(Ppr, NumbersOfTheReference)
   {
-    const auto law = make_law(
-        "ppr", {{"strength", "40 MPa"},
-                {"toughness", "100 J/m^2"},
-                {"shear strength", "30 MPa"},
-                {"shear toughness", "200 J/m^2"},
-                {"alpha", "5"},
-                {"shear alpha", "1.3"},
-                {"peak ratio", "0.1"},
-                {"shear peak ratio", "0.2"}});
+    const auto law = make_law("ppr", {{"strength", "40 MPa"},
+                                      {"toughness", "100 J/m^2"},
+                                      {"shear strength", "30 MPa"},
+                                      {"shear toughness", "200 J/m^2"},
+                                      {"alpha", "5"},
+                                      {"shear alpha", "1.3"},
+                                      {"peak ratio", "0.1"},
+                                      {"shear peak ratio", "0.2"}});
     const MixedLaw &mixed = *law->mixed();
     const double delta_n = 7.769570e-6, delta_t = 8.086361e-6;
     expect_relative(law->final_opening(), delta_n, 1e-6);
@@ -149,20 +148,17 @@ namespace test_laws_two_scalars
             ASSERT_LE(K_T(x, y + d), K_T(x, y));
           }
           ASSERT_TRUE(std::isfinite(mixed.beta(x * a, y * b)));
-          ASSERT_NEAR(mixed.normal_energy(x * a, (x + 0.05) * a, y * b),
-                      integral(
-                          [&](const double u) {
-                            return normal(mixed, u, y * b);
-                          },
-                          x * a, (x + 0.05) * a, 400),
-                      1e-8 * law->toughness());
-          ASSERT_NEAR(mixed.tangential_energy(y * b, (y + 0.05) * b, x * a),
-                      integral(
-                          [&](const double v) {
-                            return tangential(mixed, x * a, v);
-                          },
-                          y * b, (y + 0.05) * b, 400),
-                      1e-8 * mixed.tangential_energy(0., 1e6 * b, 0.));
+          ASSERT_NEAR(
+              mixed.normal_energy(x * a, (x + 0.05) * a, y * b),
+              integral([&](const double u) { return normal(mixed, u, y * b); },
+                       x * a, (x + 0.05) * a, 400),
+              1e-8 * law->toughness());
+          ASSERT_NEAR(
+              mixed.tangential_energy(y * b, (y + 0.05) * b, x * a),
+              integral(
+                  [&](const double v) { return tangential(mixed, x * a, v); },
+                  y * b, (y + 0.05) * b, 400),
+              1e-8 * mixed.tangential_energy(0., 1e6 * b, 0.));
         }
       // small parts of an integral add up to all of it
       double sum = 0.;
@@ -311,8 +307,8 @@ namespace test_laws_two_scalars
     for (const auto &law : examples()) {
       const MixedLaw &mixed = *law->mixed();
       const double a = 2. * law->peak_opening(), b = mixed.peak_slip();
-      const double potential = mixed.normal_energy(0., a, 0.) +
-                               mixed.tangential_energy(0., b, a);
+      const double potential =
+          mixed.normal_energy(0., a, 0.) + mixed.tangential_energy(0., b, a);
       std::vector<double> error;
       for (const unsigned int n : {1u, 8u, 16u, 32u}) {
         Driven point(*law, CohesionRule::exact);

@@ -22,10 +22,10 @@ namespace nsfd::test_manufactured
       return (solid ? "set dimension = 3\n"
                     : "set dimension = 2\nset plane = " + plane + "\n") +
              std::string("subsection Mesh\n set type = ") +
-             (solid ? "brick" : "rectangle") + "\n set lower corner = " +
-             (solid ? "1, 2, 3" : "1, 2") + "\n set upper corner = " +
-             (solid ? "3, 4.5, 5" : "3, 4.5") + "\n set cells = " +
-             (solid ? "2, 2, 2" : "2, 2") + R"(
+             (solid ? "brick" : "rectangle") +
+             "\n set lower corner = " + (solid ? "1, 2, 3" : "1, 2") +
+             "\n set upper corner = " + (solid ? "3, 4.5, 5" : "3, 4.5") +
+             "\n set cells = " + (solid ? "2, 2, 2" : "2, 2") + R"(
 end
 subsection Material: left
   set where = x < 2
@@ -106,11 +106,10 @@ end
                               Vector{2.4, 3.9, dim == 3 ? 4.7 : 0.}})
         for (unsigned int c = 0; c < dim; ++c) {
           const double inertia =
-              0.7 * derivative(
-                        [&](const double by) {
-                          return exact.velocity(x, t + by)[c];
-                        },
-                        d);
+              0.7 *
+              derivative(
+                  [&](const double by) { return exact.velocity(x, t + by)[c]; },
+                  d);
           double divergence = 0.;
           for (unsigned int k = 0; k < dim; ++k)
             divergence += derivative(
@@ -145,11 +144,11 @@ end
       const double trace = strain[0][0] + strain[1][1] + strain[2][2];
       for (unsigned int c = 0; c < 3; ++c)
         for (unsigned int k = 0; k < 3; ++k)
-          EXPECT_NEAR(stress(x, t, c, k),
-                      E / (1. + nu) *
-                          (strain[c][k] +
-                           (c == k ? nu / (1. - 2. * nu) * trace : 0.)),
-                      1e-10)
+          EXPECT_NEAR(
+              stress(x, t, c, k),
+              E / (1. + nu) *
+                  (strain[c][k] + (c == k ? nu / (1. - 2. * nu) * trace : 0.)),
+              1e-10)
               << c << k;
     }
 

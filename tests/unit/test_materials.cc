@@ -154,8 +154,8 @@ end
     EXPECT_NEAR(form(Operator::stiffness, strain), 1.5, 1e-14);
     EXPECT_NEAR(form(Operator::stiffness, move), 0., 1e-14);
     const double gradient[4] = {1., 0., 0., 0.};
-    const auto stress = scene.discretization->stress(
-        0, dealii::Point<2>(0.25, 0.5), gradient);
+    const auto stress =
+        scene.discretization->stress(0, dealii::Point<2>(0.25, 0.5), gradient);
     EXPECT_NEAR(stress[0], 1.25, 1e-8); // a billionth of the way inwards
     EXPECT_NEAR(scene.discretization->pressure_wave_speed(0), 1., 1e-14);
     EXPECT_GT(scene.discretization->extremes(0).stiffest.young, 1.5);
@@ -364,14 +364,13 @@ end
                                          "2)^2 + (y - 1)^2))\n";
       const std::size_t at = all.find("end\nsubsection Interface");
       all.insert(at, pulse);
-      Scene<2> scene(all, turned ? std::vector<std::string>{
-                                       "Mesh/lower corner=-4, 0",
-                                       "Mesh/upper corner=0, 8",
-                                       "Mesh/cells=4, 8"}
-                                 : std::vector<std::string>{
-                                       "Mesh/lower corner=0, 0",
-                                       "Mesh/upper corner=8, 4",
-                                       "Mesh/cells=8, 4"});
+      Scene<2> scene(
+          all, turned ? std::vector<std::string>{"Mesh/lower corner=-4, 0",
+                                                 "Mesh/upper corner=0, 8",
+                                                 "Mesh/cells=4, 8"}
+                      : std::vector<std::string>{"Mesh/lower corner=0, 0",
+                                                 "Mesh/upper corner=8, 4",
+                                                 "Mesh/cells=8, 4"});
       for (unsigned int k = 0; k < 20; ++k)
         scene.advance();
       return std::array<double, 2>{

@@ -1,8 +1,8 @@
-#include "postprocess/run_view.h"
 #include "make_scene.h"
+#include "postprocess/run_view.h"
 
-#include "postprocess/table_file.h"
 #include "nsfd/postprocess/running_crack.h"
+#include "postprocess/table_file.h"
 
 #include <gtest/gtest.h>
 
@@ -95,33 +95,29 @@ end
 )";
 
   /** u of a crack that runs with v along x and is at x = v t, K = 1. */
-  struct MovingField
-  {
+  struct MovingField {
     double v;
     RunningCrack crack{1., 0.25, 1.};
 
     std::array<double, 2> displacement(const double x, const double y,
-                                       const double side,
-                                       const double t) const
+                                       const double side, const double t) const
     {
       const double square = std::pow(v / crack.shear_speed(), 2),
-                   d = std::sqrt(1. -
-                                 std::pow(v / crack.pressure_speed(), 2)),
+                   d = std::sqrt(1. - std::pow(v / crack.pressure_speed(), 2)),
                    s = std::sqrt(1. - square);
       const double D = 4. * d * s - (2. - square) * (2. - square);
       const auto polar = [&](const double a) {
         const double X = x - v * t, Y = a * y;
-        const double angle = Y == 0. && X < 0. ? std::copysign(pi, side)
-                                               : std::atan2(Y, X);
+        const double angle =
+            Y == 0. && X < 0. ? std::copysign(pi, side) : std::atan2(Y, X);
         return std::array<double, 2>{{std::sqrt(std::hypot(X, Y)), angle / 2.}};
       };
       const auto [rd, td] = polar(d);
       const auto [rs, ts] = polar(s);
       const double factor = std::sqrt(2. / pi) / 0.4 / D, sum = 2. - square;
-      return {{factor * (sum * rd * std::cos(td) -
-                         2. * d * s * rs * std::cos(ts)),
-               factor * d *
-                   (-sum * rd * std::sin(td) + 2. * rs * std::sin(ts))}};
+      return {
+          {factor * (sum * rd * std::cos(td) - 2. * d * s * rs * std::cos(ts)),
+           factor * d * (-sum * rd * std::sin(td) + 2. * rs * std::sin(ts))}};
     }
   };
 
@@ -146,9 +142,9 @@ end
                    later = field.displacement(x[0], x[1], side, t + dt),
                    before = field.displacement(x[0], x[1], side, t - dt);
         for (unsigned int c = 0; c < 2; ++c)
-          values[c] = !rate    ? now[c]
-                      : inner  ? 0.
-                               : (later[c] - before[c]) / (2. * dt);
+          values[c] = !rate   ? now[c]
+                      : inner ? 0.
+                              : (later[c] - before[c]) / (2. * dt);
       });
     };
     State before = scene.state, after = scene.state;
@@ -211,8 +207,7 @@ end
   {
     ObservableRecord record;
     for (unsigned int k = 0; k <= 50000; ++k)
-      record.add(k, {k == 777 ? -9. : std::sin(double(k)), std::nan("")},
-                 true);
+      record.add(k, {k == 777 ? -9. : std::sin(double(k)), std::nan("")}, true);
     EXPECT_EQ(record.peak[0], -9.);
     EXPECT_EQ(record.peak_time[0], 777.);
     EXPECT_TRUE(std::isnan(record.peak[1]));
@@ -240,9 +235,8 @@ end
       EXPECT_NE(report_of("", {"Material: solid/" + entry}).find(words),
                 std::string::npos)
           << entry;
-    const std::string flow = report_of(
-        "", {"Material: solid/model=j2 plastic",
-             "Material: solid/yield stress=1"});
+    const std::string flow = report_of("", {"Material: solid/model=j2 plastic",
+                                            "Material: solid/yield stress=1"});
     EXPECT_NE(flow.find("`Material: solid` flows"), std::string::npos) << flow;
   }
 
@@ -267,13 +261,13 @@ end
                        slides);
     };
     EXPECT_NE(large("set type = contact pressure\n set on = pair\n")
-                .find("write type = reaction"),
+                  .find("write type = reaction"),
               std::string::npos);
     EXPECT_NE(large("set type = reaction\n set on = pair\n")
-                .find("of two different materials"),
+                  .find("of two different materials"),
               std::string::npos);
     EXPECT_NE(large("set type = probe\n set on = pair\n")
-                .find("has no faces of its own"),
+                  .find("has no faces of its own"),
               std::string::npos);
     holds("set type = energy release rate\n set at = 0, 0\n"
           "set direction = 0, 0\n",

@@ -1,13 +1,13 @@
 // What a run leaves behind: history.csv, JSON, pictures, the report, VTU files
 // and the lines on the terminal.
 
+#include "core/output_folder.h"
 #include "postprocess/history_file.h"
 #include "postprocess/progress.h"
 #include "postprocess/report.h"
-#include "core/output_folder.h"
 #include "postprocess/summary_file.h"
-#include "visualization/svg.h"
 #include "postprocess/vtu.h"
+#include "visualization/svg.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
-#include "nonsmooth/linear_spring.h"
 #include "make_law.h"
+#include "nonsmooth/linear_spring.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "cohesive_laws/friction_weight.h"
 #include "nonsmooth/point_law.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 
@@ -867,9 +867,9 @@ namespace test_point_law
       // 1e-15 G: round-off of a difference of energies far apart
       const double d = effective_opening<dim>(point.interaction(),
                                               problem.jump_old.data()),
-                   round_off = 1e-12 * b +
-                               1e-15 * law.toughness() /
-                                   ((e.history.opening - d) * (e.history.opening + d));
+                   round_off = 1e-12 * b + 1e-15 * law.toughness() /
+                                               ((e.history.opening - d) *
+                                                (e.history.opening + d));
       EXPECT_GE(b, al * law.secant(l * e.history.opening) - round_off);
       if (problem.kind[0] != PointKind::rigid) {
         EXPECT_LE(b, al * law.secant(l * problem.opening_max[0]) + round_off);
@@ -1305,14 +1305,14 @@ namespace test_point_law
         const auto law = linear_point<2>(point.problem, 0, R[0], R[1]);
         ASSERT_TRUE(law.exists());
         const auto solution = point.solve({{-0.02, 0.05}});
-        const auto U =
-            frozen_velocity<2>(point.problem, 0, {law.secant}, solution.impulse);
+        const auto U = frozen_velocity<2>(point.problem, 0, {law.secant},
+                                          solution.impulse);
         for (unsigned int c = 0; c < 2; ++c) {
           const LinearSpring line(point.problem, law, c);
           const double P = solution.impulse[c];
           EXPECT_NEAR(line.velocity(P), U[c], 1e-12 * std::abs(U[c]));
-          EXPECT_NEAR(line.velocity(P), line.free_velocity() -
-                                            line.compliance() * P,
+          EXPECT_NEAR(line.velocity(P),
+                      line.free_velocity() - line.compliance() * P,
                       1e-14 * std::abs(U[c]));
           if (majorant < 10.) { // beyond, U is the difference of U_loc and R P
             EXPECT_NEAR(line.velocity(P), solution.velocity[c], 1e-12 * 0.05);

@@ -238,8 +238,8 @@ end
 
     // U = u + T(u)/k, k = 1.5 C: behind the peak T is concave, and the mean of
     // the reactions over a step is less than the grip has to give. What it gave
-    // is what bar and face have taken, (T^2 - R_max^2)/(2 k) + I(u) - I(d_c) per
-    // area. At U = (1 + 2/3 + 1) d_c, u^2 + u d_c = 8 d_c^2.
+    // is what bar and face have taken, (T^2 - R_max^2)/(2 k) + I(u) - I(d_c)
+    // per area. At U = (1 + 2/3 + 1) d_c, u^2 + u d_c = 8 d_c^2.
     TEST(QuasiStatic, SofteningCreatesNoEnergyInStepsOfAnyLength)
     {
       const std::string softening = R"(set dimension = 2

@@ -38,7 +38,8 @@ namespace test_random_expression
       subsection Time
         set end = 1
       end
-    )", "test.prm", {}, errors);
+    )",
+                                       "test.prm", {}, errors);
     if (!input)
       throw std::invalid_argument(errors.report());
     return input->interfaces[0].broken;

@@ -1,6 +1,6 @@
-#include "time_integration/stable_step.h"
 #include "breaking_plate.h"
 #include "make_scene.h"
+#include "time_integration/stable_step.h"
 
 #include <deal.II/lac/lapack_full_matrix.h>
 
@@ -85,10 +85,10 @@ end
     // q = g (t^2 + h_1 t)/2 at their ends.
     TEST(SymplecticTest, FallsExactlyWithAnySteps)
     {
-      test::Scene<2> scene(
-          plate + "subsection Loads\n  set gravity = 0, -2\nend\n",
-          {"Material: plate/initial velocity x=0",
-           "Material: plate/initial displacement y=0"});
+      test::Scene<2> scene(plate +
+                               "subsection Loads\n  set gravity = 0, -2\nend\n",
+                           {"Material: plate/initial velocity x=0",
+                            "Material: plate/initial displacement y=0"});
       const double first = scene.time_step;
       double t = 0.;
       for (unsigned int step = 0; step < 60; ++step) {
@@ -150,8 +150,8 @@ end
           "michel-suquet\n  set stiffness        = 2000";
       text.replace(text.find(intrinsic), intrinsic.size(),
                    "camacho-ortiz\n  set toughness        = 0.02");
-      test::Scene<2> scene(text, {"Time/scheme=symplectic",
-                                  "Time/step=0.02 crossings"});
+      test::Scene<2> scene(
+          text, {"Time/scheme=symplectic", "Time/step=0.02 crossings"});
       ASSERT_NE(scene.bonded, nullptr);
       for (unsigned int step = 0; step < 1500; ++step) {
         const EnergyLines before = scene.state.energy;
@@ -238,18 +238,18 @@ end
     {
       const auto report = [](const char *scheme) {
         InputErrors errors;
-        read_scene_text(plate, "test.prm",
-                        {"Interface: all/law=camacho-ortiz",
-                         "Interface: all/strength=1",
-                         "Interface: all/toughness=1",
-                         "Interface: all/intact faces=bonded",
-                         std::string("Time/scheme=") + scheme,
-                         "Time/largest overshoot=0.1"},
-                        errors);
+        read_scene_text(
+            plate, "test.prm",
+            {"Interface: all/law=camacho-ortiz", "Interface: all/strength=1",
+             "Interface: all/toughness=1", "Interface: all/intact faces=bonded",
+             std::string("Time/scheme=") + scheme,
+             "Time/largest overshoot=0.1"},
+            errors);
         return errors.report();
       };
-      EXPECT_NE(report("symplectic").find("explicit steps stay as long as they "
-                                          "are"),
+      EXPECT_NE(report("symplectic")
+                    .find("explicit steps stay as long as they "
+                          "are"),
                 std::string::npos)
           << report("symplectic");
       EXPECT_EQ(report("moreau-jean"), "");
@@ -261,9 +261,10 @@ end
       EXPECT_EQ(read_scene_text(test::breaking_plate, "test.prm",
                                 {"Time/scheme=arkode"}, errors),
                 nullptr);
-      EXPECT_NE(errors.report().find("faces of `Interface: all` can open, close "
-                                     "or slip"),
-                std::string::npos)
+      EXPECT_NE(
+          errors.report().find("faces of `Interface: all` can open, close "
+                               "or slip"),
+          std::string::npos)
           << errors.report();
     }
   } // namespace

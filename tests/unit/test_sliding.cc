@@ -60,10 +60,9 @@ end
     // that goes on, that turns and that stops.
     const char *const pushes = "6 * sin(1.7e4 * t^2) * sin(3.1 * t)";
 
-    struct Given
-    {
-      double worst = 0.;         ///< of a step, over the largest energy
-      unsigned int steps = 0;    ///< in which friction gave energy
+    struct Given {
+      double worst = 0.;        ///< of a step, over the largest energy
+      unsigned int steps = 0;   ///< in which friction gave energy
       unsigned int at_rest = 0; ///< at the end
     };
 

@@ -2,8 +2,8 @@
 #include "make_scene.h"
 #include "rigid_in_rubber.h"
 
-#include "nsfd/scene/scene_input.h"
 #include "cohesive_laws/friction_weight.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 
@@ -652,9 +652,8 @@ end
       EXPECT_TRUE(std::isfinite(report.residual)) << name;
     }
     // and the step is rejected, with the place in its text
-    Scene<2> stuck(pile,
-                   {"Solver/method=dual newton", "Solver/tolerance=1e-18",
-                    "Solver/maximum iterations=3"});
+    Scene<2> stuck(pile, {"Solver/method=dual newton", "Solver/tolerance=1e-18",
+                          "Solver/maximum iterations=3"});
     const State before = stuck.state;
     try {
       stuck.advance();

@@ -78,7 +78,8 @@ end
     return y;
   }
 
-  /** Springs a decade apart from face to face; those of faces across x = 2 are broken. */
+  /** Springs a decade apart from face to face; those of faces across x = 2 are
+   * broken. */
   template <int dim>
   Vector springs(const Scene<dim> &scene, const bool broken)
   {
@@ -97,14 +98,12 @@ end
   }
 
   template <int dim>
-  struct Parts
-  {
+  struct Parts {
     explicit Parts(const std::string &input, const bool broken = false)
-      : scene(input)
-      , coordinates(node_coordinates(*scene.discretization))
-      , assembly(scene.communicator, scene.discretization->bodies(),
-                 scene.discretization->points(), coordinates)
-      , k(springs(scene, broken))
+        : scene(input), coordinates(node_coordinates(*scene.discretization)),
+          assembly(scene.communicator, scene.discretization->bodies(),
+                   scene.discretization->points(), coordinates),
+          k(springs(scene, broken))
     {
       s = std::pow(scene.time_step * scene.input->time.theta, 2);
       assembly.assemble(s, k);
@@ -179,8 +178,7 @@ end
       const auto carrying = parts.assembly.carrying(parts.s, parts.k);
       glued.glue(carrying);
       const CoarseSpace &space = glued.space();
-      EXPECT_EQ(std::size_t(space.n_global),
-                dim * count_nodes(parts, broken));
+      EXPECT_EQ(std::size_t(space.n_global), dim * count_nodes(parts, broken));
       // one unknown has one place, and the modes are rigid motions of it
       std::vector<Vector> at(space.n_global);
       for (std::size_t i = 0; i < parts.coordinates.size(); ++i)
@@ -301,7 +299,8 @@ end
       t[i] = 1.;
     dynamics.apply(Dynamics<dim>::Operator::mass, t.data(), b.data());
     EXPECT_LE(
-      solver->solve_parts(b.data(), n, rest.data(), coarse.data(), 1e-10), 70);
+        solver->solve_parts(b.data(), n, rest.data(), coarse.data(), 1e-10),
+        70);
     EXPECT_TRUE(solver->converged());
     for (std::size_t i = 0; i < n; ++i)
       ASSERT_NEAR(rest[i] + coarse[i], t[i], 1e-8);
@@ -330,7 +329,7 @@ end
     A.column = {0, 1, 0, 1};
     A.value = {1., 2., 2., 1.}; // eigenvalues 3 and -1
     EXPECT_THROW(
-      make_cholesky_solver(communicator)->prepare(A, CoarseSpace(), true),
-      std::runtime_error);
+        make_cholesky_solver(communicator)->prepare(A, CoarseSpace(), true),
+        std::runtime_error);
   }
 } // namespace test_spd_solver

@@ -82,8 +82,8 @@ end
         EquilibriumReport found;
         bool exists = true;
         try {
-          found = statics.advance(state, after.time(), next,
-                                  control.can_halve());
+          found =
+              statics.advance(state, after.time(), next, control.can_halve());
         } catch (const StepRejected &) {
           exists = false;
         }
@@ -101,8 +101,8 @@ end
           ++result.jumps;
         }
         control.accept();
-        result.missing = std::max(
-            result.missing, state.energy.numerical - next.energy.numerical);
+        result.missing = std::max(result.missing, state.energy.numerical -
+                                                      next.energy.numerical);
         result.defect = std::max(result.defect, found.step.ledger_defect);
         std::swap(state, next);
         result.end = statics.reactions()[2];
@@ -130,9 +130,9 @@ end
               R_max * length / young + 3. * law.peak_opening();
           constexpr double steps[] = {2., 7., 50.};
           const double n = steps[step++ % 3];
-          const Pull broken = pull(bar(name, entries, law.extrinsic(), young,
-                                       1.6 * at_peak),
-                                   1. / n);
+          const Pull broken =
+              pull(bar(name, entries, law.extrinsic(), young, 1.6 * at_peak),
+                   1. / n);
           const std::string what =
               fmt::format("{}: {}, r = {}, {} steps", name, entries, r, n);
           // what is refused has not been wrong so far

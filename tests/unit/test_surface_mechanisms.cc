@@ -21,18 +21,17 @@ namespace test_surface_mechanisms
         interaction_of({std::shared_ptr<void>(), &law}, 0., 1.);
     interaction.plateau = plateau;
     const double end = law.final_opening();
-    return drive_point(
-        interaction,
-        points_between({{0., 0., 0.}, {d, 0., 0.}, {0., 0., 0.}},
-                       {end, end, 1.}, 400),
-        rule);
+    return drive_point(interaction,
+                       points_between({{0., 0., 0.}, {d, 0., 0.}, {0., 0., 0.}},
+                                      {end, end, 1.}, 400),
+                       rule);
   }
 
   // opened to d_c / 2 and closed: G / 4 on the plateau, G / 2 on the secant
   TEST(Plateau, KeepsItsTractionWhileItCloses)
   {
-    const auto law = make_law("camacho-ortiz", {{"strength", "300 MPa"},
-                                                {"toughness", "0.5 J/m^2"}});
+    const auto law = make_law(
+        "camacho-ortiz", {{"strength", "300 MPa"}, {"toughness", "0.5 J/m^2"}});
     const double R = 300e6, G = 0.5, d = 0.5 * law->final_opening();
     for (const CohesionRule rule :
          {CohesionRule::exact, CohesionRule::end_point}) {
@@ -105,8 +104,8 @@ end
 
   TEST(LimitedViscosity, DoesNotExceedItsLimit)
   {
-    const auto law = make_law("michel-suquet",
-                              {{"strength", "2"}, {"toughness", "3"}});
+    const auto law =
+        make_law("michel-suquet", {{"strength", "2"}, {"toughness", "3"}});
     for (const double limit : {0.5, 5., 500.})
       for (const double theta : {0.5, 1.})
         for (const double speed : {1e-3, 0.1, 1., 1e3, 1e6}) {
@@ -133,9 +132,9 @@ end
                                      {law->normal_stiffness()});
           };
           const double traction = energies_at(speed).cohesive_traction[0];
-          const auto solution = solve_point<2>(
-              problem, 0, {{speed + R * 1e-8 * traction, 0.}}, R, R,
-              {problem.opening_max[0], 0.});
+          const auto solution =
+              solve_point<2>(problem, 0, {{speed + R * 1e-8 * traction, 0.}}, R,
+                             R, {problem.opening_max[0], 0.});
           expect_relative(solution.velocity[0], speed, 1e-9);
           expect_relative(energies_at(speed).viscous_traction, drag, 1e-12);
           EXPECT_LT(drag, limit);
@@ -165,10 +164,10 @@ end
     friction = std::sqrt(friction);
     const double P = solution.contact_impulse;
     const double p = P / (problem.weight[0] * problem.time_step);
-    const double lift = std::min(problem.dilatancy[0] * speed,
-                                 problem.lift_left[0] /
-                                     (problem.time_step * problem.theta)) -
-                        interaction.wear * p * speed;
+    const double lift =
+        std::min(problem.dilatancy[0] * speed,
+                 problem.lift_left[0] / (problem.time_step * problem.theta)) -
+        interaction.wear * p * speed;
     const double tolerance = 1e-10 * size;
     for (unsigned int c = 0; c < dim; ++c)
       ASSERT_NEAR(solution.velocity[c],
@@ -205,8 +204,7 @@ end
       problem.kind = {PointKind::free};
       problem.contact = {1};
       problem.target = {k % 4 ? 0. : number(-1., 1.)};
-      problem.dilatancy = {k % 3 == 1 ? 0.
-                                      : number(0., interaction.friction)};
+      problem.dilatancy = {k % 3 == 1 ? 0. : number(0., interaction.friction)};
       problem.lift_left = {k % 5 ? std::numeric_limits<double>::infinity()
                                  : number(0., 0.01)};
       std::array<double, dim> local;
@@ -225,7 +223,8 @@ end
     random_lifted_points<3>();
   }
 
-  const std::string slider = R"(# slider - driven along a plane under its weight.
+  const std::string slider =
+      R"(# slider - driven along a plane under its weight.
 set dimension = 2
 subsection Mesh
   set lower corner = 0, 0

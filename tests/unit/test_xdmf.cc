@@ -1,6 +1,6 @@
-#include "postprocess/xdmf_series.h"
 #include "core/hdf5_file.h"
 #include "nsfd/core/communicator.h"
+#include "postprocess/xdmf_series.h"
 
 #include <gtest/gtest.h>
 
@@ -91,72 +91,74 @@ namespace test_xdmf
     fs::path folder_;
   };
 
-// What the XDMF file says of a data set is what the HDF5 file holds.
-TEST_F(XdmfTest, NamesWhatIsThere)
-{
-  XdmfSeries series((folder_ / "series").string());
-  series.add(small_grid(0., 0.));
-  series.add(small_grid(0.5, 0.));
-  series.add(small_grid(1., 0.25));
-  const std::string xml = read_text(folder_ / "series.xdmf");
-  EXPECT_TRUE(is_well_formed(xml)) << xml;
-  const std::regex item(
-      "Dimensions=\"([0-9 ]+)\" Format=\"HDF\">series.h5:([^<]+)<");
-  unsigned int count = 0;
-  for (std::sregex_iterator match(xml.begin(), xml.end(), item), end;
-       match != end; ++match, ++count) {
-    std::string path = (*match)[2];
-    path = std::regex_replace(path, std::regex("&lt;"), "<");
+  // What the XDMF file says of a data set is what the HDF5 file holds.
+  TEST_F(XdmfTest, NamesWhatIsThere)
+  {
+    XdmfSeries series((folder_ / "series").string());
+    series.add(small_grid(0., 0.));
+    series.add(small_grid(0.5, 0.));
+    series.add(small_grid(1., 0.25));
+    const std::string xml = read_text(folder_ / "series.xdmf");
+    EXPECT_TRUE(is_well_formed(xml)) << xml;
+    const std::regex item(
+        "Dimensions=\"([0-9 ]+)\" Format=\"HDF\">series.h5:([^<]+)<");
+    unsigned int count = 0;
+    for (std::sregex_iterator match(xml.begin(), xml.end(), item), end;
+         match != end; ++match, ++count) {
+      std::string path = (*match)[2];
+      path = std::regex_replace(path, std::regex("&lt;"), "<");
+      std::vector<hsize_t> shape;
+      values(path, shape);
+      std::string text;
+      for (const hsize_t n : shape)
+        text += (text.empty() ? "" : " ") + std::to_string(n);
+      EXPECT_EQ(text, (*match)[1]) << path;
+    }
+    EXPECT_EQ(count, 3u * 4u);
     std::vector<hsize_t> shape;
-    values(path, shape);
-    std::string text;
-    for (const hsize_t n : shape)
-      text += (text.empty() ? "" : " ") + std::to_string(n);
-    EXPECT_EQ(text, (*match)[1]) << path;
+    EXPECT_EQ(values("/00001/point_data/velocity", shape),
+              small_grid(0.5, 0.).point_data[0].values);
+    // shape, corners; polygons and points with their number of corners
+    EXPECT_EQ(
+        values("/00002/cells", shape),
+        (std::vector<double>{5, 0, 1, 2, 3, 3, 5, 4, 5, 6, 7, 8, 1, 1, 9}));
+    EXPECT_EQ(values("/00000/points", shape)[3], 1.);
+    EXPECT_EQ(values("/00002/points", shape)[3], 1.25);
   }
-  EXPECT_EQ(count, 3u * 4u);
-  std::vector<hsize_t> shape;
-  EXPECT_EQ(values("/00001/point_data/velocity", shape),
-            small_grid(0.5, 0.).point_data[0].values);
-  // shape, corners; polygons and points with their number of corners
-  EXPECT_EQ(values("/00002/cells", shape),
-            (std::vector<double>{5, 0, 1, 2, 3, 3, 5, 4, 5, 6, 7, 8, 1, 1, 9}));
-  EXPECT_EQ(values("/00000/points", shape)[3], 1.);
-  EXPECT_EQ(values("/00002/points", shape)[3], 1.25);
-}
 
-// Points and cells that do not change take room once.
-TEST_F(XdmfTest, StoresAMeshOnce)
-{
-  VtuGrid grid = small_grid(0., 0.);
-  grid.points.resize(20000); // 480 kB
-  grid.point_data.clear();
-  XdmfSeries series((folder_ / "series").string());
-  series.add(grid);
-  const auto one = fs::file_size(folder_ / "series.h5");
-  for (unsigned int k = 1; k < 4; ++k) {
-    grid.time = k;
+  // Points and cells that do not change take room once.
+  TEST_F(XdmfTest, StoresAMeshOnce)
+  {
+    VtuGrid grid = small_grid(0., 0.);
+    grid.points.resize(20000); // 480 kB
+    grid.point_data.clear();
+    XdmfSeries series((folder_ / "series").string());
     series.add(grid);
+    const auto one = fs::file_size(folder_ / "series.h5");
+    for (unsigned int k = 1; k < 4; ++k) {
+      grid.time = k;
+      series.add(grid);
+    }
+    EXPECT_GT(one, 480000u);
+    EXPECT_LT(fs::file_size(folder_ / "series.h5"), one + 50000u);
   }
-  EXPECT_GT(one, 480000u);
-  EXPECT_LT(fs::file_size(folder_ / "series.h5"), one + 50000u);
-}
 
-// All pieces as one: corners and data belong together.
-TEST_F(XdmfTest, GathersThePieces)
-{
-  const Communicator communicator(MPI_COMM_WORLD);
-  const double rank = communicator.rank();
-  const VtuGrid all = gather_grid(communicator, small_grid(rank, 100. * rank));
-  if (!communicator.is_root())
-    return;
-  ASSERT_EQ(all.cells.size(), 3u * unsigned(communicator.size()));
-  for (int r = 0; r < communicator.size(); ++r) {
-    const std::size_t c = 3 * std::size_t(r) + 1;
-    EXPECT_EQ(all.offsets[c] - all.offsets[c - 1], 5);
-    EXPECT_EQ(all.points[all.connectivity[all.offsets[c - 1]]][0],
-              4. + 100. * r);
-    EXPECT_EQ(all.cell_data[0].values[c + 1], double(r));
+  // All pieces as one: corners and data belong together.
+  TEST_F(XdmfTest, GathersThePieces)
+  {
+    const Communicator communicator(MPI_COMM_WORLD);
+    const double rank = communicator.rank();
+    const VtuGrid all =
+        gather_grid(communicator, small_grid(rank, 100. * rank));
+    if (!communicator.is_root())
+      return;
+    ASSERT_EQ(all.cells.size(), 3u * unsigned(communicator.size()));
+    for (int r = 0; r < communicator.size(); ++r) {
+      const std::size_t c = 3 * std::size_t(r) + 1;
+      EXPECT_EQ(all.offsets[c] - all.offsets[c - 1], 5);
+      EXPECT_EQ(all.points[all.connectivity[all.offsets[c - 1]]][0],
+                4. + 100. * r);
+      EXPECT_EQ(all.cell_data[0].values[c + 1], double(r));
+    }
   }
-}
 } // namespace test_xdmf

@@ -21,8 +21,7 @@ namespace nsfd
   public:
     virtual ~MeshView() = default;
 
-    struct Body
-    {
+    struct Body {
       std::array<double, 3> centre{};
       double size = 0.;    ///< longest edge, m
       double largest = 0.; ///< size of the cell of the first mesh it lies in, m
@@ -40,8 +39,7 @@ namespace nsfd
     virtual const std::vector<double> &stress_jump() const = 0;
 
     /** A point that may break or is breaking. */
-    struct Point
-    {
+    struct Point {
       std::array<double, 3> position{};
       /// |traction| over strength as the law compares them; while it softens 1
       double utilisation = 0.;

@@ -43,7 +43,8 @@ namespace nsfd
   };
 
   /**
-   * A cohesive law with one damage scalar, stated by its envelope: traction T(d) against the effective opening
+   * A cohesive law with one damage scalar, stated by its envelope: traction
+   * T(d) against the effective opening
    *
    *   d^2 = <u_N>_+^2 + r^2 |u_T|^2,        r^2 = shear_weight().
    *
@@ -145,6 +146,5 @@ namespace nsfd
    * Laws by name; a factory reads the law's own entries of its section. A law
    * registers examples of them, at least one.
    */
-  using CohesiveLawRegistry =
-    Registry<CohesiveLaw, SectionReader &>;
+  using CohesiveLawRegistry = Registry<CohesiveLaw, SectionReader &>;
 } // namespace nsfd

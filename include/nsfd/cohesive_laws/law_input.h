@@ -24,9 +24,9 @@ namespace nsfd::laws
     std::optional<double> strength, toughness, critical_opening;
     std::string opening_name;
 
-    explicit Separation(
-        SectionReader &reader, const std::string &name = "critical opening",
-        const std::string &text = "Opening d_c at separation")
+    explicit Separation(SectionReader &reader,
+                        const std::string &name = "critical opening",
+                        const std::string &text = "Opening d_c at separation")
         : strength(given(reader, "strength", units::pressure,
                          "Largest traction R_max")),
           toughness(given(reader, "toughness", units::energy_per_area,
@@ -69,7 +69,8 @@ namespace nsfd::laws
     }
   };
 
-  /** C_N and the opening d_0 at the peak, of a law with G = zeta R_max^2 / C. */
+  /** C_N and the opening d_0 at the peak, of a law with G = zeta R_max^2 / C.
+   */
   struct ElasticPeak {
     double stiffness, opening;
   };
@@ -83,15 +84,14 @@ namespace nsfd::laws
                                        const double zeta,
                                        const std::string &relation)
   {
-    const auto stiffness =
-        given(reader, "stiffness", units::stiffness_per_area,
-              "Normal stiffness C_N");
+    const auto stiffness = given(reader, "stiffness", units::stiffness_per_area,
+                                 "Normal stiffness C_N");
     const auto strength =
         given(reader, "strength", units::pressure, "Largest traction R_max");
-    const auto toughness = given(reader, "toughness", units::energy_per_area,
-                                 "Fracture energy G");
-    const int n_given = stiffness.has_value() + strength.has_value() +
-                        toughness.has_value();
+    const auto toughness =
+        given(reader, "toughness", units::energy_per_area, "Fracture energy G");
+    const int n_given =
+        stiffness.has_value() + strength.has_value() + toughness.has_value();
     if (n_given == 3)
       reader.error("toughness",
                    "`stiffness`, `strength` and `toughness` are tied by " +

@@ -40,8 +40,7 @@ namespace nsfd
      * Reproducible sums of several rows of terms at once: @p terms holds
      * @p rows blocks of @p n; one exchange for all of them.
      */
-    std::vector<double> sums(const double *terms,
-                             std::size_t rows,
+    std::vector<double> sums(const double *terms, std::size_t rows,
                              std::size_t n) const;
 
     double max(double value) const;

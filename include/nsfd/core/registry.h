@@ -20,8 +20,7 @@ namespace nsfd
   public:
     using Factory = std::function<std::unique_ptr<Base>(Arguments...)>;
 
-    struct Entry
-    {
+    struct Entry {
       Factory factory;
       std::string text;
       std::vector<std::string> examples;
@@ -85,5 +84,5 @@ namespace nsfd
  * all; `--list` and doc/parameters.md show the first.
  */
 #define NSFD_REGISTER(RegistryType, Class, ...)                                \
-  static const bool NSFD_CONCATENATE(registered_, __COUNTER__) =                  \
-    RegistryType::instance().add<Class>(__VA_ARGS__)
+  static const bool NSFD_CONCATENATE(registered_, __COUNTER__) =               \
+      RegistryType::instance().add<Class>(__VA_ARGS__)

@@ -9,8 +9,7 @@
 namespace nsfd
 {
   /** A dense block, column-major, leading dimension padded(rows). */
-  struct Block
-  {
+  struct Block {
     unsigned int rows = 0, cols = 0;
     std::vector<double> values;
 
@@ -45,8 +44,7 @@ namespace nsfd
    * rigid one. A slot is a place on the surface where a face point may sit;
    * `trace` gives the velocity there: (slot, component) x unknown.
    */
-  struct BodyClass
-  {
+  struct BodyClass {
     unsigned int n_dofs = 0, n_slots = 0;
     bool rigid = false;
     unsigned int material = 0;
@@ -66,10 +64,10 @@ namespace nsfd
   };
 
   /** Of stiffness and damping in M_hat = M + f K + g C of a step. */
-  struct StepShares
-  {
+  struct StepShares {
     StepShares(const double f, const double g = 0.) : stiffness(f), damping(g)
-    {}
+    {
+    }
     double stiffness, damping; ///< f in s^2, g in s
   };
 
@@ -86,8 +84,7 @@ namespace nsfd
   }
 
   /** The bodies of this rank as flat lists. */
-  struct Bodies
-  {
+  struct Bodies {
     std::vector<BodyClass> classes;
     std::vector<unsigned int> class_of;
     std::vector<std::size_t> first_dof;  ///< per body, size n + 1
@@ -106,30 +103,27 @@ namespace nsfd
 
   /** Face points as flat arrays; the first n_owned are counted once. */
   template <int dim>
-  struct InterfacePoints
-  {
+  struct InterfacePoints {
     std::size_t n_points = 0, n_owned = 0;
     std::vector<double> position; ///< dim per point
     std::vector<double> frame;    ///< dim x dim: rows n, t1, t2
     std::vector<double> weight;   ///< JxW in m (2D) or m^2
     /// points of one face are consecutive
-    struct Face
-    {
+    struct Face {
       unsigned int first = 0, count = 0;
       std::uint64_t key = 0; ///< hash of (CellId, face), equal on all ranks
       int neighbor_rank = -1;
       bool boundary = false;
       std::array<unsigned long long, 2> cells{}; ///< global cell numbers
-      std::array<int, 2> bodies{{-1, -1}}; ///< local, -1: none or remote
+      std::array<int, 2> bodies{{-1, -1}};       ///< local, -1: none or remote
       std::array<double, dim> centre{};
     };
-    std::vector<Face> faces; ///< owned and shared ones
+    std::vector<Face> faces;           ///< owned and shared ones
     std::vector<unsigned int> face_of; ///< per point
 
     /// points shared with another rank, in an order both ranks know; `side` is
     /// the side (0: body 1, 1: body 2) that this rank computes
-    struct Neighbor
-    {
+    struct Neighbor {
       int rank = 0;
       std::vector<unsigned int> points;
       std::vector<unsigned char> side;
@@ -138,10 +132,8 @@ namespace nsfd
   };
 
   /** The bodies of this rank, class by class, in the order of their work. */
-  struct BodyOrder
-  {
-    struct Members
-    {
+  struct BodyOrder {
+    struct Members {
       std::vector<unsigned int> bodies;
       std::size_t n_shared = 0; ///< the first ones: at points of other ranks
     };

@@ -2,8 +2,8 @@
 
 #include "nsfd/core/communicator.h"
 #include "nsfd/discretization/bodies.h"
-#include "nsfd/mesh/body_table.h"
 #include "nsfd/materials/material_extremes.h"
+#include "nsfd/mesh/body_table.h"
 
 #include <deal.II/base/point.h>
 
@@ -47,14 +47,12 @@ namespace nsfd
   };
 
   /** Where an obstacle may be touched, in scenes with large motions. */
-  struct ObstacleFace
-  {
+  struct ObstacleFace {
     unsigned int body = 0, face = 0, obstacle = 0;
   };
 
   /** Between two cells of one rigid body, in scenes with large motions. */
-  struct InnerFace
-  {
+  struct InnerFace {
     std::array<unsigned int, 2> bodies, faces;
   };
 
@@ -161,8 +159,7 @@ namespace nsfd
      * Stress xx, yy, zz, xy, xz, yz from a displacement gradient at @p x, of a
      * material that remembers nothing; see bodies/cell_stresses.h for others.
      */
-    std::array<double, 6> stress(unsigned int body,
-                                 const dealii::Point<dim> &x,
+    std::array<double, 6> stress(unsigned int body, const dealii::Point<dim> &x,
                                  const double *gradient) const;
 
     /** What a velocity gradient adds to it in a viscous material. */

@@ -20,16 +20,10 @@ namespace nsfd
    * order as in multiply_one(), so results do not depend on how bodies are
    * grouped. Compiled for several instruction sets, chosen at run time.
    */
-  void multiply_lanes(const double *A,
-                      unsigned int rows,
-                      unsigned int cols,
-                      const double *X,
-                      double *Y);
+  void multiply_lanes(const double *A, unsigned int rows, unsigned int cols,
+                      const double *X, double *Y);
 
   /** y = A x for one column; y has padded(rows) entries. */
-  void multiply_one(const double *A,
-                    unsigned int rows,
-                    unsigned int cols,
-                    const double *x,
-                    double *y);
+  void multiply_one(const double *A, unsigned int rows, unsigned int cols,
+                    const double *x, double *y);
 } // namespace nsfd

@@ -19,10 +19,8 @@ namespace nsfd
    * cells of a material. Cells and bodies are numbered as one rank alone would
    * number them, bodies by their first cell.
    */
-  struct BodyTable
-  {
-    struct Body
-    {
+  struct BodyTable {
+    struct Body {
       unsigned int first_cell = 0, material = 0;
       int rank = 0;
       int rigid = -1; ///< number among the rigid ones, or -1

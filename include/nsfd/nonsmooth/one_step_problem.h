@@ -16,18 +16,17 @@ namespace nsfd
   enum class Sliding;
 
   /** What acts between the two sides of a point; shared by a face group. */
-  struct Interaction
-  {
+  struct Interaction {
     std::shared_ptr<const CohesiveLaw> law; ///< null: no damage
-    double normal_stiffness = 0.; ///< C_N in Pa/m of an elastic joint, else 0
-    double stiffness_ratio = 1.;  ///< C_T / C_N
-    double shear_weight = 1.;     ///< r^2 of the effective opening
-    double friction = 0.;         ///< mu
+    double normal_stiffness = 0.;  ///< C_N in Pa/m of an elastic joint, else 0
+    double stiffness_ratio = 1.;   ///< C_T / C_N
+    double shear_weight = 1.;      ///< r^2 of the effective opening
+    double friction = 0.;          ///< mu
     double friction_exponent = 1.; ///< kappa = (1-beta)^s; 0: kappa = 1
     double restitution = 0.;       ///< e
     bool plateau = false; ///< extrinsic, T(d_m) also while it closes: form (5)
     double viscous_limit =
-      std::numeric_limits<double>::infinity(); ///< of viscous traction, Pa
+        std::numeric_limits<double>::infinity(); ///< of viscous traction, Pa
     double wear = 0.; ///< k of d(gap)/dt = k p_N |U_T|, 1/Pa
   };
 
@@ -42,10 +41,9 @@ namespace nsfd
    * u' = jump_free + h theta U with jump_free = u_k + h (1-theta) U_k.
    */
   template <int dim>
-  struct OneStepProblem
-  {
-    std::size_t n_points = 0;   ///< points this rank computes with
-    std::size_t n_owned = 0;    ///< the first ones, counted once over all ranks
+  struct OneStepProblem {
+    std::size_t n_points = 0; ///< points this rank computes with
+    std::size_t n_owned = 0;  ///< the first ones, counted once over all ranks
     double time_step = 0., theta = 0.5;
     CohesionRule rule{};
 
@@ -53,31 +51,32 @@ namespace nsfd
 
     // per point
     std::vector<PointKind> kind;
-    std::vector<std::uint8_t> mask;         ///< bit c: component c prescribed
-    std::vector<std::uint8_t> contact;      ///< forecast active
-    std::vector<unsigned int> interaction;  ///< index into interactions
-    std::vector<double> weight;             ///< w
-    std::vector<double> strength_factor;    ///< a, see CohesiveLaw; else 1
-    std::vector<double> opening_factor;     ///< a / g, see CohesiveLaw; else 1
-    std::vector<double> opening_max;        ///< d_m, largest effective opening,
-                                            ///< or the largest <u_N>_+
+    std::vector<std::uint8_t> mask;        ///< bit c: component c prescribed
+    std::vector<std::uint8_t> contact;     ///< forecast active
+    std::vector<unsigned int> interaction; ///< index into interactions
+    std::vector<double> weight;            ///< w
+    std::vector<double> strength_factor;   ///< a, see CohesiveLaw; else 1
+    std::vector<double> opening_factor;    ///< a / g, see CohesiveLaw; else 1
+    std::vector<double> opening_max;       ///< d_m, largest effective opening,
+                                           ///< or the largest <u_N>_+
     std::vector<double> slip_max; ///< largest |u_T| of laws with two damage
                                   ///< scalars; empty if there are none
-    std::vector<double> compression_stiffness; ///< two-sided while intact, else 0
+    std::vector<double>
+        compression_stiffness;     ///< two-sided while intact, else 0
     std::vector<double> viscosity; ///< eta of the opening, Pa s/m; empty if
                                    ///< no point has one
     std::vector<double> dilatancy; ///< slope d'(s) of u_N >= d(s), while the
                                    ///< surfaces slide; empty if nothing lifts
     std::vector<double> lift_left; ///< until d(s) saturates, m; likewise
-    std::vector<double> target;             ///< U_N >= target where in contact
+    std::vector<double> target;    ///< U_N >= target where in contact
 
     // per point and component
-    std::vector<double> free_velocity;      ///< U_free
-    std::vector<double> given_velocity;     ///< prescribed
-    std::vector<double> jump_old;           ///< u_k
-    std::vector<double> jump_free;          ///< u_k + h (1-theta) U_k
-    std::vector<double> sliding_offset;     ///< added to U_T where sliding is
-                                            ///< measured by the jump increment
+    std::vector<double> free_velocity;  ///< U_free
+    std::vector<double> given_velocity; ///< prescribed
+    std::vector<double> jump_old;       ///< u_k
+    std::vector<double> jump_free;      ///< u_k + h (1-theta) U_k
+    std::vector<double> sliding_offset; ///< added to U_T where sliding is
+                                        ///< measured by the jump increment
 
     // scaled identity above the diagonal block of W
     std::vector<double> majorant_normal, majorant_tangential;
@@ -86,12 +85,11 @@ namespace nsfd
   };
 
   /** P and U of a problem, and what they cost. */
-  struct SolverReport
-  {
+  struct SolverReport {
     bool converged = false;
     double residual = 0.; ///< relative natural map, see residual.h
     unsigned int newton = 0, krylov = 0, sweeps = 0, line_searches = 0;
-    unsigned int law_calls = 0; ///< sweeps of the point law over all points
+    unsigned int law_calls = 0;  ///< sweeps of the point law over all points
     std::size_t worst_point = 0; ///< local index of the worst point
     double worst_error = 0.;     ///< its share, this rank
     std::vector<std::string> switches; ///< hand-overs between methods

@@ -23,9 +23,9 @@ namespace nsfd
         velocity{0, 1, -1}, acceleration{0, 1, -2}, density{1, -3, 0},
         pressure{1, -1, -2}, energy_per_area{1, 0, -2},
         stiffness_per_area{1, -2, -2}, force_per_volume{1, -2, -2},
-        viscosity{1, -1, -1}, viscosity_per_length{1, -2, -1}, damage_viscosity{1, 0, -1},
-        wear_coefficient{-1, 1, 2}, mass_per_area{1, -2, 0},
-        mass_per_length{1, -1, 0}, inertia{1, 2, 0},
+        viscosity{1, -1, -1}, viscosity_per_length{1, -2, -1},
+        damage_viscosity{1, 0, -1}, wear_coefficient{-1, 1, 2},
+        mass_per_area{1, -2, 0}, mass_per_length{1, -1, 0}, inertia{1, 2, 0},
         inertia_per_length{1, 1, 0};
   } // namespace units
 

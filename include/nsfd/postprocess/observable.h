@@ -19,10 +19,8 @@ namespace nsfd
   class SectionReader;
 
   /** A block of the scene with faces: `on = NAME`. */
-  struct NamedSurface
-  {
-    enum class Kind
-    {
+  struct NamedSurface {
+    enum class Kind {
       boundary,
       obstacle,
       interface,
@@ -58,8 +56,7 @@ namespace nsfd
     virtual double crossing_time() const = 0;
 
     /** A point on a face, of those that this rank owns. */
-    struct Point
-    {
+    struct Point {
       Vector position{}, normal{}; ///< from body 1 to body 2
       /// of the piece of the face it stands for; in space the point itself
       std::array<Vector, 2> ends{};
@@ -68,8 +65,7 @@ namespace nsfd
     };
     virtual const std::vector<Point> &points() const = 0;
 
-    struct PointState
-    {
+    struct PointState {
       Vector jump{};     ///< u_2 - u_1, m
       Vector velocity{}; ///< its rate, m/s
       Vector traction{}; ///< sigma n on body 1, Pa; mean of the step
@@ -80,8 +76,7 @@ namespace nsfd
     virtual PointState at(std::size_t point) const = 0;
 
     /** A place of an obstacle, an interface or a contact. */
-    struct Place
-    {
+    struct Place {
       Vector position{}, normal{}; ///< towards the body, or body 2
       Vector force{};              ///< on it, mean of the step, N
       double area = 0., opening = 0.;
@@ -102,8 +97,7 @@ namespace nsfd
     virtual double broken_beta(std::size_t point) const = 0;
 
     /** Mean values over faces or cells. */
-    struct Means
-    {
+    struct Means {
       double size = 0.; ///< area of the faces, number of the cells; 0: none
       Vector displacement{}, velocity{};
       Stress stress{};
@@ -117,8 +111,7 @@ namespace nsfd
      * Fields inside a cell at t_k + theta h, where the step is in balance:
      * rho a = div sigma + f.
      */
-    struct CellPoint
-    {
+    struct CellPoint {
       Vector position{};
       double JxW = 0., density = 0.;
       Gradient gradient{}, velocity_gradient{};
@@ -131,8 +124,7 @@ namespace nsfd
                 const std::function<void(const CellPoint &)> &visit) const = 0;
 
     /** What a cell says at a point between it and another cell. */
-    struct SidePoint
-    {
+    struct SidePoint {
       Vector position{}, normal{}; ///< from body 1 to body 2
       double sign = 0.;            ///< 1: the cell is body 2, -1: body 1
       double area = 0., density = 0.;

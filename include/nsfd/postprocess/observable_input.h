@@ -1,9 +1,9 @@
 #pragma once
 
-#include "nsfd/scene/scene_input.h"
 #include "nsfd/parameters/section_reader.h"
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/postprocess/running_crack.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <array>

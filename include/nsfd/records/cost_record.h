@@ -9,11 +9,9 @@
 namespace nsfd
 {
   /** What a run cost, on rank 0, and why. */
-  struct CostRecord
-  {
+  struct CostRecord {
     /// CPU seconds by what they were spent on, every moment once, and calls
-    struct Part
-    {
+    struct Part {
       std::string name;
       double seconds = 0.;
       unsigned long long calls = 0;
@@ -21,8 +19,7 @@ namespace nsfd
     std::vector<Part> parts;
 
     /// iterations of the accepted steps
-    struct Spread
-    {
+    struct Spread {
       std::string name;
       double median = 0., worst = 0.;
     };

@@ -6,8 +6,7 @@
 namespace nsfd
 {
   /** What a column of an observable is. */
-  struct ObservedColumn
-  {
+  struct ObservedColumn {
     std::string name, unit; ///< unit in SI, "" of pure numbers
   };
 
@@ -15,8 +14,7 @@ namespace nsfd
    * What an observable has said so far. Values that do not exist, such as the
    * tip of a crack that has not begun, are NaN.
    */
-  struct ObservableRecord
-  {
+  struct ObservableRecord {
     std::string name, type;
     std::vector<ObservedColumn> columns; ///< without step and time
     /// per column: the last value, and that of the largest size with its time

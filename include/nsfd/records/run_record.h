@@ -19,8 +19,7 @@ namespace nsfd
    * lines are sums since t = 0. Closed ledger: kinetic + elastic + cohesive
    * + dissipated lines - initial energy - work = 0.
    */
-  struct EnergyLines
-  {
+  struct EnergyLines {
     double kinetic = 0., elastic = 0., cohesive = 0.;
     double damage = 0., friction = 0., viscous = 0., plastic = 0., impact = 0.,
            numerical = 0.;
@@ -28,8 +27,7 @@ namespace nsfd
   };
 
   /** One accepted step: a line of history.csv. */
-  struct HistoryRow
-  {
+  struct HistoryRow {
     unsigned int step = 0;
     double time = 0., time_step = 0.;
     EnergyLines energy;
@@ -43,8 +41,7 @@ namespace nsfd
   };
 
   /** What a run was and what it found: summary.json. */
-  struct Summary
-  {
+  struct Summary {
     bool completed = false;
     std::string failure; ///< empty, or where and why the run stopped
     unsigned int dimension = 2;
@@ -70,8 +67,7 @@ namespace nsfd
   };
 
   /** What run.json says. */
-  struct RunInfo
-  {
+  struct RunInfo {
     std::string version, git_hash, command_line, file, date, host, build_type;
     std::map<std::string, std::string> libraries;
     unsigned int ranks = 1;
@@ -84,22 +80,20 @@ namespace nsfd
    * deformed with the true displacement. 2D: every cell is a polygon. 3D: the
    * visible boundary and broken faces as polygons.
    */
-  struct Snapshot
-  {
+  struct Snapshot {
     double time = 0.;
     unsigned int dimension = 2;
-    struct Polygon
-    {
+    struct Polygon {
       std::vector<std::array<double, 3>> reference;    ///< undeformed corners
       std::vector<std::array<double, 3>> displacement; ///< at the corners
       double value = 0.; ///< von Mises stress (Pa)
       double speed = 0.; ///< |v| (m/s)
       unsigned int fragment = 0, material = 0;
     };
-    struct FacePiece
-    {
+    struct FacePiece {
       std::array<double, 3> a, b; ///< 2D: ends, undeformed
-      std::array<double, 3> displacement_a, displacement_b; ///< mean of both sides
+      std::array<double, 3> displacement_a,
+          displacement_b; ///< mean of both sides
       double beta = 1.;   ///< 1 intact, 0 broken
       bool contact = false;
       bool can_break = false;

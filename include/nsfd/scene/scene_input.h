@@ -1,8 +1,8 @@
 #pragma once
 
-#include "nsfd/parameters/expression.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/cohesive_laws/scatter.h"
+#include "nsfd/parameters/expression.h"
 
 #include <array>
 #include <cmath>
@@ -22,30 +22,27 @@ namespace nsfd
   struct SceneInput;
   struct NamedMesh; // see mesh/named_mesh.h
   class VerificationCase;
-  class Indicator; // see adaptivity/indicator.h
+  class Indicator;  // see adaptivity/indicator.h
   class Observable; // see postprocess/observable.h
 
   /** `where`: all | boundary or material words | a group | a condition. */
-  struct Where
-  {
-    enum class Kind
-    {
+  struct Where {
+    enum class Kind {
       all,
-      side,              ///< left right bottom top back front of the bounding box
-      group,             ///< a named group of the mesh (material or boundary id)
+      side,  ///< left right bottom top back front of the bounding box
+      group, ///< a named group of the mesh (material or boundary id)
       between_materials, ///< faces between two material blocks
       between_groups,    ///< faces between two groups of cells
       expression         ///< non-zero at the midpoint of face or cell
     };
     Kind kind = Kind::all;
-    std::string name;                     ///< side or group
+    std::string name; ///< side or group
     /// names, of materials or groups; empty = any two different
     std::array<std::string, 2> materials;
     Expression condition;
   };
 
-  struct MeshInput
-  {
+  struct MeshInput {
     /// rectangle, brick, notched plate, crossed triangles, diagonal triangles,
     /// tetrahedra, bodies (from `Body:` blocks), file, voronoi, or a deal.II
     /// generator's name
@@ -66,23 +63,21 @@ namespace nsfd
   };
 
   /** One of several bodies in a mesh of type `bodies`. */
-  struct BodyInput
-  {
+  struct BodyInput {
     std::string name;
     MeshInput mesh;
     double separation = 0.;
   };
 
-  struct DiscretizationInput
-  {
+  struct DiscretizationInput {
     unsigned int degree = 1;
     bool lumped_mass = false;
-    std::string interface_quadrature = "gauss"; ///< gauss | gauss lobatto | quarter points
-    unsigned int interface_points = 2;          ///< per direction of a face
+    std::string interface_quadrature =
+        "gauss"; ///< gauss | gauss lobatto | quarter points
+    unsigned int interface_points = 2; ///< per direction of a face
   };
 
-  enum class BulkModel
-  {
+  enum class BulkModel {
     linear_elastic,
     rigid,
     saint_venant_kirchhoff, ///< finite strain
@@ -103,8 +98,7 @@ namespace nsfd
   }
 
   /** What a rigid material of a scene with large motions says of its bodies. */
-  struct RigidInput
-  {
+  struct RigidInput {
     bool connected = false; ///< cells that touch are one body, else each is one
     /// the body is the ball (the disc in the plane) around the centre of its
     /// cells that reaches to their farthest corner; only if connected
@@ -117,18 +111,16 @@ namespace nsfd
   };
 
   /** Small strain, the same in all directions across an axis. */
-  struct TransverseInput
-  {
+  struct TransverseInput {
     std::array<double, 3> axis{{1., 0., 0.}}; ///< of length 1
     double axial_young = 0., transverse_young = 0.;
-    double axial_poisson = 0.; ///< contraction across over extension along
+    double axial_poisson = 0.;      ///< contraction across over extension along
     double transverse_poisson = 0.; ///< both across the axis
     double axial_shear = 0.;
   };
 
   /** Constants that differ from place to place, of x, y, z. */
-  struct GradedInput
-  {
+  struct GradedInput {
     Expression young, poisson, density;
   };
 
@@ -138,18 +130,16 @@ namespace nsfd
    * X = 2/3 kinematic times the plastic strain; beyond it by the overstress
    * viscosity r (dp/dt / r)^(1/n).
    */
-  struct PlasticInput
-  {
+  struct PlasticInput {
     double yield_stress = 0., isotropic = 0., kinematic = 0.; ///< Pa
-    double saturation_stress = 0.; ///< Q, Pa
-    double saturation_exponent = 0.; ///< b
-    double viscosity = 0.; ///< Pa s, at the reference rate; 0: none
-    double rate_exponent = 1.; ///< n
+    double saturation_stress = 0.;                            ///< Q, Pa
+    double saturation_exponent = 0.;                          ///< b
+    double viscosity = 0.;      ///< Pa s, at the reference rate; 0: none
+    double rate_exponent = 1.;  ///< n
     double reference_rate = 1.; ///< r, 1/s; of no effect where n = 1
   };
 
-  struct MaterialInput
-  {
+  struct MaterialInput {
     std::string name;
     Where where;
     BulkModel model = BulkModel::linear_elastic;
@@ -169,12 +159,11 @@ namespace nsfd
     /// per component, expressions of x, y, z (t = 0); default 0
     std::array<Expression, 3> initial_displacement, initial_velocity;
     std::array<Expression, 3> body_force; ///< N/m^3, of x, y, z, t
-    std::optional<PlasticInput> plastic; ///< of materials with history
+    std::optional<PlasticInput> plastic;  ///< of materials with history
   };
 
   /** What sliding does to the surfaces in contact. */
-  struct SlidingInput
-  {
+  struct SlidingInput {
     double dilatancy = 0.; ///< tan(psi): u_N >= d(s), d(s) = s tan(psi)
     double saturation = std::numeric_limits<double>::infinity(); ///< of d, m
     double wear = 0.; ///< k of d(gap)/dt = k p_N |U_T|, 1/Pa
@@ -182,16 +171,14 @@ namespace nsfd
     bool lifts() const { return dilatancy > 0. || wear > 0.; }
   };
 
-  enum class IntactFaces
-  {
+  enum class IntactFaces {
     spring,
     unilateral,
     rigid,
     bonded ///< through the bulk, see delassus/bonded.h
   };
 
-  struct InterfaceInput
-  {
+  struct InterfaceInput {
     std::string name;
     Where where;
     /// "rigid", "bonded", "elastic", "contact" or the name of a cohesive law
@@ -225,8 +212,7 @@ namespace nsfd
     }
   };
 
-  struct BoundaryInput
-  {
+  struct BoundaryInput {
     std::string name;
     Where where;
     /// prescribed motion per component: velocity, or displacement (then its
@@ -239,18 +225,16 @@ namespace nsfd
     bool exact_motion = false; ///< of the verification case
   };
 
-  enum class ObstacleShape
-  {
+  enum class ObstacleShape {
     plane,
     sphere,  ///< a disc in the plane
     cylinder ///< without ends; in space only
   };
 
   /** A rigid half space, ball or cylinder; boundary faces may touch it. */
-  struct ObstacleInput
-  {
+  struct ObstacleInput {
     std::string name;
-    Where where;                          ///< boundary faces that may touch it
+    Where where; ///< boundary faces that may touch it
     ObstacleShape shape = ObstacleShape::plane;
     std::array<double, 3> point{}; ///< on the plane, centre, or on the axis
     /// of a plane, out of the obstacle; axis of a cylinder; unit length
@@ -262,15 +246,11 @@ namespace nsfd
     double friction = 0., restitution = 0.;
     SlidingInput sliding;
 
-    bool moves() const
-    {
-      return velocity[0] || velocity[1] || velocity[2];
-    }
+    bool moves() const { return velocity[0] || velocity[1] || velocity[2]; }
   };
 
   /** Contact between any two surfaces, of scenes with large motions. */
-  struct ContactInput
-  {
+  struct ContactInput {
     std::string name;
     /// of the two bodies, in any order; empty: any. The first block that
     /// holds for two materials is theirs; without one they do not touch
@@ -280,48 +260,29 @@ namespace nsfd
   };
 
   /** A place of a rigid body that stays where it is, in large motions. */
-  struct PinInput
-  {
+  struct PinInput {
     std::string name;
     std::string material;       ///< of the body; it has one body
     std::array<double, 3> at{}; ///< at t = 0, in the body or outside, m
   };
 
-  enum class CohesionRule
-  {
-    exact,
-    end_point,
-    end_velocity
-  };
-  enum class ContactTarget
-  {
-    energy_safe,
-    velocity,
-    position
-  };
+  enum class CohesionRule { exact, end_point, end_velocity };
+  enum class ContactTarget { energy_safe, velocity, position };
   /** The velocity that friction opposes. */
-  enum class Sliding
-  {
+  enum class Sliding {
     velocity,   ///< of the end of the step
     increment,  ///< the mean of the step
     energy_safe ///< that of the end, the mean where friction would give energy
   };
-  enum class StepKind
-  {
-    time,
-    crossings,
-    automatic
-  };
+  enum class StepKind { time, crossings, automatic };
 
-  enum class Scheme
-  {
+  enum class Scheme {
     moreau_jean,
     symplectic, ///< Moreau-Jean with the forces of the bodies at t_k
     arkode      ///< smooth scenes, by SUNDIALS
   };
 
-  struct TimeInput
-  {
+  struct TimeInput {
     Scheme scheme = Scheme::moreau_jean;
     double end = 0.;
     StepKind step_kind = StepKind::crossings;
@@ -365,16 +326,14 @@ namespace nsfd
   };
 
   /** What a run does where no equilibrium continues the last one. */
-  enum class SolutionJump
-  {
+  enum class SolutionJump {
     stop,    ///< ends with the last equilibrium
     dynamic, ///< goes on from it with Moreau-Jean
     relax    ///< takes the next equilibrium, books what is left over
   };
 
   /** Equilibria: at the start, and from step to step of the load. */
-  struct StaticInput
-  {
+  struct StaticInput {
     bool steps = false; ///< scheme = quasi-static, else the start alone
     double until = 0.;  ///< s, end of the quasi-static steps
     double step = 0.;   ///< s, of the load
@@ -382,11 +341,11 @@ namespace nsfd
     double tolerance = 1e-11; ///< force left over, relative to those present
   };
 
-  struct SolverInput
-  {
-    std::string method = "auto";      ///< auto | dual newton | gauss seidel
-    std::string path = "auto";        ///< auto | element-wise | global
-    std::string linear_solver = "auto"; ///< of the global path: auto | direct | cg
+  struct SolverInput {
+    std::string method = "auto"; ///< auto | dual newton | gauss seidel
+    std::string path = "auto";   ///< auto | element-wise | global
+    std::string linear_solver =
+        "auto"; ///< of the global path: auto | direct | cg
     double tolerance = 1e-8;
     unsigned int maximum_iterations = 200;
     /// none | hard | all: steps whose contacts become stored problems
@@ -394,8 +353,7 @@ namespace nsfd
   };
 
   /** Section `Adaptivity` with the blocks `Indicator: name`. */
-  struct AdaptivityInput
-  {
+  struct AdaptivityInput {
     unsigned int levels = 2; ///< the smallest cell: that of the mesh / 2^levels
     unsigned int coarsen_every = 10; ///< steps; 0: cells stay small
     /// springs of intrinsic laws on smaller cells: the modulus of the body or
@@ -404,28 +362,25 @@ namespace nsfd
     std::vector<std::shared_ptr<const Indicator>> indicators;
   };
 
-  struct OutputInput
-  {
+  struct OutputInput {
     std::string directory;
-    double fields_every = 0.;             ///< s; 0: start and end only
-    unsigned int fields_every_steps = 0;  ///< 0: not used
+    double fields_every = 0.;            ///< s; 0: start and end only
+    unsigned int fields_every_steps = 0; ///< 0: not used
     bool fields = true, report = true;
-    bool hdf5 = false; ///< fields as HDF5 with XDMF, not as VTU
+    bool hdf5 = false;                 ///< fields as HDF5 with XDMF, not as VTU
     unsigned int checkpoint_steps = 0; ///< 0: not by steps
     double checkpoint_seconds = 0.;    ///< of wall time; 0: not by time
   };
 
   /** A block `Observable: name`. */
-  struct ObservableInput
-  {
+  struct ObservableInput {
     std::string name, type;
     unsigned int every = 1; ///< accepted steps from row to row
     std::shared_ptr<Observable> observable;
   };
 
-  struct SceneInput
-  {
-    std::string file; ///< as given on the command line
+  struct SceneInput {
+    std::string file;               ///< as given on the command line
     std::string title, description; ///< opening comment paragraph of the file
     unsigned int dimension = 2;
     bool plane_stress = false;
@@ -440,7 +395,7 @@ namespace nsfd
     bool large_motion = false;
     std::vector<ContactInput> contacts; ///< only with large motions
     std::vector<PinInput> pins;         ///< only with large motions
-    std::array<double, 3> gravity{}; ///< m/s^2
+    std::array<double, 3> gravity{};    ///< m/s^2
     TimeInput time;
     SolverInput solver;
     OutputInput output;

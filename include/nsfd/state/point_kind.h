@@ -5,8 +5,7 @@
 namespace nsfd
 {
   /** What a point is during one step: decided before it, data afterwards. */
-  enum class PointKind : std::uint8_t
-  {
+  enum class PointKind : std::uint8_t {
     prescribed, ///< U = U_given in the components of the mask (rigid joints,
                 ///< supports); the other components carry nothing
     elastic,    ///< two-sided spring, no damage

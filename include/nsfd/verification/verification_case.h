@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/core/registry.h"
 #include "nsfd/bodies/rigid_step.h"
+#include "nsfd/core/registry.h"
 #include "nsfd/records/run_record.h"
 
 #include <array>
@@ -17,16 +17,14 @@ namespace nsfd
   class SectionReader;
 
   /** Positions, displacements and velocities at the centre of one cell. */
-  struct CellState
-  {
+  struct CellState {
     std::array<double, 3> centre{}, displacement{}, velocity{};
     std::array<double, 6> stress{}; ///< xx, yy, zz, xy, xz, yz, cell average
     double volume = 0.;
   };
 
   /** What a verification case may look at after a step (same on all ranks). */
-  struct StepView
-  {
+  struct StepView {
     double time = 0., time_step = 0.;
     const HistoryRow *row = nullptr;
     /// cells in an order that does not depend on the rank count; gathered only

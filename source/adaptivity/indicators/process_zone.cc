@@ -74,8 +74,7 @@ namespace nsfd
           for (std::size_t k = 0; k < fronts.size(); k += 4) {
             const double zone = fronts[k + 3];
             // the cell itself may be much larger than the zone
-            const double near =
-                (reach_ + 0.25) * zone + 0.75 * bodies[b].size;
+            const double near = (reach_ + 0.25) * zone + 0.75 * bodies[b].size;
             double square = 0.;
             for (unsigned int c = 0; c < 3; ++c) {
               const double d = centre[c] - fronts[k + c];

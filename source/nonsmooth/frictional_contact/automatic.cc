@@ -54,8 +54,8 @@ namespace nsfd::stored
     s.attempt("gauss seidel", [&] { hopeful_sweeps(s); });
     if (s.solved())
       return true;
-    // ADMM takes 50 to 150 iterations or very many, Newton's method half a dozen
-    // factors or fails, interior points 15 to 35: measured
+    // ADMM takes 50 to 150 iterations or very many, Newton's method half a
+    // dozen factors or fails, interior points 15 to 35: measured
     if (iterations_per_factor(s) > 50.)
       s.attempt("admm", [&] { admm(s, 150); });
     s.attempt("dual newton", [&] {

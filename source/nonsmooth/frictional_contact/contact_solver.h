@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/core/registry.h"
 #include "contact_problem.h"
+#include "nsfd/core/registry.h"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
-#include "core/trial_process.h"
 #include "core/hdf5_file.h"
+#include "core/trial_process.h"
 #include "fclib.h"
 
 #include <fmt/format.h>

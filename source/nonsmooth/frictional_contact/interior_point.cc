@@ -1,6 +1,6 @@
 #include "contact_cone.h"
-#include "session.h"
 #include "linear_algebra/small_matrix.h"
+#include "session.h"
 
 #include <limits>
 

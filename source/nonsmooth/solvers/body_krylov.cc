@@ -22,8 +22,8 @@ namespace nsfd
     }
 
     /** y = A x, A dim x dim row-major. */
-    void multiply_small(const unsigned int dim, const double *A, const double *x,
-                        double *y)
+    void multiply_small(const unsigned int dim, const double *A,
+                        const double *x, double *y)
     {
       for (unsigned int r = 0; r < dim; ++r) {
         y[r] = 0.;
@@ -36,9 +36,7 @@ namespace nsfd
     class LeastResidual
     {
     public:
-      explicit LeastResidual(const double residual)
-        : g_{residual}
-      {}
+      explicit LeastResidual(const double residual) : g_{residual} {}
 
       double residual() const { return std::abs(g_.back()); }
 
@@ -84,11 +82,10 @@ namespace nsfd
   BodyKrylov::BodyKrylov(const unsigned int dim,
                          const std::vector<std::size_t> &first_dof,
                          const std::vector<FaceRows> &faces)
-    : dim_(dim)
-    , first_dof_(first_dof)
-    , faces_(faces)
-    , soft_(dim, first_dof, faces)
-  {}
+      : dim_(dim), first_dof_(first_dof), faces_(faces),
+        soft_(dim, first_dof, faces)
+  {
+  }
 
   const Vector &BodyKrylov::cap(const Vector &S, const Vector &resistance)
   {
@@ -105,9 +102,8 @@ namespace nsfd
       cap_[i] = 20. * resistance[i * n];
       for (unsigned int r = 0; r < n; ++r)
         G[r * n + r] = 1.;
-      if (std::all_of(s, s + n * n, [&](const double x) {
-            return std::abs(x) <= cap_[i];
-          }))
+      if (std::all_of(s, s + n * n,
+                      [&](const double x) { return std::abs(x) <= cap_[i]; }))
         continue;
       stiff_.push_back(i);
       // rows as columns throughout: the transposed system
@@ -122,7 +118,7 @@ namespace nsfd
       for (unsigned int r = 0; r < n; ++r)
         for (unsigned int c = 0; c < n; ++c)
           capped_[(i * n + r) * n + c] =
-            cap_[i] * ((r == c ? 1. : 0.) - G[r * n + c]);
+              cap_[i] * ((r == c ? 1. : 0.) - G[r * n + c]);
     }
     return capped_;
   }
@@ -154,7 +150,7 @@ namespace nsfd
         for (int k = K_->start[j]; k < K_->start[j + 1]; ++k)
           if (K_->column[k] >= first && K_->column[k] < end)
             block[std::size_t(j - first) * m + K_->column[k] - first] =
-              K_->value[k];
+                K_->value[k];
       }
       dealii::types::blas_int info = 0;
       dealii::getrf(&n, &n, block.data(), &n, pivots.data(), &info);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "soft_space.h"
 #include "linear_algebra/sparse_lu.h"
+#include "soft_space.h"
 
 #include <vector>
 
@@ -13,17 +13,17 @@ namespace nsfd
    *
    *     M_hat x = b + H^T P,      P = d - S H x,
    *
-   * S dim x dim per point, neither symmetric nor bounded: that of a contact that
-   * sticks is 1e7 times what its bodies oppose, and d belongs to it. With c = 20
-   * times what they oppose, G = (I + S/c)^{-1} and S_c = S G, which is at most
-   * c, the same equations are
+   * S dim x dim per point, neither symmetric nor bounded: that of a contact
+   * that sticks is 1e7 times what its bodies oppose, and d belongs to it. With
+   * c = 20 times what they oppose, G = (I + S/c)^{-1} and S_c = S G, which is
+   * at most c, the same equations are
    *
    *     (M_hat + H^T S_c H) x + H^T Q = b + H^T G d,
    *     (S_c/c) S_c H x - G Q = (S_c/c) G d,      P = G d - S_c H x - Q,
    *
    * Q = 0 where S < c. Nothing in them grows with S, and the second row
-   * eliminated by the first is nearly -I (an augmented Lagrangian). The first is
-   * preconditioned by the soft space, then by the bodies one by one with the
+   * eliminated by the first is nearly -I (an augmented Lagrangian). The first
+   * is preconditioned by the soft space, then by the bodies one by one with the
    * springs around them. On one rank.
    */
   class BodyKrylov
@@ -31,8 +31,7 @@ namespace nsfd
   public:
     using Vector = std::vector<double>;
 
-    BodyKrylov(unsigned int dim,
-               const std::vector<std::size_t> &first_dof,
+    BodyKrylov(unsigned int dim, const std::vector<std::size_t> &first_dof,
                const std::vector<FaceRows> &faces);
 
     /**
@@ -74,7 +73,7 @@ namespace nsfd
     const SparseRows *K_ = nullptr;
     SoftSpace soft_;
     SparseLU coarse_;
-    Vector capped_, gain_, cap_; // S_c, G, c; of all points
+    Vector capped_, gain_, cap_;     // S_c, G, c; of all points
     std::vector<std::size_t> stiff_; // points with Q
     Vector blocks_; // inverse, column-major, of the bodies in order
     Vector U_, impulse_, coarse_r_, coarse_z_, work_;

@@ -30,7 +30,7 @@ namespace nsfd
   BodySystem<dim>::BodySystem(const Dynamics<dim> &dynamics,
                               const double time_step, const double theta,
                               const long long largest_factor)
-    : dynamics_(dynamics), largest_factor_(largest_factor)
+      : dynamics_(dynamics), largest_factor_(largest_factor)
   {
     find_faces();
     find_pattern();
@@ -54,8 +54,7 @@ namespace nsfd
     const auto &points = dynamics_.points();
     const auto &bodies = dynamics_.bodies();
     // (body, slot, sign) of every side of every point
-    struct Side
-    {
+    struct Side {
       std::size_t body, slot;
       double sign;
     };
@@ -93,7 +92,7 @@ namespace nsfd
       mine.rows.assign(std::size_t(face.count) * dim * n, 0.);
       for (unsigned int q = 0; q < face.count; ++q) {
         const double *Q =
-          points.frame.data() + std::size_t(face.first + q) * dim * dim;
+            points.frame.data() + std::size_t(face.first + q) * dim * dim;
         for (const Side &side : sides[face.first + q]) {
           const auto &body = bodies.classes[bodies.class_of[side.body]];
           for (std::size_t a = 0; a < n; ++a) {
@@ -105,8 +104,8 @@ namespace nsfd
             for (unsigned int k = 0; k < dim; ++k)
               for (unsigned int c = 0; c < dim; ++c)
                 mine.rows[(q * dim + k) * n + a] +=
-                  side.sign * Q[k * dim + c] *
-                  body.trace(unsigned(side.slot) * dim + c, j);
+                    side.sign * Q[k * dim + c] *
+                    body.trace(unsigned(side.slot) * dim + c, j);
           }
         }
       }
@@ -182,20 +181,20 @@ namespace nsfd
         for (std::size_t a = 0; a < n; ++a) {
           hh += h[a] * h[a];
           const std::size_t b =
-            std::upper_bound(bodies.first_dof.begin(), bodies.first_dof.end(),
-                             std::size_t(face.dofs[a])) -
-            bodies.first_dof.begin() - 1;
+              std::upper_bound(bodies.first_dof.begin(), bodies.first_dof.end(),
+                               std::size_t(face.dofs[a])) -
+              bodies.first_dof.begin() - 1;
           const auto &body = bodies.classes[bodies.class_of[b]];
           for (std::size_t c = 0; c < n; ++c)
             if (std::size_t(face.dofs[c]) >= bodies.first_dof[b] &&
                 std::size_t(face.dofs[c]) < bodies.first_dof[b + 1])
               hMh += h[a] * h[c] *
-                     matrix_entry(
-                       body, unsigned(face.dofs[a] - bodies.first_dof[b]),
-                       unsigned(face.dofs[c] - bodies.first_dof[b]));
+                     matrix_entry(body,
+                                  unsigned(face.dofs[a] - bodies.first_dof[b]),
+                                  unsigned(face.dofs[c] - bodies.first_dof[b]));
         }
         impedance_[std::size_t(points.faces[f].first) * dim + k] =
-          hh > 0. ? hMh / (hh * hh) : 0.;
+            hh > 0. ? hMh / (hh * hh) : 0.;
       }
     }
   }
@@ -210,11 +209,11 @@ namespace nsfd
       const std::size_t n = face.dofs.size();
       work_.resize(dim * n);
       for (unsigned int q = 0; q < points.faces[f].count; ++q) {
-        const double *s = &S[std::size_t(points.faces[f].first + q) * dim * dim];
+        const double *s =
+            &S[std::size_t(points.faces[f].first + q) * dim * dim];
         const double *h = &face.rows[q * dim * n];
-        if (std::all_of(s, s + dim * dim, [](const double x) {
-              return x == 0.;
-            }))
+        if (std::all_of(s, s + dim * dim,
+                        [](const double x) { return x == 0.; }))
           continue;
         for (unsigned int k = 0; k < dim; ++k)
           for (std::size_t a = 0; a < n; ++a) {
@@ -251,7 +250,7 @@ namespace nsfd
     means_ = Means::iteration;
     if (!iteration_)
       iteration_ = std::make_unique<BodyKrylov>(
-        dim, dynamics_.bodies().first_dof, faces_);
+          dim, dynamics_.bodies().first_dof, faces_);
     assemble(iteration_->cap(S, impedance_));
     return iteration_->prepare(matrix_, bodies_);
   }
@@ -346,8 +345,7 @@ namespace nsfd
     y.resize(x.size());
     work_.resize(x.size());
     dynamics_.apply(Dynamics<dim>::Operator::mass, x.data(), y.data());
-    dynamics_.apply(Dynamics<dim>::Operator::stiffness, x.data(),
-                    work_.data());
+    dynamics_.apply(Dynamics<dim>::Operator::stiffness, x.data(), work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)
       y[k] += shares_.stiffness * work_[k];
     if (!dynamics_.is_viscous())

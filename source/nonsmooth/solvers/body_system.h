@@ -18,13 +18,13 @@ namespace nsfd
    *
    *     K = M_hat + sum_i H_i^T S_i H_i,      M_hat = M + h^2 theta^2 K_bulk,
    *
-   * as one sparse matrix. Where every S_i is symmetric and K is positive definite
-   * it has Cholesky's factor. Else S need not be either: up to @p largest_factor
-   * unknowns the factor of UMFPACK, beyond it BodyKrylov, which takes the place
-   * of Cholesky's too beyond 10 times as many. Where its iterations do not end,
-   * factors come back for good, up to that number. The pattern, found once, is tight:
-   * a face couples only the unknowns that its points see, and points may change
-   * S without a new analysis. On one rank.
+   * as one sparse matrix. Where every S_i is symmetric and K is positive
+   * definite it has Cholesky's factor. Else S need not be either: up to @p
+   * largest_factor unknowns the factor of UMFPACK, beyond it BodyKrylov, which
+   * takes the place of Cholesky's too beyond 10 times as many. Where its
+   * iterations do not end, factors come back for good, up to that number. The
+   * pattern, found once, is tight: a face couples only the unknowns that its
+   * points see, and points may change S without a new analysis. On one rank.
    */
   template <int dim>
   class BodySystem
@@ -46,8 +46,8 @@ namespace nsfd
 
     /**
      * K x = b over the unknowns of the bodies, iterations to @p tolerance of b:
-     * of a Newton step, whose error is found again by the next one. Returns their
-     * number, 1 for a factor.
+     * of a Newton step, whose error is found again by the next one. Returns
+     * their number, 1 for a factor.
      */
     unsigned int solve(const Vector &b, Vector &x, double tolerance = 1e-3);
 
@@ -100,12 +100,7 @@ namespace nsfd
     std::vector<int> body_entries_; // of M_hat, bodies in order, column-major
     Vector bodies_, impedance_, work_, stiffness_;
 
-    enum class Means
-    {
-      cholesky,
-      factor,
-      iteration
-    } means_ = Means::factor;
+    enum class Means { cholesky, factor, iteration } means_ = Means::factor;
     std::unique_ptr<SpdSolver> cholesky_; // each when it is needed first
     std::unique_ptr<SparseLU> factor_;
     std::unique_ptr<BodyKrylov> iteration_;

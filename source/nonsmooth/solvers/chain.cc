@@ -24,13 +24,12 @@ namespace nsfd
     class Chain final : public NonsmoothSolver<dim>
     {
     public:
-      Chain()
-        : newton_(SolverRegistry<dim>::instance().create("dual newton"))
-      {}
+      Chain() : newton_(SolverRegistry<dim>::instance().create("dual newton"))
+      {
+      }
 
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics,
-                         const double energy_scale,
+                         Dynamics<dim> &dynamics, const double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
@@ -53,7 +52,7 @@ namespace nsfd
         // a Newton step costs a global factor here, as one of the path does
         const auto n = all.sum_integer(dynamics.bodies().n_dofs());
         const bool brief =
-          lasts && !rubs && static_cast<long long>(n) <= largest_factor<dim>;
+            lasts && !rubs && static_cast<long long>(n) <= largest_factor<dim>;
         SolverControl part = control;
         if (brief)
           part.maximum_iterations = std::min(part.maximum_iterations, 10u);
@@ -76,7 +75,7 @@ namespace nsfd
           report.converged = report.residual <= control.tolerance;
         };
         const bool early =
-          control.idle_rounds < (SolverControl().idle_rounds << 4);
+            control.idle_rounds < (SolverControl().idle_rounds << 4);
         if (!report.converged && early &&
             all.any(softens(problem, evaluation))) {
           if (brief)
@@ -130,10 +129,11 @@ namespace nsfd
             return true;
           if (problem.kind[i] != PointKind::cohesive)
             continue;
-          const auto &interaction = problem.interactions[problem.interaction[i]];
+          const auto &interaction =
+              problem.interactions[problem.interaction[i]];
           const Reach history{problem.opening_max[i],
-                              problem.slip_max.empty() ? 0. :
-                                                         problem.slip_max[i]};
+                              problem.slip_max.empty() ? 0.
+                                                       : problem.slip_max[i]};
           if (past_peak(*interaction.law, problem.opening_factor[i], history))
             return true;
         }
@@ -149,7 +149,7 @@ namespace nsfd
       {
         const double theta = dynamics.bulk_theta();
         const double factor =
-          problem.time_step * problem.time_step * theta * theta;
+            problem.time_step * problem.time_step * theta * theta;
         std::vector<double> ratio;
         unsigned long long count = 0;
         for (const auto &body : dynamics.bodies().classes)

@@ -11,8 +11,8 @@ namespace nsfd
   template <int dim>
   bool ContactPath<dim>::newton(const unsigned int patience)
   {
-    nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance, patience,
-                      softening_, impulse_, evaluation_, report_);
+    nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance,
+                      patience, softening_, impulse_, evaluation_, report_);
     return judge();
   }
 
@@ -57,9 +57,8 @@ namespace nsfd
     }
     std::sort(share.rbegin(), share.rend());
     const double rest =
-      sum * springs::square(0.3 * control_.tolerance / evaluation_.error);
-    std::vector<std::vector<unsigned int>> faces_of(
-      dynamics_.bodies().size());
+        sum * springs::square(0.3 * control_.tolerance / evaluation_.error);
+    std::vector<std::vector<unsigned int>> faces_of(dynamics_.bodies().size());
     for (unsigned int f = 0; f < points.faces.size(); ++f)
       for (const int body : points.faces[f].bodies)
         if (body >= 0)
@@ -70,7 +69,8 @@ namespace nsfd
     for (std::size_t k = 0; k < n && sum > rest; sum -= share[k++].first) {
       if (k == most_bad)
         return {};
-      for (const int body : points.faces[points.face_of[share[k].second]].bodies)
+      for (const int body :
+           points.faces[points.face_of[share[k].second]].bodies)
         if (body >= 0)
           for (const unsigned int f : faces_of[body])
             for (std::size_t i = points.faces[f].first;
@@ -123,12 +123,12 @@ namespace nsfd
     for (std::size_t a = 0; a < m; ++a) {
       mu[a] = frozen_state<dim>(problem_, knot[a],
                                 evaluation_.solutions[knot[a]].reach, 1.)
-                .threshold;
+                  .threshold;
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t j = knot[a] * dim + c;
-        q[a * dim + c] = evaluation_.velocity[j] + dU_[j] -
-                         (c == 0 ? problem_.target[knot[a]] :
-                                   -problem_.sliding_offset[j]);
+        q[a * dim + c] =
+            evaluation_.velocity[j] + dU_[j] -
+            (c == 0 ? problem_.target[knot[a]] : -problem_.sliding_offset[j]);
         P[a * dim + c] = impulse_[j];
       }
     }

@@ -17,18 +17,12 @@ namespace nsfd
                                 const SolverControl &control, Vector &impulse,
                                 LawEvaluation<dim> &evaluation,
                                 SolverReport &report)
-    : problem_(problem)
-    , dynamics_(dynamics)
-    , system_(system)
-    , control_(control)
-    , impulse_(impulse)
-    , evaluation_(evaluation)
-    , report_(report)
-    , frozen_(problem.n_points)
-    , is_candidate_(problem.n_points, 0)
-    , others_(problem.n_points, 1)
-    , best_error_(std::numeric_limits<double>::infinity())
-    , polished_(best_error_)
+      : problem_(problem), dynamics_(dynamics), system_(system),
+        control_(control), impulse_(impulse), evaluation_(evaluation),
+        report_(report), frozen_(problem.n_points),
+        is_candidate_(problem.n_points, 0), others_(problem.n_points, 1),
+        best_error_(std::numeric_limits<double>::infinity()),
+        polished_(best_error_)
   {
     for (std::size_t i = 0; i < problem.n_points; ++i)
       if (problem.contact[i] && has_frozen_law<dim>(problem, i) &&
@@ -148,8 +142,7 @@ namespace nsfd
         if (is_held(i))
           rho[j] = S_[j * dim + c];
         else if (!linear[i]) // alike along the face
-          rho[j] = S_[j * dim + c] =
-            stiffness_at(i, std::min(c, 1u), balance);
+          rho[j] = S_[j * dim + c] = stiffness_at(i, std::min(c, 1u), balance);
         target[j] = problem_.given_velocity[j]; // of points that are held
       }
     if (!system_.factorise(S_))
@@ -164,7 +157,7 @@ namespace nsfd
           offset[i * dim + c] = P_[i * dim + c] + laws_.change[i * dim + c];
           for (unsigned int d = 0; d < dim; ++d)
             offset[i * dim + c] +=
-              laws_.stiffness[(i * dim + c) * dim + d] * U_[i * dim + d];
+                laws_.stiffness[(i * dim + c) * dim + d] * U_[i * dim + d];
         }
     std::vector<Reach> reach(n);
     for (std::size_t i = 0; i < n; ++i)
@@ -174,8 +167,8 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         local[c] = U_[i * dim + c] - P_[i * dim + c] / rho[i * dim + c];
       const auto solution =
-        solve_point<dim>(problem_, i, local, 1. / rho[i * dim],
-                         1. / rho[i * dim + 1], reach[i]);
+          solve_point<dim>(problem_, i, local, 1. / rho[i * dim],
+                           1. / rho[i * dim + 1], reach[i]);
       reach[i] = solution.reach;
       for (unsigned int c = 0; c < dim; ++c) {
         P_[i * dim + c] = solution.impulse[c];
@@ -238,7 +231,7 @@ namespace nsfd
     impulse[0] = wh * normal.at(U_[i * dim]);
     slope[0] = wh * normal.derivative(U_[i * dim]);
     const auto tangential =
-      springs::tangential_spring<dim>(problem_, secant.tangential);
+        springs::tangential_spring<dim>(problem_, secant.tangential);
     for (unsigned int c = 1; c < dim; ++c) {
       slope[c] = wh * tangential.stiffness * tangential.slope;
       impulse[c] = wh * tangential.stiffness *
@@ -260,7 +253,7 @@ namespace nsfd
       Candidate candidate{};
       candidate.point = i;
       candidate.friction =
-        frozen_state<dim>(problem_, i, solution.reach, 1.).threshold;
+          frozen_state<dim>(problem_, i, solution.reach, 1.).threshold;
       candidates_.push_back(candidate);
     }
   }
@@ -278,27 +271,27 @@ namespace nsfd
         x.r[c] = (P_[i * dim + c] + pull[c]) / problem_.weight[i];
       sum += std::abs(x.r[0]);
     }
-    mean_impulse_ =
-      candidates_.empty() ? 0. : sum / double(candidates_.size());
+    mean_impulse_ = candidates_.empty() ? 0. : sum / double(candidates_.size());
     for (auto &x : candidates_) {
       const std::size_t i = x.point;
       const double R_N = impedance(i, 0), R_T = impedance(i, 1);
       const double u_N = U_[i * dim] - problem_.target[i];
       double largest = std::max(std::abs(x.r[0]), R_N * std::abs(u_N));
       for (unsigned int c = 1; c < dim; ++c)
-        largest = std::max({largest, std::abs(x.r[c]),
-                            R_T * std::abs(U_[i * dim + c] +
-                                           problem_.sliding_offset[i * dim + c])});
+        largest =
+            std::max({largest, std::abs(x.r[c]),
+                      R_T * std::abs(U_[i * dim + c] +
+                                     problem_.sliding_offset[i * dim + c])});
       x.scale = floor == 1. || mean_impulse_ == 0.
-                  ? 1.
-                  : std::min(1., std::max(floor, largest / mean_impulse_));
+                    ? 1.
+                    : std::min(1., std::max(floor, largest / mean_impulse_));
       const double y = x.r[0] - R_N * u_N;
-      const double q =
-        std::hypot(y, 2. * centre * mean_impulse_ * x.scale);
+      const double q = std::hypot(y, 2. * centre * mean_impulse_ * x.scale);
       // the small one of the two without cancellation
       const double big = (q + std::abs(y)) / 2.;
       const double small =
-        big > 0. ? springs::square(centre * mean_impulse_ * x.scale) / big : 0.;
+          big > 0. ? springs::square(centre * mean_impulse_ * x.scale) / big
+                   : 0.;
       x.r[0] = y > 0. ? big : small;
       x.z = (y > 0. ? small : big) / R_N;
     }
@@ -344,7 +337,7 @@ namespace nsfd
       x.S[c * dim] = -mu * u[c] / eta * stiff;
       for (unsigned int d = 1; d < dim; ++d)
         x.S[c * dim + d] =
-          ((c == d ? mu * x.r[0] : 0.) + x.r[c] * u[d] / eta) / eta;
+            ((c == d ? mu * x.r[0] : 0.) + x.r[c] * u[d] / eta) / eta;
     }
   }
 
@@ -387,7 +380,7 @@ namespace nsfd
         wanted[i * dim + c] = w * x.k[c];
         for (unsigned int d = 0; d < dim; ++d)
           S_[(i * dim + c) * dim + d] =
-            w * x.S[c * dim + d] + (c == d ? slope[c] : 0.);
+              w * x.S[c * dim + d] + (c == d ? slope[c] : 0.);
       }
     }
     if (!system_.factorise(S_))
@@ -470,8 +463,10 @@ namespace nsfd
     unsigned int short_steps = 0;
     for (unsigned int k = 0; k < limit; ++k) {
       stop_request::leave_if_due();
-      const double sigma = alpha > 0.9 ? 0.1 : alpha > 0.5 ? 0.3 :
-                           alpha > 0.1 ? 0.6 : 1.;
+      const double sigma = alpha > 0.9   ? 0.1
+                           : alpha > 0.5 ? 0.3
+                           : alpha > 0.1 ? 0.6
+                                         : 1.;
       if (!step(sigma, alpha) || !(evaluation_.error < 1e300))
         break;
       if (judge())

@@ -23,12 +23,9 @@ namespace nsfd
     using Vector = std::vector<double>;
 
     ContactPath(const OneStepProblem<dim> &problem,
-                const Dynamics<dim> &dynamics,
-                BodySystem<dim> &system,
-                const SolverControl &control,
-                Vector &impulse,
-                LawEvaluation<dim> &evaluation,
-                SolverReport &report);
+                const Dynamics<dim> &dynamics, BodySystem<dim> &system,
+                const SolverControl &control, Vector &impulse,
+                LawEvaluation<dim> &evaluation, SolverReport &report);
 
     /**
      * @p count steps of the alternating direction method of multipliers, one
@@ -40,8 +37,7 @@ namespace nsfd
     bool alternate(unsigned int count, double balance);
 
     /** Where the path begins and how points are weighted along it. */
-    struct Stage
-    {
+    struct Stage {
       double floor;  ///< least local magnitude over the mean; 1: all alike
       double centre; ///< distance from the boundary at the start
     };
@@ -69,13 +65,12 @@ namespace nsfd
     bool mend(bool &moved);
 
   private:
-    struct Candidate
-    {
+    struct Candidate {
       std::size_t point;
-      double friction;         // mu kappa
-      double scale;            // s
-      double r[dim], z;        // density of the contact impulse, slack
-      double k[dim];           // of the Newton step: dr = k - S dU
+      double friction;  // mu kappa
+      double scale;     // s
+      double r[dim], z; // density of the contact impulse, slack
+      double k[dim];    // of the Newton step: dr = k - S dU
       double S[dim * dim];
     };
 

@@ -1,7 +1,7 @@
 #include "core/gather.h"
 
-#include "nonsmooth/solver.h"
 #include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nonsmooth/solver.h"
 
 #include <algorithm>
 #include <array>
@@ -75,8 +75,8 @@ namespace nsfd
                          SolverReport report) const
       {
         const auto chain = SolverRegistry<dim>::instance().create("chain");
-        const SolverReport next = chain->solve(
-            problem, dynamics, energy_scale, control, impulse, evaluation);
+        const SolverReport next = chain->solve(problem, dynamics, energy_scale,
+                                               control, impulse, evaluation);
         report.switches.push_back("chain");
         report.go_on_with(next);
         return report;
@@ -85,8 +85,7 @@ namespace nsfd
       /** Of a face, and a number of its points: places among all ranks. */
       using Key = std::pair<std::uint64_t, unsigned int>;
 
-      struct Contact
-      {
+      struct Contact {
         std::uint64_t face;
         unsigned int number;
         double friction;
@@ -96,8 +95,7 @@ namespace nsfd
       using Square = std::array<double, dim * dim>;
 
       /** What one body adds to the matrix. */
-      struct Part
-      {
+      struct Part {
         std::uint64_t face_i, face_j;
         unsigned int number_i, number_j;
         Square block;
@@ -134,7 +132,8 @@ namespace nsfd
         set_matrix(rows);
       }
 
-      /** Numbers, friction and U_free on the first rank; who has which point. */
+      /** Numbers, friction and U_free on the first rank; who has which point.
+       */
       void gather_contacts(const Communicator &all,
                            const OneStepProblem<dim> &problem,
                            const InterfacePoints<dim> &points)
@@ -174,8 +173,7 @@ namespace nsfd
         }
         number_of_seen_.clear();
         for (const Contact &contact : seen)
-          number_of_seen_.push_back(
-              number_.at({contact.face, contact.number}));
+          number_of_seen_.push_back(number_.at({contact.face, contact.number}));
       }
 
       std::vector<Part> parts_of_bodies(const OneStepProblem<dim> &problem,
@@ -185,8 +183,7 @@ namespace nsfd
         const Bodies &bodies = dynamics.bodies();
         const auto &points = dynamics.points();
         for (std::size_t b = 0; b < bodies.size(); ++b) {
-          const Block &W =
-              dynamics.class_blocks()[bodies.class_of[b]].delassus;
+          const Block &W = dynamics.class_blocks()[bodies.class_of[b]].delassus;
           const auto touches = [&](const std::size_t slot) {
             const std::size_t i = bodies.slot_point[slot];
             return i < problem.n_points && problem.contact[i];
@@ -273,7 +270,8 @@ namespace nsfd
             for (unsigned int c = 0; c < dim; ++c)
               solved[k][c] = r[number_of_seen_[k] * dim + c] / unit_;
         }
-        MPI_Bcast(counts.data(), int(counts.size()), MPI_UNSIGNED, 0, all.mpi());
+        MPI_Bcast(counts.data(), int(counts.size()), MPI_UNSIGNED, 0,
+                  all.mpi());
         report.newton += counts[0];
         report.sweeps += counts[1];
         report.krylov += counts[2];

@@ -25,8 +25,7 @@ namespace nsfd
    *     d . (U_free + W P_alpha - U_law(P_alpha)),   increasing in alpha.
    */
   template <int dim>
-  bool DualNewton<dim>::line_search(const Work &work,
-                                    const Vector &direction,
+  bool DualNewton<dim>::line_search(const Work &work, const Vector &direction,
                                     Vector &impulse)
   {
     const auto &problem = work.problem;
@@ -47,11 +46,11 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
         local[c] =
-          U[k] + problem.free_velocity[k] - majorant(work, k) * moved[k];
+            U[k] + problem.free_velocity[k] - majorant(work, k) * moved[k];
       }
       const auto solution = solve_frozen_point<dim>(
-        problem, i, frozen[i], local, work.evaluation.majorant(i, 0),
-        work.evaluation.majorant(i, 1));
+          problem, i, frozen[i], local, work.evaluation.majorant(i, 0),
+          work.evaluation.majorant(i, 1));
       for (unsigned int c = 0; c < dim; ++c)
         d[i * dim + c] = solution.impulse[c] - start[i * dim + c];
     }
@@ -69,8 +68,7 @@ namespace nsfd
         const auto law = frozen_velocity<dim>(problem, i, frozen[i], P);
         for (unsigned int c = 0; c < dim; ++c) {
           const std::size_t k = i * dim + c;
-          terms[k] =
-            d[k] == 0. ? 0. : d[k] * (U[k] + alpha * Wd[k] - law[c]);
+          terms[k] = d[k] == 0. ? 0. : d[k] * (U[k] + alpha * Wd[k] - law[c]);
         }
       }
       return communicator.sum(terms.data(), work.n_owned);
@@ -119,8 +117,7 @@ namespace nsfd
 
   template <int dim>
   SolverReport DualNewton<dim>::solve(const OneStepProblem<dim> &problem,
-                                      Dynamics<dim> &dynamics,
-                                      const double,
+                                      Dynamics<dim> &dynamics, const double,
                                       const SolverControl &control,
                                       std::vector<double> &impulse,
                                       LawEvaluation<dim> &evaluation)
@@ -128,9 +125,9 @@ namespace nsfd
     SolverReport report;
     // small problems are solved to round-off where one step does it
     auto *const inner =
-      dynamics.communicator().sum_integer(problem.n_owned) > 1000 ?
-        dynamic_cast<InnerSolver *>(&dynamics) :
-        nullptr;
+        dynamics.communicator().sum_integer(problem.n_owned) > 1000
+            ? dynamic_cast<InnerSolver *>(&dynamics)
+            : nullptr;
     const Work work{problem,
                     dynamics,
                     control,
@@ -144,7 +141,7 @@ namespace nsfd
     evaluation.update(impulse);
     // a solve that may not go on idly has a majorant that is not one of W
     const bool may_sweep =
-      dynamics.bodies_are_apart() && control.idle_rounds > 1;
+        dynamics.bodies_are_apart() && control.idle_rounds > 1;
     unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
     double best_error = std::numeric_limits<double>::infinity(),
            best_of_round = best_error, shift = 0.;
@@ -161,7 +158,7 @@ namespace nsfd
       const double before = evaluation.error;
       // The inner tolerance falls with the error, never far below the goal.
       const double forcing = std::min(
-        1e-2, std::max({before, 0.1 * control.tolerance / before, 1e-12}));
+          1e-2, std::max({before, 0.1 * control.tolerance / before, 1e-12}));
       const bool coupled = differentiate(work, impulse);
       if (coupled)
         coupled_direction(work, forcing, shift, dP);
@@ -196,8 +193,8 @@ namespace nsfd
       evaluation.update(impulse);
       remember();
       // Monotone in the convex objective: let it run a few times.
-      if (moved && (coupled ? stalled >= 4 && stalled % 5 != 4 :
-                              stalled % 5 != 4)) {
+      if (moved &&
+          (coupled ? stalled >= 4 && stalled % 5 != 4 : stalled % 5 != 4)) {
         ++stalled;
         continue;
       }

@@ -29,16 +29,14 @@ namespace nsfd
   {
   public:
     SolverReport solve(const OneStepProblem<dim> &problem,
-                       Dynamics<dim> &dynamics,
-                       const double energy_scale,
+                       Dynamics<dim> &dynamics, const double energy_scale,
                        const SolverControl &control,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation) override;
 
   private:
     using Vector = std::vector<double>;
-    struct Work
-    {
+    struct Work {
       const OneStepProblem<dim> &problem;
       Dynamics<dim> &dynamics;
       const SolverControl &control;

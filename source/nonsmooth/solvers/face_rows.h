@@ -6,8 +6,7 @@
 namespace nsfd
 {
   /** Rows of H at the points of a face, and the unknowns that they see. */
-  struct FaceRows
-  {
+  struct FaceRows {
     std::size_t first = 0; ///< of its points, which are consecutive
     unsigned int count = 0;
     std::vector<int> dofs;    ///< ascending

@@ -28,13 +28,13 @@ namespace nsfd
     {
     public:
       explicit FixedPoint(const unsigned int anderson = 0)
-        : anderson_(anderson)
-        , inner_(SolverRegistry<dim>::instance().create("dual newton"))
-      {}
+          : anderson_(anderson),
+            inner_(SolverRegistry<dim>::instance().create("dual newton"))
+      {
+      }
 
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics,
-                         double energy_scale,
+                         Dynamics<dim> &dynamics, double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override;
@@ -52,8 +52,7 @@ namespace nsfd
      * s / s_0, of every point.
      */
     template <int dim>
-    struct FixedPoint<dim>::Round
-    {
+    struct FixedPoint<dim>::Round {
       const OneStepProblem<dim> &problem;
       Dynamics<dim> &dynamics;
       const SolverControl &control;
@@ -64,7 +63,7 @@ namespace nsfd
       SolverReport &report;
 
       std::vector<FrozenPoint> frozen{};
-      Vector length{}; // d_0 of a point
+      Vector length{};   // d_0 of a point
       double scale = 0.; // s_0
       Vector best{};
       double best_error = std::numeric_limits<double>::infinity();
@@ -103,7 +102,7 @@ namespace nsfd
           const auto &solution = evaluation.solutions[i];
           set_reach(solution.reach, i, x);
           x[stride * i + 2] =
-            scale > 0. ? solution.frozen.threshold / scale : 0.;
+              scale > 0. ? solution.frozen.threshold / scale : 0.;
         }
         return x;
       }
@@ -112,29 +111,28 @@ namespace nsfd
       void apply(Vector &x)
       {
         for (std::size_t i = 0; i < problem.n_points; ++i) {
-          frozen[i] = frozen_state<dim>(
-            problem, i,
-            {std::max(0., x[stride * i]) * length[i],
-             std::max(0., x[stride * i + 1]) * length[i]},
-            0.);
+          frozen[i] =
+              frozen_state<dim>(problem, i,
+                                {std::max(0., x[stride * i]) * length[i],
+                                 std::max(0., x[stride * i + 1]) * length[i]},
+                                0.);
           frozen[i].threshold = std::max(0., x[stride * i + 2]) * scale;
         }
         SolverControl part = control;
         part.tolerance = std::max(0.1 * control.tolerance,
                                   std::min(1e-2, 1e-3 * evaluation.error));
         evaluation.freeze(&frozen);
-        const SolverReport round = inner.solve(
-          problem, dynamics, energy_scale, part, impulse, evaluation);
+        const SolverReport round = inner.solve(problem, dynamics, energy_scale,
+                                               part, impulse, evaluation);
         for (std::size_t i = 0; i < problem.n_points; ++i) {
           const auto &solution = evaluation.solutions[i];
           set_reach(solution.reach, i, x);
           x[stride * i + 2] = 0.;
           if (scale > 0. && evaluation.is_frozen(i))
-            x[stride * i + 2] =
-              frozen_state<dim>(problem, i, solution.reach,
-                                solution.contact_impulse)
-                .threshold /
-              scale;
+            x[stride * i + 2] = frozen_state<dim>(problem, i, solution.reach,
+                                                  solution.contact_impulse)
+                                    .threshold /
+                                scale;
         }
         evaluation.freeze(nullptr);
         evaluation.update(impulse);
@@ -158,12 +156,11 @@ namespace nsfd
     };
 
     template <int dim>
-    SolverReport FixedPoint<dim>::solve(const OneStepProblem<dim> &problem,
-                                        Dynamics<dim> &dynamics,
-                                        const double energy_scale,
-                                        const SolverControl &control,
-                                        Vector &impulse,
-                                        LawEvaluation<dim> &evaluation)
+    SolverReport
+    FixedPoint<dim>::solve(const OneStepProblem<dim> &problem,
+                           Dynamics<dim> &dynamics, const double energy_scale,
+                           const SolverControl &control, Vector &impulse,
+                           LawEvaluation<dim> &evaluation)
     {
       SolverReport report;
       Round round{problem,      dynamics, control,    *inner_,
@@ -173,8 +170,7 @@ namespace nsfd
       for (std::size_t i = 0; i < problem.n_points; ++i)
         if (problem.kind[i] == PointKind::cohesive ||
             problem.kind[i] == PointKind::rigid) {
-          const auto &law =
-            *problem.interactions[problem.interaction[i]].law;
+          const auto &law = *problem.interactions[problem.interaction[i]].law;
           round.length[i] = law.toughness() / law.strength();
         }
       evaluation.update(impulse);
@@ -190,16 +186,16 @@ namespace nsfd
         if (anderson_ > 0) {
           const std::size_t n = Round::stride * problem.n_owned;
           Vector owned(x.begin(), x.begin() + n);
-          accelerated_rounds(
-            communicator, anderson_, control.maximum_iterations + 1, owned,
-            [&](Vector &mixed) {
-              std::copy_n(mixed.begin(), n, x.begin());
-              round.complete(x);
-              round.apply(x);
-              const bool goes_on = round.judge();
-              std::copy_n(x.begin(), n, mixed.begin());
-              return goes_on;
-            });
+          accelerated_rounds(communicator, anderson_,
+                             control.maximum_iterations + 1, owned,
+                             [&](Vector &mixed) {
+                               std::copy_n(mixed.begin(), n, x.begin());
+                               round.complete(x);
+                               round.apply(x);
+                               const bool goes_on = round.judge();
+                               std::copy_n(x.begin(), n, mixed.begin());
+                               return goes_on;
+                             });
           // It also stops where the unknowns rest and the impulses do not,
           // and mixing may stall where forces are not unique: plain rounds
           // from nothing.
@@ -229,9 +225,7 @@ namespace nsfd
     class AcceleratedFixedPoint final : public FixedPoint<dim>
     {
     public:
-      AcceleratedFixedPoint()
-        : FixedPoint<dim>(5)
-      {}
+      AcceleratedFixedPoint() : FixedPoint<dim>(5) {}
     };
 
     using FixedPoint2 = FixedPoint<2>;

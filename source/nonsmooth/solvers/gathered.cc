@@ -109,12 +109,10 @@ namespace nsfd
     }
 
     /** Byte counts of all ranks, on the first one, and where they begin. */
-    struct Counts
-    {
+    struct Counts {
       std::vector<int> count, first;
       Counts(const Communicator &communicator, const std::size_t mine)
-        : count(communicator.size())
-        , first(communicator.size() + 1, 0)
+          : count(communicator.size()), first(communicator.size() + 1, 0)
       {
         const int n = int(mine);
         MPI_Gather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, 0,
@@ -127,11 +125,10 @@ namespace nsfd
 
   template <int dim>
   Gathered<dim>::Gathered(const Dynamics<dim> &dynamics)
-    : communicator_(dynamics.communicator())
-    , n_points_(dynamics.points().n_points)
-    , n_owned_(dynamics.points().n_owned)
-    , viscous_theta_(dynamics.viscous_theta())
-    , alone_(MPI_COMM_SELF)
+      : communicator_(dynamics.communicator()),
+        n_points_(dynamics.points().n_points),
+        n_owned_(dynamics.points().n_owned),
+        viscous_theta_(dynamics.viscous_theta()), alone_(MPI_COMM_SELF)
   {
     const auto mine = pack<dim>(dynamics.bodies(), dynamics.points());
     const Counts bytes(communicator_, mine.size());
@@ -232,8 +229,8 @@ namespace nsfd
         bodies_.classes.push_back(std::move(body));
       for (std::size_t b = 0; b < bodies[r].size(); ++b) {
         bodies_.class_of.push_back(first_class + bodies[r].class_of[b]);
-        bodies_.classes[bodies_.class_of.back()].bodies.push_back(
-          first_body + unsigned(b));
+        bodies_.classes[bodies_.class_of.back()].bodies.push_back(first_body +
+                                                                  unsigned(b));
         bodies_.first_dof.push_back(dof + bodies[r].first_dof[b + 1]);
         bodies_.first_slot.push_back(slot + bodies[r].first_slot[b + 1]);
         for (std::size_t s = bodies[r].first_slot[b];
@@ -243,8 +240,8 @@ namespace nsfd
           bodies_.slot_sign.push_back(bodies[r].slot_sign[s]);
           if (p < points_.n_points)
             points_.faces[points_.face_of[p]]
-              .bodies[bodies[r].slot_sign[s] > 0 ? 1 : 0] =
-              int(first_body + b);
+                .bodies[bodies[r].slot_sign[s] > 0 ? 1 : 0] =
+                int(first_body + b);
         }
       }
       for (const auto &[s, p] : bodies[r].extra_points)
@@ -269,8 +266,8 @@ namespace nsfd
     const Counts bytes(communicator_, owned.size() * sizeof(T));
     all.resize(std::size_t(bytes.first.back()) / sizeof(T));
     MPI_Gatherv(owned.data(), int(owned.size() * sizeof(T)), MPI_CHAR,
-                all.data(), bytes.count.data(), bytes.first.data(), MPI_CHAR,
-                0, communicator_.mpi());
+                all.data(), bytes.count.data(), bytes.first.data(), MPI_CHAR, 0,
+                communicator_.mpi());
   }
 
   template <int dim>
@@ -297,11 +294,11 @@ namespace nsfd
           &OneStepProblem<dim>::majorant_normal,
           &OneStepProblem<dim>::majorant_tangential})
       collect(problem.*member, 1, all.*member);
-    for (const auto member : {&OneStepProblem<dim>::free_velocity,
-                              &OneStepProblem<dim>::given_velocity,
-                              &OneStepProblem<dim>::jump_old,
-                              &OneStepProblem<dim>::jump_free,
-                              &OneStepProblem<dim>::sliding_offset})
+    for (const auto member :
+         {&OneStepProblem<dim>::free_velocity,
+          &OneStepProblem<dim>::given_velocity, &OneStepProblem<dim>::jump_old,
+          &OneStepProblem<dim>::jump_free,
+          &OneStepProblem<dim>::sliding_offset})
       collect(problem.*member, dim, all.*member);
     return all;
   }

@@ -105,11 +105,11 @@ namespace nsfd
                                                           << mine % 64;
       }
     }
-    const int n_colours = int(dynamics.communicator().max(
-                            colour.empty() ? -1. :
-                                             *std::max_element(colour.begin(),
-                                                               colour.end()))) +
-                          1;
+    const int n_colours =
+        int(dynamics.communicator().max(
+            colour.empty() ? -1.
+                           : *std::max_element(colour.begin(), colour.end()))) +
+        1;
     std::vector<std::vector<unsigned int>> result(n_colours);
     for (std::size_t f = 0; f < colour.size(); ++f)
       result[colour[f]].push_back(unsigned(f));
@@ -117,12 +117,10 @@ namespace nsfd
   }
 
   template <int dim>
-  void
-  gauss_seidel(const OneStepProblem<dim> &problem,
-               const Dynamics<dim> &dynamics,
-               const std::vector<std::vector<unsigned int>> &colours,
-               const unsigned int count,
-               std::vector<double> &impulse)
+  void gauss_seidel(const OneStepProblem<dim> &problem,
+                    const Dynamics<dim> &dynamics,
+                    const std::vector<std::vector<unsigned int>> &colours,
+                    const unsigned int count, std::vector<double> &impulse)
   {
     const auto &points = dynamics.points();
     const auto &bodies = dynamics.bodies();
@@ -156,7 +154,7 @@ namespace nsfd
           double *U = side[other > 0.].data() + point * dim;
           for (unsigned int d = 0; d < dim; ++d) {
             const double *column =
-              &W.values[std::size_t(mine.slot * dim + d) * padded(W.rows)];
+                &W.values[std::size_t(mine.slot * dim + d) * padded(W.rows)];
             for (unsigned int c = 0; c < dim; ++c)
               U[c] += other * column[t * dim + c] * P[d];
           }
@@ -186,14 +184,14 @@ namespace nsfd
         local[k] = problem.free_velocity[i * dim + k];
         for (unsigned int c = 0; c < dim; ++c)
           local[k] +=
-            Q[k * dim + c] * (side[1][i * dim + c] + side[0][i * dim + c]);
+              Q[k * dim + c] * (side[1][i * dim + c] + side[0][i * dim + c]);
         local[k] -= (k == 0 ? problem.majorant_normal[i]
                             : problem.majorant_tangential[i]) *
                     impulse[i * dim + k];
       }
-      const auto solution = solve_point<dim>(
-        problem, i, local, problem.majorant_normal[i],
-        problem.majorant_tangential[i], reach[i]);
+      const auto solution =
+          solve_point<dim>(problem, i, local, problem.majorant_normal[i],
+                           problem.majorant_tangential[i], reach[i]);
       reach[i] = solution.reach;
       double change[dim];
       bool changed = false;
@@ -225,8 +223,7 @@ namespace nsfd
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics,
-                         double,
+                         Dynamics<dim> &dynamics, double,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override

@@ -18,8 +18,7 @@ namespace nsfd
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics,
-                         const double energy_scale,
+                         Dynamics<dim> &dynamics, const double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
@@ -56,11 +55,11 @@ namespace nsfd
       {
         if (!system_) {
           system_ = std::make_unique<BodySystem<dim>>(
-            dynamics, problem.time_step, dynamics.bulk_theta());
+              dynamics, problem.time_step, dynamics.bulk_theta());
           if (!iterates_)
             system_->forbid_iterations();
         } else if (system_->time_step() != problem.time_step ||
-                 system_->theta() != dynamics.bulk_theta())
+                   system_->theta() != dynamics.bulk_theta())
           system_->reinit(problem.time_step, dynamics.bulk_theta());
         ContactPath<dim> path(problem, dynamics, *system_, control, impulse,
                               evaluation, report);
@@ -74,8 +73,7 @@ namespace nsfd
                            const double energy_scale,
                            const SolverControl &control,
                            std::vector<double> &impulse,
-                           LawEvaluation<dim> &evaluation,
-                           SolverReport &report)
+                           LawEvaluation<dim> &evaluation, SolverReport &report)
       {
         if (!gathered_)
           gathered_ = std::make_unique<Gathered<dim>>(dynamics);
@@ -103,8 +101,7 @@ namespace nsfd
             path.follow({1., 1.}, 60) || path.polish())
           return true;
         for (const Stage stage : {Stage{1e-3, 3e-3}, Stage{1e-5, 3e-4}})
-          if (path.alternate(20, 1.) || path.follow(stage, 60) ||
-              path.polish())
+          if (path.alternate(20, 1.) || path.follow(stage, 60) || path.polish())
             return true;
         return path.alternate(200, 0.5) || path.polish() ||
                path.follow({1., 1.}, 60) || path.polish();

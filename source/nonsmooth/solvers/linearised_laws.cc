@@ -9,14 +9,14 @@ namespace nsfd
 {
   template <int dim>
   std::array<double, dim * dim> LinearisedLaws<dim>::derivative(
-    const OneStepProblem<dim> &problem, const LawEvaluation<dim> &evaluation,
-    const std::vector<double> &impulse, const std::size_t i) const
+      const OneStepProblem<dim> &problem, const LawEvaluation<dim> &evaluation,
+      const std::vector<double> &impulse, const std::size_t i) const
   {
     std::array<double, dim * dim> J{};
     if (const auto *linear = evaluation.linear(i)) {
       for (unsigned int c = 0; c < dim; ++c)
         J[c * dim + c] =
-          -linear->slope * (c == 0 ? linear->normal : linear->tangential);
+            -linear->slope * (c == 0 ? linear->normal : linear->tangential);
       return J;
     }
     const auto &solution = evaluation.solutions[i];
@@ -24,8 +24,8 @@ namespace nsfd
                  R_T = evaluation.majorant(i, 1);
     const bool coupled = !evaluation.is_frozen(i) && solution.coupled;
     if (!coupled && (dim == 2 || solution.frozen.threshold == 0.)) {
-      const auto slopes = frozen_slopes<dim>(problem, i, solution.frozen,
-                                             solution, R_N, R_T);
+      const auto slopes =
+          frozen_slopes<dim>(problem, i, solution.frozen, solution, R_N, R_T);
       for (unsigned int c = 0; c < dim; ++c)
         J[c * dim + c] = -slopes[c];
       return J;
@@ -34,9 +34,9 @@ namespace nsfd
     const auto local = evaluation.local_velocity(impulse, i);
     double size = 0.;
     for (unsigned int c = 0; c < dim; ++c)
-      size = std::max({size, std::abs(local[c]),
-                       evaluation.majorant(i, c) *
-                         std::abs(solution.impulse[c])});
+      size =
+          std::max({size, std::abs(local[c]),
+                    evaluation.majorant(i, c) * std::abs(solution.impulse[c])});
     const double step = 1e-7 * size;
     for (unsigned int c = 0; c < dim; ++c) {
       auto moved = local;
@@ -45,9 +45,10 @@ namespace nsfd
       if (!(h > 0.))
         continue;
       const auto other =
-        coupled ? solve_point<dim>(problem, i, moved, R_N, R_T, solution.reach)
-                : solve_frozen_point<dim>(problem, i, solution.frozen, moved,
-                                          R_N, R_T);
+          coupled
+              ? solve_point<dim>(problem, i, moved, R_N, R_T, solution.reach)
+              : solve_frozen_point<dim>(problem, i, solution.frozen, moved, R_N,
+                                        R_T);
       for (unsigned int d = 0; d < dim; ++d)
         J[d * dim + c] = (other.impulse[d] - solution.impulse[d]) / h;
     }
@@ -108,17 +109,17 @@ namespace nsfd
       std::array<double, dim * dim> A{};
       for (unsigned int r = 0; r < dim; ++r)
         for (unsigned int c = 0; c < dim; ++c)
-          A[r * dim + c] = (r == c ? 1. : 0.) +
-                           J[r * dim + c] * (1. - softening) *
-                             evaluation.majorant(i, c);
+          A[r * dim + c] = (r == c ? 1. : 0.) + J[r * dim + c] *
+                                                    (1. - softening) *
+                                                    evaluation.majorant(i, c);
       const auto B = inverse<dim>(A);
       for (unsigned int r = 0; r < dim; ++r)
         for (unsigned int k = 0; k < dim; ++k) {
           change[i * dim + r] -=
-            B[r * dim + k] * evaluation.defect[i * dim + k];
+              B[r * dim + k] * evaluation.defect[i * dim + k];
           for (unsigned int c = 0; c < dim; ++c)
             stiffness[(i * dim + r) * dim + c] -=
-              B[r * dim + k] * J[k * dim + c];
+                B[r * dim + k] * J[k * dim + c];
         }
     }
   }
@@ -161,11 +162,10 @@ namespace nsfd
       }
       ++idle;
       still = laws.softening > 0.09 && evaluation.error < 1.05 * before &&
-                  evaluation.error > 0.95 * before ?
-                still + 1 :
-                0;
-      laws.softening =
-        std::min(0.1, std::max(1e-3, 10. * laws.softening));
+                      evaluation.error > 0.95 * before
+                  ? still + 1
+                  : 0;
+      laws.softening = std::min(0.1, std::max(1e-3, 10. * laws.softening));
       if (!(evaluation.error < 10. * best_error)) {
         impulse = best;
         evaluation.update(impulse);

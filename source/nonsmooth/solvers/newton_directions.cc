@@ -1,5 +1,5 @@
-#include "nonsmooth/linear_spring.h"
 #include "dual_newton.h"
+#include "nonsmooth/linear_spring.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,7 @@
 namespace nsfd
 {
   template <int dim>
-  bool DualNewton<dim>::differentiate(const Work &work,
-                                      const Vector &impulse)
+  bool DualNewton<dim>::differentiate(const Work &work, const Vector &impulse)
   {
     const auto &problem = work.problem;
     slopes_.assign(work.n, 0.);
@@ -22,14 +21,13 @@ namespace nsfd
       if (const auto *linear = work.evaluation.linear(i)) {
         for (unsigned int c = 0; c < dim; ++c)
           slopes_[i * dim + c] =
-            linear->slope * (c == 0 ? linear->normal : linear->tangential);
+              linear->slope * (c == 0 ? linear->normal : linear->tangential);
         continue;
       }
-      const auto s = frozen_slopes<dim>(problem, i, solution.frozen,
-                                        solution, R_N, R_T);
+      const auto s =
+          frozen_slopes<dim>(problem, i, solution.frozen, solution, R_N, R_T);
       std::copy(s.begin(), s.end(), slopes_.begin() + i * dim);
-      if (work.evaluation.is_frozen(i) ||
-          !solution.coupled)
+      if (work.evaluation.is_frozen(i) || !solution.coupled)
         continue;
       // difference quotients of the local solve, friction and damage in it
       coupled_[i] = 1;
@@ -38,28 +36,27 @@ namespace nsfd
       const auto local = work.evaluation.local_velocity(impulse, i);
       double size = 0.;
       for (unsigned int c = 0; c < dim; ++c)
-        size = std::max({size, std::abs(local[c]),
-                         work.evaluation.majorant(i, c) *
-                           std::abs(solution.impulse[c])});
+        size = std::max(
+            {size, std::abs(local[c]),
+             work.evaluation.majorant(i, c) * std::abs(solution.impulse[c])});
       const double step = 1e-7 * size;
       for (unsigned int c = 0; c < dim; ++c) {
         auto moved = local;
         moved[c] += step;
         const double h = moved[c] - local[c];
-        const auto other = solve_point<dim>(problem, i, moved, R_N, R_T,
-                                            solution.reach);
+        const auto other =
+            solve_point<dim>(problem, i, moved, R_N, R_T, solution.reach);
         for (unsigned int d = 0; d < dim; ++d)
           jacobian_[(i * dim + d) * dim + c] =
-            h > 0. ? (other.impulse[d] - solution.impulse[d]) / h : 0.;
+              h > 0. ? (other.impulse[d] - solution.impulse[d]) / h : 0.;
       }
     }
     // the compliance that preconditions either system
     compliance_.resize(work.n);
     for (std::size_t k = 0; k < work.n; ++k)
-      compliance_[k] =
-        slopes_[k] > 0.
-          ? std::max(0., 1. / slopes_[k] - majorant(work, k))
-          : -1.;
+      compliance_[k] = slopes_[k] > 0.
+                           ? std::max(0., 1. / slopes_[k] - majorant(work, k))
+                           : -1.;
     // without the difference, of which stiff springs leave nothing
     for (std::size_t k = 0; k < work.n; ++k)
       if (const auto *law = work.evaluation.linear(k / dim))
@@ -76,8 +73,8 @@ namespace nsfd
    * With linear laws only, all that is left of the error can go at once.
    */
   template <int dim>
-  bool DualNewton<dim>::spring_direction(const Work &work,
-                                         double tolerance, Vector &dP)
+  bool DualNewton<dim>::spring_direction(const Work &work, double tolerance,
+                                         Vector &dP)
   {
     const auto &problem = work.problem;
     const auto &communicator = work.dynamics.communicator();
@@ -112,8 +109,8 @@ namespace nsfd
     // more than the impulses themselves
     if (!communicator.any(!linear) && work.dynamics.inverts())
       tolerance =
-        std::min(tolerance, 0.1 * std::min(work.control.tolerance, ratio) /
-                              work.evaluation.error);
+          std::min(tolerance, 0.1 * std::min(work.control.tolerance, ratio) /
+                                  work.evaluation.error);
     if (!work.dynamics.solve_springs(P.data(), nullptr, rhs_.data(), tolerance,
                                      dP.data())) {
       dP.assign(work.n, 0.);
@@ -131,7 +128,7 @@ namespace nsfd
       for (std::size_t k = 0; k < work.n; ++k)
         if (compliance_[k] >= 0.)
           rhs_[k] =
-            (compliance_[k] + majorant(work, k)) * work.evaluation.defect[k];
+              (compliance_[k] + majorant(work, k)) * work.evaluation.defect[k];
       const double goal = tolerance * size(rhs_);
       for (unsigned int round = 0; round < 5; ++round) {
         Ap_.resize(work.n);
@@ -146,8 +143,8 @@ namespace nsfd
           break;
         ++work.report.krylov;
         p_ = dP;
-        work.dynamics.solve_springs(p_.data(), Ap_.data(), r_.data(),
-                                    0.1, dP.data());
+        work.dynamics.solve_springs(p_.data(), Ap_.data(), r_.data(), 0.1,
+                                    dP.data());
       }
     }
     for (std::size_t k = 0; k < work.n; ++k)
@@ -158,8 +155,7 @@ namespace nsfd
   /** Conjugate gradients for (W + D) dP = -(D + R) Phi. */
   template <int dim>
   void DualNewton<dim>::symmetric_direction(const Work &work,
-                                            const double tolerance,
-                                            Vector &dP)
+                                            const double tolerance, Vector &dP)
   {
     const auto &communicator = work.dynamics.communicator();
     const Vector &defect = work.evaluation.defect;
@@ -183,7 +179,7 @@ namespace nsfd
     if (work.inner) {
       z_.assign(work.n, 0.);
       work.report.krylov += work.inner->solve_inner(
-        {compliance_, tolerance, 2000, nullptr, nullptr, 0.}, rhs_, z_);
+          {compliance_, tolerance, 2000, nullptr, nullptr, 0.}, rhs_, z_);
       for (std::size_t k = 0; k < work.n; ++k)
         dP[k] += z_[k];
       return;
@@ -200,8 +196,7 @@ namespace nsfd
       work.dynamics.apply_delassus(p_.data(), Ap_.data());
       for (std::size_t j = 0; j < work.n; ++j)
         Ap_[j] = compliance_[j] >= 0. ? Ap_[j] + compliance_[j] * p_[j] : 0.;
-      const double pAp =
-        communicator.dot(p_.data(), Ap_.data(), work.n_owned);
+      const double pAp = communicator.dot(p_.data(), Ap_.data(), work.n_owned);
       if (!(pAp > 0.))
         break;
       const double alpha = rz / pAp;
@@ -210,8 +205,7 @@ namespace nsfd
         r_[j] -= alpha * Ap_[j];
       }
       work.dynamics.precondition(r_.data(), z_.data());
-      const double next =
-        communicator.dot(r_.data(), z_.data(), work.n_owned);
+      const double next = communicator.dot(r_.data(), z_.data(), work.n_owned);
       const double beta = next / rz;
       rz = next;
       for (std::size_t j = 0; j < work.n; ++j)
@@ -229,8 +223,7 @@ namespace nsfd
   template <int dim>
   void DualNewton<dim>::coupled_direction(const Work &work,
                                           const double tolerance,
-                                          const double shift,
-                                          Vector &dP)
+                                          const double shift, Vector &dP)
   {
     const auto &communicator = work.dynamics.communicator();
     if (work.inner) {
@@ -239,7 +232,7 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             for (unsigned int d = 0; d < dim; ++d)
               jacobian_[(i * dim + c) * dim + d] =
-                c == d ? -slopes_[i * dim + c] : 0.;
+                  c == d ? -slopes_[i * dim + c] : 0.;
       rhs_ = work.evaluation.defect;
       for (double &value : rhs_)
         value = -value;
@@ -248,8 +241,8 @@ namespace nsfd
       for (std::size_t k = 0; k < work.n; ++k)
         majorants_[k] = majorant(work, k);
       work.report.krylov += work.inner->solve_inner(
-        {compliance_, tolerance, 120, &jacobian_, &majorants_, shift}, rhs_,
-        dP);
+          {compliance_, tolerance, 120, &jacobian_, &majorants_, shift}, rhs_,
+          dP);
       return;
     }
     work.dynamics.prepare_preconditioner(compliance_);

@@ -19,11 +19,8 @@ namespace nsfd
     {
     public:
       Lemke(std::vector<double> M, std::vector<double> q, const unsigned seed)
-        : n_(q.size())
-        , columns_(n_ + 2)
-        , table_(n_ * columns_)
-        , basic_(n_)
-        , cobasic_(n_ + 1)
+          : n_(q.size()), columns_(n_ + 2), table_(n_ * columns_), basic_(n_),
+            cobasic_(n_ + 1)
       {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> share(1., 2.);
@@ -92,7 +89,7 @@ namespace nsfd
           if (at(i, column) < -small)
             least = std::min(least,
                              (std::max(at(i, n_ + 1), 0.) + 1e-13 * scale()) /
-                               -at(i, column));
+                                 -at(i, column));
         std::size_t row = n_;
         double best = 0.;
         for (std::size_t i = 0; i < n_; ++i)
@@ -116,7 +113,8 @@ namespace nsfd
         return largest;
       }
 
-      /** basic_[row] = sum_j a_j x_j + b solved for the variable of a column. */
+      /** basic_[row] = sum_j a_j x_j + b solved for the variable of a column.
+       */
       void pivot(const std::size_t row, const std::size_t column)
       {
         const double inverse = 1. / at(row, column);
@@ -165,7 +163,7 @@ namespace nsfd
         for (std::size_t j = 0; j < m; ++j) {
           const double normal = W[(2 * i + c) * 2 * m + 2 * j] / compliance,
                        tangential =
-                         W[(2 * i + c) * 2 * m + 2 * j + 1] / compliance;
+                           W[(2 * i + c) * 2 * m + 2 * j + 1] / compliance;
           row[j] = normal - friction[j] * tangential;
           row[m + j] = tangential;
         }

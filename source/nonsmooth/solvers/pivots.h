@@ -21,7 +21,6 @@ namespace nsfd
    */
   bool solve_by_pivots(const std::vector<double> &W,
                        const std::vector<double> &q,
-                       const std::vector<double> &friction,
-                       unsigned int seed,
+                       const std::vector<double> &friction, unsigned int seed,
                        std::vector<double> &r);
 } // namespace nsfd

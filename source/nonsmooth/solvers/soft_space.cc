@@ -17,8 +17,7 @@ namespace nsfd
     class Sets
     {
     public:
-      explicit Sets(const std::size_t n)
-        : parent_(n)
+      explicit Sets(const std::size_t n) : parent_(n)
       {
         std::iota(parent_.begin(), parent_.end(), 0);
       }
@@ -53,7 +52,7 @@ namespace nsfd
   SoftSpace::SoftSpace(const unsigned int dim,
                        const std::vector<std::size_t> &first_dof,
                        const std::vector<FaceRows> &faces)
-    : node_of_(first_dof.back(), -1), place_(first_dof.back())
+      : node_of_(first_dof.back(), -1), place_(first_dof.back())
   {
     Sets sets(first_dof.back());
     std::vector<int> body(first_dof.back());
@@ -121,8 +120,8 @@ namespace nsfd
                    value.data(), work.data(), &n_work, &info);
       if (info != 0)
         throw std::runtime_error("the bodies at a node have no positive mass");
-      const auto soft = std::lower_bound(value.begin(), value.end(), stiff) -
-                        value.begin();
+      const auto soft =
+          std::lower_bound(value.begin(), value.end(), stiff) - value.begin();
       motions_[node].assign(springs.begin(), springs.begin() + n * soft);
       first_.push_back(first_.back() + int(soft));
     }
@@ -156,11 +155,11 @@ namespace nsfd
         for (int k = K.start[i]; k < K.start[i + 1]; ++k) {
           const int j = K.column[k];
           const auto q =
-            std::lower_bound(near.begin(), near.end(), node_of_[j]) -
-            near.begin();
+              std::lower_bound(near.begin(), near.end(), node_of_[j]) -
+              near.begin();
           for (int r = 0; r < n_rows; ++r)
             product[q][place_[j] * n_rows + r] +=
-              K.value[k] * motions_[node][r * n + place_[i]];
+                K.value[k] * motions_[node][r * n + place_[i]];
         }
       for (int r = 0; r < n_rows; ++r) {
         for (std::size_t q = 0; q < near.size(); ++q) {
@@ -168,7 +167,8 @@ namespace nsfd
           for (int c = 0; c < n_motions(near[q]); ++c) {
             double value = 0.;
             for (std::size_t a = 0; a < m; ++a)
-              value += product[q][a * n_rows + r] * motions_[near[q]][c * m + a];
+              value +=
+                  product[q][a * n_rows + r] * motions_[near[q]][c * m + a];
             matrix_.column.push_back(first_[near[q]] + c);
             matrix_.value.push_back(value);
           }

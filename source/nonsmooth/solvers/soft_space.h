@@ -22,8 +22,7 @@ namespace nsfd
   {
   public:
     /** @p first_dof: per body and one more. */
-    SoftSpace(unsigned int dim,
-              const std::vector<std::size_t> &first_dof,
+    SoftSpace(unsigned int dim, const std::vector<std::size_t> &first_dof,
               const std::vector<FaceRows> &faces);
 
     /**
@@ -53,8 +52,8 @@ namespace nsfd
     void find_motions(const SparseRows &K, const std::vector<double> &bodies);
     void find_matrix(const SparseRows &K);
 
-    std::vector<std::vector<int>> nodes_; // unknowns
-    std::vector<int> node_of_, place_;    // of an unknown, and where in it
+    std::vector<std::vector<int>> nodes_;      // unknowns
+    std::vector<int> node_of_, place_;         // of an unknown, and where in it
     std::vector<std::vector<double>> motions_; // unknowns x motions, by columns
     std::vector<int> first_{0};                // motion of a node
     SparseRows matrix_;

@@ -13,14 +13,13 @@ namespace nsfd
   public:
     ContactPressure(SectionReader &reader, const SceneInput &scene)
         : dimension_(scene.dimension),
-          surface_(read_surface(reader, scene,
-                                "an Obstacle or an Interface block"))
+          surface_(
+              read_surface(reader, scene, "an Obstacle or an Interface block"))
     {
       if (surface_.name.empty())
         return;
       if (surface_.kind == NamedSurface::Kind::boundary)
-        reader.error("on",
-                     full_name(surface_) + " touches nothing",
+        reader.error("on", full_name(surface_) + " touches nothing",
                      "name an Obstacle or an Interface block; for the force of "
                      "a driven boundary write type = reaction");
       else if (surface_.kind == NamedSurface::Kind::contact)
@@ -64,10 +63,10 @@ namespace nsfd
           continue;
         const double load = place.area * place.pressure;
         peak = std::max(peak, place.pressure);
-        touching.push_back({{place.area, load, place.force[0], place.force[1],
-                             place.force[2], load * place.position[0],
-                             load * place.position[1],
-                             load * place.position[2]}});
+        touching.push_back(
+            {{place.area, load, place.force[0], place.force[1], place.force[2],
+              load * place.position[0], load * place.position[1],
+              load * place.position[2]}});
       }
       const std::size_t n = touching.size();
       std::vector<double> terms(8 * n);
@@ -107,9 +106,8 @@ namespace nsfd
           shear[c] -= normal * place.normal[c];
         add_vector(rows, place.position, dimension_);
         rows.push_back(place.pressure);
-        rows.push_back(place.contact ? std::sqrt(product(shear, shear)) /
-                                         place.area
-                                     : 0.);
+        rows.push_back(
+            place.contact ? std::sqrt(product(shear, shear)) / place.area : 0.);
         rows.push_back(place.opening);
       }
       return rows;

@@ -16,12 +16,11 @@ namespace nsfd::observables
   {
     if (reader.optional("threshold", "beta up to which a point counts; by "
                                      "default where the law has ended"))
-      beta_ = reader.number("threshold", "", units::none,
-                            Range::closed(0., 1.), "");
+      beta_ = reader.number("threshold", "", units::none, Range::closed(0., 1.),
+                            "");
     if (reader.optional("window", "s, for the speed; by default the way of a "
                                   "wave through twenty cells"))
-      window_ =
-          reader.number("window", "", units::time, Range::positive(), "");
+      window_ = reader.number("window", "", units::time, Range::positive(), "");
   }
 
   bool CrackFront::is_broken(const RunView &view, const std::size_t i) const
@@ -67,10 +66,10 @@ namespace nsfd::observables
       for (const Vector &end : first)
         smallest = std::min(smallest, end[c]);
       tip[c] = view.min(smallest);
-      first.erase(std::remove_if(
-                      first.begin(), first.end(),
-                      [&](const Vector &end) { return end[c] > tip[c]; }),
-                  first.end());
+      first.erase(
+          std::remove_if(first.begin(), first.end(),
+                         [&](const Vector &end) { return end[c] > tip[c]; }),
+          first.end());
     }
     tip_ = tip;
   }
@@ -79,11 +78,11 @@ namespace nsfd::observables
   {
     measure(view);
     const double window = window_.value_or(20. * view.crossing_time());
-    events_.erase(events_.begin(),
-                  std::find_if(events_.begin(), events_.end(),
-                               [&](const Event &event) {
-                                 return event[0] >= view.time() - window;
-                               }));
+    events_.erase(events_.begin(), std::find_if(events_.begin(), events_.end(),
+                                                [&](const Event &event) {
+                                                  return event[0] >=
+                                                         view.time() - window;
+                                                }));
     if (!tip_)
       return;
     const double along = product(*tip_, direction_);
@@ -129,11 +128,10 @@ namespace nsfd::observables
     for (std::size_t b = 0; b < faces_.size(); ++b)
       if (faces_[b])
         names += (names.empty() ? "" : ", ") + scene.interfaces[b].name;
-    return fmt::format("broken faces of {}, along ({:.4g}, {:.4g}{})", names,
-                       direction_[0], direction_[1],
-                       scene.dimension == 3
-                           ? fmt::format(", {:.4g}", direction_[2])
-                           : "");
+    return fmt::format(
+        "broken faces of {}, along ({:.4g}, {:.4g}{})", names, direction_[0],
+        direction_[1],
+        scene.dimension == 3 ? fmt::format(", {:.4g}", direction_[2]) : "");
   }
 
   void CrackFront::remember(Archive &archive)

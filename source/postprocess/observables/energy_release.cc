@@ -11,16 +11,14 @@ namespace nsfd
   namespace
   {
     /** q(r): 1 up to half the radius of a contour, then smoothly to 0. */
-    struct Weight
-    {
+    struct Weight {
       double value = 0.;
       Vector gradient{};
 
       Weight(const Vector &x, const Vector &centre, const double radius)
       {
         const Vector way = minus(x, centre);
-        const double r = std::sqrt(product(way, way)),
-                     s = 2. * r / radius - 1.;
+        const double r = std::sqrt(product(way, way)), s = 2. * r / radius - 1.;
         if (s >= 1.)
           return;
         if (s <= 0.) {
@@ -37,8 +35,7 @@ namespace nsfd
       static double integral(const double radius)
       {
         const double a = radius / 2.;
-        return 2. * std::acos(-1.) *
-               (a * a / 2. + a * (a / 2. + 0.15 * a));
+        return 2. * std::acos(-1.) * (a * a / 2. + a * (a / 2. + 0.15 * a));
       }
     };
 
@@ -68,9 +65,9 @@ namespace nsfd
       for (unsigned int c = 0; c < 3; ++c) {
         Vector unit{};
         unit[c] = 1.;
-        energy += 0.5 * product(times(s, unit),
-                                {{gradient[c], gradient[3 + c],
-                                  gradient[6 + c]}});
+        energy +=
+            0.5 * product(times(s, unit),
+                          {{gradient[c], gradient[3 + c], gradient[6 + c]}});
       }
       return energy;
     }
@@ -182,9 +179,9 @@ namespace nsfd
             fmt::format("contours of the energy release rate agree in uniform "
                         "elastic bodies; `Material: {}` {}",
                         material.name,
-                        material.graded      ? "differs from place to place"
-                        : material.plastic   ? "flows"
-                                             : "is viscous"),
+                        material.graded    ? "differs from place to place"
+                        : material.plastic ? "flows"
+                                           : "is viscous"),
             "remove the block; `type = crack` gives length and speed");
   }
 
@@ -205,7 +202,10 @@ namespace nsfd
     /** A column of zeros. */
     void begin() { columns_.emplace_back(rows_, 0.); }
     double &release(const std::size_t k) { return columns_.back()[k]; }
-    double &weight(const std::size_t k) { return columns_.back()[n_radii_ + k]; }
+    double &weight(const std::size_t k)
+    {
+      return columns_.back()[n_radii_ + k];
+    }
     double &zone() { return columns_.back()[2 * n_radii_]; }
 
     std::vector<double> sums(const RunView &view) const
@@ -285,11 +285,10 @@ namespace nsfd
         else if (intact) {
           terms.release(k) = x.sign * x.area * forward * across * q.value;
           if (x.sign < 0.) { // once per point: the stored energy
-            const double along_face =
-                product(q.gradient, d) -
-                forward * product(q.gradient, x.normal);
-            terms.release(k) -= 0.5 * x.area *
-                                product(x.traction, x.jump) * along_face;
+            const double along_face = product(q.gradient, d) -
+                                      forward * product(q.gradient, x.normal);
+            terms.release(k) -=
+                0.5 * x.area * product(x.traction, x.jump) * along_face;
           }
         }
       }

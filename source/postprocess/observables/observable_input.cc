@@ -79,10 +79,10 @@ namespace nsfd::observables
 
   Vector read_direction(SectionReader &reader, const SceneInput &scene)
   {
-    const auto given = reader.numbers(
-        "direction", scene.dimension == 2 ? "1, 0" : "1, 0, 0", units::none,
-        Range::any(), scene.dimension,
-        "in which the crack grows, of any length");
+    const auto given =
+        reader.numbers("direction", scene.dimension == 2 ? "1, 0" : "1, 0, 0",
+                       units::none, Range::any(), scene.dimension,
+                       "in which the crack grows, of any length");
     double largest = 0., square = 0.;
     for (const double n : given)
       largest = std::max(largest, std::abs(n));

@@ -26,8 +26,7 @@ namespace nsfd
       if (has_faces)
         surface_ = read_surface(reader, scene, "");
       if (surface_ && surface_->kind == NamedSurface::Kind::contact)
-        reader.error("on",
-                     full_name(*surface_) + " has no faces of its own",
+        reader.error("on", full_name(*surface_) + " has no faces of its own",
                      "name a Boundary, Obstacle or Interface block");
       if (has_place == has_faces)
         reader.error(has_place ? "on" : "type",
@@ -81,12 +80,12 @@ namespace nsfd
 
     std::string text() const override
     {
-      return surface_ ? "means on " + full_name(*surface_)
-                      : fmt::format("at ({:.6g}, {:.6g}{})", place_[0],
-                                    place_[1],
-                                    dimension_ == 3
-                                        ? fmt::format(", {:.6g}", place_[2])
-                                        : "");
+      return surface_
+                 ? "means on " + full_name(*surface_)
+                 : fmt::format("at ({:.6g}, {:.6g}{})", place_[0], place_[1],
+                               dimension_ == 3
+                                   ? fmt::format(", {:.6g}", place_[2])
+                                   : "");
     }
 
   private:

@@ -36,8 +36,7 @@ namespace nsfd
       const BoundaryInput &boundary = scene.boundaries[surface_.block];
       bool driven = boundary.exact_motion;
       for (unsigned int c = 0; c < dimension_; ++c)
-        driven =
-            driven || boundary.velocity[c] || boundary.displacement[c];
+        driven = driven || boundary.velocity[c] || boundary.displacement[c];
       if (!driven)
         reader.error("on", full_name(surface_) + " prescribes no motion",
                      "its force is the load; name a driven boundary, an "
@@ -89,7 +88,8 @@ namespace nsfd
     const NamedSurface surface_;
   };
 
-  NSFD_REGISTER(ObservableRegistry, Reaction, "reaction",
-                "Force at a driven boundary, an obstacle, an interface, a contact",
-                "on = floor");
+  NSFD_REGISTER(
+      ObservableRegistry, Reaction, "reaction",
+      "Force at a driven boundary, an obstacle, an interface, a contact",
+      "on = floor");
 } // namespace nsfd

@@ -10,8 +10,8 @@ namespace nsfd
 
   /**
    * Two arms of height H, apart over the length a, are pulled open at their
-   * ends with the force P each until they rest. As beams that are clamped 0.677 H
-   * behind the tip, which is what two-dimensional elasticity adds for
+   * ends with the force P each until they rest. As beams that are clamped 0.677
+   * H behind the tip, which is what two-dimensional elasticity adds for
    * isotropic arms (shear and root rotation),
    *
    *   G = P^2 a_e^2/(E' I),   C = 2 a_e^3/(3 E' I),   a_e = a + 0.677 H.
@@ -23,8 +23,7 @@ namespace nsfd
   {
   public:
     explicit Cantilevers(SectionReader &reader)
-        : name_(reader.word("observable", "tip",
-                            "of type energy release rate"))
+        : name_(reader.word("observable", "tip", "of type energy release rate"))
     {
       length_ = reader.number("length", "", units::length, Range::positive(),
                               "of the arms, a");

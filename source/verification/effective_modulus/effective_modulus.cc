@@ -57,8 +57,8 @@ namespace nsfd
       const InterfaceInput &faces = elastic_interface(input);
       exact_ = bulk_ + compliance_of_faces(input, faces);
       const double pi = faces.normal_stiffness / faces.tangential_stiffness;
-      density_ = 5. / (1. + 4. / 3. * pi) * faces.normal_stiffness /
-                 material.young;
+      density_ =
+          5. / (1. + 4. / 3. * pi) * faces.normal_stiffness / material.young;
       if (input.mesh.type == "crossed triangles" && plane_)
         density_ *= extent(input, axis_) / n_cells(input, axis_) /
                     (2. * (1. + std::sqrt(2.)));

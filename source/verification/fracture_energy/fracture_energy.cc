@@ -64,8 +64,8 @@ namespace nsfd
     }
 
   private:
-    double section_ = 0., scale_ = 1., damage_ = 0., friction_ = 0.,
-           work_ = 0., force_ = 0.;
+    double section_ = 0., scale_ = 1., damage_ = 0., friction_ = 0., work_ = 0.,
+           force_ = 0.;
     int reaction_ = -1;
   };
 

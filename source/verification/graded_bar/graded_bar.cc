@@ -32,13 +32,11 @@ namespace nsfd
       young_ = young(0.);
       growth_ = std::log(young(1.) / young_) / length;
       for (const double share : {0.3, 0.7})
-        demand(relative_error(young(share),
-                              young_ * std::exp(growth_ * share * length)) <
-                   1e-12,
+        demand(relative_error(young(share), young_ * std::exp(growth_ * share *
+                                                              length)) < 1e-12,
                "the Young modulus must grow exponentially along x");
       const LoadedSide side = loaded_side(input);
-      demand(side.normal.axis == 0 && side.normal.sign > 0. &&
-                 growth_ != 0.,
+      demand(side.normal.axis == 0 && side.normal.sign > 0. && growth_ != 0.,
              "the right end must be pulled");
       side_ = side.centre;
       traction_ = side.boundary->traction[0];

@@ -11,8 +11,7 @@ namespace nsfd
   namespace
   {
     /** Amplitude and lag of samples of sin(phase - lag), by least squares. */
-    struct Wave
-    {
+    struct Wave {
       double ss = 0., sc = 0., cc = 0., s = 0., c = 0.;
 
       void add(const double phase, const double value)
@@ -83,7 +82,7 @@ namespace nsfd
         return {transmitted_travel(t - X / speed_), 0., 0.};
       const double back = t - (2. * half_ - X) / speed_;
       return {incident_travel(t - X / speed_) + incident_travel(back) -
-                transmitted_travel(back),
+                  transmitted_travel(back),
               0., 0.};
     }
 
@@ -94,7 +93,7 @@ namespace nsfd
         return {-transmitted(t - X / speed_) / impedance_, 0., 0.};
       const double back = t - (2. * half_ - X) / speed_;
       return {(-incident(t - X / speed_) - incident(back) + transmitted(back)) /
-                impedance_,
+                  impedance_,
               0., 0.};
     }
 
@@ -136,7 +135,7 @@ namespace nsfd
       errors["transmission"] = relative_error(t, exact);
       errors["reflection"] = relative_error(r, ratio * exact);
       errors["phase_lag"] =
-        relative_error(through.lag() - in.lag(), std::atan(ratio));
+          relative_error(through.lag() - in.lag(), std::atan(ratio));
       errors["power"] = std::abs(t * t + r * r - 1.);
     }
 
@@ -165,7 +164,7 @@ namespace nsfd
     double incident_travel(const double s) const
     {
       return s > 0. ? -stress_ * (1. - std::cos(frequency_ * s)) /
-                        (frequency_ * impedance_)
+                          (frequency_ * impedance_)
                     : 0.;
     }
 
@@ -186,8 +185,8 @@ namespace nsfd
     {
       const double a = rate_, w = frequency_;
       return s > 0. ? -share() / impedance_ *
-                        (a / w * (1. - std::cos(w * s)) - std::sin(w * s) -
-                         w / a * std::expm1(-a * s))
+                          (a / w * (1. - std::cos(w * s)) - std::sin(w * s) -
+                           w / a * std::expm1(-a * s))
                     : 0.;
     }
   };

@@ -20,8 +20,7 @@ namespace nsfd
     }
 
     /** sin(k t + phase) along every axis, times each other. */
-    struct Product
-    {
+    struct Product {
       Vector wave, phase;
 
       double at(const Vector &x, const Order &order) const
@@ -62,14 +61,14 @@ namespace nsfd
     explicit Manufactured(SectionReader &reader)
     {
       if (reader.optional("amplitude", "m; default: 1e-3 of the box along x"))
-        amplitude_ = reader.number("amplitude", "", units::length,
-                                   Range::positive(),
-                                   "m; default: 1e-3 of the box along x");
+        amplitude_ =
+            reader.number("amplitude", "", units::length, Range::positive(),
+                          "m; default: 1e-3 of the box along x");
       if (reader.optional("angular frequency",
                           "1/s; default: 2 c_p over the box along x"))
-        frequency_ =
-          reader.number("angular frequency", "", {0, 0, -1}, Range::positive(),
-                        "1/s; default: 2 c_p over the box along x");
+        frequency_ = reader.number("angular frequency", "", {0, 0, -1},
+                                   Range::positive(),
+                                   "1/s; default: 2 c_p over the box along x");
     }
 
     bool has_motion() const override { return true; }
@@ -83,23 +82,23 @@ namespace nsfd
         MaterialInput &material = scene.materials[m];
         for (unsigned int c = 0; c < scene.dimension; ++c) {
           demand(material.initial_displacement[c].is_zero() &&
-                   material.initial_velocity[c].is_zero() &&
-                   material.body_force[c].is_zero(),
+                     material.initial_velocity[c].is_zero() &&
+                     material.body_force[c].is_zero(),
                  "the case sets initial fields and body forces: remove those "
                  "of material `" +
-                   material.name + "`");
+                     material.name + "`");
           const auto part = [&](auto member, const bool depends_on_time) {
             return Expression(
-              [self, m, c, member](const double x, const double y,
-                                   const double z, const double t) {
-                return ((*self).*member)(m, {x, y, z}, t)[c];
-              },
-              "exact", depends_on_time);
+                [self, m, c, member](const double x, const double y,
+                                     const double z, const double t) {
+                  return ((*self).*member)(m, {x, y, z}, t)[c];
+                },
+                "exact", depends_on_time);
           };
           material.initial_displacement[c] =
-            part(&Manufactured::displacement_in, false);
+              part(&Manufactured::displacement_in, false);
           material.initial_velocity[c] =
-            part(&Manufactured::velocity_in, false);
+              part(&Manufactured::velocity_in, false);
           material.body_force[c] = part(&Manufactured::body_force, true);
         }
       }
@@ -114,8 +113,8 @@ namespace nsfd
       const MaterialInput &first = input.materials.front();
       for (const MaterialInput &material : input.materials)
         demand(!material.rigid && material.young == first.young &&
-                 material.poisson == first.poisson &&
-                 material.density == first.density,
+                   material.poisson == first.poisson &&
+                   material.density == first.density,
                "the materials must be elastic and alike");
       const double E = first.young, nu = first.poisson;
       mu_ = E / (2. * (1. + nu));
@@ -134,8 +133,7 @@ namespace nsfd
       if (!amplitude_)
         amplitude_ = 1e-3 * length_;
       if (!frequency_)
-        frequency_ =
-          2. * std::sqrt((lambda_ + 2. * mu_) / density_) / length_;
+        frequency_ = 2. * std::sqrt((lambda_ + 2. * mu_) / density_) / length_;
       jumps_ = input.materials.size() == 2;
       if (jumps_) {
         const InterfaceInput &interface = elastic_interface(input);
@@ -189,8 +187,8 @@ namespace nsfd
       double gradient[3][3] = {}, trace = 0.;
       for (unsigned int c = 0; c < dim_; ++c) {
         for (unsigned int d = 0; d < dim_; ++d)
-          gradient[c][d] = *amplitude_ / length_ * factor(t) *
-                           shape(m, c, X, plus({}, d));
+          gradient[c][d] =
+              *amplitude_ / length_ * factor(t) * shape(m, c, X, plus({}, d));
         trace += gradient[c][c];
       }
       const auto shear = [&](const unsigned int c, const unsigned int d) {
@@ -211,8 +209,8 @@ namespace nsfd
     std::optional<double> amplitude_, frequency_;
     unsigned int dim_ = 2;
     bool jumps_ = false;
-    double lambda_ = 0., mu_ = 0., density_ = 0., length_ = 1.,
-           stress_zz_ = 0., normal_ = 1., tangential_ = 1.;
+    double lambda_ = 0., mu_ = 0., density_ = 0., length_ = 1., stress_zz_ = 0.,
+           normal_ = 1., tangential_ = 1.;
     Vector lower_{};
 
     unsigned int side(const Vector &x) const
@@ -254,12 +252,11 @@ namespace nsfd
         double divergence = 0.;
         for (unsigned int d = 0; d < dim_; ++d)
           divergence +=
-            mu_ * shape(material, c, X, plus(plus({}, d), d)) +
-            (lambda_ + mu_) * shape(material, d, X, plus(plus({}, d), c));
-        b[c] = *amplitude_ *
-               (-density_ * omega * omega * std::cos(omega * t) *
-                  shape(material, c, X, {}) -
-                factor(t) * divergence / (length_ * length_));
+              mu_ * shape(material, c, X, plus(plus({}, d), d)) +
+              (lambda_ + mu_) * shape(material, d, X, plus(plus({}, d), c));
+        b[c] = *amplitude_ * (-density_ * omega * omega * std::cos(omega * t) *
+                                  shape(material, c, X, {}) -
+                              factor(t) * divergence / (length_ * length_));
       }
       return b;
     }
@@ -270,9 +267,9 @@ namespace nsfd
     {
       static const double q = std::acos(0.); // cos(a) = sin(a + q)
       static const Product products[3] = {
-        {{1.3, 0.9, 0.8}, {0.4, 0.2 + q, -0.1 + q}},
-        {{0.7, 1.1, 0.6}, {-0.3 + q, 0.5, 0.3 + q}},
-        {{0.5, 0.8, 1.2}, {0.2 + q, -0.2 + q, 0.4}}};
+          {{1.3, 0.9, 0.8}, {0.4, 0.2 + q, -0.1 + q}},
+          {{0.7, 1.1, 0.6}, {-0.3 + q, 0.5, 0.3 + q}},
+          {{0.5, 0.8, 1.2}, {0.2 + q, -0.2 + q, 0.4}}};
       if (dim_ == 3)
         return products[c].at(X, order);
       Product flat = products[c]; // no factor in Z
@@ -315,7 +312,8 @@ namespace nsfd
     }
   };
 
-  NSFD_REGISTER(VerificationRegistry, Manufactured, "manufactured",
-                "A smooth motion in a box with the body force that it needs, "
-                "with or without elastic faces across it: fields, stress, jump");
+  NSFD_REGISTER(
+      VerificationRegistry, Manufactured, "manufactured",
+      "A smooth motion in a box with the body force that it needs, "
+      "with or without elastic faces across it: fields, stress, jump");
 } // namespace nsfd

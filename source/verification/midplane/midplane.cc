@@ -1,8 +1,8 @@
 #include "nsfd/verification/case_input.h"
 
 #include "core/archive.h"
-#include "parameters/parameter_file.h"
 #include "nsfd/parameters/section_reader.h"
+#include "parameters/parameter_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -48,8 +48,8 @@ namespace nsfd
       } else {
         const double z = frequency_ * view.time_step;
         const std::complex<double> factor =
-          std::complex<double>(1., (1. - theta_) * z) /
-          std::complex<double>(1., -theta_ * z);
+            std::complex<double>(1., (1. - theta_) * z) /
+            std::complex<double>(1., -theta_ * z);
         scheme_ *= std::abs(factor);
         angle_ += std::arg(factor);
       }
@@ -61,16 +61,16 @@ namespace nsfd
     {
       const double amplitude = std::abs(start_);
       errors["position"] =
-        std::abs(place_.real() - amplitude * std::cos(frequency_ * time_)) /
-        amplitude;
+          std::abs(place_.real() - amplitude * std::cos(frequency_ * time_)) /
+          amplitude;
       errors["energy"] = energy_ / initial_energy_;
       if (!known_)
         return;
       errors["amplification"] =
-        relative_error(std::abs(place_) / amplitude, scheme_);
+          relative_error(std::abs(place_) / amplitude, scheme_);
       // on the circle: a turn more or less is none
       errors["phase"] =
-        std::abs(place_ / std::abs(place_) - std::polar(1., angle_)) / angle_;
+          std::abs(place_ / std::abs(place_) - std::polar(1., angle_)) / angle_;
     }
 
     void remember(Archive &archive) override

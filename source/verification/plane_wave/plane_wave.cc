@@ -48,7 +48,8 @@ namespace nsfd
           demand(material.initial_displacement[c].is_zero() &&
                      material.initial_velocity[c].is_zero(),
                  "the case sets the initial fields: remove those of material "
-                 "`" + material.name + "`");
+                 "`" +
+                     material.name + "`");
           material.initial_displacement[c] = Expression(
               [self, c](const double x, const double y, const double z,
                         double) {
@@ -102,8 +103,7 @@ namespace nsfd
     /** What is left of the energy, that of an oscillator of one mass. */
     void finish(std::map<std::string, double> &errors) const override
     {
-      const double rate =
-          natural_ / frequency_ * std::sin(frequency_ * time_);
+      const double rate = natural_ / frequency_ * std::sin(frequency_ * time_);
       const double left = std::exp(-2. * decay_ * time_) *
                           (in_time(time_) * in_time(time_) + rate * rate);
       errors["energy"] = relative_error(energy_ / initial_energy_, left);
@@ -168,17 +168,16 @@ namespace nsfd
                    G = input.axial_shear;
       // along the axis, and two directions across; in plane stress the second
       // one carries nothing
-      const double determinant =
-          plane_stress ? S_aa * S_tt - S_at * S_at
-                       : S_aa * (S_tt * S_tt - S_ts * S_ts) -
-                             2. * S_at * S_at * (S_tt - S_ts);
-      const double C_aa =
-                       (plane_stress ? S_tt : S_tt * S_tt - S_ts * S_ts) /
-                       determinant,
+      const double determinant = plane_stress
+                                     ? S_aa * S_tt - S_at * S_at
+                                     : S_aa * (S_tt * S_tt - S_ts * S_ts) -
+                                           2. * S_at * S_at * (S_tt - S_ts);
+      const double C_aa = (plane_stress ? S_tt : S_tt * S_tt - S_ts * S_ts) /
+                          determinant,
                    C_tt = (plane_stress ? S_aa : S_aa * S_tt - S_at * S_at) /
                           determinant,
-                   C_at = -S_at * (plane_stress ? 1. : S_tt - S_ts) /
-                          determinant;
+                   C_at =
+                       -S_at * (plane_stress ? 1. : S_tt - S_ts) / determinant;
       // x has the components c along the axis and s across it
       const double c = input.axis[0], s = -input.axis[1];
       const double a = C_aa * c * c + G * s * s, b = G * c * c + C_tt * s * s,

@@ -25,11 +25,11 @@ namespace nsfd
   {
   public:
     explicit StationaryCrack(SectionReader &reader)
-        : name_(reader.word("observable", "tip",
-                            "of type energy release rate"))
+        : name_(reader.word("observable", "tip", "of type energy release rate"))
     {
-      distance_ = reader.number("distance", "", units::length,
-                                Range::positive(), "from the load to the crack");
+      distance_ =
+          reader.number("distance", "", units::length, Range::positive(),
+                        "from the load to the crack");
       tension_ = reader.number("tension", "", units::pressure,
                                Range::positive(), "of the step");
     }

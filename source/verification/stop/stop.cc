@@ -50,8 +50,8 @@ namespace nsfd
       const double height = extent(input, up.axis),
                    p = input.materials[0].density * pull * height;
       climb_ = sliding.dilatancy - sliding.wear * p;
-      exact_distance_ = 0.5 * speed_ * stop_time_ /
-                        (1. + plane.friction * sliding.dilatancy);
+      exact_distance_ =
+          0.5 * speed_ * stop_time_ / (1. + plane.friction * sliding.dilatancy);
       up_ = up.axis;
       up_sign_ = up.sign;
       lifts_ = sliding.lifts();

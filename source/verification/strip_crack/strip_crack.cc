@@ -41,8 +41,8 @@ namespace nsfd
       toughness_ = cohesive_interface(input).law->toughness();
       const double nu = material.poisson, half = extent(input, 1) / 2.,
                    u = material.initial_displacement[1](0., half, 0.);
-      available_ = material.young * (1. - nu) /
-                   ((1. + nu) * (1. - 2. * nu)) * u * u / half;
+      available_ = material.young * (1. - nu) / ((1. + nu) * (1. - 2. * nu)) *
+                   u * u / half;
       for (const ObservableInput &block : input.observables)
         watched_ = watched_ || block.name == "tip";
     }
