@@ -4,13 +4,21 @@
 #
 #   upward includes   of headers from a folder that comes later in source/LAYERS
 #   folder circles    pairs of folders that include each other
+#   unformatted files that clang-format 14 would change, where it is installed
 #   long files        above 500 lines
 set -eu
 verbose=0
 [ "${1:-}" != -v ] || verbose=1
 
+unformatted=
+if command -v clang-format-14 >/dev/null 2>&1; then
+  unformatted=$(find source include tests -name '*.h' -o -name '*.cc' | sort |
+    xargs clang-format-14 --dry-run 2>&1 |
+    sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: .*/\1/p' | sort -u)
+fi
+
 find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
-  xargs awk -v verbose="$verbose" '
+  xargs awk -v verbose="$verbose" -v unformatted="$unformatted" '
     function folder(path) {
       sub(/^source\//, "", path)
       sub(/^include\/nsfd\//, "", path)
@@ -52,6 +60,9 @@ find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
         if (lines[file] > 500) { ++long_files; tell("long: " file " " lines[file]) }
       printf "upward includes %d\n", upward
       printf "folder circles %d\n", circles
+      n_unformatted = split(unformatted, file_list, "\n")
+      for (k = 1; k <= n_unformatted; ++k) tell("unformatted: " file_list[k])
+      printf "unformatted files %d\n", n_unformatted
       printf "long files %d\n", long_files
-      exit bad || upward || circles
+      exit bad || upward || circles || n_unformatted
     }'
