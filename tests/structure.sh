@@ -14,7 +14,7 @@ unformatted=
 if command -v clang-format-14 >/dev/null 2>&1; then
   unformatted=$(find source include tests -name '*.h' -o -name '*.cc' | sort |
     xargs clang-format-14 --dry-run 2>&1 |
-    sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: .*/\1/p' | sort -u)
+    sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: .*/\1/p' | sort -u | tr '\n' ' ')
 fi
 
 find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
@@ -60,7 +60,7 @@ find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
         if (lines[file] > 500) { ++long_files; tell("long: " file " " lines[file]) }
       printf "upward includes %d\n", upward
       printf "folder circles %d\n", circles
-      n_unformatted = split(unformatted, file_list, "\n")
+      n_unformatted = split(unformatted, file_list, " ")
       for (k = 1; k <= n_unformatted; ++k) tell("unformatted: " file_list[k])
       printf "unformatted files %d\n", n_unformatted
       printf "long files %d\n", long_files
