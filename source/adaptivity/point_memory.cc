@@ -1,34 +1,31 @@
 #include "point_memory.h"
 
+#include "state/point_fields.h"
+
+#include <type_traits>
+
 namespace nsfd
 {
   template <int dim>
-  template <typename StateOrConst, typename Visit>
-  void PointMemory<dim>::for_numbers(StateOrConst &state, Visit &&visit) const
+  template <typename Visit>
+  void PointMemory<dim>::for_fields(Visit &&visit) const
   {
-    visit(state.beta); // the first one, see the enumeration of columns
-    visit(state.opening_max);
-    visit(state.slip);
-    visit(state.released_overlap);
-    visit(state.approach);
-    if (slip_max_)
-      visit(state.slip_max);
-    if (lift_) {
-      visit(state.dilated);
-      visit(state.worn);
-      visit(state.dilation_speed);
-      visit(state.wear_speed);
-    }
-    if (pressure_)
-      visit(state.pressure);
+    std::size_t k = 0;
+    for_point_fields(
+        [&](const PointField &field, const auto member, const auto &...) {
+          if (used_.at(k++))
+            visit(field, member);
+        });
   }
 
   template <int dim>
-  PointMemory<dim>::PointMemory(const State &state)
-      : slip_max_(!state.slip_max.empty()), lift_(!state.dilated.empty()),
-        pressure_(!state.pressure.empty()), size_(history + 3)
+  PointMemory<dim>::PointMemory(const SceneInput &input) : size_(history)
   {
-    for_numbers(state, [&](const std::vector<double> &) { ++size_; });
+    for_point_fields([&](const PointField &field, const auto &...) {
+      used_.push_back(field.life != PointField::Life::step &&
+                      has_field(input, field));
+      size_ += used_.back();
+    });
   }
 
   template <int dim>
@@ -48,11 +45,9 @@ namespace nsfd
     }
     row[compliance] = origin.compliance;
     double *next = row + history;
-    for_numbers(
-        state, [&](const std::vector<double> &values) { *next++ = values[i]; });
-    *next++ = double(state.kind[i]);
-    *next++ = state.two_sided[i];
-    *next++ = state.contact[i];
+    for_fields([&](const PointField &, const auto member) {
+      *next++ = double((state.*member)[i]);
+    });
   }
 
   template <int dim>
@@ -62,17 +57,18 @@ namespace nsfd
     for (unsigned int c = 0; c < dim; ++c)
       state.impulse[i * dim + c] = row[impulse + c] * weight;
     const double *next = row + history;
-    for_numbers(state,
-                [&](std::vector<double> &values) { values[i] = *next++; });
-    state.kind[i] = PointKind(int(*next++));
-    state.two_sided[i] = std::uint8_t(*next++);
-    state.contact[i] = std::uint8_t(*next++);
+    for_fields([&](const PointField &, const auto member) {
+      using Value = typename std::decay_t<decltype(state.*member)>::value_type;
+      (state.*member)[i] = Value(*next++);
+    });
   }
 
   template <int dim>
   void PointMemory<dim>::resize(const std::size_t n, State &state) const
   {
-    for_numbers(state, [&](std::vector<double> &values) { values.resize(n); });
+    for_fields([&](const PointField &, const auto member) {
+      (state.*member).resize(n);
+    });
   }
 
   template class PointMemory<2>;

@@ -15,7 +15,7 @@ namespace nsfd
   class PointMemory
   {
   public:
-    explicit PointMemory(const State &state);
+    explicit PointMemory(const SceneInput &input);
 
     static constexpr unsigned int face = 0, origin_kind = 1, origin_block = 2,
                                   position = 3, offset = 3 + dim,
@@ -35,15 +35,15 @@ namespace nsfd
     void restore(const double *row, double weight, std::size_t point,
                  State &state) const;
 
-    /** The vectors of history that the old state had. */
+    /** The vectors that rows hold. */
     void resize(std::size_t n_points, State &state) const;
 
   private:
-    /** @p visit (vector) for those that hold numbers and are in use. */
-    template <typename StateOrConst, typename Visit>
-    void for_numbers(StateOrConst &state, Visit &&visit) const;
+    /** @p visit (PointField, member of State) for those that a row holds. */
+    template <typename Visit>
+    void for_fields(Visit &&visit) const;
 
-    bool slip_max_, lift_, pressure_;
+    std::vector<bool> used_; ///< by field of for_point_fields()
     unsigned int size_;
   };
 } // namespace nsfd

@@ -69,7 +69,7 @@ namespace nsfd
   StateTransfer<dim>::StateTransfer(const SceneInput &input,
                                     Mesh &triangulation,
                                     const MeshState<dim> &mesh)
-      : input_(input), triangulation_(triangulation), memory_(mesh.state),
+      : input_(input), triangulation_(triangulation), memory_(input),
         shift_(input, mesh), old_(mesh),
         body_of_(bodies_of_cells(triangulation)),
         offset_(beyond_motion(input, mesh)),

@@ -2,7 +2,7 @@
 
 #include "moreau_jean.h"
 #include "nonsmooth/point_law.h"
-#include "state/state.h"
+#include "state/point_fields.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +13,11 @@ namespace nsfd
   /** What points remember, before a step has changed any of it. */
   inline void carry_history(const State &old, State &next)
   {
-    next.opening_max = old.opening_max;
-    next.slip_max = old.slip_max;
-    next.beta = old.beta;
-    next.kind = old.kind;
-    next.two_sided = old.two_sided;
-    next.slip = old.slip;
-    next.released_overlap = old.released_overlap;
-    next.approach = old.approach;
+    for_point_fields(
+        [&](const PointField &field, const auto member, const auto &...) {
+          if (field.life == PointField::Life::history)
+            next.*member = old.*member;
+        });
     next.contact.assign(old.kind.size(), 0);
   }
 

@@ -1,5 +1,7 @@
 #include "initial_state.h"
 
+#include "state/point_fields.h"
+
 #include "bond_release.h"
 #include "step_data.h"
 
@@ -183,21 +185,11 @@ namespace nsfd
   {
     const std::size_t n = discretization.points().n_points;
     state.impulse.assign(n * dim, 0.);
-    state.opening_max.assign(n, 0.);
-    for (const auto &block : input.interfaces)
-      if (block.law && block.law->mixed())
-        state.slip_max.assign(n, 0.);
-    state.beta.assign(n, 1.);
-    state.slip.assign(n, 0.);
-    if (has_sliding_lift(input))
-      for (auto *array : {&state.dilated, &state.worn, &state.dilation_speed,
-                          &state.wear_speed})
-        array->assign(n, 0.);
-    state.released_overlap.assign(n, 0.);
-    state.approach.assign(n, 0.);
-    state.kind.assign(n, PointKind::prescribed);
-    state.two_sided.assign(n, 0);
-    state.contact.assign(n, 0);
+    for_point_fields([&](const PointField &field, const auto member,
+                         const auto born, const auto &) {
+      if (field.life != PointField::Life::step && has_field(input, field))
+        (state.*member).assign(n, born);
+    });
     for (std::size_t i = 0; i < n; ++i) {
       const PointOrigin origin = discretization.origins()[i];
       switch (origin.kind) {

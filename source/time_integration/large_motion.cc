@@ -8,6 +8,7 @@
 #include "initial_state.h"
 #include "ledger.h"
 #include "save_problem.h"
+#include "state/point_fields.h"
 #include "step_data.h"
 
 #include "core/cost.h"
@@ -142,22 +143,12 @@ namespace nsfd
   {
     const std::size_t n = bodies_.points().n_points;
     old_ = old;
-    for (auto *array : {&old_.jump, &old_.relative_velocity, &old_.impulse})
-      insert_rows(*array, dim, 0.);
-    for (auto *array : {&old_.opening_max, &old_.beta, &old_.slip,
-                        &old_.released_overlap, &old_.approach})
-      insert_rows(*array, 1, 0.);
-    if (!old_.slip_max.empty())
-      insert_rows(old_.slip_max, 1, 0.);
-    if (lifts_)
-      for (auto *array :
-           {&old_.dilated, &old_.worn, &old_.dilation_speed, &old_.wear_speed})
-        insert_rows(*array, 1, 0.);
-    if (this->crack_pressure_)
-      insert_rows(old_.pressure, 1, 0.);
-    insert_rows(old_.kind, 1, PointKind::free);
-    insert_rows(old_.two_sided, 1, 0);
-    insert_rows(old_.contact, 1, 0);
+    for_point_fields([&](const PointField &field, const auto member,
+                         const auto &, const auto added) {
+      using Value = typename std::decay_t<decltype(old_.*member)>::value_type;
+      if (has_field(this->input_, field))
+        insert_rows(old_.*member, field.width(dim), Value(added));
+    });
 
     OneStepProblem<dim> &problem = step_problem_;
     problem.resize(n);
@@ -703,16 +694,11 @@ namespace nsfd
   template <int dim>
   void LargeMotion<dim>::forget_rows(State &next) const
   {
-    for (auto *array : {&next.jump, &next.relative_velocity, &next.impulse})
-      erase_rows(*array, dim);
-    for (auto *array :
-         {&next.opening_max, &next.slip_max, &next.beta, &next.slip,
-          &next.dilated, &next.worn, &next.dilation_speed, &next.wear_speed,
-          &next.released_overlap, &next.approach, &next.pressure})
-      erase_rows(*array, 1);
-    erase_rows(next.kind, 1);
-    erase_rows(next.two_sided, 1);
-    erase_rows(next.contact, 1);
+    for_point_fields(
+        [&](const PointField &field, const auto member, const auto &...) {
+          if (has_field(this->input_, field))
+            erase_rows(next.*member, field.width(dim));
+        });
   }
 
   template <int dim>

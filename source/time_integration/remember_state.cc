@@ -1,7 +1,7 @@
 #include "remember_state.h"
 
 #include "core/archive.h"
-#include "state/state.h"
+#include "state/point_fields.h"
 
 namespace nsfd
 {
@@ -16,6 +16,24 @@ namespace nsfd
       archive.common(name, values);
       numbers.assign(values.begin(), values.end());
     }
+    template <typename Number>
+    void remember_points(const std::string &name, std::vector<Number> &values,
+                         Archive &archive)
+    {
+      archive.points(name, values);
+    }
+
+    void remember_points(const std::string &name, std::vector<PointKind> &kinds,
+                         Archive &archive)
+    {
+      std::vector<std::uint8_t> values(kinds.size());
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = std::uint8_t(kinds[i]);
+      archive.points(name, values);
+      kinds.resize(values.size());
+      for (std::size_t i = 0; i < values.size(); ++i)
+        kinds[i] = PointKind(values[i]);
+    }
   } // namespace
 
   void remember(State &s, Archive &archive)
@@ -25,31 +43,10 @@ namespace nsfd
     archive.numbers("time", s.time, s.last_step);
     archive.bodies("displacement", s.displacement);
     archive.bodies("velocity", s.velocity);
-    archive.points("jump", s.jump);
-    archive.points("relative_velocity", s.relative_velocity);
-    archive.points("impulse", s.impulse);
-    archive.points("opening_max", s.opening_max);
-    archive.points("slip_max", s.slip_max);
-    archive.points("beta", s.beta);
-    archive.points("slip", s.slip);
-    archive.points("dilated", s.dilated);
-    archive.points("worn", s.worn);
-    archive.points("dilation_speed", s.dilation_speed);
-    archive.points("wear_speed", s.wear_speed);
-    archive.points("released_overlap", s.released_overlap);
-    archive.points("approach", s.approach);
-    std::vector<std::uint8_t> kind(s.kind.size());
-    for (std::size_t i = 0; i < kind.size(); ++i)
-      kind[i] = std::uint8_t(s.kind[i]);
-    archive.points("kind", kind);
-    s.kind.resize(kind.size());
-    for (std::size_t i = 0; i < kind.size(); ++i)
-      s.kind[i] = PointKind(kind[i]);
-    archive.points("two_sided", s.two_sided);
-    archive.points("contact", s.contact);
-    archive.points("bond_traction", s.bond_traction);
-    archive.points("pressure", s.pressure);
-    archive.points("point_force", s.point_force);
+    for_point_fields(
+        [&](const PointField &field, const auto member, const auto &...) {
+          remember_points(field.name, s.*member, archive);
+        });
     archive.common("rigid", s.rigid);
     archive.common("obstacle_shift", s.obstacle_shift);
     archive.histories("material_history", s.material_history);
