@@ -7,14 +7,20 @@
 
 namespace nsfd
 {
+  /** What a copy of this process has left. */
+  struct CopyAnswer {
+    std::string bytes; ///< what its work has returned
+    /// what ended it before: "signal 11, Segmentation fault", "more than 20 s",
+    /// "more than 4.0 GiB of memory"; empty if nothing did
+    std::string end;
+  };
+
   /**
-   * Do @p work in a copy of this process that has @p limits and can write
-   * nothing: for libraries that a damaged file can crash. Exceptions of the
-   * work count as its end: whoever does it again meets them. Returns what
-   * ended the copy before, "signal 11, Segmentation fault", "more than 20 s",
-   * "more than 4.0 GiB of memory", or an empty text.
+   * Do @p work in a copy of this process that has @p limits, is silent and can
+   * write to nobody else: for libraries that a damaged file leads out of their
+   * memory. @p work throws nothing; whoever takes its answer checks it.
    * Errors raised: std::system_error where no process can be started.
    */
-  std::string try_in_a_copy(const std::function<void()> &work,
-                            const ProcessLimits &limits);
+  CopyAnswer ask_a_copy(const std::function<std::string()> &work,
+                        const ProcessLimits &limits);
 } // namespace nsfd

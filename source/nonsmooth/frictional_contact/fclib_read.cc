@@ -2,6 +2,10 @@
 #include "core/trial_process.h"
 #include "fclib.h"
 
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +13,7 @@
 #include <filesystem>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 namespace nsfd
 {
@@ -248,33 +253,7 @@ namespace nsfd
             reader.fail("W or q has an entry that is no finite number");
     }
 
-    ContactProblem read_undamaged(const std::string &file);
-
-    /** HDF5 follows the addresses in a file wherever they lead. */
-    void refuse_what_crashes_hdf5(const std::string &file)
-    {
-      const double bytes = double(std::filesystem::file_size(file));
-      constexpr double gib = 0x1p30, bytes_per_second = 1e6;
-      const std::string end = try_in_a_copy(
-          [&] { read_undamaged(file); },
-          {20. + bytes / bytes_per_second, 4. * gib + 20. * bytes});
-      if (!end.empty())
-        throw BadContactFile(fmt::format(
-            "{}: the file is damaged: HDF5 cannot read it ({})", file, end));
-    }
-  } // namespace
-
-  ContactProblem read_fclib(const std::string &file)
-  {
-    if (!std::filesystem::is_regular_file(file))
-      throw BadContactFile(fmt::format("{}: there is no such file", file));
-    refuse_what_crashes_hdf5(file);
-    return read_undamaged(file);
-  }
-
-  namespace
-  {
-    ContactProblem read_undamaged(const std::string &file)
+    ContactProblem read_here(const std::string &file)
     {
       const stored::QuietHdf5 quiet;
       const Reader reader(file);
@@ -322,5 +301,84 @@ namespace nsfd
       }
       return problem;
     }
+
+    /** What the copy of the process has found. */
+    struct Answer {
+      ContactProblem problem;
+      std::string error; ///< instead of it
+
+      template <typename Archive>
+      void serialize(Archive &archive, unsigned int)
+      {
+        ContactProblem &p = problem;
+        archive &p.dimension &p.row_start &p.column &p.value &p.q &p.friction;
+        archive &p.guess &p.solution &p.title &p.description &p.math_info;
+        archive &error;
+      }
+    };
+
+    std::string answer_for(const std::string &file)
+    {
+      Answer answer;
+      try {
+        answer.problem = read_here(file);
+      } catch (const BadContactFile &error) {
+        answer.error = error.what();
+      }
+      std::ostringstream out;
+      boost::archive::binary_oarchive(out, boost::archive::no_header) << answer;
+      return out.str();
+    }
+
+    /** Of a copy that may have lost its mind on the way. */
+    bool is_sound(const ContactProblem &problem)
+    {
+      const std::size_t n = problem.n_rows();
+      const auto fits = [&](const std::vector<double> &r) {
+        return r.empty() || r.size() == n;
+      };
+      if ((problem.dimension != 2 && problem.dimension != 3) ||
+          n != problem.n_contacts() * problem.dimension ||
+          problem.row_start.size() != n + 1 || problem.row_start.front() != 0 ||
+          !std::is_sorted(problem.row_start.begin(), problem.row_start.end()) ||
+          std::size_t(problem.row_start.back()) != problem.value.size() ||
+          problem.column.size() != problem.value.size() ||
+          !fits(problem.guess) || !fits(problem.solution))
+        return false;
+      return std::all_of(problem.column.begin(), problem.column.end(),
+                         [&](const int column) {
+                           return column >= 0 && std::size_t(column) < n;
+                         });
+    }
   } // namespace
+
+  // HDF5 follows the addresses in a file wherever they lead
+  ContactProblem read_fclib(const std::string &file)
+  {
+    if (!std::filesystem::is_regular_file(file))
+      throw BadContactFile(fmt::format("{}: there is no such file", file));
+    const double bytes = double(std::filesystem::file_size(file));
+    constexpr double gib = 0x1p30, bytes_per_second = 1e6;
+    const CopyAnswer copy =
+        ask_a_copy([&] { return answer_for(file); },
+                   {20. + bytes / bytes_per_second, 4. * gib + 20. * bytes});
+    const auto refuse = [&](const std::string &reason) {
+      throw BadContactFile(fmt::format(
+          "{}: the file is damaged: HDF5 cannot read it ({})", file, reason));
+    };
+    if (!copy.end.empty())
+      refuse(copy.end);
+    Answer answer;
+    try {
+      std::istringstream in(copy.bytes);
+      boost::archive::binary_iarchive(in, boost::archive::no_header) >> answer;
+    } catch (const std::exception &) {
+      refuse("its numbers are lost");
+    }
+    if (!answer.error.empty())
+      throw BadContactFile(answer.error);
+    if (!is_sound(answer.problem))
+      refuse("its numbers are lost");
+    return answer.problem;
+  }
 } // namespace nsfd
