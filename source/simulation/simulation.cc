@@ -3,7 +3,6 @@
 #include "adaptive_mesh.h"
 #include "checkpoint/checkpoints.h"
 #include "extremes.h"
-#include "input/formula_check.h"
 #include "model.h"
 #include "run_costs.h"
 #include "run_end.h"
@@ -11,6 +10,7 @@
 #include "run_info.h"
 #include "run_totals.h"
 #include "static_run.h"
+#include "step_controller.h"
 
 #include "bodies/fragments.h"
 #include "check.h"
@@ -63,17 +63,14 @@ namespace nsfd
       bool take_steps(bool &stopped, std::string &failure);
       int stop(bool between_steps);
       bool claim_folder(bool resumes);
-      void choose_step();
-      bool must_redo(const StepReport &report, const State &next);
-      bool overshoots(const StepReport &report);
       bool advance(State &next, std::string &failure);
       bool advance_load(State &next, std::string &failure);
-      bool has_bad_formulas(std::string &failure) const;
       void accept(State &next, const StepReport &report, double time_step);
       void observe(const State *previous, const HistoryRow &row);
       void write_if_due(bool last = false);
       bool find_observables();
       const std::vector<double> &reactions() const;
+      TimeIntegrator<dim> &integrator() const;
       void say(const std::vector<std::string> &sentences);
       LineChanges changes_of_energy(const EnergyLines &before) const;
       HistoryRow record(const StepReport &report, double time_step);
@@ -86,6 +83,7 @@ namespace nsfd
       const RunOptions &options_;
       const Communicator &communicator_;
       Model<dim> model_;
+      StepController<dim> steps_;
       std::unique_ptr<CaseObserver<dim>> observer_;
       std::unique_ptr<Observers<dim>> observers_; ///< or null
       std::unique_ptr<Fragments<dim>> fragments_;
@@ -105,12 +103,10 @@ namespace nsfd
       EnergyWatch watch_;          ///< of the lines that must not give energy
       EnergyLines watched_energy_; ///< after the step that it has seen last
       double start_wall_, last_step_ = 0.;
-      unsigned int rejected_ = 0, redone_ = 0, beyond_unique_ = 0;
+      unsigned int beyond_unique_ = 0;
       unsigned long long released_ = 0; ///< bonds, in accepted steps
-      unsigned int attempts_ = 0;       // at the present step, all rejected
-      double redo_until_ = 0., redo_step_ = 0.;
-      unsigned int stored_at_ = 0; ///< step of the last checkpoint
-      bool stored_ = false;        ///< it is on the disk
+      unsigned int stored_at_ = 0;      ///< step of the last checkpoint
+      bool stored_ = false;             ///< it is on the disk
       bool resumed_ = false, certified_ = false;
       bool has_solver_ = true; ///< the checkpoint holds what solvers keep
       std::map<std::string, unsigned int> switches_;
@@ -121,7 +117,7 @@ namespace nsfd
                                 const RunOptions &options,
                                 const Communicator &communicator)
         : input_(input), options_(options), communicator_(communicator),
-          start_wall_(wall_seconds())
+          steps_(input, model_, communicator), start_wall_(wall_seconds())
     {
     }
 
@@ -272,7 +268,8 @@ namespace nsfd
     void Simulation<dim>::remember_parts(Archive &archive,
                                          const bool with_solver)
     {
-      archive.numbers("steps", last_step_, attempts_, redo_until_, redo_step_);
+      archive.numbers("last_step", last_step_);
+      steps_.serialize(archive);
       model_.control->remember(archive);
       if (smooth_)
         smooth_->remember(archive);
@@ -373,8 +370,16 @@ namespace nsfd
     const std::vector<double> &Simulation<dim>::reactions() const
     {
       return is_static_ ? model_.quasi_static->reactions()
-             : smooth_  ? smooth_->reactions()
-                        : model_.stepper->reactions();
+                        : integrator().reactions();
+    }
+
+    /** Of the steps in time. */
+    template <int dim>
+    TimeIntegrator<dim> &Simulation<dim>::integrator() const
+    {
+      if (smooth_)
+        return *smooth_;
+      return *model_.stepper;
     }
 
     /** The parts and the verification case; false if the input is bad. */
@@ -560,8 +565,6 @@ namespace nsfd
           stopped = true;
           return true;
         }
-        if (!is_static_ && input_.time.step_kind == StepKind::automatic)
-          choose_step();
         if (!(is_static_ ? advance_load(next, failure)
                          : advance(next, failure)))
           return false;
@@ -587,110 +590,23 @@ namespace nsfd
       return exit_code::stopped;
     }
 
-    /** Down the ladder at once where points soften, up one level per step. */
-    template <int dim>
-    void Simulation<dim>::choose_step()
-    {
-      auto &control = *model_.control;
-      double limit =
-          model_.stepper->automatic_step(state_, control.base_step());
-      if (control.time() < redo_until_)
-        limit = std::min(limit, redo_step_);
-      control.limit(limit);
-      control.set_ceiling(limit);
-    }
-
-    /**
-     * `step = auto`: a point came to soften in a step that is too long for it.
-     * True if the step is to be taken again, with shorter ones to its end.
-     */
-    template <int dim>
-    bool Simulation<dim>::must_redo(const StepReport &report, const State &next)
-    {
-      auto &control = *model_.control;
-      if (input_.time.step_kind != StepKind::automatic ||
-          !report.beyond_unique || !control.can_halve())
-        return false;
-      const double h = control.step();
-      const double unique = model_.stepper->unique_step(state_, next);
-      if (h < unique)
-        return false; // by laws alone that no step is short enough for
-      redo_until_ = control.time() + h * (1. - 1e-9);
-      redo_step_ = MoreauJean<dim>::bound_share * unique;
-      control.limit(redo_step_);
-      ++redone_;
-      return true;
-    }
-
-    /**
-     * A bonded point went too far beyond its strength. True if the step is to
-     * be taken again, to where the first of them reaches it; three levels down
-     * the ladder a front is steeper than the mesh resolves.
-     */
-    template <int dim>
-    bool Simulation<dim>::overshoots(const StepReport &report)
-    {
-      auto &control = *model_.control;
-      if (report.overshoot <= input_.time.largest_overshoot ||
-          control.level() >= 3 || !control.can_halve())
-        return false;
-      const double h = control.step();
-      control.limit(std::clamp(report.share, 0.125, 0.5) * h);
-      ++redone_;
-      return true;
-    }
-
-    /**
-     * Take a step or, if it is rejected, shorten the next one. False with the
-     * reason if that is not possible any more.
-     */
+    /** Take a step, or shorten the next one; false with the reason. */
     template <int dim>
     bool Simulation<dim>::advance(State &next, std::string &failure)
     {
-      auto &control = *model_.control;
-      const double h = control.step();
+      using Outcome = typename StepController<dim>::Outcome;
       StepReport report;
-      // A shorter step is the cure for a step with several solutions, but not
-      // for every hard one: each further attempt may cost twice as much.
-      const unsigned int doublings =
-          control.can_halve() ? std::min(attempts_, 10u) : 10;
-      // the one place that catches StepRejected and shortens the step
-      try {
-        const stop_request::Interruptible step(communicator_.size());
-        report = smooth_ ? smooth_->advance(state_, h, next)
-                         : model_.stepper->advance(state_, h, next,
-                                                   SolverControl().idle_rounds
-                                                       << doublings);
-      } catch (const StepRejected &rejected) {
-        if (has_bad_formulas(failure))
-          return false;
-        ++rejected_;
-        ++attempts_;
-        if (control.halve())
-          return true;
-        failure = std::string(rejected.what()) +
-                  fmt::format("; {} halvings did not help",
-                              input_.time.maximum_halvings);
-        return false;
-      }
-      if (has_bad_formulas(failure))
-        return false;
-      if (must_redo(report, next) || overshoots(report) || change_mesh(next))
-        return true;
-      attempts_ = 0;
+      const Outcome outcome =
+          steps_.step(integrator(), state_, next, report, failure);
+      const double h = model_.control->step();
+      if (outcome != Outcome::taken || change_mesh(next))
+        return outcome != Outcome::failed;
+      steps_.accept();
       accept(next, report, h);
       return true;
     }
 
-    /** No shorter step makes numbers of what is none. */
-    template <int dim>
-    bool Simulation<dim>::has_bad_formulas(std::string &failure) const
-    {
-      failure = fmt::format("{}", fmt::join(bad_formulas(communicator_), "; "));
-      return !failure.empty();
-    }
-
-    /** The same for a quasi-static step. */
+    /** A step of the load. */
     template <int dim>
     bool Simulation<dim>::advance_load(State &next, std::string &failure)
     {
@@ -701,7 +617,8 @@ namespace nsfd
         const stop_request::Interruptible step(communicator_.size());
         return static_run_->step(state_, next, report, failure);
       }();
-      if (std::string reason; has_bad_formulas(reason)) {
+      if (const std::string reason = bad_formulas_text(communicator_);
+          !reason.empty()) {
         failure = reason;
         return false;
       }
@@ -872,14 +789,9 @@ namespace nsfd
     template <int dim>
     void Simulation<dim>::fill_counters(std::map<std::string, double> &c) const
     {
-      const auto &stepper = model_.stepper->counters();
       const auto &dynamics = model_.dynamics->counters();
-      c["solver_calls"] = double(stepper.solves);
-      c["newton"] = double(stepper.newton);
-      c["krylov"] = double(stepper.krylov);
-      c["gauss_seidel_sweeps"] = double(stepper.sweeps);
-      c["line_searches"] = double(stepper.line_searches);
-      c["law_sweeps"] = double(stepper.law_sweeps);
+      model_.stepper->fill_counters(c);
+      steps_.fill_counters(c);
       c["delassus_applications"] = double(dynamics.delassus);
       c["block_factorisations"] = double(dynamics.factorisations);
       c["global_factorisations"] = double(dynamics.global_factorisations);
@@ -889,31 +801,12 @@ namespace nsfd
       // products with W and, inside the preconditioner, with A
       c["operator_applications"] =
           double(dynamics.delassus + dynamics.inner_iterations);
-      c["load_assemblies"] = double(stepper.load_assemblies);
-      c["activation_rounds"] = double(stepper.activation_rounds);
       if (model_.bonded)
         c["released_bonds"] = double(released_);
-      c["rejected_steps"] = rejected_;
-      c["redone_steps"] = redone_;
       c["steps_beyond_uniqueness"] = beyond_unique_;
       c["penetration_excess"] = state_.penetration_excess;
-      if (model_.large_motion) {
-        const auto &motion = model_.large_motion->motion_counters();
-        c["motion_iterations"] = double(motion.iterations);
-        c["motion_iterations_most"] = double(motion.most_iterations);
-        if (const auto *contacts = model_.large_motion->contacts()) {
-          c["contact_searches"] = double(contacts->counters().searches);
-          c["contact_facets"] = double(contacts->counters().facets);
-          c["contact_rows"] = double(contacts->counters().rows);
-          c["contact_overlap"] = contacts->counters().largest_overlap;
-        }
-      }
-      if (smooth_) {
-        c["arkode_steps"] = double(smooth_->counters().steps);
-        c["arkode_evaluations"] = double(smooth_->counters().evaluations);
-        c["arkode_linear_solves"] = double(smooth_->counters().linear_solves);
-        c["krylov"] = double(smooth_->counters().iterations);
-      }
+      if (smooth_)
+        smooth_->fill_counters(c);
       count_points(input_, *model_.discretization, communicator_, c);
       c["body_classes"] = communicator_.max(
           double(model_.discretization->bodies().classes.size()));

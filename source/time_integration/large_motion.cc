@@ -710,6 +710,21 @@ namespace nsfd
                                      &bodies_.points().position[i * dim]);
   }
 
+  template <int dim>
+  void LargeMotion<dim>::fill_counters(std::map<std::string, double> &c) const
+  {
+    MoreauJean<dim>::fill_counters(c);
+    c["motion_iterations"] = double(motion_counters_.iterations);
+    c["motion_iterations_most"] = double(motion_counters_.most_iterations);
+    if (!contacts_)
+      return;
+    const auto &contacts = contacts_->counters();
+    c["contact_searches"] = double(contacts.searches);
+    c["contact_facets"] = double(contacts.facets);
+    c["contact_rows"] = double(contacts.rows);
+    c["contact_overlap"] = contacts.largest_overlap;
+  }
+
   template class LargeMotion<2>;
   template class LargeMotion<3>;
 } // namespace nsfd

@@ -37,6 +37,8 @@ namespace nsfd
     StepReport advance(const State &old, double time_step, State &next,
                        unsigned int idle_rounds) override;
 
+    void fill_counters(std::map<std::string, double> &counters) const override;
+
     struct MotionCounters {
       unsigned long long iterations = 0, most_iterations = 0;
       double search_seconds = 0.;

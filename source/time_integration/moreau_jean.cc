@@ -447,6 +447,19 @@ namespace nsfd
                     &discretization_.points().position[i * dim]);
   }
 
+  template <int dim>
+  void MoreauJean<dim>::fill_counters(std::map<std::string, double> &c) const
+  {
+    c["solver_calls"] = double(counters_.solves);
+    c["newton"] = double(counters_.newton);
+    c["krylov"] = double(counters_.krylov);
+    c["gauss_seidel_sweeps"] = double(counters_.sweeps);
+    c["line_searches"] = double(counters_.line_searches);
+    c["law_sweeps"] = double(counters_.law_sweeps);
+    c["load_assemblies"] = double(counters_.load_assemblies);
+    c["activation_rounds"] = double(counters_.activation_rounds);
+  }
+
   template class MoreauJean<2>;
   template class MoreauJean<3>;
 } // namespace nsfd

@@ -1,12 +1,10 @@
 #pragma once
 
-#include "energy_watch.h"
-#include "nonsmooth/solver.h"
+#include "time_integrator.h"
+
 #include "nsfd/discretization/discretization.h"
-#include "state/state.h"
 
 #include <memory>
-#include <stdexcept>
 
 namespace nsfd
 {
@@ -28,32 +26,13 @@ namespace nsfd
   template <int dim>
   class BulkTraction;
 
-  /** A step that has to be redone shorter; the text says where and why. */
-  class StepRejected : public std::runtime_error
-  {
-  public:
-    using std::runtime_error::runtime_error;
-  };
-
-  /** What an accepted step reports besides its state. */
-  struct StepReport {
-    SolverReport solver;
-    double ledger_defect = 0.;  ///< of this step, relative
-    LineChanges changes;        ///< of the energy balance
-    unsigned int active = 0;    ///< points in contact or damaging
-    bool beyond_unique = false; ///< step above the uniqueness bound
-    unsigned int released = 0;  ///< points that leave their bond
-    double overshoot = 0.; ///< their largest traction over the strength, less 1
-    double share = 1.; ///< of the step at which the first of them reached it
-  };
-
   /**
    * The implicit Moreau-Jean step: theta scheme in the bulk, velocity-level
    * contact, impulses of all points in one nonsmooth problem (report, 5.2-5.3).
    * Every energy line of the step is computed on its own.
    */
   template <int dim>
-  class MoreauJean
+  class MoreauJean : public TimeIntegrator<dim>
   {
   public:
     /** @p bonded is @p dynamics if the scene has bonded faces, else null. */
@@ -61,7 +40,7 @@ namespace nsfd
                const Discretization<dim> &discretization,
                Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver,
                BondedDynamics<dim> *bonded = nullptr);
-    virtual ~MoreauJean();
+    ~MoreauJean() override;
 
     /** State at t = 0: positions, velocities, gaps, broken points. */
     virtual State initial_state() const;
@@ -72,14 +51,10 @@ namespace nsfd
      */
     void complete(State &state) const;
 
-    /**
-     * From @p old to @p next = t + h. @throws StepRejected if the nonsmooth
-     * problem was not solved to the tolerance. @p idle_rounds as in
-     * SolverControl: how soon the solver may give up.
-     */
-    virtual StepReport
+    /** Rejected is what was not solved to the tolerance. */
+    StepReport
     advance(const State &old, double time_step, State &next,
-            unsigned int idle_rounds = SolverControl().idle_rounds);
+            unsigned int idle_rounds = SolverControl().idle_rounds) override;
 
     /**
      * Up to which a step has one solution, by the points that soften at
@@ -93,8 +68,8 @@ namespace nsfd
     /** What `step = auto` takes from @p state, at most @p time_step. */
     double automatic_step(const State &state, double time_step) const;
 
-    /** Force on each driven boundary during the last step, dim per boundary. */
-    const std::vector<double> &reactions() const;
+    const std::vector<double> &reactions() const override;
+    void fill_counters(std::map<std::string, double> &counters) const override;
 
     const OneStepProblem<dim> &problem() const { return problem_; }
 

@@ -247,7 +247,7 @@ namespace nsfd
 
   template <int dim>
   StepReport SmoothMotion<dim>::advance(const State &old, const double h,
-                                        State &next)
+                                        State &next, unsigned int)
   {
     return equations_->advance(old, h, next);
   }
@@ -268,6 +268,15 @@ namespace nsfd
   auto SmoothMotion<dim>::counters() const -> const Counters &
   {
     return equations_->counters;
+  }
+
+  template <int dim>
+  void SmoothMotion<dim>::fill_counters(std::map<std::string, double> &c) const
+  {
+    c["arkode_steps"] = double(counters().steps);
+    c["arkode_evaluations"] = double(counters().evaluations);
+    c["arkode_linear_solves"] = double(counters().linear_solves);
+    c["krylov"] = double(counters().iterations);
   }
 
   template class SmoothMotion<2>;

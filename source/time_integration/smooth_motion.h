@@ -1,6 +1,8 @@
 #pragma once
 
-#include "moreau_jean.h"
+#include "time_integrator.h"
+
+#include "nsfd/discretization/discretization.h"
 
 #include <memory>
 #include <vector>
@@ -22,7 +24,7 @@ namespace nsfd
    * of the integration.
    */
   template <int dim>
-  class SmoothMotion
+  class SmoothMotion final : public TimeIntegrator<dim>
   {
   public:
     /**
@@ -33,16 +35,18 @@ namespace nsfd
     SmoothMotion(const SceneInput &input,
                  const Discretization<dim> &discretization,
                  Dynamics<dim> &dynamics, const State &start);
-    ~SmoothMotion();
+    ~SmoothMotion() override;
 
     /**
      * From @p old over @p time_step, in as many steps of the pairs as the
-     * tolerance asks for. @throws StepRejected if ARKODE gives up. Collective.
+     * tolerance asks for. Rejected is what ARKODE gives up. Collective.
      */
-    StepReport advance(const State &old, double time_step, State &next);
+    StepReport advance(const State &old, double time_step, State &next,
+                       unsigned int idle_rounds) override;
 
-    /** Force on each driven boundary at the end, dim per boundary. */
-    const std::vector<double> &reactions() const;
+    /** At the end of the step. */
+    const std::vector<double> &reactions() const override;
+    void fill_counters(std::map<std::string, double> &counters) const override;
 
     void remember(Archive &archive);
 

@@ -1,0 +1,127 @@
+#include "step_controller.h"
+
+#include "core/archive.h"
+#include "core/stop_request.h"
+#include "input/formula_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace nsfd
+{
+  std::string bad_formulas_text(const Communicator &communicator)
+  {
+    return fmt::format("{}", fmt::join(bad_formulas(communicator), "; "));
+  }
+
+  /** Down the ladder at once where points soften, up one level per step. */
+  template <int dim>
+  void StepController<dim>::choose_step(const State &state)
+  {
+    auto &control = *model_.control;
+    double limit = model_.stepper->automatic_step(state, control.base_step());
+    if (control.time() < redo_until_)
+      limit = std::min(limit, redo_step_);
+    control.limit(limit);
+    control.set_ceiling(limit);
+  }
+
+  /**
+   * `step = auto`: a point came to soften in a step that is too long for it.
+   * True if the step is to be taken again, with shorter ones to its end.
+   */
+  template <int dim>
+  bool StepController<dim>::is_beyond_uniqueness(const StepReport &report,
+                                                 const State &state,
+                                                 const State &next)
+  {
+    auto &control = *model_.control;
+    if (input_.time.step_kind != StepKind::automatic || !report.beyond_unique ||
+        !control.can_halve())
+      return false;
+    const double h = control.step();
+    const double unique = model_.stepper->unique_step(state, next);
+    if (h < unique)
+      return false; // by laws alone that no step is short enough for
+    redo_until_ = control.time() + h * (1. - 1e-9);
+    redo_step_ = MoreauJean<dim>::bound_share * unique;
+    control.limit(redo_step_);
+    ++redone_;
+    return true;
+  }
+
+  /**
+   * A bonded point went too far beyond its strength. True if the step is to be
+   * taken again, to where the first of them reaches it; three levels down the
+   * ladder a front is steeper than the mesh resolves.
+   */
+  template <int dim>
+  bool StepController<dim>::overshoots(const StepReport &report)
+  {
+    auto &control = *model_.control;
+    if (report.overshoot <= input_.time.largest_overshoot ||
+        control.level() >= 3 || !control.can_halve())
+      return false;
+    const double h = control.step();
+    control.limit(std::clamp(report.share, 0.125, 0.5) * h);
+    ++redone_;
+    return true;
+  }
+
+  template <int dim>
+  auto StepController<dim>::step(TimeIntegrator<dim> &integrator,
+                                 const State &state, State &next,
+                                 StepReport &report, std::string &failure)
+      -> Outcome
+  {
+    auto &control = *model_.control;
+    if (input_.time.step_kind == StepKind::automatic)
+      choose_step(state);
+    // A shorter step is the cure for a step with several solutions, but not
+    // for every hard one: each further attempt may cost twice as much.
+    const unsigned int doublings =
+        control.can_halve() ? std::min(attempts_, 10u) : 10;
+    // the one place that catches StepRejected and shortens the step
+    try {
+      const stop_request::Interruptible interruptible(communicator_.size());
+      report = integrator.advance(state, control.step(), next,
+                                  SolverControl().idle_rounds << doublings);
+    } catch (const StepRejected &rejected) {
+      failure = bad_formulas_text(communicator_);
+      if (!failure.empty())
+        return Outcome::failed;
+      ++rejected_;
+      ++attempts_;
+      if (control.halve())
+        return Outcome::again;
+      failure = fmt::format("{}; {} halvings did not help", rejected.what(),
+                            input_.time.maximum_halvings);
+      return Outcome::failed;
+    }
+    // no shorter step makes numbers of what is none
+    failure = bad_formulas_text(communicator_);
+    if (!failure.empty())
+      return Outcome::failed;
+    return is_beyond_uniqueness(report, state, next) || overshoots(report)
+               ? Outcome::again
+               : Outcome::taken;
+  }
+
+  template <int dim>
+  void
+  StepController<dim>::fill_counters(std::map<std::string, double> &c) const
+  {
+    c["rejected_steps"] = rejected_;
+    c["redone_steps"] = redone_;
+  }
+
+  template <int dim>
+  void StepController<dim>::serialize(Archive &archive)
+  {
+    archive.numbers("step_controller", attempts_, redo_until_, redo_step_);
+  }
+
+  template class StepController<2>;
+  template class StepController<3>;
+} // namespace nsfd

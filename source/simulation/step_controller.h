@@ -1,0 +1,64 @@
+#pragma once
+
+#include "model.h"
+
+#include "time_integration/time_integrator.h"
+
+#include <map>
+#include <string>
+
+namespace nsfd
+{
+  /**
+   * How long a step of time is: the base step, bisected where a step is
+   * rejected, where `step = auto` asks for one that has a single solution, or
+   * where bonded points went too far beyond their strength. The ladder of
+   * bisected steps itself is Model::control.
+   */
+  template <int dim>
+  class StepController
+  {
+  public:
+    StepController(const SceneInput &input, Model<dim> &model,
+                   const Communicator &communicator)
+        : input_(input), model_(model), communicator_(communicator)
+    {
+    }
+
+    enum class Outcome {
+      taken,
+      again, ///< to be taken again, shorter
+      failed
+    };
+
+    /**
+     * A step of @p integrator from @p state. Formulas that gave no number, and
+     * a step that no bisection helps, are failures, with the reason in
+     * @p failure. Collective.
+     */
+    Outcome step(TimeIntegrator<dim> &integrator, const State &state,
+                 State &next, StepReport &report, std::string &failure);
+
+    /** The step was accepted by everybody else as well. */
+    void accept() { attempts_ = 0; }
+
+    void fill_counters(std::map<std::string, double> &counters) const;
+    void serialize(Archive &archive);
+
+  private:
+    void choose_step(const State &state);
+    bool is_beyond_uniqueness(const StepReport &report, const State &state,
+                              const State &next);
+    bool overshoots(const StepReport &report);
+
+    const SceneInput &input_;
+    Model<dim> &model_;
+    const Communicator &communicator_;
+    unsigned int rejected_ = 0, redone_ = 0;
+    unsigned int attempts_ = 0; ///< at the present step, all rejected
+    double redo_until_ = 0., redo_step_ = 0.; ///< s
+  };
+
+  /** Sentences on formulas that gave no number; empty if none. Collective. */
+  std::string bad_formulas_text(const Communicator &communicator);
+} // namespace nsfd
