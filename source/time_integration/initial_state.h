@@ -2,6 +2,7 @@
 
 #include "delassus/bonded.h"
 #include "nsfd/discretization/discretization.h"
+#include "nsfd/nonsmooth/one_step_problem.h"
 #include "state/state.h"
 
 namespace nsfd
