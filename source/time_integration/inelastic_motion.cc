@@ -142,6 +142,8 @@ namespace nsfd
       v_ = v_linear_;
       if (!move_bodies(next.impulse, v_))
         throw lost();
+      if (energy_scale_ == 0.) // all at rest, and something pulls
+        energy_scale_ = kinetic_product(v_);
       difference.resize(v_.size());
       for (std::size_t k = 0; k < v_.size(); ++k)
         difference[k] = v_[k] - v_linear_[k];

@@ -461,6 +461,9 @@ namespace nsfd
       dynamics.add_velocity_change(impulse_.data(), v.data());
       if (!move_bodies(v))
         throw StepRejected(lost_body(h, old.time));
+      if (energy_scale_ == 0.) // all at rest, and something hits it
+        energy_scale_ = all.sum(
+            bodies_.kinetic_products(bodies_.velocity(), bodies_.velocity()));
       for (std::size_t k = 0; k < difference.size(); ++k)
         difference[k] = bodies_.velocity()[k] - v_middle[k];
       const double change =

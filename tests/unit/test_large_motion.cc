@@ -306,6 +306,42 @@ end
     EXPECT_LT(scene.state.penetration, 1e-9);
   }
 
+  // Nothing moves and nothing pulls: the energies of the step begin at zero.
+  TEST(LargeMotion, BodyAtRestIsHitByAPlate)
+  {
+    Scene<2> scene(R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 2, 1
+  set cells        = 2, 1
+end
+subsection Material: rubber
+  set model         = neo-hookean
+  set Young modulus = 100
+  set Poisson ratio = 0.3
+  set density       = 1
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Obstacle: plate
+  set point      = 0, 0
+  set normal     = 0, 1
+  set velocity y = 0.5
+end
+subsection Time
+  set end  = 100
+  set step = 0.01
+end
+)");
+    for (unsigned int k = 0; k < 5; ++k)
+      EXPECT_LT(scene.advance().ledger_defect, 1e-9) << "step " << k;
+    EXPECT_GT(scene.state.energy.kinetic, 0.);
+    EXPECT_GE(scene.state.energy.impact, 0.);
+  }
+
   // --- no two bodies overlap, whoever they are
 
   using Corners = std::array<dealii::Point<2>, 4>;
