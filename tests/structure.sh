@@ -29,6 +29,7 @@ find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
       return path
     }
     function tell(text) { if (verbose) print "  " text }
+    { ++lines[FILENAME] }
     FNR == 1 { mine = folder(FILENAME) }
     FNR == 1 && mine == "" {
       print FILENAME ": its folder is not in source/LAYERS"; bad = 1
@@ -50,7 +51,6 @@ find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
         if ((its, mine) in uses) { ++circles; tell("circle: " mine " and " its) }
       }
     }
-    { ++lines[FILENAME] }
     BEGIN {
       while ((getline line < "source/LAYERS") > 0)
         if (line !~ /^#/ && split(line, word, " ") > 0) rank[word[1]] = ++n
