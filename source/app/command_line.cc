@@ -106,7 +106,8 @@ namespace nsfd
                  "nsfd");
     app.set_help_flag();
     app.allow_extras();
-    app.footer("Or: nsfd study FILE.prm --vary 'Section/name=a, b', every "
+    app.footer("nsfd run FILE.prm is the same.\n"
+               "Or: nsfd study FILE.prm --vary 'Section/name=a, b', every "
                "combination of values; nsfd study --help says more.\n"
                "    nsfd law NAME, drive one interface point along a path; "
                "nsfd law --help says more.\n"

@@ -15,6 +15,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -123,6 +124,11 @@ int main(int argc, char **argv)
 {
   if (const auto code = run_gmsh_if_asked(argc, argv))
     return *code;
+  // `nsfd run FILE.prm` is `nsfd FILE.prm`
+  if (argc > 1 && argv[1] == std::string("run")) {
+    std::rotate(argv + 1, argv + 2, argv + argc);
+    argv[--argc] = nullptr;
+  }
   if (asks_for_study(argc, argv))
     return study(argc, argv);
   if (argc > 1 && argv[1] == std::string("compare"))

@@ -77,6 +77,8 @@ namespace end_to_end::test_command_line
          {"--resume=output/stop"},
          2,
          "no parameter file is named"},
+        {"run", {"run", stop_scene, "--check"}, 0, "nothing is run"},
+        {"run_of_nothing", {"run"}, 2, "nsfd FILE.prm"},
         {"two_files", {stop_scene, stop_scene}, 2, "one file too many"},
         {"set_without_value", {stop_scene, "--set"}, 2, "--set"},
         {"set_without_equals", {stop_scene, "--set", "Time/end"}, 2, "="},
