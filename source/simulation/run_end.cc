@@ -33,22 +33,29 @@ namespace nsfd
     /** One sentence on where the time went. */
     std::string costs(const Summary &s)
     {
-      double seconds = 0.;
-      for (const auto &[name, value] : s.timings)
-        if (name != "set-up" && name != "equilibria" && name != "output")
-          seconds += value;
-      const double steps = std::max(1., double(s.steps));
-      const auto counter = [&](const char *name) {
+      const auto counter = [&](const std::string &name) {
         const auto found = s.counters.find(name);
         return found == s.counters.end() ? 0. : found->second;
       };
+      // a static start is no step, steps of the load are
+      const bool has_loads = s.counters.count("shortened_load_steps") != 0;
+      const auto sum = [&](const std::string &name) {
+        return counter(name) +
+               (has_loads ? counter("equilibrium_" + name) : 0.);
+      };
+      double seconds = 0.;
+      for (const auto &[name, value] : s.timings)
+        if (name != "set-up" && name != "output" &&
+            (name != "equilibria" || has_loads))
+          seconds += value;
+      const double steps = std::max(1., double(s.steps));
       return wrapped(
           fmt::format("{} step{} in {}, at most {:.0f} MB; per step {}, Newton "
                       "{:.2f}, Krylov {:.1f}, sweeps {:.1f}",
                       s.steps, s.steps == 1 ? "" : "s",
                       Progress::duration(s.wall_seconds), s.peak_memory_mb,
-                      engineering(seconds / steps, "s"),
-                      counter("newton") / steps, counter("krylov") / steps,
+                      engineering(seconds / steps, "s"), sum("newton") / steps,
+                      sum("krylov") / steps,
                       counter("gauss_seidel_sweeps") / steps),
           2);
     }
