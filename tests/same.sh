@@ -1,11 +1,11 @@
 #!/bin/sh
 # same.sh OLD NEW [SECONDS] [SCENE ...]: two programs on the same scenes
-# (prm/verification and prm/stability), on 1 and 2 ranks and, on one, through a
-# checkpoint. history.csv, tables, fields and pictures must be the same byte
-# for byte, summary.json but for its times, versions and memory. Runs that take longer than SECONDS
-# (60) are compared as far as both came: they are ended by their number of steps.
+# (prm/verification and prm/stability), on 1 and 2 ranks. history.csv, tables,
+# fields and pictures must be the same byte for byte, and summary.json up to its
+# `cost`, but for times and memory; report pages and checkpoints are not looked
+# at. Runs that take longer than SECONDS (60) are named and not compared.
 set -eu
-[ $# -ge 2 ] || { sed -n '2,7s/^# //p' "$0" >&2; exit 2; }
+[ $# -ge 2 ] || { sed -n '2,6s/^# //p' "$0" >&2; exit 2; }
 old=$1 new=$2
 shift 2
 seconds=${1:-60}
