@@ -22,7 +22,7 @@ namespace nsfd
    *
    * holds to round-off, plastic and viscous never negative; numerical is zero
    * for theta = 1/2, but for saturating hardening with viscosity, where it is
-   * of third order. See doc/plasticity.md.
+   * of third order. See doc/materials.md.
    */
   class J2Flow
   {
