@@ -8,6 +8,7 @@
 #              scenes, scripts and pictures in backticks
 #   code       classes and functions() in backticks: words of the sources
 #   index      doc/README.md links every document of doc/
+#   layers     doc/code_tour.md shows every folder of source/LAYERS
 set -eu
 
 scratch=$(mktemp -d)
@@ -164,6 +165,12 @@ for document in doc/*.md; do
   name=$(basename "$document")
   if [ "$name" != README.md ] && ! grep -q "]($name)" doc/README.md; then
     echo "doc/README.md: does not list $name"
+    status=1
+  fi
+done
+for layer in $(sed '/^#/d; s/ .*//' source/LAYERS); do
+  if ! grep -q "^ .*\b$layer\b" doc/code_tour.md; then
+    echo "doc/code_tour.md: does not show the layer $layer"
     status=1
   fi
 done
