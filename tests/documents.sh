@@ -8,6 +8,7 @@
 #              scenes, scripts and pictures in backticks
 #   code       classes and functions() in backticks: words of the sources
 #   index      doc/README.md links every document of doc/
+#   comments   doc/*.md that sources, scenes and scripts name exist
 #   layers     doc/code_tour.md shows every folder of source/LAYERS
 set -eu
 
@@ -168,6 +169,16 @@ for document in doc/*.md; do
     status=1
   fi
 done
+grep -rnoE 'doc/[a-z_/]+\.md' source include tests prm --include='*.cc' \
+  --include='*.h' --include='*.prm' --include='*.sh' |
+  while IFS=: read -r file line document; do
+    [ -e "$document" ] || [ "$file" = tests/documents.sh ] ||
+      echo "$file:$line: no document $document"
+  done >"$scratch/comments"
+if [ -s "$scratch/comments" ]; then
+  cat "$scratch/comments"
+  status=1
+fi
 for layer in $(sed '/^#/d; s/ .*//' source/LAYERS); do
   if ! grep -q "^ .*\b$layer\b" doc/code_tour.md; then
     echo "doc/code_tour.md: does not show the layer $layer"
