@@ -1,6 +1,6 @@
 #pragma once
 
-// The one precompiled header: what is heavy and needed by many files.
+// What is heavy and needed by many files of all the folders.
 
 #include <algorithm>
 #include <array>
@@ -17,16 +17,3 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <mpi.h>
-
-#include <deal.II/base/exceptions.h>
-#include <deal.II/base/point.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/base/tensor.h>
-#include <deal.II/distributed/shared_tria.h>
-#include <deal.II/distributed/tria.h>
-#include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/tria.h>
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
