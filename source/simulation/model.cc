@@ -1,5 +1,7 @@
 #include "model.h"
 
+#include "time_integration/linear_moreau_jean.h"
+#include "time_integration/newton_moreau_jean.h"
 #include "time_integration/stable_step.h"
 
 #include "input/formula_check.h"
@@ -89,19 +91,15 @@ namespace nsfd
   {
     solver = SolverRegistry<dim>::instance().create(
         input.solver.method == "auto" ? "chain" : input.solver.method);
-    if (moving) {
-      auto large = std::make_unique<LargeMotion<dim>>(
-          input, *discretization, *moving, *dynamics, *solver);
-      large_motion = large.get();
-      stepper = std::move(large);
-    } else if (inelastic) {
-      auto flowing = std::make_unique<InelasticMotion<dim>>(
-          input, *discretization, *inelastic, *dynamics, *solver);
-      inelastic_motion = flowing.get();
-      stepper = std::move(flowing);
-    } else
-      stepper = std::make_unique<MoreauJean<dim>>(input, *discretization,
-                                                  *dynamics, *solver, bonded);
+    if (moving)
+      stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
+                                                        *moving, *dynamics);
+    else if (inelastic)
+      stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
+                                                        *inelastic, *dynamics);
+    else
+      stepper = std::make_unique<LinearMoreauJean<dim>>(
+          input, *discretization, *dynamics, *solver, bonded);
   }
 
   template <int dim>

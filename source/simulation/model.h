@@ -1,8 +1,7 @@
 #pragma once
 
-#include "time_integration/inelastic_motion.h"
-#include "time_integration/large_motion.h"
-
+#include "bodies/inelastic_bodies.h"
+#include "bodies/moving_bodies.h"
 #include "delassus/bonded.h"
 #include "mesh/mesh_builder.h"
 #include "nsfd/scene/scene_input.h"
@@ -37,9 +36,7 @@ namespace nsfd
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
-    LargeMotion<dim> *large_motion = nullptr;         ///< the same, or null
-    InelasticMotion<dim> *inelastic_motion = nullptr; ///< the same, or null
-    std::unique_ptr<QuasiStatic<dim>> quasi_static;   ///< or null
+    std::unique_ptr<QuasiStatic<dim>> quasi_static; ///< or null
 
     /** Steps in time from @p start on. */
     std::unique_ptr<StepControl> dynamic_control(const SceneInput &input,

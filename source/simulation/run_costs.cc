@@ -177,10 +177,8 @@ namespace nsfd
         {"update of bodies", t.update},
         {"energy ledger", t.ledger},
         {"output", output}};
-    if (model.large_motion)
-      stages.insert(stages.begin() + 2,
-                    {"contact search",
-                     model.large_motion->motion_counters().search_seconds});
+    if (model.moving)
+      stages.insert(stages.begin() + 2, {"contact search", t.contact_search});
     if (model.quasi_static) {
       const auto &q = model.quasi_static->timings();
       stages.insert(stages.begin() + 1,

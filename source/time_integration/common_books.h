@@ -1,8 +1,8 @@
 #pragma once
 
-#include "moreau_jean.h"
 #include "nonsmooth/point_law.h"
 #include "state/point_fields.h"
+#include "time_integrator.h"
 
 #include <algorithm>
 #include <cmath>

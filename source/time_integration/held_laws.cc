@@ -23,14 +23,14 @@ namespace nsfd
   {
     const PointKind kind = old_->kind[i];
     return (kind == PointKind::cohesive || kind == PointKind::rigid) &&
-           this->problem_.interactions[this->problem_.interaction[i]].law;
+           problem_.interactions[problem_.interaction[i]].law;
   }
 
   template <int dim>
   bool Relaxation<dim>::has_laws() const
   {
     bool any = false;
-    for (const auto &block : this->input_.interfaces)
+    for (const auto &block : input_.interfaces)
       any = any || block.law;
     return any;
   }
@@ -49,8 +49,8 @@ namespace nsfd
     held_.resize(old_->kind.size());
     for (std::size_t i = 0; i < held_.size(); ++i)
       held_[i] = history(i);
-    interactions_ = this->problem_.interactions;
-    interaction_ = this->problem_.interaction;
+    interactions_ = problem_.interactions;
+    interaction_ = problem_.interaction;
   }
 
   template <int dim>
@@ -59,15 +59,15 @@ namespace nsfd
     if (!holds_)
       return;
     holds_ = false;
-    this->problem_.interactions = interactions_;
-    this->problem_.interaction = interaction_;
+    problem_.interactions = interactions_;
+    problem_.interaction = interaction_;
   }
 
   /** Springs in place of the laws of a round; joints stay as they are. */
   template <int dim>
   void Relaxation<dim>::hold()
   {
-    auto &problem = this->problem_;
+    auto &problem = problem_;
     problem.interactions = interactions_;
     problem.interaction = interaction_;
     for (std::size_t i = 0; i < problem.n_points; ++i) {
@@ -103,23 +103,23 @@ namespace nsfd
   {
     double jump[dim];
     for (unsigned int c = 0; c < dim; ++c)
-      jump[c] = this->problem_.jump_free[i * dim + c] +
-                h_ * solutions_[i].velocity[c];
+      jump[c] =
+          problem_.jump_free[i * dim + c] + h_ * solutions_[i].velocity[c];
     return reach_of<dim>(interactions_[interaction_[i]], jump);
   }
 
   template <int dim>
   auto Relaxation<dim>::prediction() -> Prediction
   {
-    const auto &communicator = this->dynamics_.communicator();
-    auto &problem = this->problem_;
+    const auto &communicator = dynamics_.communicator();
+    auto &problem = problem_;
     std::vector<double> impulse = force_;
     for (double &P : impulse)
       P *= h_;
     const auto joints =
-        this->has_extrinsic_
-            ? strength_shares(this->dynamics_, this->discretization_.origins(),
-                              impulse, problem)
+        step_problem_.has_extrinsic()
+            ? strength_shares(dynamics_, discretization_.origins(), impulse,
+                              problem)
             : std::vector<double>();
     std::vector<unsigned int> springs = interaction_;
     springs.swap(problem.interaction); // of the laws
@@ -169,15 +169,15 @@ namespace nsfd
   bool Relaxation<dim>::let_damage_grow(double &largest_growth,
                                         const double stretch)
   {
-    const auto &communicator = this->dynamics_.communicator();
-    auto &problem = this->problem_;
+    const auto &communicator = dynamics_.communicator();
+    auto &problem = problem_;
     largest_growth = 0.;
-    if (this->has_extrinsic_) {
+    if (step_problem_.has_extrinsic()) {
       std::vector<double> impulse = force_;
       for (double &P : impulse)
         P *= h_;
-      const auto joints = strength_shares(
-          this->dynamics_, this->discretization_.origins(), impulse, problem);
+      const auto joints = strength_shares(dynamics_, discretization_.origins(),
+                                          impulse, problem);
       for (std::size_t i = 0; i < joints.size(); ++i)
         if (joints[i] > 1. + least_growth) {
           const CohesiveLaw &law = *interactions_[interaction_[i]].law;
@@ -224,7 +224,7 @@ namespace nsfd
   std::pair<double, std::size_t>
   Relaxation<dim>::least_passage(const State &next, const bool path) const
   {
-    const auto &problem = this->problem_;
+    const auto &problem = problem_;
     std::pair<double, std::size_t> least(1., 0);
     for (std::size_t i = 0; i < problem.n_owned; ++i) {
       if (!may_damage(i) ||

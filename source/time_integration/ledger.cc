@@ -3,7 +3,6 @@
 #include "common_books.h"
 #include "step_data.h"
 
-#include "moreau_jean.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>

@@ -92,14 +92,13 @@ namespace nsfd
   }
 
   template <int dim>
-  const typename MoreauJean<dim>::Counters &
-  QuasiStatic<dim>::solver_counters() const
+  const StepCounters &QuasiStatic<dim>::solver_counters() const
   {
     return relaxation_->counters();
   }
 
   template <int dim>
-  const typename MoreauJean<dim>::Timings &QuasiStatic<dim>::timings() const
+  const StepTimings &QuasiStatic<dim>::timings() const
   {
     return relaxation_->timings();
   }

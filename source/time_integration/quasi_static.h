@@ -1,6 +1,10 @@
 #pragma once
 
-#include "moreau_jean.h"
+#include "step_costs.h"
+#include "time_integrator.h"
+
+#include "delassus/dynamics.h"
+#include "nsfd/discretization/discretization.h"
 
 #include <memory>
 
@@ -81,8 +85,8 @@ namespace nsfd
       unsigned long long equilibria = 0, rounds = 0, step_changes = 0;
     };
     const Counters &counters() const { return counters_; }
-    const typename MoreauJean<dim>::Counters &solver_counters() const;
-    const typename MoreauJean<dim>::Timings &timings() const;
+    const StepCounters &solver_counters() const;
+    const StepTimings &timings() const;
     const typename Dynamics<dim>::Counters &dynamics_counters() const
     {
       return dynamics_->counters();

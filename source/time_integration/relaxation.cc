@@ -1,11 +1,9 @@
 #include "relaxation.h"
 
 #include "activation.h"
-#include "crack_pressure.h"
 #include "driven_motion.h"
-#include "ledger.h"
+#include "point_name.h"
 #include "step_data.h"
-#include "uniqueness.h"
 
 #include "core/archive.h"
 #include "core/cost.h"
@@ -31,6 +29,25 @@ namespace nsfd
   }
 
   template <int dim>
+  Relaxation<dim>::Relaxation(const SceneInput &input,
+                              const Discretization<dim> &discretization,
+                              Dynamics<dim> &dynamics,
+                              NonsmoothSolver<dim> &solver)
+      : input_(input), discretization_(discretization), dynamics_(dynamics),
+        solver_(solver), problem_(constant_data(input, discretization)),
+        free_motion_(input, discretization, dynamics),
+        step_problem_(input, discretization, dynamics, counters_)
+  {
+  }
+
+  template <int dim>
+  std::string Relaxation<dim>::face(const std::size_t point) const
+  {
+    return name_of_point<dim>(input_, discretization_.origins(),
+                              discretization_.points().position, point);
+  }
+
+  template <int dim>
   void Relaxation<dim>::begin(const State &old, const double time,
                               const double duration)
   {
@@ -46,11 +63,11 @@ namespace nsfd
     joint_loads_known_ = false;
     target_ = old.jump;
     for (std::size_t i = 0; i < old.kind.size(); ++i) {
-      const PointOrigin origin = this->discretization_.origins()[i];
+      const PointOrigin origin = discretization_.origins()[i];
       if (origin.kind != PointOrigin::Kind::motion)
         continue;
-      const auto &boundary = this->input_.boundaries[origin.block];
-      const auto x = this->discretization_.position(i);
+      const auto &boundary = input_.boundaries[origin.block];
+      const auto x = discretization_.position(i);
       for (unsigned int c = 0; c < dim; ++c)
         if (boundary.displacement[c])
           target_[i * dim + c] = boundary.displacement[c]->at(x, time);
@@ -61,9 +78,9 @@ namespace nsfd
     if (support_.empty())
       set_support();
     set_scales();
-    this->set_loads(time);
-    if (this->crack_pressure_)
-      this->crack_pressure_->evaluate(old, time, pressure_);
+    if (free_motion_.set_loads(time))
+      ++counters_.load_assemblies;
+    free_motion_.set_pressure(old, time, pressure_);
   }
 
   template <int dim>
@@ -76,18 +93,18 @@ namespace nsfd
   template <int dim>
   void Relaxation<dim>::set_scales()
   {
-    const auto &communicator = this->dynamics_.communicator();
-    const auto &bodies = this->dynamics_.bodies();
+    const auto &communicator = dynamics_.communicator();
+    const auto &bodies = dynamics_.bodies();
     double largest = 0.;
     for (const double value : old_->displacement)
       largest = std::max(largest, std::abs(value));
     for (std::size_t i = 0; i < old_->kind.size(); ++i)
-      if (this->discretization_.origins()[i].kind == PointOrigin::Kind::motion)
+      if (discretization_.origins()[i].kind == PointOrigin::Kind::motion)
         for (unsigned int c = 0; c < dim; ++c)
           largest = std::max(largest, std::abs(target_[i * dim + c]));
     // some bits of K q, seen from the goal
     const double share =
-        1e-14 / this->input_.statics->tolerance * communicator.max(largest);
+        1e-14 / input_.statics->tolerance * communicator.max(largest);
     std::vector<double> diagonal(bodies.n_dofs(), 0.);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const BodyClass &body = bodies.classes[bodies.class_of[b]];
@@ -97,7 +114,7 @@ namespace nsfd
     round_off_ =
         share * std::sqrt(communicator.dot(diagonal.data(), diagonal.data(),
                                            bodies.n_dofs()));
-    std::vector<double> terms(this->problem_.n_owned, 0.), supports = terms;
+    std::vector<double> terms(problem_.n_owned, 0.), supports = terms;
     for (std::size_t i = 0; i < terms.size(); ++i) {
       supports[i] = support_[i];
       for (unsigned int c = 0; c < dim; ++c)
@@ -112,7 +129,7 @@ namespace nsfd
   template <int dim>
   void Relaxation<dim>::constrain(const double h)
   {
-    auto &problem = this->problem_;
+    auto &problem = problem_;
     const State &old = *old_;
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       const double *u = &at_.jump[i * dim], *start = &old.jump[i * dim];
@@ -144,12 +161,12 @@ namespace nsfd
   template <int dim>
   void Relaxation<dim>::set_support()
   {
-    const auto &problem = this->problem_;
+    const auto &problem = problem_;
     double stiffness = 0.;
-    for (unsigned int m = 0; m < this->input_.materials.size(); ++m)
+    for (unsigned int m = 0; m < input_.materials.size(); ++m)
       stiffness =
-          std::max(stiffness, this->discretization_.extremes(m).stiffest.young);
-    stiffness /= this->discretization_.cell_size();
+          std::max(stiffness, discretization_.extremes(m).stiffest.young);
+    stiffness /= discretization_.cell_size();
     support_.resize(problem.n_points);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       double kappa = stiffness;
@@ -165,7 +182,7 @@ namespace nsfd
   template <int dim>
   void Relaxation<dim>::soften(const double h)
   {
-    auto &problem = this->problem_;
+    auto &problem = problem_;
     std::vector<double> least(problem.n_points * dim);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       for (auto *majorant :
@@ -175,14 +192,14 @@ namespace nsfd
         least[i * dim + c] = 0.03 * (c == 0 ? problem.majorant_normal[i]
                                             : problem.majorant_tangential[i]);
     }
-    this->dynamics_.set_least_compliance(std::move(least));
+    dynamics_.set_least_compliance(std::move(least));
   }
 
   /** As far as the iterate is open, or the equilibrium before it. */
   template <int dim>
   void Relaxation<dim>::set_start(const std::size_t i, Reach &start) const
   {
-    const auto &problem = this->problem_;
+    const auto &problem = problem_;
     start = reach_of<dim>(problem.interactions[problem.interaction[i]],
                           &problem.jump_old[i * dim]);
     start.opening = std::max(start.opening, at_.opening_max[i]);
@@ -194,11 +211,11 @@ namespace nsfd
   SolverReport Relaxation<dim>::relax(std::vector<double> &q, const double h,
                                       const double tolerance)
   {
-    auto &dynamics = this->dynamics_;
+    auto &dynamics = dynamics_;
     const std::size_t n = q.size();
     h_ = h;
     {
-      const Stopwatch watch(this->timings_.assembly);
+      const Stopwatch watch(timings_.assembly);
       const Charge charge(Cost::free_motion);
       std::vector<double> change(n);
       for (std::size_t k = 0; k < n; ++k)
@@ -209,55 +226,50 @@ namespace nsfd
       at_.displacement = q;
       at_.time = time_ - h;
       dynamics.reinit(h, 1.);
-      set_step(this->input_, this->discretization_,
-               this->discretization_.origins(), dynamics, *this->motion_, at_,
-               h, this->problem_);
+      set_step(input_, discretization_, discretization_.origins(), dynamics,
+               step_problem_.motion(), at_, h, problem_);
       constrain(h);
-      if (this->has_extrinsic_ && !joint_loads_known_) {
+      if (step_problem_.has_extrinsic() && !joint_loads_known_) {
         std::vector<double> impulse = force_;
         for (double &P : impulse)
           P *= h;
-        joint_loads_ = strength_shares(
-            dynamics, this->discretization_.origins(), impulse, this->problem_);
+        joint_loads_ = strength_shares(dynamics, discretization_.origins(),
+                                       impulse, problem_);
         joint_loads_known_ = true;
       }
       if (holds_)
         hold();
       soften(h);
-      this->move_freely(at_, pressure_);
+      free_motion_.move(at_, pressure_, problem_);
     }
     // the floor of the natural map: the largest forces so far
     const double share = std::max(1e-6, 1e-14 / tolerance);
     const double energy_scale =
         std::max(point_scale_, point_round_off_) / (share * share);
-    LawEvaluation<dim> evaluation(this->problem_, dynamics, energy_scale,
-                                  tolerance);
+    LawEvaluation<dim> evaluation(problem_, dynamics, energy_scale, tolerance);
     for (std::size_t i = 0; i < let_go_.size(); ++i)
       set_start(i, evaluation.solutions[i].reach);
     std::vector<double> impulse = force_;
     for (double &P : impulse)
       P *= h;
-    SolverControl control = this->solver_control(1);
+    SolverControl control = step_problem_.control(1);
     control.tolerance = tolerance;
     SolverReport report;
     {
-      const Stopwatch watch(this->timings_.solve);
+      const Stopwatch watch(timings_.solve);
       const Charge charge(Cost::solver);
-      const bool lets_go = this->has_extrinsic_;
-      this->has_extrinsic_ = lets_go && !holds_;
-      report = this->solve(this->solver_, this->problem_,
-                           this->discretization_.origins(), control,
-                           energy_scale, at_, impulse, evaluation);
-      this->has_extrinsic_ = lets_go;
+      report = step_problem_.solve(solver_, problem_, discretization_.origins(),
+                                   control, energy_scale, at_, impulse,
+                                   evaluation, holds_);
     }
-    const Stopwatch watch(this->timings_.update);
+    const Stopwatch watch(timings_.update);
     const Charge charge(Cost::update);
     worst_point_ = evaluation.worst_point;
     // near round-off a solve may end above its goal: the balance judges it
     report.converged = report.residual <= 10. * tolerance;
     if (!report.converged)
       return report;
-    std::vector<double> velocity = this->v_free_;
+    std::vector<double> velocity = free_motion_.velocity();
     dynamics.add_velocity_change(impulse.data(), velocity.data());
     for (std::size_t k = 0; k < n; ++k)
       q[k] += h * velocity[k];
@@ -265,7 +277,7 @@ namespace nsfd
       force_[k] = impulse[k] / h;
     solutions_ = evaluation.solutions;
     for (std::size_t i = 0; i < let_go_.size(); ++i)
-      if (this->problem_.kind[i] == PointKind::rigid && solutions_[i].damages &&
+      if (problem_.kind[i] == PointKind::rigid && solutions_[i].damages &&
           !let_go_[i]) {
         let_go_[i] = 1;
         // on its envelope from now on; far below any opening it is held
@@ -280,14 +292,14 @@ namespace nsfd
   template <int dim>
   double Relaxation<dim>::forces_present(const std::vector<double> &q) const
   {
-    const auto &dynamics = this->dynamics_;
+    const auto &dynamics = dynamics_;
     const std::size_t n = q.size();
     const auto norm = [&](const std::vector<double> &x) {
       return std::sqrt(dynamics.communicator().dot(x.data(), x.data(), n));
     };
     std::vector<double> forces(n);
     dynamics.apply(Dynamics<dim>::Operator::stiffness, q.data(), forces.data());
-    double present = std::max(norm(forces), norm(this->forces_));
+    double present = std::max(norm(forces), norm(free_motion_.loads()));
     dynamics.generalised_impulse(force_.data(), forces.data());
     return std::max(present, norm(forces));
   }
@@ -298,7 +310,7 @@ namespace nsfd
                                 const std::vector<double> &velocity)
   {
     using Operator = typename Dynamics<dim>::Operator;
-    const auto &dynamics = this->dynamics_;
+    const auto &dynamics = dynamics_;
     const auto &communicator = dynamics.communicator();
     const std::size_t n = q.size();
     residual_.resize(n);
@@ -314,14 +326,13 @@ namespace nsfd
   template <int dim>
   const OneStepProblem<dim> &Relaxation<dim>::load_step()
   {
-    auto &problem = this->problem_;
+    auto &problem = problem_;
     State start = *old_;
     start.time = time_ - h_;
     std::fill(start.relative_velocity.begin(), start.relative_velocity.end(),
               0.);
-    set_step(this->input_, this->discretization_,
-             this->discretization_.origins(), this->dynamics_, *this->motion_,
-             start, h_, problem);
+    set_step(input_, discretization_, discretization_.origins(), dynamics_,
+             step_problem_.motion(), start, h_, problem);
     for (std::size_t i = 0; i < let_go_.size(); ++i)
       if (let_go_[i]) {
         problem.kind[i] = PointKind::rigid;

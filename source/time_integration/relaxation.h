@@ -1,8 +1,12 @@
 #pragma once
 
-#include "moreau_jean.h"
-#include "nsfd/scene/scene_input.h"
+#include "free_motion.h"
+#include "step_problem.h"
 
+#include "nsfd/scene/scene_input.h"
+#include "state/state.h"
+
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,16 +34,13 @@ namespace nsfd
    * The natural map then weighs errors of jumps as errors of forces.
    */
   template <int dim>
-  class Relaxation : public MoreauJean<dim>
+  class Relaxation
   {
   public:
     /** @p input is a static_scene() and outlives this. */
     Relaxation(const SceneInput &input,
                const Discretization<dim> &discretization,
-               Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver)
-        : MoreauJean<dim>(input, discretization, dynamics, solver)
-    {
-    }
+               Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver);
 
     /**
      * From the equilibrium @p old, which outlives the rounds, to loads and
@@ -117,15 +118,15 @@ namespace nsfd
     /** The largest forces so far. */
     void remember(Archive &archive);
 
-    const std::vector<double> &forces() const { return this->forces_; }
+    const std::vector<double> &forces() const { return free_motion_.loads(); }
     const std::vector<double> &pressure() const { return pressure_; }
     /** Of the equilibrium that is looked for, s. */
     double time() const { return time_; }
-    std::string worst_face() const { return this->describe(worst_point_); }
-    std::string face(const std::size_t point) const
-    {
-      return this->describe(point);
-    }
+    std::string worst_face() const { return face(worst_point_); }
+    std::string face(std::size_t point) const;
+
+    const StepTimings &timings() const { return timings_; }
+    const StepCounters &counters() const { return counters_; }
 
   private:
     void set_start(std::size_t point, Reach &start) const;
@@ -140,6 +141,16 @@ namespace nsfd
     double forces_present(const std::vector<double> &q) const;
     void measure(const std::vector<double> &q, double h,
                  const std::vector<double> &velocity);
+
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    Dynamics<dim> &dynamics_;
+    NonsmoothSolver<dim> &solver_;
+    StepTimings timings_;
+    StepCounters counters_;
+    OneStepProblem<dim> problem_;
+    FreeMotion<dim> free_motion_;
+    StepProblem<dim> step_problem_;
 
     const State *old_ = nullptr;
     State at_; ///< the iterate as the start of a step

@@ -36,8 +36,8 @@ namespace nsfd
   template <int dim>
   double Relaxation<dim>::softening()
   {
-    auto &dynamics = this->dynamics_;
-    const auto &problem = this->problem_;
+    auto &dynamics = dynamics_;
+    const auto &problem = problem_;
     const auto &communicator = dynamics.communicator();
     const std::size_t n = problem.n_points * dim;
     // one row per point that damages: its weight and its direction

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "relaxation.h"
+#include "time_integrator.h"
 
 namespace nsfd
 {

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "time_integration/inelastic_motion.h"
-#include "time_integration/large_motion.h"
-
+#include "bodies/inelastic_bodies.h"
+#include "bodies/moving_bodies.h"
 #include "delassus/bonded.h"
 #include "discretization/node_coordinates.h"
 #include "input/read_scene.h"
 #include "mesh/mesh_builder.h"
 #include "nonsmooth/solver.h"
 #include "nsfd/discretization/discretization.h"
-#include "time_integration/moreau_jean.h"
+#include "time_integration/linear_moreau_jean.h"
+#include "time_integration/newton_moreau_jean.h"
 
 #include <memory>
 #include <stdexcept>
@@ -91,13 +91,13 @@ namespace nsfd
         solver = SolverRegistry<dim>::instance().create(
             input->solver.method == "auto" ? "chain" : input->solver.method);
         if (moving)
-          stepper = std::make_unique<LargeMotion<dim>>(
-              *input, *discretization, *moving, *dynamics, *solver);
+          stepper = std::make_unique<NewtonMoreauJean<dim>>(
+              *input, *discretization, *moving, *dynamics);
         else if (inelastic)
-          stepper = std::make_unique<InelasticMotion<dim>>(
-              *input, *discretization, *inelastic, *dynamics, *solver);
+          stepper = std::make_unique<NewtonMoreauJean<dim>>(
+              *input, *discretization, *inelastic, *dynamics);
         else
-          stepper = std::make_unique<MoreauJean<dim>>(
+          stepper = std::make_unique<LinearMoreauJean<dim>>(
               *input, *discretization, *dynamics, *solver, bonded);
         dynamics->reinit(time_step, input->time.bulk_theta());
         state = stepper->initial_state();

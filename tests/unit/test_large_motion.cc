@@ -1,6 +1,7 @@
 #include "make_scene.h"
 #include "momenta.h"
 #include "separating_axes.h"
+#include "time_integration/large_motion_model.h"
 
 #include <gtest/gtest.h>
 
@@ -651,6 +652,15 @@ end
     return -test::dot(n, difference(high[0], low[6])) / norm(n);
   }
 
+  const SurfaceContacts<3>::Counters &contact_counters(const Scene<3> &scene)
+  {
+    const auto &stepper =
+        dynamic_cast<const NewtonMoreauJean<3> &>(*scene.stepper);
+    return dynamic_cast<const LargeMotionModel<3> &>(stepper.bodies())
+        .contacts()
+        ->counters();
+  }
+
   /** Checks momenta and energy of bricks that meet off centre; the deepest
       overlap of the edges over the length of the step, m/s. */
   void falls_edge_on_edge(const CrossedBricks &bricks,
@@ -658,8 +668,6 @@ end
                           const unsigned int n_steps, double &overlap)
   {
     Scene<3> scene(bricks.text(), overrides);
-    const auto *motion =
-        dynamic_cast<const LargeMotion<3> *>(scene.stepper.get());
     const auto start = momenta(scene);
     double energy = scene.energy(), deepest = 0.;
     const double first = energy;
@@ -672,7 +680,7 @@ end
       energy = scene.energy();
       deepest = std::max(deepest, overlap_of_edges(scene));
     }
-    EXPECT_GT(motion->contacts()->counters().edge_rows, 0u);
+    EXPECT_GT(contact_counters(scene).edge_rows, 0u);
     EXPECT_LT(energy, 0.999 * first);
     const auto end = momenta(scene);
     EXPECT_LT(norm(difference(end[0], start[0])), 1e-9 * norm(start[0]));
@@ -841,10 +849,7 @@ end
       });
       scene.advance_halving();
     }
-    const auto *motion =
-        dynamic_cast<const LargeMotion<3> *>(scene.stepper.get());
-    const auto &counters = motion->contacts()->counters();
-    EXPECT_GT(counters.edge_rows, 100u);
+    EXPECT_GT(contact_counters(scene).edge_rows, 100u);
     EXPECT_GT(deepest, 0.);
     EXPECT_LE(deepest, fastest * scene.time_step);
     RecordProperty("deepest", std::to_string(deepest));

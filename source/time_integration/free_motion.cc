@@ -1,0 +1,106 @@
+#include "free_motion.h"
+
+#include "crack_pressure.h"
+
+#include "nsfd/scene/scene_input.h"
+#include "state/state.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  FreeMotion<dim>::FreeMotion(const SceneInput &input,
+                              const Discretization<dim> &discretization,
+                              Dynamics<dim> &dynamics)
+      : input_(input), discretization_(discretization), dynamics_(dynamics),
+        crack_pressure_(CrackPressure<dim>::make(input, discretization)),
+        loads_(discretization.bodies().n_dofs(), 0.)
+  {
+  }
+
+  template <int dim>
+  FreeMotion<dim>::~FreeMotion() = default;
+
+  template <int dim>
+  bool FreeMotion<dim>::set_loads(const double time)
+  {
+    if (!discretization_.has_loads())
+      return false;
+    if (loads_known_ &&
+        (!discretization_.loads_depend_on_time() || loads_time_ == time))
+      return false;
+    std::fill(loads_.begin(), loads_.end(), 0.);
+    discretization_.add_loads(time, loads_);
+    loads_known_ = true;
+    loads_time_ = time;
+    return true;
+  }
+
+  template <int dim>
+  void FreeMotion<dim>::set_pressure(const State &old, const double time,
+                                     std::vector<double> &pressure) const
+  {
+    if (crack_pressure_)
+      crack_pressure_->evaluate(old, time, pressure);
+  }
+
+  template <int dim>
+  std::vector<double>
+  FreeMotion<dim>::pressure_impulse(const std::vector<double> &pressure,
+                                    const double h) const
+  {
+    return crack_pressure_ ? crack_pressure_->impulse(pressure, h)
+                           : std::vector<double>();
+  }
+
+  template <int dim>
+  void FreeMotion<dim>::move(const State &old,
+                             const std::vector<double> &pressure,
+                             OneStepProblem<dim> &problem,
+                             const std::vector<double> *const elastic)
+  {
+    const double h = problem.time_step, theta = input_.time.bulk_theta(),
+                 kick = input_.time.kick(h, old.last_step);
+    const std::size_t n_dofs = old.velocity.size();
+    work_.resize(n_dofs);
+    velocity_.resize(n_dofs);
+    if (elastic)
+      work_ = *elastic;
+    else {
+      for (std::size_t i = 0; i < n_dofs; ++i)
+        velocity_[i] = old.displacement[i] + h * theta * old.velocity[i];
+      dynamics_.apply(Dynamics<dim>::Operator::stiffness, velocity_.data(),
+                      work_.data());
+    }
+    for (std::size_t i = 0; i < n_dofs; ++i)
+      work_[i] = kick * (loads_[i] - work_[i]);
+    if (dynamics_.is_viscous()) {
+      dynamics_.apply(Dynamics<dim>::Operator::damping, old.velocity.data(),
+                      velocity_.data());
+      for (std::size_t i = 0; i < n_dofs; ++i)
+        work_[i] -= h * velocity_[i];
+    }
+    dynamics_.apply(Dynamics<dim>::Operator::inverse, work_.data(),
+                    velocity_.data());
+    for (std::size_t i = 0; i < n_dofs; ++i)
+      velocity_[i] += old.velocity[i];
+    if (crack_pressure_)
+      dynamics_.add_velocity_change(
+          crack_pressure_->impulse(pressure, h).data(), velocity_.data());
+    dynamics_.relative_velocity(velocity_.data(), problem.free_velocity.data());
+    dynamics_.set_free_velocity(&velocity_);
+  }
+
+  template <int dim>
+  double FreeMotion<dim>::kinetic_product()
+  {
+    dynamics_.apply(Dynamics<dim>::Operator::mass, velocity_.data(),
+                    work_.data());
+    return dynamics_.communicator().dot(velocity_.data(), work_.data(),
+                                        velocity_.size());
+  }
+
+  template class FreeMotion<2>;
+  template class FreeMotion<3>;
+} // namespace nsfd

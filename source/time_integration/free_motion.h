@@ -1,0 +1,73 @@
+#pragma once
+
+#include "delassus/dynamics.h"
+#include "nsfd/discretization/discretization.h"
+#include "nsfd/nonsmooth/one_step_problem.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  struct SceneInput;
+  struct State;
+  template <int dim>
+  class CrackPressure;
+
+  /**
+   * The loads of a step, and the motion of linear bodies under them without any
+   * impulse of a point,
+   *
+   *   v_free = v_k + M_hat^{-1} h (F - K (q_k + h theta v_k) - C v_k);
+   *
+   * pressure in cracks is a part of F.
+   */
+  template <int dim>
+  class FreeMotion
+  {
+  public:
+    FreeMotion(const SceneInput &input,
+               const Discretization<dim> &discretization,
+               Dynamics<dim> &dynamics);
+    ~FreeMotion();
+
+    /**
+     * Loads at @p time. Assembled again only if they depend on it: true if they
+     * were.
+     */
+    bool set_loads(double time);
+    /** By unknown, N. */
+    const std::vector<double> &loads() const { return loads_; }
+
+    bool has_crack_pressure() const { return crack_pressure_ != nullptr; }
+    /** In cracks that are as broken as in @p old, Pa by point; without cracks
+        under pressure @p pressure stays as it is. */
+    void set_pressure(const State &old, double time,
+                      std::vector<double> &pressure) const;
+    /** Of this pressure over a step, N s in the frames of the points; empty
+        without cracks under pressure. */
+    std::vector<double> pressure_impulse(const std::vector<double> &pressure,
+                                         double time_step) const;
+
+    /**
+     * v_free of the step from @p old, and U_free in @p problem, whose time step
+     * it is. @p elastic is K q_k of the explicit scheme, else null. Collective.
+     */
+    void move(const State &old, const std::vector<double> &pressure,
+              OneStepProblem<dim> &problem,
+              const std::vector<double> *elastic = nullptr);
+    /** v_free by unknown, m/s. */
+    const std::vector<double> &velocity() const { return velocity_; }
+    /** v_free.M v_free, J. Collective. */
+    double kinetic_product();
+
+  private:
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    Dynamics<dim> &dynamics_;
+    std::unique_ptr<CrackPressure<dim>> crack_pressure_; ///< or null
+    std::vector<double> loads_, velocity_, work_;
+    bool loads_known_ = false;
+    double loads_time_ = 0.;
+  };
+} // namespace nsfd

@@ -1,0 +1,179 @@
+#include "linear_moreau_jean.h"
+
+#include "bond_release.h"
+#include "common_books.h"
+#include "elastic_forces.h"
+#include "initial_state.h"
+#include "ledger.h"
+#include "point_name.h"
+#include "save_problem.h"
+
+#include "core/cost.h"
+#include "core/stopwatch.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  LinearMoreauJean<dim>::LinearMoreauJean(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver,
+      BondedDynamics<dim> *bonded)
+      : MoreauJean<dim>(input, discretization, dynamics), solver_(solver),
+        bonded_(bonded)
+  {
+    if (input.time.scheme == Scheme::symplectic)
+      elastic_forces_ = std::make_unique<ElasticForces<dim>>(dynamics);
+    if (input.has_bonded_faces())
+      bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
+  }
+
+  template <int dim>
+  LinearMoreauJean<dim>::~LinearMoreauJean() = default;
+
+  template <int dim>
+  State LinearMoreauJean<dim>::initial_state() const
+  {
+    State state = nsfd::initial_state(this->input_, this->discretization_,
+                                      this->dynamics_, this->problem_, bonded_);
+    if (bulk_)
+      set_bond_tractions(*bulk_, state);
+    return state;
+  }
+
+  template <int dim>
+  void LinearMoreauJean<dim>::complete(State &state) const
+  {
+    if (bonded_)
+      bonded_->set_bonds(bonded_points(state));
+    set_energies(this->dynamics_, this->problem_, state);
+    if (bulk_)
+      set_bond_tractions(*bulk_, state);
+  }
+
+  template <int dim>
+  std::string LinearMoreauJean<dim>::describe(const std::size_t i) const
+  {
+    return name_of_point<dim>(this->input_, this->discretization_.origins(),
+                              this->discretization_.points().position, i);
+  }
+
+  /** What the step does without impulses, and the data of its points. */
+  template <int dim>
+  void LinearMoreauJean<dim>::start(const State &old, const double h,
+                                    State &next)
+  {
+    const Stopwatch watch(this->timings_.assembly);
+    const Charge charge(Cost::free_motion);
+    const auto &time = this->input_.time;
+    const bool others = bonded_ && bonded_->set_bonds(bonded_points(old));
+    if (elastic_forces_)
+      elastic_forces_->start(old, others);
+    this->dynamics_.reinit(h, time.bulk_theta());
+    this->step_problem_.begin();
+    this->step_problem_.set(this->discretization_.origins(), old, h,
+                            this->problem_);
+    if (this->free_motion_.set_loads(old.time + time.bulk_theta() * h))
+      ++this->counters_.load_assemblies;
+    this->free_motion_.set_pressure(old, old.time + time.theta * h,
+                                    next.pressure);
+    this->free_motion_.move(old, next.pressure, this->problem_,
+                            elastic_forces_ ? &elastic_forces_->at_start()
+                                            : nullptr);
+  }
+
+  template <int dim>
+  StepReport LinearMoreauJean<dim>::advance(const State &old, const double h,
+                                            State &next,
+                                            const unsigned int idle_rounds)
+  {
+    const auto &origins = this->discretization_.origins();
+    start(old, h, next);
+    // kinetic energies before the impulses: the scale of round-off
+    const double energy_scale =
+        2. * old.energy.kinetic + this->free_motion_.kinetic_product();
+    LawEvaluation<dim> evaluation(this->problem_, this->dynamics_, energy_scale,
+                                  this->input_.solver.tolerance);
+    StepReport report;
+    next.impulse = old.impulse;
+    if (this->check_.starts_cold())
+      std::fill(next.impulse.begin(), next.impulse.end(), 0.);
+    {
+      const Stopwatch watch(this->timings_.solve);
+      const Charge charge(Cost::solver);
+      report.solver = this->step_problem_.solve(
+          solver_, this->problem_, origins,
+          this->step_problem_.control(idle_rounds), energy_scale, old,
+          next.impulse, evaluation);
+    }
+    save_problem<dim>(this->input_, this->problem_, this->dynamics_, evaluation,
+                      report.solver, old.step + 1, old.time);
+    this->check_.check_solution(h, old.time, report.solver,
+                                evaluation.worst_point);
+    {
+      const Stopwatch watch(this->timings_.update);
+      const Charge charge(Cost::update);
+      finish(old, evaluation, next);
+    }
+    if (old.step == 0)
+      charge_memory("vectors of a step and its solver");
+    const Stopwatch watch(this->timings_.ledger);
+    const Charge charge(Cost::ledger);
+    if (elastic_forces_)
+      elastic_forces_->finish(next);
+    const BodyEnergies bodies = this->ledger_->book_bodies(
+        this->free_motion_.loads(), h, old, next, elastic_forces_.get());
+    this->ledger_->book(this->problem_, evaluation, origins, bodies, old, next,
+                        report);
+    const TakenStep step{old, next, h, energy_scale, evaluation.worst_point};
+    this->check_.check_balance(step, report);
+    relate_defect(energy_scale, next, report);
+    if (bulk_) {
+      const BondReport bonds = release_bonds(this->problem_, *bulk_, old, next);
+      report.released = bonds.released;
+      report.overshoot = bonds.overshoot;
+      report.share = bonds.share;
+    }
+    this->check_.watch_energy(step, report);
+    return report;
+  }
+
+  /** v, q, U and u at the end of the step. */
+  template <int dim>
+  void LinearMoreauJean<dim>::finish(const State &old,
+                                     const LawEvaluation<dim> &evaluation,
+                                     State &next) const
+  {
+    const double h = this->problem_.time_step, theta = this->problem_.theta;
+    next.step = old.step + 1;
+    next.time = old.time + h;
+    next.last_step = h;
+    next.velocity = this->free_motion_.velocity();
+    this->dynamics_.add_velocity_change(next.impulse.data(),
+                                        next.velocity.data());
+    const std::size_t n = next.velocity.size();
+    next.displacement.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      next.displacement[i] =
+          old.displacement[i] +
+          h * (theta * next.velocity[i] + (1. - theta) * old.velocity[i]);
+    next.relative_velocity =
+        solved_velocity(this->problem_, evaluation, next.impulse);
+    if (bonded_) { // W has no rows there
+      std::vector<double> velocity(next.relative_velocity.size());
+      this->dynamics_.relative_velocity(next.velocity.data(), velocity.data());
+      for (std::size_t k = 0; k < velocity.size(); ++k)
+        if (old.kind[k / dim] == PointKind::bonded)
+          next.relative_velocity[k] = velocity[k];
+    }
+    next.jump.resize(old.jump.size());
+    for (std::size_t k = 0; k < old.jump.size(); ++k)
+      next.jump[k] =
+          this->problem_.jump_free[k] + h * theta * next.relative_velocity[k];
+  }
+
+  template class LinearMoreauJean<2>;
+  template class LinearMoreauJean<3>;
+} // namespace nsfd

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "moreau_jean.h"
+
+namespace nsfd
+{
+  template <int dim>
+  class BondedDynamics;
+  template <int dim>
+  class BulkTraction;
+  template <int dim>
+  class ElasticForces;
+
+  /**
+   * The Moreau-Jean step of linear bodies: one free motion, one nonsmooth
+   * problem. With `scheme = symplectic` the bodies are explicit.
+   */
+  template <int dim>
+  class LinearMoreauJean final : public MoreauJean<dim>
+  {
+  public:
+    /** @p bonded is @p dynamics if the scene has bonded faces, else null. */
+    LinearMoreauJean(const SceneInput &input,
+                     const Discretization<dim> &discretization,
+                     Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver,
+                     BondedDynamics<dim> *bonded = nullptr);
+    ~LinearMoreauJean() override;
+
+    State initial_state() const override;
+    void complete(State &state) const override;
+    /** Rejected is what was not solved to the tolerance. */
+    StepReport
+    advance(const State &old, double time_step, State &next,
+            unsigned int idle_rounds = SolverControl().idle_rounds) override;
+
+  protected:
+    std::string describe(std::size_t point) const override;
+
+  private:
+    void start(const State &old, double time_step, State &next);
+    void finish(const State &old, const LawEvaluation<dim> &evaluation,
+                State &next) const;
+
+    NonsmoothSolver<dim> &solver_;
+    BondedDynamics<dim> *bonded_;             ///< or null
+    std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
+    std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
+  };
+} // namespace nsfd

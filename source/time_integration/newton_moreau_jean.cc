@@ -1,0 +1,207 @@
+#include "newton_moreau_jean.h"
+
+#include "common_books.h"
+#include "inelastic_model.h"
+#include "large_motion_model.h"
+#include "ledger.h"
+#include "save_problem.h"
+
+#include "core/cost.h"
+#include "core/stopwatch.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    constexpr unsigned int most_iterations = 40;
+
+    std::string solver_name(const SceneInput &input, const char *automatic)
+    {
+      return input.solver.method == "auto" ? automatic : input.solver.method;
+    }
+  } // namespace
+
+  template <int dim>
+  NewtonMoreauJean<dim>::NewtonMoreauJean(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      MovingBodies<dim> &bodies, Dynamics<dim> &dynamics)
+      : MoreauJean<dim>(input, discretization, dynamics),
+        bodies_(std::make_unique<LargeMotionModel<dim>>(
+            StepParts<dim>{input, discretization, dynamics, this->problem_,
+                           this->free_motion_, this->step_problem_,
+                           this->timings_},
+            bodies)),
+        solver_name_(solver_name(input, "contacts alone"))
+  {
+  }
+
+  template <int dim>
+  NewtonMoreauJean<dim>::NewtonMoreauJean(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      InelasticBodies<dim> &bodies, Dynamics<dim> &dynamics)
+      : MoreauJean<dim>(input, discretization, dynamics),
+        bodies_(std::make_unique<InelasticModel<dim>>(
+            StepParts<dim>{input, discretization, dynamics, this->problem_,
+                           this->free_motion_, this->step_problem_,
+                           this->timings_},
+            bodies)),
+        solver_name_(solver_name(input, "chain"))
+  {
+  }
+
+  template <int dim>
+  NewtonMoreauJean<dim>::~NewtonMoreauJean() = default;
+
+  template <int dim>
+  State NewtonMoreauJean<dim>::initial_state() const
+  {
+    return bodies_->initial_state();
+  }
+
+  template <int dim>
+  void NewtonMoreauJean<dim>::complete(State &state) const
+  {
+    bodies_->complete(state);
+  }
+
+  template <int dim>
+  std::string NewtonMoreauJean<dim>::describe(const std::size_t i) const
+  {
+    return bodies_->describe(i);
+  }
+
+  template <int dim>
+  SolverReport NewtonMoreauJean<dim>::iterate(
+      const State &old, const double h, const SolverControl &control,
+      std::unique_ptr<LawEvaluation<dim>> &evaluation)
+  {
+    auto &dynamics = this->dynamics_;
+    const auto lost = [&] {
+      return StepRejected(fmt::format(
+          "a body has no motion in the step of {:.4g} at t = {:.6g}: it would "
+          "be turned inside out, or its material finds no stress",
+          h, old.time));
+    };
+    SolverReport total;
+    for (unsigned int round = 0;; ++round) {
+      if (round > 0)
+        bodies_->linearise();
+      else if (!bodies_->predict(this->check_.starts_cold(), impulse_))
+        throw lost();
+      // linear in what further impulses do
+      v_free_ = bodies_->velocity();
+      std::vector<double> less(impulse_);
+      for (double &P : less)
+        P = -P;
+      dynamics.add_velocity_change(less.data(), v_free_.data());
+      const StepPoints<dim> points = bodies_->points();
+      bodies_->relative_velocity(v_free_, points.problem.free_velocity);
+      dynamics.set_free_velocity(&v_free_);
+      if (round == 0)
+        energy_scale_ =
+            2. * old.energy.kinetic + bodies_->kinetic_product(v_free_);
+      evaluation = std::make_unique<LawEvaluation<dim>>(
+          points.problem, dynamics, energy_scale_, control.tolerance);
+      // factors are those of one round
+      const auto solver = SolverRegistry<dim>::instance().create(solver_name_);
+      const SolverReport part = this->step_problem_.solve(
+          *solver, points.problem, points.origins, control, energy_scale_,
+          points.old, impulse_, *evaluation);
+      total.go_on_with(part);
+      if (!part.converged)
+        return total;
+      std::vector<double> v = v_free_;
+      dynamics.add_velocity_change(impulse_.data(), v.data());
+      if (!bodies_->move(impulse_, v))
+        throw lost();
+      if (has_settled(old, h, control, round))
+        return total;
+    }
+  }
+
+  /** Well within what the solver leaves, over the root of the energy. */
+  template <int dim>
+  bool NewtonMoreauJean<dim>::has_settled(const State &old, const double h,
+                                          const SolverControl &control,
+                                          const unsigned int round)
+  {
+    if (energy_scale_ == 0.) // all at rest, and something moves it
+      energy_scale_ = bodies_->kinetic_product(bodies_->velocity());
+    const double rest = std::max(0.1 * control.tolerance, 1e-13);
+    const double error = bodies_->error();
+    ++iterations_;
+    most_iterations_ =
+        std::max<unsigned long long>(most_iterations_, round + 1);
+    if (error <= rest * rest * energy_scale_)
+      return true;
+    if (round == most_iterations || !std::isfinite(error))
+      throw StepRejected(fmt::format(
+          "the motion of the step of {:.4g} at t = {:.6g} did not come to "
+          "rest: velocities are off by {:.1e} of all after {} iterations",
+          h, old.time, std::sqrt(error / energy_scale_), round + 1));
+    return false;
+  }
+
+  template <int dim>
+  StepReport NewtonMoreauJean<dim>::advance(const State &old, const double h,
+                                            State &next,
+                                            const unsigned int idle_rounds)
+  {
+    {
+      const Stopwatch watch(this->timings_.assembly);
+      const Charge charge(Cost::free_motion);
+      if (this->free_motion_.set_loads(old.time + this->input_.time.theta * h))
+        ++this->counters_.load_assemblies;
+      this->step_problem_.begin();
+      bodies_->start(old, h, this->free_motion_.loads(), next);
+    }
+    StepReport report;
+    std::unique_ptr<LawEvaluation<dim>> evaluation;
+    {
+      const Stopwatch watch(this->timings_.solve);
+      const Charge charge(Cost::solver);
+      report.solver =
+          iterate(old, h, this->step_problem_.control(idle_rounds), evaluation);
+    }
+    const StepPoints<dim> points = bodies_->points();
+    save_problem<dim>(this->input_, points.problem, this->dynamics_,
+                      *evaluation, report.solver, old.step + 1, old.time);
+    this->check_.check_solution(h, old.time, report.solver,
+                                evaluation->worst_point);
+    const Stopwatch watch(this->timings_.ledger);
+    const Charge charge(Cost::ledger);
+    next.step = old.step + 1;
+    next.time = old.time + h;
+    next.last_step = h;
+    next.impulse = impulse_;
+    bodies_->finish(*evaluation, next);
+    this->ledger_->book(points.problem, *evaluation, points.origins,
+                        bodies_->book(next), points.old, next, report);
+    bodies_->book_rest(next, report);
+    const TakenStep step{old, next, h, energy_scale_, evaluation->worst_point};
+    this->check_.check_balance(step, report);
+    this->check_.watch_energy(step, report);
+    relate_defect(energy_scale_, next, report);
+    bodies_->accept(next);
+    return report;
+  }
+
+  template <int dim>
+  void
+  NewtonMoreauJean<dim>::fill_counters(std::map<std::string, double> &c) const
+  {
+    MoreauJean<dim>::fill_counters(c);
+    c["motion_iterations"] = double(iterations_);
+    c["motion_iterations_most"] = double(most_iterations_);
+    bodies_->fill_counters(c);
+  }
+
+  template class NewtonMoreauJean<2>;
+  template class NewtonMoreauJean<3>;
+} // namespace nsfd

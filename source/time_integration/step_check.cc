@@ -1,0 +1,84 @@
+#include "step_check.h"
+
+#include "nsfd/scene/scene_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace nsfd
+{
+  StepCheck::StepCheck(const SceneInput &input, Describe describe)
+      : input_(input), describe_(std::move(describe))
+  {
+  }
+
+  void StepCheck::check_solution(const double h, const double time,
+                                 const SolverReport &report,
+                                 const std::size_t worst_point) const
+  {
+    if (report.converged)
+      return;
+    throw StepRejected(fmt::format(
+        "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "
+        "after {} Newton steps and {} sweeps; worst face {}",
+        h, time, report.residual, report.newton, report.sweeps,
+        describe_(worst_point)));
+  }
+
+  void StepCheck::check_balance(const TakenStep &step, const StepReport &report)
+  {
+    // what is not a number is not within the bound
+    starts_cold_ = true;
+    if (!(report.ledger_defect * step.next.largest_energy <=
+          1e-6 * std::max(step.next.largest_energy, step.energy_scale)))
+      throw StepRejected(fmt::format(
+          "the energies of the step of {:.4g} at t = {:.6g} do not add up "
+          "(relative defect {:.1e}): rows that ask for the same have made "
+          "impulses too large; worst face {}",
+          step.time_step, step.old.time, report.ledger_defect,
+          describe_(step.worst_point)));
+    starts_cold_ = false;
+  }
+
+  void StepCheck::watch_energy(const TakenStep &step, StepReport &report)
+  {
+    const State &old = step.old, &next = step.next;
+    LineChanges &changes = report.changes;
+    changes.taken[std::size_t(WatchedLine::scheme)] =
+        next.energy.numerical - old.energy.numerical;
+    // at rest there is no energy but what the loads would give in a step
+    changes.scale = std::max(next.largest_energy, step.energy_scale);
+    // |P - P*|_R times |U|_(1/R): impulses of rows that ask for the same may be
+    // far larger than what moves
+    changes.noise = report.solver.residual *
+                    std::max(step.energy_scale,
+                             std::sqrt(step.energy_scale * changes.impulses));
+    const double bound = energy_round_off * changes.scale + changes.noise +
+                         // no line is known better than the balance closes
+                         10. * report.ledger_defect * next.largest_energy;
+    for (std::size_t k = 0; k < n_watched_lines; ++k) {
+      const auto line = WatchedLine(k);
+      const bool two_sided =
+          line == WatchedLine::joints || line == WatchedLine::supports;
+      const double given =
+          two_sided ? std::abs(changes.taken[k]) : -changes.taken[k];
+      // velocities of rows are known to the tolerance, impulses of rows that
+      // ask for the same to less, and `numerical` is a difference of large
+      // numbers in very long steps: the certificate holds their sum, a step is
+      // given up only where hardly any digits are left
+      const bool of_digits = two_sided || line == WatchedLine::scheme;
+      if (given <= (of_digits ? 1e-4 * changes.scale + bound : bound) ||
+          !never_gives(line, input_))
+        continue;
+      starts_cold_ = true;
+      throw StepRejected(fmt::format(
+          "the step of {:.4g} s at t = {:.6g} s would give {:.3g} J to `{}`, "
+          "{:.1e} of the largest energy; worst face {}",
+          next.time - old.time, old.time, given, name_of(line),
+          given / changes.scale, describe_(changes.worst[k])));
+    }
+  }
+} // namespace nsfd

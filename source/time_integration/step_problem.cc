@@ -1,0 +1,113 @@
+#include "step_problem.h"
+
+#include "activation.h"
+#include "driven_motion.h"
+#include "nonsmooth/linear_spring.h"
+#include "step_data.h"
+
+#include "nsfd/scene/scene_input.h"
+#include "state/state.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace nsfd
+{
+  template <int dim>
+  StepProblem<dim>::StepProblem(const SceneInput &input,
+                                const Discretization<dim> &discretization,
+                                Dynamics<dim> &dynamics, StepCounters &counters)
+      : input_(input), discretization_(discretization), dynamics_(dynamics),
+        counters_(counters),
+        motion_(std::make_unique<DrivenMotion<dim>>(input, discretization)),
+        sliding_(input)
+  {
+    for (const auto &block : input.interfaces)
+      has_extrinsic_ |= block.intact == IntactFaces::rigid && block.law;
+  }
+
+  template <int dim>
+  StepProblem<dim>::~StepProblem() = default;
+
+  template <int dim>
+  SolverControl StepProblem<dim>::control(const unsigned int idle_rounds) const
+  {
+    SolverControl control;
+    control.tolerance = input_.solver.tolerance;
+    control.maximum_iterations = input_.solver.maximum_iterations;
+    control.idle_rounds = idle_rounds;
+    return control;
+  }
+
+  template <int dim>
+  void StepProblem<dim>::set(const std::vector<PointOrigin> &origins,
+                             const State &old, const double h,
+                             OneStepProblem<dim> &problem) const
+  {
+    set_step(input_, discretization_, origins, dynamics_, *motion_, old, h,
+             problem);
+    sliding_.apply(old.relative_velocity, problem);
+  }
+
+  template <int dim>
+  SolverReport StepProblem<dim>::solve(
+      NonsmoothSolver<dim> &solver, OneStepProblem<dim> &problem,
+      const std::vector<PointOrigin> &origins, const SolverControl &control,
+      const double energy_scale, const State &old, std::vector<double> &impulse,
+      LawEvaluation<dim> &evaluation, const bool keeps_joints)
+  {
+    SolverReport report;
+    for (unsigned int round = 0;; ++round) {
+      const SolverReport part = solver.solve(problem, dynamics_, energy_scale,
+                                             control, impulse, evaluation);
+      report.go_on_with(part);
+      ++counters_.solves;
+      if (!part.converged || round > 30)
+        break;
+      if (has_extrinsic_ && !keeps_joints &&
+          activate(dynamics_, origins, impulse, problem))
+        ++counters_.activation_rounds;
+      else if (sliding_.revise(dynamics_.communicator(), evaluation, impulse,
+                               old.relative_velocity,
+                               std::max(old.largest_energy, energy_scale),
+                               problem))
+        ++counters_.sliding_rounds;
+      else
+        break;
+    }
+    counters_.newton += report.newton;
+    counters_.krylov += report.krylov;
+    counters_.sweeps += report.sweeps;
+    counters_.law_sweeps += evaluation.law_calls;
+    counters_.line_searches += report.line_searches;
+    return report;
+  }
+
+  template <int dim>
+  std::vector<double> solved_velocity(const OneStepProblem<dim> &problem,
+                                      const LawEvaluation<dim> &evaluation,
+                                      const std::vector<double> &impulse)
+  {
+    constexpr double last_bit = std::numeric_limits<double>::epsilon();
+    std::vector<double> velocity = evaluation.velocity;
+    for (std::size_t k = 0; k < problem.n_points * dim; ++k)
+      if (const auto *law = evaluation.linear(k / dim)) {
+        const LinearSpring spring(problem, *law, k);
+        if (spring.stiffness > 0. &&
+            spring.compliance() <
+                last_bit * evaluation.majorant(k / dim, k % dim))
+          velocity[k] = spring.velocity(impulse[k]);
+      }
+    return velocity;
+  }
+
+#define INSTANTIATE(dim)                                                       \
+  template class StepProblem<dim>;                                             \
+  template std::vector<double> solved_velocity<dim>(                           \
+      const OneStepProblem<dim> &, const LawEvaluation<dim> &,                 \
+      const std::vector<double> &)
+
+  INSTANTIATE(2);
+  INSTANTIATE(3);
+#undef INSTANTIATE
+} // namespace nsfd

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "energy_safe_sliding.h"
+#include "step_costs.h"
+
+#include "delassus/dynamics.h"
+#include "nonsmooth/solver.h"
+#include "nsfd/discretization/discretization.h"
+#include "nsfd/nonsmooth/one_step_problem.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  struct SceneInput;
+  struct State;
+  template <int dim>
+  class DrivenMotion;
+
+  /** The nonsmooth problem of a step: its data, and its solution in rounds. */
+  template <int dim>
+  class StepProblem
+  {
+  public:
+    /** Work goes into @p counters. */
+    StepProblem(const SceneInput &input,
+                const Discretization<dim> &discretization,
+                Dynamics<dim> &dynamics, StepCounters &counters);
+    ~StepProblem();
+
+    /** What the input asks of the solver of a step. */
+    SolverControl control(unsigned int idle_rounds) const;
+
+    /** A step begins: friction opposes the velocity at its end everywhere. */
+    void begin() { sliding_.begin(); }
+
+    /** The data of the step from @p old, see set_step(), and the velocities
+        that friction opposes. Collective. */
+    void set(const std::vector<PointOrigin> &origins, const State &old,
+             double time_step, OneStepProblem<dim> &problem) const;
+
+    /**
+     * Again as long as extrinsic points reach their strength (unless @p
+     * keeps_joints), or friction gives energy; @p old as it was for set().
+     * Collective.
+     */
+    SolverReport
+    solve(NonsmoothSolver<dim> &solver, OneStepProblem<dim> &problem,
+          const std::vector<PointOrigin> &origins, const SolverControl &control,
+          double energy_scale, const State &old, std::vector<double> &impulse,
+          LawEvaluation<dim> &evaluation, bool keeps_joints = false);
+
+    /** Some points are rigid until they reach the strength of their law. */
+    bool has_extrinsic() const { return has_extrinsic_; }
+    const DrivenMotion<dim> &motion() const { return *motion_; }
+
+  private:
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    Dynamics<dim> &dynamics_;
+    StepCounters &counters_;
+    std::unique_ptr<DrivenMotion<dim>> motion_;
+    EnergySafeSliding<dim> sliding_;
+    bool has_extrinsic_ = false;
+  };
+
+  /**
+   * U of the points under the impulses of @p evaluation, m/s. U_free + W P is
+   * not known better than to the last bit of its largest part, R |P|. Where the
+   * spring of a point, D = -dU/dP, makes impulses of that which are larger than
+   * P, its own law tells U from P.
+   */
+  template <int dim>
+  std::vector<double> solved_velocity(const OneStepProblem<dim> &problem,
+                                      const LawEvaluation<dim> &evaluation,
+                                      const std::vector<double> &impulse);
+} // namespace nsfd
