@@ -11,6 +11,10 @@ namespace nsfd
 
   Segment segment_of(const Surfaces<3>::Edge &edge, const double *x);
 
+  /** A roof, neither a valley nor flat; @p way leads along the edge. */
+  bool sticks_out(const Surfaces<3>::Edge &edge,
+                  const std::vector<Plane<3>> &planes, const Place<3> &way);
+
   /** Between their closest places, ends included. */
   double square_distance(const Segment &a, const Segment &b);
 
@@ -26,7 +30,7 @@ namespace nsfd
 
   /**
    * Of touches that compete with each other, of edges and of @p points (by
-   * vertex), one is left: see edge_pairs.cc.
+   * vertex), one is left: see competing_touches.cc.
    */
   template <int dim>
   void settle_touches(const Surfaces<dim> &surfaces, const double *x,
