@@ -9,7 +9,7 @@ namespace nsfd
 
   namespace
   {
-    constexpr double round_off = std::numeric_limits<double>::epsilon();
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
     /** (1 - hat(p))^{-1} z. */
     Vec3 inverse_half_turn(const Vec3 &p, const Vec3 &z)
@@ -109,11 +109,11 @@ namespace nsfd
         trial = W - share * full;
         next = residual(target, trial);
         // at round-off shorter steps do not help either
-        if (next.size < r.size || r.size <= 16. * round_off * r.scale)
+        if (next.size < r.size || r.size <= 16. * epsilon * r.scale)
           break;
       }
       if (!(next.size < r.size))
-        return r.size <= 16. * round_off * r.scale;
+        return r.size <= 16. * epsilon * r.scale;
       W = trial;
       r = next;
     }

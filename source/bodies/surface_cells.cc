@@ -23,7 +23,7 @@ namespace nsfd
 
   template <int dim>
   SurfaceCells<dim>::SurfaceCells(const Discretization<dim> &discretization,
-                                  const MovingBodies<dim> &bodies,
+                                  const BodyLayout<dim> &bodies,
                                   const Communicator &communicator)
       : discretization_(discretization), table_(discretization.body_table()),
         bodies_(bodies), all_(communicator),
@@ -83,8 +83,8 @@ namespace nsfd
     };
     std::vector<Ball> own;
     for (std::size_t b = 0; b < bodies_.size(); ++b)
-      if (bodies_.ball_radius(b) > 0.)
-        own.push_back({bodies_.number(b), bodies_.ball_radius(b)});
+      if (bodies_[b].radius > 0.)
+        own.push_back({bodies_[b].number, bodies_[b].radius});
     radii_.assign(table_.bodies.size(), 0.);
     for (const Ball &ball : gather_all(all_, own))
       radii_[ball.body] = ball.radius;
@@ -103,7 +103,7 @@ namespace nsfd
     std::vector<Twin> own;
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
       const unsigned int b = bodies_.body_of_cell(c);
-      if (!bodies_.is_rigid(b))
+      if (!bodies_[b].is_rigid())
         continue;
       const auto &shape = discretization_.shape(c);
       const Point<dim> corner = discretization_.corners(c)[0];

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "body_layout.h"
 #include "face_nodes.h"
-#include "moving_bodies.h"
+
+#include "nsfd/core/communicator.h"
 
 #include <vector>
 
@@ -18,7 +20,7 @@ namespace nsfd
   public:
     /** Collective. */
     SurfaceCells(const Discretization<dim> &discretization,
-                 const MovingBodies<dim> &bodies,
+                 const BodyLayout<dim> &bodies,
                  const Communicator &communicator);
 
     std::size_t size() const { return class_of_.size(); }
@@ -77,7 +79,7 @@ namespace nsfd
 
     const Discretization<dim> &discretization_;
     const BodyTable &table_;
-    const MovingBodies<dim> &bodies_;
+    const BodyLayout<dim> &bodies_;
     const Communicator &all_;
     const unsigned int nodes_per_cell_;
     std::vector<std::vector<FaceNodes<dim>>> faces_; ///< by class

@@ -16,7 +16,8 @@ namespace nsfd
       const MovingBodies<dim> &bodies, const Communicator &communicator)
       : input_(input), discretization_(discretization),
         table_(discretization.body_table()), bodies_(bodies),
-        all_(communicator), cells_(discretization, bodies, communicator)
+        all_(communicator),
+        cells_(discretization, bodies.layout(), communicator)
   {
     first_place_.push_back(0);
     for (unsigned int c = 0; c < cells_.size(); ++c) {
@@ -40,8 +41,9 @@ namespace nsfd
         }
     if (dim == 3)
       number_edges();
-    search_.share(communicator,
-                  [this](const unsigned int b) { return bodies_.is_own(b); });
+    search_.share(communicator, [this](const unsigned int b) {
+      return bodies_.layout().is_own(b);
+    });
   }
 
   /** All edges of all cells: each has a place, whether it is a surface yet. */
@@ -312,8 +314,8 @@ namespace nsfd
     std::vector<double> own;
     own.reserve(own_moving_nodes_.size() * 2 * dim);
     for (const std::size_t node : own_moving_nodes_) {
-      const std::size_t k = bodies_.own_node(node);
-      const Point<dim> x = bodies_.place(old, k);
+      const std::size_t k = bodies_.layout().own_node(node);
+      const Point<dim> x = bodies_.layout().place(old, k);
       own.insert(own.end(), x.begin_raw(), x.end_raw());
       own.insert(own.end(), old.velocity.begin() + long(k * dim),
                  old.velocity.begin() + long((k + 1) * dim));

@@ -359,7 +359,7 @@ namespace nsfd
   {
     std::vector<Row> rows;
     const auto node_place = [&](const std::size_t node) {
-      return bodies_.place(old, bodies_.own_node(node));
+      return bodies_.layout().place(old, bodies_.layout().own_node(node));
     };
     const auto centre = [&](const unsigned int body) {
       Point<dim> result;
@@ -370,7 +370,7 @@ namespace nsfd
     const auto node_velocity = [&](const std::size_t node) {
       Vector v;
       for (unsigned int d = 0; d < dim; ++d)
-        v[d] = old.velocity[bodies_.own_node(node) * dim + d];
+        v[d] = old.velocity[bodies_.layout().own_node(node) * dim + d];
       return v;
     };
     const auto geometry = [&](const unsigned int o) {
@@ -396,7 +396,7 @@ namespace nsfd
     for (std::size_t k = 0; k < obstacle_faces_.size(); ++k) {
       const auto &[c, f, o] = obstacle_faces_[k];
       const unsigned int b = table_.body_of_cell[c];
-      if (!bodies_.is_own(b))
+      if (!bodies_.layout().is_own(b))
         continue;
       if (cells_.ball_radius(b) > 0.) {
         Row row = ball_row(b);

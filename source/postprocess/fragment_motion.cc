@@ -257,8 +257,9 @@ namespace nsfd
   auto FragmentMotion<dim>::rigid_body(const std::size_t b,
                                        const State &state) const -> Body
   {
-    const RigidInertia &inertia = moving_->inertia(b);
-    const RigidState rigid = moving_->rigid_state(state, b);
+    const RigidInertia &inertia = moving_->layout()[b].inertia;
+    const RigidState rigid =
+        moving_->rigid_motions().of(state, moving_->layout()[b]);
     const Mat3 R = rotation(rigid.orientation);
     Body body;
     body.mass = inertia.mass;
@@ -277,13 +278,14 @@ namespace nsfd
     const auto displacement = discretization_.to_nodal(state.displacement);
     const auto velocity = discretization_.to_nodal(state.velocity);
     std::vector<Body> result;
-    std::vector<char> seen(moving_ ? moving_->size() : 0, 0);
+    std::vector<char> seen(moving_ ? moving_->layout().size() : 0, 0);
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
-      if (!moving_ || !moving_->is_rigid(moving_->body_of_cell(c))) {
+      if (!moving_ ||
+          !moving_->layout()[moving_->layout().body_of_cell(c)].is_rigid()) {
         result.push_back(cell_body(c, displacement, velocity));
         continue;
       }
-      const unsigned int b = moving_->body_of_cell(c);
+      const unsigned int b = moving_->layout().body_of_cell(c);
       if (seen[b])
         continue;
       seen[b] = 1;

@@ -25,15 +25,15 @@ namespace nsfd
       for (unsigned int k = 0; k < input.pins.size(); ++k) {
         MovingRow<dim> row;
         row.partner = MovingRow<dim>::Partner::pin;
-        row.body_2 = bodies.body_of_pin(k);
-        if (!bodies.is_own(row.body_2))
+        row.body_2 = bodies.rigid_motions().body_of_pin(k);
+        if (!bodies.layout().is_own(row.body_2))
           continue;
         row.pin = row.block = k;
         row.weight = 1.;
         // as a support
         row.interaction =
             unsigned(input.interfaces.size() + input.obstacles.size());
-        row.jump = bodies.pin_drift(k, old);
+        row.jump = bodies.rigid_motions().pin_drift(k, old);
         own.push_back(row);
       }
       if (input.pins.empty())
@@ -63,12 +63,12 @@ namespace nsfd
      * bodies turn. Its mean velocity vanishes, which does no work.
      */
     template <int dim>
-    void keep_gaps(const MovingBodies<dim> &bodies, const State &old,
+    void keep_gaps(const ContactPoints<dim> &contacts, const State &old,
                    const bool lifts, OneStepProblem<dim> &problem)
     {
       const double theta = problem.theta;
-      for (std::size_t k = 0; k < bodies.rows().size(); ++k) {
-        const std::size_t i = bodies.row_point(k);
+      for (std::size_t k = 0; k < contacts.rows().size(); ++k) {
+        const std::size_t i = contacts.row_point(k);
         const auto &law = problem.interactions[problem.interaction[i]];
         if (!old.contact[i] || law.restitution != 0.)
           continue;
@@ -84,8 +84,9 @@ namespace nsfd
   LargeMotionModel<dim>::LargeMotionModel(const StepParts<dim> &parts,
                                           MovingBodies<dim> &bodies)
       : parts_(parts), bodies_(bodies), lifts_(has_sliding_lift(parts.input)),
-        obstacles_(parts.input, bodies),
-        history_(parts.discretization, bodies, parts.dynamics.communicator())
+        obstacles_(parts.input, bodies.contacts()),
+        history_(parts.discretization, bodies.contacts(),
+                 parts.dynamics.communicator())
   {
     if (!parts.input.contacts.empty() || !parts.input.obstacles.empty())
       contacts_ = std::make_unique<SurfaceContacts<dim>>(
@@ -167,8 +168,8 @@ namespace nsfd
     if (parts_.free_motion.has_crack_pressure()) {
       parts_.free_motion.set_pressure(old, old.time + theta * h, next.pressure);
       pressure_impulse_ = parts_.free_motion.pressure_impulse(next.pressure, h);
-      insert_contacts(bodies_, pressure_impulse_, dim, 0.);
-      insert_contacts(bodies_, next.pressure, 1, 0.);
+      insert_contacts(bodies_.contacts(), pressure_impulse_, dim, 0.);
+      insert_contacts(bodies_.contacts(), next.pressure, 1, 0.);
     }
   }
 
@@ -178,7 +179,7 @@ namespace nsfd
   {
     const std::size_t n = bodies_.points().n_points;
     old_ = *start_;
-    insert_contacts(parts_.input, bodies_, old_);
+    insert_contacts(parts_.input, bodies_.contacts(), old_);
     problem_.resize(n);
     problem_.n_owned = bodies_.points().n_owned;
     problem_.theta = parts_.problem.theta;
@@ -187,9 +188,9 @@ namespace nsfd
     problem_.interaction = parts_.problem.interaction;
     problem_.strength_factor = parts_.problem.strength_factor;
     problem_.opening_factor = parts_.problem.opening_factor;
-    insert_contacts(bodies_, problem_.interaction, 1, 0);
-    insert_contacts(bodies_, problem_.strength_factor, 1, 1.);
-    insert_contacts(bodies_, problem_.opening_factor, 1, 1.);
+    insert_contacts(bodies_.contacts(), problem_.interaction, 1, 0);
+    insert_contacts(bodies_.contacts(), problem_.strength_factor, 1, 1.);
+    insert_contacts(bodies_.contacts(), problem_.opening_factor, 1, 1.);
     problem_.weight = bodies_.points().weight;
     if (has_opening_viscosity(parts_.input))
       problem_.viscosity.assign(n, 0.);
@@ -198,10 +199,10 @@ namespace nsfd
       problem_.lift_left.assign(n, 0.);
     }
     origins_ = parts_.discretization.origins();
-    insert_contacts(bodies_, origins_, 1, {});
-    for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
-      const MovingRow<dim> &row = bodies_.rows()[k];
-      const std::size_t i = bodies_.row_point(k);
+    insert_contacts(bodies_.contacts(), origins_, 1, {});
+    for (std::size_t k = 0; k < bodies_.contacts().rows().size(); ++k) {
+      const MovingRow<dim> &row = bodies_.contacts().rows()[k];
+      const std::size_t i = bodies_.contacts().row_point(k);
       origins_[i] = origin_of(row);
       problem_.interaction[i] = row.interaction;
       if (row.partner == MovingRow<dim>::Partner::pin)
@@ -241,12 +242,12 @@ namespace nsfd
   template <int dim>
   void LargeMotionModel<dim>::set_problem()
   {
-    const auto &rows = bodies_.rows();
+    const auto &rows = bodies_.contacts().rows();
     const auto &frame = bodies_.points().frame;
     const std::size_t n = parts_.discretization.points().n_points;
     for (std::size_t j = 0; j < n; ++j)
       for (unsigned int a = 0; a < dim; ++a) {
-        const std::size_t i = bodies_.mesh_point(j);
+        const std::size_t i = bodies_.contacts().mesh_point(j);
         double value = 0.;
         for (unsigned int d = 0; d < dim; ++d)
           value += frame[(i * dim + a) * dim + d] * mesh_jumps_[j * dim + d];
@@ -254,7 +255,7 @@ namespace nsfd
       }
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim; ++a)
-        old_.jump[bodies_.row_point(k) * dim + a] =
+        old_.jump[bodies_.contacts().row_point(k) * dim + a] =
             rows[k].partner == MovingRow<dim>::Partner::pin ? rows[k].jump[a]
             : a == 0                                        ? rows[k].gap
                                                             : 0.;
@@ -271,7 +272,7 @@ namespace nsfd
           problem_.given_velocity[i * dim + a] =
               -(1. - theta) / theta * old_.relative_velocity[i * dim + a];
     if (parts_.input.time.contact_target == ContactTarget::energy_safe)
-      keep_gaps(bodies_, old_, lifts_, problem_);
+      keep_gaps(bodies_.contacts(), old_, lifts_, problem_);
   }
 
   /**
@@ -285,7 +286,7 @@ namespace nsfd
   {
     const auto &time = parts_.input.time;
     const double h = time_step_;
-    const auto &rows = bodies_.rows();
+    const auto &rows = bodies_.contacts().rows();
     if (first)
       active_.assign(rows.size(), 0);
     std::vector<double> U;
@@ -296,7 +297,7 @@ namespace nsfd
     for (std::size_t k = 0; k < rows.size(); ++k) {
       if (rows[k].partner == MovingRow<dim>::Partner::pin)
         continue;
-      const std::size_t i = bodies_.row_point(k);
+      const std::size_t i = bodies_.contacts().row_point(k);
       double gap = rows[k].gap + h * time.forecast_gamma1 * rows[k].rate;
       if (!U.empty())
         gap += h * time.forecast_gamma2 * U[i * dim];
@@ -414,7 +415,7 @@ namespace nsfd
       if (!parts_.input.observables.empty())
         next.touches = history_.touches(next);
     }
-    erase_contacts(parts_.input, bodies_, next);
+    erase_contacts(parts_.input, bodies_.contacts(), next);
     if (contacts_)
       contacts_->part(next);
   }

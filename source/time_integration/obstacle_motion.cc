@@ -36,16 +36,16 @@ namespace nsfd
                                                         const double time) const
   {
     std::array<double, dim> result{};
-    const MovingRow<dim> &row = bodies_.rows()[k];
+    const MovingRow<dim> &row = contacts_.rows()[k];
     if (row.partner != MovingRow<dim>::Partner::obstacle)
       return result;
     const auto &obstacle = input_.obstacles[row.obstacle];
-    const std::size_t i = bodies_.row_point(k);
+    const std::size_t i = contacts_.row_point(k);
     for (unsigned int d = 0; d < dim; ++d)
       if (obstacle.velocity[d]) {
         const double v = obstacle.velocity[d]->at(dealii::Point<dim>(), time);
         for (unsigned int a = 0; a < dim; ++a)
-          result[a] += bodies_.points().frame[(i * dim + a) * dim + d] * v;
+          result[a] += contacts_.points().frame[(i * dim + a) * dim + d] * v;
       }
     return result;
   }
@@ -54,10 +54,10 @@ namespace nsfd
   void ObstacleMotion<dim>::subtract_velocity(const double time,
                                               std::vector<double> &U) const
   {
-    for (std::size_t k = 0; k < bodies_.rows().size(); ++k) {
+    for (std::size_t k = 0; k < contacts_.rows().size(); ++k) {
       const auto own = velocity(k, time);
       for (unsigned int a = 0; a < dim; ++a)
-        U[bodies_.row_point(k) * dim + a] -= own[a];
+        U[contacts_.row_point(k) * dim + a] -= own[a];
     }
   }
 
@@ -68,11 +68,11 @@ namespace nsfd
   {
     const double theta = input_.time.theta;
     std::vector<double> result;
-    for (std::size_t k = 0; k < bodies_.n_own_rows(); ++k) {
+    for (std::size_t k = 0; k < contacts_.n_own_rows(); ++k) {
       double &work = result.emplace_back();
       const auto before = velocity(k, start), after = velocity(k, start + h);
       for (unsigned int a = 0; a < dim; ++a)
-        work += impulse[bodies_.row_point(k) * dim + a] *
+        work += impulse[contacts_.row_point(k) * dim + a] *
                 (theta * after[a] + (1. - theta) * before[a]);
     }
     return result;

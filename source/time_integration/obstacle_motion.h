@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bodies/moving_bodies.h"
+#include "bodies/contact_points.h"
 
 #include <array>
 #include <vector>
@@ -12,8 +12,8 @@ namespace nsfd
   class ObstacleMotion
   {
   public:
-    ObstacleMotion(const SceneInput &input, const MovingBodies<dim> &bodies)
-        : input_(input), bodies_(bodies)
+    ObstacleMotion(const SceneInput &input, const ContactPoints<dim> &contacts)
+        : input_(input), contacts_(contacts)
     {
     }
 
@@ -33,6 +33,6 @@ namespace nsfd
     std::array<double, dim> velocity(std::size_t row, double time) const;
 
     const SceneInput &input_;
-    const MovingBodies<dim> &bodies_;
+    const ContactPoints<dim> &contacts_;
   };
 } // namespace nsfd

@@ -19,8 +19,8 @@ namespace nsfd
   template <int dim>
   void SurfaceHistory<dim>::take(const State &old, State &with_contacts) const
   {
-    for (std::size_t k = 0; k < bodies_.rows().size(); ++k)
-      if (bodies_.rows()[k].place != MovingRow<dim>::nowhere)
+    for (std::size_t k = 0; k < contacts_.rows().size(); ++k)
+      if (contacts_.rows()[k].place != MovingRow<dim>::nowhere)
         take(k, old, with_contacts);
   }
 
@@ -28,8 +28,8 @@ namespace nsfd
   void SurfaceHistory<dim>::take(const std::size_t k, const State &old,
                                  State &to) const
   {
-    const MovingRow<dim> &row = bodies_.rows()[k];
-    const std::size_t i = bodies_.row_point(k);
+    const MovingRow<dim> &row = contacts_.rows()[k];
+    const std::size_t i = contacts_.row_point(k);
     to.slip[i] = old.surface_slip[row.place];
     to.approach[i] = std::max(row.approach, old.surface_approach[row.place]);
     to.released_overlap[i] =
@@ -54,12 +54,12 @@ namespace nsfd
   void SurfaceHistory<dim>::add_impulses(const State &old,
                                          std::vector<double> &impulse) const
   {
-    const auto &rows = bodies_.rows();
+    const auto &rows = contacts_.rows();
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere; ++a)
         for (unsigned int d = 0; d < dim; ++d) {
-          const std::size_t c = bodies_.row_point(k) * dim + a;
-          impulse[c] += rows[k].share * bodies_.points().frame[c * dim + d] *
+          const std::size_t c = contacts_.row_point(k) * dim + a;
+          impulse[c] += rows[k].share * contacts_.points().frame[c * dim + d] *
                         old.surface_impulse[rows[k].place * dim + d];
         }
   }
@@ -69,9 +69,9 @@ namespace nsfd
   SurfaceHistory<dim>::own_contacts(const State &next) const
   {
     std::vector<OfContact> result;
-    for (std::size_t k = 0; k < bodies_.n_own_rows(); ++k) {
-      const MovingRow<dim> &row = bodies_.rows()[k];
-      const std::size_t i = bodies_.row_point(k);
+    for (std::size_t k = 0; k < contacts_.n_own_rows(); ++k) {
+      const MovingRow<dim> &row = contacts_.rows()[k];
+      const std::size_t i = contacts_.row_point(k);
       if (row.place == row.nowhere)
         continue;
       OfContact contact{};
@@ -81,7 +81,7 @@ namespace nsfd
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int d = 0; d < dim; ++d)
           contact.impulse[d] +=
-              bodies_.points().frame[(i * dim + a) * dim + d] *
+              contacts_.points().frame[(i * dim + a) * dim + d] *
               next.impulse[i * dim + a];
       contact.slip = next.slip[i];
       contact.overlap = next.released_overlap[i];
@@ -135,10 +135,10 @@ namespace nsfd
   SurfaceHistory<dim>::touches(const State &next) const
   {
     std::vector<SurfaceTouch> result;
-    const auto &points = bodies_.points();
-    for (std::size_t k = 0; k < bodies_.n_own_rows(); ++k) {
-      const MovingRow<dim> &row = bodies_.rows()[k];
-      const std::size_t i = bodies_.row_point(k);
+    const auto &points = contacts_.points();
+    for (std::size_t k = 0; k < contacts_.n_own_rows(); ++k) {
+      const MovingRow<dim> &row = contacts_.rows()[k];
+      const std::size_t i = contacts_.row_point(k);
       if (row.partner == MovingRow<dim>::Partner::pin || !next.contact[i])
         continue;
       SurfaceTouch &touch = result.emplace_back();

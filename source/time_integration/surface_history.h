@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bodies/moving_bodies.h"
+#include "bodies/contact_points.h"
 
 #include <vector>
 
@@ -15,9 +15,10 @@ namespace nsfd
   {
   public:
     SurfaceHistory(const Discretization<dim> &discretization,
-                   const MovingBodies<dim> &bodies,
+                   const ContactPoints<dim> &contacts,
                    const Communicator &communicator)
-        : discretization_(discretization), bodies_(bodies), all_(communicator)
+        : discretization_(discretization), contacts_(contacts),
+          all_(communicator)
     {
     }
 
@@ -40,7 +41,7 @@ namespace nsfd
     std::vector<OfContact> own_contacts(const State &next) const;
 
     const Discretization<dim> &discretization_;
-    const MovingBodies<dim> &bodies_;
+    const ContactPoints<dim> &contacts_;
     const Communicator &all_;
   };
 } // namespace nsfd
