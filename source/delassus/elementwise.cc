@@ -1,6 +1,6 @@
 #include "bonded.h"
 
-#include "lane_system.h"
+#include "simd_system.h"
 
 #include "core/cost.h"
 #include "inner_solver.h"
@@ -139,9 +139,9 @@ namespace nsfd
       std::vector<double> factors_, inverse_;
     };
 
-    /** With Newton systems in single precision, over lanes of bodies. */
+    /** With Newton systems in single precision, in batches of bodies. */
     template <int dim, typename Base>
-    class LaneDynamics : public FaceBlocks<dim, Base>, public InnerSolver
+    class BatchedDynamics : public FaceBlocks<dim, Base>, public InnerSolver
     {
     public:
       using FaceBlocks<dim, Base>::FaceBlocks;
@@ -150,33 +150,33 @@ namespace nsfd
                                const std::vector<double> &r,
                                std::vector<double> &x) override
       {
-        if (!lanes_)
-          set_lanes();
-        const auto before = lanes_->applications();
+        if (!batched_)
+          set_batched();
+        const auto before = batched_->applications();
         const unsigned int iterations =
-            system.jacobian ? lanes_->gmres(system, r, x)
-                            : lanes_->conjugate_gradients(system, r, x);
-        this->counters_.delassus += lanes_->applications() - before;
+            system.jacobian ? batched_->gmres(system, r, x)
+                            : batched_->conjugate_gradients(system, r, x);
+        this->counters_.delassus += batched_->applications() - before;
         return iterations;
       }
 
     protected:
-      void set_lanes()
+      void set_batched()
       {
-        if (!lanes_)
-          lanes_ = std::make_unique<LaneSystem<dim>>(
+        if (!batched_)
+          batched_ = std::make_unique<SimdSystem<dim>>(
               this->communicator_, this->bodies_, this->points_);
-        lanes_->reinit(*this);
+        batched_->reinit(*this);
       }
 
-      std::unique_ptr<LaneSystem<dim>> lanes_;
+      std::unique_ptr<SimdSystem<dim>> batched_;
     };
 
     template <int dim, typename Base>
-    class ElementwiseDynamics final : public LaneDynamics<dim, Base>
+    class ElementwiseDynamics final : public BatchedDynamics<dim, Base>
     {
     public:
-      using LaneDynamics<dim, Base>::LaneDynamics;
+      using BatchedDynamics<dim, Base>::BatchedDynamics;
 
       void reinit(const double time_step, const double theta) override
       {
@@ -188,21 +188,21 @@ namespace nsfd
         if (theta != 0. && std::is_base_of_v<BondedDynamics<dim>, Base>)
           throw std::logic_error("bodies with explicit bonds are explicit");
         const Charge charge(Cost::blocks);
-        this->set_lanes();
+        this->set_batched();
       }
     };
 
     /** Every step has bodies and points of its own. */
     template <int dim>
-    class MovingDynamics final : public LaneDynamics<dim, Dynamics<dim>>
+    class MovingDynamics final : public BatchedDynamics<dim, Dynamics<dim>>
     {
     public:
-      using LaneDynamics<dim, Dynamics<dim>>::LaneDynamics;
+      using BatchedDynamics<dim, Dynamics<dim>>::BatchedDynamics;
 
       void reinit(const double time_step, const double theta) override
       {
         Dynamics<dim>::reinit(time_step, theta);
-        this->lanes_.reset();
+        this->batched_.reset();
       }
     };
   } // namespace

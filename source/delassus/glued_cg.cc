@@ -1,6 +1,7 @@
 #include "body_inverses.h"
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/ghost_values.h"
+#include "linear_algebra/krylov.h"
 #include "linear_algebra/multigrid.h"
 #include "linear_algebra/sparse_rows.h"
 
@@ -34,10 +35,11 @@ namespace nsfd
 
     private:
       void build_coarse(const SparseRows &matrix, const CoarseSpace &coarse);
-      void precondition(const double *r, double *z);
+      void precondition();
       void multiply_direction();
-      double dot(const double *a, const double *b, const double *coarse_a,
-                 const double *coarse_b) const;
+      using Vector = std::vector<double>;
+      double dot(const Vector &a, const Vector &b, const Vector &coarse_a,
+                 const Vector &coarse_b) const;
       unsigned int iterate(double *rest, double tolerance);
 
       const Communicator &communicator_;
@@ -54,8 +56,20 @@ namespace nsfd
       std::unique_ptr<Cholesky> factor_;
       std::unique_ptr<Multigrid> multigrid_;
       Product add_product_; // with A on the coarse space, if known apart
-      std::vector<double> r_, z_, p_, q_;
-      std::vector<double> coarse_r_, coarse_z_, coarse_p_, coarse_q_, coarse_x_;
+      krylov::CgVectors fine_, coarse_;
+      Vector coarse_x_;
+
+      /** What krylov::conjugate_gradients() asks for, of both parts. */
+      struct Iteration {
+        GluedCg &cg;
+        double *rest; ///< the solution but for that of the coarse space
+
+        bool is_solved() { return false; }
+        double precondition();
+        void turn(double beta);
+        double multiply();
+        void advance(double alpha);
+      };
     };
 
     void GluedCg::prepare(const SparseRows &matrix, const CoarseSpace &coarse,
@@ -118,8 +132,8 @@ namespace nsfd
                                                             remote.end(), k) -
                                            remote.begin()));
       }
-      coarse_r_.resize(std::size_t(n_coarse_) + remote.size());
-      coarse_z_.resize(coarse_r_.size());
+      coarse_.r.resize(std::size_t(n_coarse_) + remote.size());
+      coarse_.z.resize(coarse_.r.size());
 
       if (coarse.n_global <= largest_factor_) {
         multigrid_.reset();
@@ -134,25 +148,25 @@ namespace nsfd
       }
     }
 
-    /** The part of the bodies into @p z, the other one into coarse_z_. */
-    void GluedCg::precondition(const double *r, double *z)
+    /** z = B r, the part of the bodies and that of the coarse space. */
+    void GluedCg::precondition()
     {
-      std::fill(coarse_r_.begin(), coarse_r_.end(), 0.);
+      std::fill(coarse_.r.begin(), coarse_.r.end(), 0.);
       for (std::size_t i = 0; i < place_.size(); ++i)
-        coarse_r_[place_[i]] += r[i];
-      coarse_exchange_.start_add_back(coarse_r_.data() + n_coarse_);
-      bodies_.apply(r, z);
-      coarse_exchange_.finish_add_back(coarse_r_.data());
+        coarse_.r[place_[i]] += fine_.r[i];
+      coarse_exchange_.start_add_back(coarse_.r.data() + n_coarse_);
+      bodies_.apply(fine_.r.data(), fine_.z.data());
+      coarse_exchange_.finish_add_back(coarse_.r.data());
       if (factor_)
-        factor_->solve(coarse_r_.data(), coarse_z_.data());
+        factor_->solve(coarse_.r.data(), coarse_.z.data());
       else
-        multigrid_->apply(coarse_r_.data(), coarse_z_.data());
-      coarse_exchange_.fetch(coarse_z_.data(), coarse_z_.data() + n_coarse_);
+        multigrid_->apply(coarse_.r.data(), coarse_.z.data());
+      coarse_exchange_.fetch(coarse_.z.data(), coarse_.z.data() + n_coarse_);
     }
 
     /** a.b + coarse_a.coarse_b over own unknowns. */
-    double GluedCg::dot(const double *a, const double *b,
-                        const double *coarse_a, const double *coarse_b) const
+    double GluedCg::dot(const Vector &a, const Vector &b,
+                        const Vector &coarse_a, const Vector &coarse_b) const
     {
       // the second one: how many ranks are asked to stop
       double sums[2] = {0.,
@@ -174,84 +188,85 @@ namespace nsfd
     {
       const std::size_t n = place_.size();
       for (std::size_t i = 0; i < n; ++i)
-        z_[i] = coarse_p_[place_[i]];
+        fine_.z[i] = coarse_.p[place_[i]];
       if (add_product_) {
-        multiply(*matrix_, exchange_, p_.data(), q_.data());
-        add_product_(z_.data(), q_.data());
+        multiply(*matrix_, exchange_, fine_.p.data(), fine_.q.data());
+        add_product_(fine_.z.data(), fine_.q.data());
       } else {
         for (std::size_t i = 0; i < n; ++i) {
-          std::swap(p_[i], z_[i]);
-          p_[i] += z_[i];
+          std::swap(fine_.p[i], fine_.z[i]);
+          fine_.p[i] += fine_.z[i];
         }
-        multiply(*matrix_, exchange_, p_.data(), q_.data());
-        std::copy_n(z_.begin(), n, p_.begin());
+        multiply(*matrix_, exchange_, fine_.p.data(), fine_.q.data());
+        std::copy_n(fine_.z.begin(), n, fine_.p.begin());
       }
-      std::fill(coarse_q_.begin(), coarse_q_.end(), 0.);
+      std::fill(coarse_.q.begin(), coarse_.q.end(), 0.);
       for (std::size_t i = 0; i < n; ++i)
-        coarse_q_[place_[i]] += q_[i];
-      coarse_exchange_.start_add_back(coarse_q_.data() + n_coarse_);
-      coarse_exchange_.finish_add_back(coarse_q_.data());
+        coarse_.q[place_[i]] += fine_.q[i];
+      coarse_exchange_.start_add_back(coarse_.q.data() + n_coarse_);
+      coarse_exchange_.finish_add_back(coarse_.q.data());
+    }
+
+    double GluedCg::Iteration::precondition()
+    {
+      cg.precondition();
+      return cg.dot(cg.fine_.r, cg.fine_.z, cg.coarse_.r, cg.coarse_.z);
+    }
+
+    void GluedCg::Iteration::turn(const double beta)
+    {
+      for (std::size_t i = 0; i < cg.fine_.z.size(); ++i)
+        cg.fine_.p[i] = cg.fine_.z[i] + beta * cg.fine_.p[i];
+      for (std::size_t i = 0; i < cg.coarse_.z.size(); ++i)
+        cg.coarse_.p[i] = cg.coarse_.z[i] + beta * cg.coarse_.p[i];
+    }
+
+    double GluedCg::Iteration::multiply()
+    {
+      cg.multiply_direction();
+      return cg.dot(cg.fine_.q, cg.fine_.p, cg.coarse_.q, cg.coarse_.p);
+    }
+
+    void GluedCg::Iteration::advance(const double alpha)
+    {
+      for (std::size_t i = 0; i < cg.fine_.z.size(); ++i) {
+        rest[i] += alpha * cg.fine_.p[i];
+        cg.fine_.r[i] -= alpha * cg.fine_.q[i];
+      }
+      for (std::size_t i = 0; i < cg.coarse_.z.size(); ++i)
+        cg.coarse_x_[i] += alpha * cg.coarse_.p[i];
     }
 
     /**
-     * Conjugate gradients from the residual r_ on; what is found is rest + P
-     * coarse_x_. Directions are kept in these two parts as well: springs that
-     * vanish on the coarse space are larger than what A is there by more than
-     * the digits of a sum.
+     * From the residual r on; what is found is rest + P coarse_x_. Directions
+     * are kept in these two parts as well: springs that vanish on the coarse
+     * space are larger than what A is there by more than the digits of a sum.
      */
     unsigned int GluedCg::iterate(double *rest, const double tolerance)
     {
-      const std::size_t n = place_.size(), n_coarse = coarse_z_.size();
+      const std::size_t n = place_.size(), n_coarse = coarse_.z.size();
       ++counters_.solves;
-      z_.resize(n);
-      q_.resize(n);
-      p_.assign(n + matrix_->ghosts.size(), 0.);
+      fine_.z.resize(n);
+      fine_.q.resize(n);
+      fine_.p.assign(n + matrix_->ghosts.size(), 0.);
       std::fill_n(rest, n, 0.);
-      coarse_q_.resize(n_coarse);
-      coarse_p_.assign(n_coarse, 0.);
+      coarse_.q.resize(n_coarse);
+      coarse_.p.assign(n_coarse, 0.);
       coarse_x_.assign(n_coarse, 0.);
-      double rz = 1.;
-      const auto turn = [&](const bool first) {
-        precondition(r_.data(), z_.data());
-        const double next =
-            dot(r_.data(), z_.data(), coarse_r_.data(), coarse_z_.data());
-        const double beta = first ? 0. : next / rz;
-        rz = next;
-        for (std::size_t i = 0; i < n; ++i)
-          p_[i] = z_[i] + beta * p_[i];
-        for (std::size_t i = 0; i < n_coarse; ++i)
-          coarse_p_[i] = coarse_z_[i] + beta * coarse_p_[i];
-      };
-      turn(true);
-      const double target = tolerance * tolerance * rz;
-      // a sum that is not above round-off any more ends it as well
+      Iteration iteration{*this, rest};
       const unsigned int limit = 1000;
-      unsigned int k = 0;
-      for (; k < limit && rz > target; ++k) {
-        multiply_direction();
-        const double pAp =
-            dot(q_.data(), p_.data(), coarse_q_.data(), coarse_p_.data());
-        if (!(pAp > 0.))
-          break;
-        const double alpha = rz / pAp;
-        for (std::size_t i = 0; i < n; ++i) {
-          rest[i] += alpha * p_[i];
-          r_[i] -= alpha * q_[i];
-        }
-        for (std::size_t i = 0; i < n_coarse; ++i)
-          coarse_x_[i] += alpha * coarse_p_[i];
-        turn(false);
-      }
-      converged_ = rz <= target;
-      counters_.iterations += k;
-      return k;
+      const auto outcome =
+          krylov::conjugate_gradients(iteration, {tolerance, limit});
+      converged_ = outcome.converged;
+      counters_.iterations += outcome.iterations;
+      return outcome.iterations;
     }
 
     unsigned int GluedCg::solve_parts(const double *b, const std::size_t rows,
                                       double *rest, double *coarse,
                                       const double tolerance)
     {
-      r_.assign(b, b + rows);
+      fine_.r.assign(b, b + rows);
       const unsigned int k = iterate(rest, tolerance);
       for (std::size_t i = 0; i < rows; ++i)
         coarse[i] = coarse_x_[place_[i]];
@@ -262,7 +277,7 @@ namespace nsfd
                                 const double tolerance)
     {
       const std::size_t n = place_.size();
-      r_.assign(b, b + n);
+      fine_.r.assign(b, b + n);
       bool started = false;
       for (std::size_t i = 0; i < n; ++i)
         started = started || x[i] != 0.;
@@ -272,12 +287,12 @@ namespace nsfd
           x[i] += coarse_x_[place_[i]];
         return k;
       }
-      p_.resize(n + matrix_->ghosts.size());
-      q_.resize(n);
-      std::copy_n(x, n, p_.begin());
-      multiply(*matrix_, exchange_, p_.data(), q_.data());
+      fine_.p.resize(n + matrix_->ghosts.size());
+      fine_.q.resize(n);
+      std::copy_n(x, n, fine_.p.begin());
+      multiply(*matrix_, exchange_, fine_.p.data(), fine_.q.data());
       for (std::size_t i = 0; i < n; ++i)
-        r_[i] -= q_[i];
+        fine_.r[i] -= fine_.q[i];
       std::vector<double> rest(n);
       const unsigned int k = iterate(rest.data(), tolerance);
       for (std::size_t i = 0; i < n; ++i)

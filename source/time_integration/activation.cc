@@ -1,5 +1,6 @@
 #include "activation.h"
 
+#include "linear_algebra/krylov.h"
 #include "nonsmooth/point_law.h"
 #include "nonsmooth/pull_and_shear.h"
 
@@ -43,7 +44,6 @@ namespace nsfd
       const auto &communicator = dynamics.communicator();
       const std::size_t n = problem.n_points * dim,
                         n_owned = problem.n_owned * dim;
-      std::vector<double> x(n, 0.), r(n), p(n), Wp(n);
       const auto apply = [&](const std::vector<double> &in,
                              std::vector<double> &out) {
         dynamics.apply_delassus(in.data(), out.data());
@@ -51,24 +51,18 @@ namespace nsfd
           if (!is_joined(problem, k))
             out[k] = 0.;
       };
-      apply(P, r);
-      p = r;
-      double rr = communicator.dot(r.data(), r.data(), n_owned);
-      const double goal = 1e-20 * rr;
-      for (unsigned int k = 0; k < 1000 && rr > goal; ++k) {
-        apply(p, Wp);
-        const double pWp = communicator.dot(p.data(), Wp.data(), n_owned);
-        if (!(pWp > 0.))
-          break;
-        for (std::size_t j = 0; j < n; ++j) {
-          x[j] += rr / pWp * p[j];
-          r[j] -= rr / pWp * Wp[j];
-        }
-        const double next = communicator.dot(r.data(), r.data(), n_owned);
-        for (std::size_t j = 0; j < n; ++j)
-          p[j] = r[j] + next / rr * p[j];
-        rr = next;
-      }
+      const auto copy = [](const std::vector<double> &r,
+                           std::vector<double> &z) { z = r; };
+      const auto dot = [&](const std::vector<double> &a,
+                           const std::vector<double> &b) {
+        return communicator.dot(a.data(), b.data(), n_owned);
+      };
+      std::vector<double> x(n, 0.);
+      krylov::CgVectors vectors;
+      vectors.r.resize(n);
+      vectors.q.resize(n);
+      apply(P, vectors.r);
+      krylov::conjugate_gradients(apply, copy, dot, {1e-10, 1000}, vectors, x);
       return x;
     }
   } // namespace

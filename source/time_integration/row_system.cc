@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
@@ -13,7 +14,7 @@ namespace nsfd
         D.begin(), D.end(), [](const double d) { return d >= 0.; }));
     if (!empty_)
       dynamics_.prepare_preconditioner(D_);
-    for (auto *vector : {&r_, &z_, &p_, &Wp_})
+    for (auto *vector : {&vectors_.r, &vectors_.z, &vectors_.p, &vectors_.q})
       vector->assign(D.size(), 0.);
   }
 
@@ -31,39 +32,31 @@ namespace nsfd
                                      const double goal, std::vector<double> &P)
   {
     const auto &communicator = dynamics_.communicator();
-    const std::size_t n = D_.size();
     const auto dot = [&](const std::vector<double> &x,
                          const std::vector<double> &y) {
       return communicator.dot(x.data(), y.data(), n_owned_);
     };
-    apply(P, Wp_);
-    for (std::size_t k = 0; k < n; ++k)
-      r_[k] = D_[k] >= 0. ? b[k] - Wp_[k] : 0.;
-    unsigned int iterations = 0;
-    double rz = 0.;
-    const unsigned int most = 10000; // round-off stalls it long before
-    double best = std::sqrt(dot(r_, r_));
-    for (unsigned int stalled = 0;
-         best > goal && iterations < most && stalled < 100;) {
-      dynamics_.precondition(r_.data(), z_.data());
-      const double next = dot(r_, z_);
-      for (std::size_t k = 0; k < n; ++k)
-        p_[k] = z_[k] + (iterations > 0 ? next / rz : 0.) * p_[k];
-      rz = next;
-      apply(p_, Wp_);
-      const double pWp = dot(p_, Wp_);
-      if (!(pWp > 0.))
-        break;
-      for (std::size_t k = 0; k < n; ++k) {
-        P[k] += rz / pWp * p_[k];
-        r_[k] -= rz / pWp * Wp_[k];
-      }
-      ++iterations;
-      const double norm = std::sqrt(dot(r_, r_));
+    apply(P, vectors_.q);
+    for (std::size_t k = 0; k < D_.size(); ++k)
+      vectors_.r[k] = D_[k] >= 0. ? b[k] - vectors_.q[k] : 0.;
+    const auto product = [&](const std::vector<double> &x,
+                             std::vector<double> &y) { apply(x, y); };
+    const auto precondition = [&](const std::vector<double> &r,
+                                  std::vector<double> &z) {
+      dynamics_.precondition(r.data(), z.data());
+    };
+    double best = std::numeric_limits<double>::infinity();
+    unsigned int stalled = 0;
+    const auto is_solved = [&] {
+      const double norm = std::sqrt(dot(vectors_.r, vectors_.r));
       stalled = norm < 0.99 * best ? 0 : stalled + 1;
       best = std::min(best, norm);
-    }
-    return iterations;
+      return !(best > goal) || stalled >= 100;
+    };
+    const unsigned int most = 10000; // round-off stalls it long before
+    return krylov::conjugate_gradients(product, precondition, dot, is_solved,
+                                       {0., most}, vectors_, P)
+        .iterations;
   }
 
   template class RowSystem<2>;

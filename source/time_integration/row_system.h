@@ -1,6 +1,7 @@
 #pragma once
 
 #include "delassus/dynamics.h"
+#include "linear_algebra/krylov.h"
 
 #include <vector>
 
@@ -39,7 +40,7 @@ namespace nsfd
     Dynamics<dim> &dynamics_;
     std::size_t n_owned_;
     std::vector<double> D_;
-    std::vector<double> r_, z_, p_, Wp_;
+    krylov::CgVectors vectors_;
     bool empty_ = true;
   };
 } // namespace nsfd

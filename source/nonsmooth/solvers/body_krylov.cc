@@ -1,6 +1,7 @@
 #include "body_krylov.h"
 
 #include "core/stop_request.h"
+#include "linear_algebra/krylov.h"
 
 #include <deal.II/lac/lapack_templates.h>
 
@@ -31,52 +32,6 @@ namespace nsfd
           y[r] += A[r * dim + c] * x[c];
       }
     }
-
-    /** The solution of least residual in a Krylov space that grows. */
-    class LeastResidual
-    {
-    public:
-      explicit LeastResidual(const double residual) : g_{residual} {}
-
-      double residual() const { return std::abs(g_.back()); }
-
-      /** The next column of the Hessenberg matrix. */
-      void add(Vector column)
-      {
-        const std::size_t k = cosines_.size();
-        for (std::size_t j = 0; j < k; ++j) {
-          const double a = column[j], b = column[j + 1];
-          column[j] = cosines_[j] * a + sines_[j] * b;
-          column[j + 1] = -sines_[j] * a + cosines_[j] * b;
-        }
-        const double length = std::hypot(column[k], column[k + 1]);
-        const double c = length > 0. ? column[k] / length : 1.,
-                     s = length > 0. ? column[k + 1] / length : 0.;
-        cosines_.push_back(c);
-        sines_.push_back(s);
-        column[k] = length;
-        columns_.push_back(std::move(column));
-        g_.push_back(-s * g_[k]);
-        g_[k] *= c;
-      }
-
-      /** Coefficients of the basis. */
-      Vector solution() const
-      {
-        Vector y(cosines_.size());
-        for (std::size_t i = y.size(); i-- > 0;) {
-          y[i] = g_[i];
-          for (std::size_t j = i + 1; j < y.size(); ++j)
-            y[i] -= columns_[j][i] * y[j];
-          y[i] = columns_[i][i] > 0. ? y[i] / columns_[i][i] : 0.;
-        }
-        return y;
-      }
-
-    private:
-      std::vector<Vector> columns_;
-      Vector g_, cosines_, sines_;
-    };
   } // namespace
 
   BodyKrylov::BodyKrylov(const unsigned int dim,
@@ -259,59 +214,27 @@ namespace nsfd
     for (std::size_t i = 0; i < cap_.size(); ++i)
       multiply_small(dim_, &gain_[i * dim_ * dim_], &d[i * dim_],
                      &held[i * dim_]);
-    std::vector<Vector> basis(1, b);
-    basis[0].resize(size, 0.);
-    add_momentum(held, basis[0].data());
+    Vector all(b);
+    all.resize(size, 0.);
+    add_momentum(held, all.data());
     for (std::size_t k = 0; k < stiff_.size(); ++k) {
       const std::size_t i = stiff_[k];
-      double *right = &basis[0][n + k * dim_];
+      double *right = &all[n + k * dim_];
       multiply_small(dim_, &capped_[i * dim_ * dim_], &held[i * dim_], right);
       for (unsigned int r = 0; r < dim_; ++r)
         right[r] /= cap_[i];
     }
-
-    Vector z(size);
-    const double start = std::sqrt(dot(basis[0], basis[0]));
-    LeastResidual least(start);
-    unsigned int count = 0;
-    if (start > 0.)
-      for (double &value : basis[0])
-        value /= start;
-    while (count < most_iterations && least.residual() > tolerance * start) {
+    const auto product = [&](const Vector &in, Vector &out) {
+      apply(in.data(), out.data());
+    };
+    const auto precondition_by = [&](const Vector &in, Vector &out) {
       stop_request::leave_if_due();
-      precondition(basis[count].data(), z.data());
-      Vector next(size), column(count + 2, 0.);
-      apply(z.data(), next.data());
-      double before = std::sqrt(dot(next, next)), norm = before;
-      for (unsigned int pass = 0; pass < 2; ++pass) {
-        for (unsigned int j = 0; j <= count; ++j) {
-          const double share = dot(next, basis[j]);
-          column[j] += share;
-          for (std::size_t i = 0; i < size; ++i)
-            next[i] -= share * basis[j][i];
-        }
-        norm = std::sqrt(dot(next, next));
-        if (norm > 0.1 * before)
-          break; // no digits were lost
-        before = norm;
-      }
-      if (!std::isfinite(norm))
-        break;
-      column[count + 1] = norm;
-      least.add(std::move(column));
-      ++count;
-      if (norm == 0.)
-        break;
-      for (double &value : next)
-        value /= norm;
-      basis.push_back(std::move(next));
-    }
-    const Vector y = least.solution();
-    Vector sum(size, 0.), all(size);
-    for (std::size_t j = 0; j < y.size(); ++j)
-      for (std::size_t i = 0; i < size; ++i)
-        sum[i] += y[j] * basis[j][i];
-    precondition(sum.data(), all.data());
+      precondition(in.data(), out.data());
+    };
+    const unsigned int count =
+        krylov::gmres(product, precondition_by, dot,
+                      {tolerance, most_iterations}, {}, all)
+            .iterations;
 
     x.assign(all.begin(), all.begin() + n);
     relative_velocity(x.data(), U_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "delassus/inner_solver.h"
+#include "linear_algebra/krylov.h"
 #include "nonsmooth/solver.h"
 
 namespace nsfd
@@ -68,7 +69,8 @@ namespace nsfd
     Vector majorants_;
     std::vector<LocalSolution<dim>> solutions_; // before the step, with
     Vector defect_, velocity_;                  // what follows from them
-    Vector r_, z_, p_, Ap_, rhs_;
+    krylov::CgVectors cg_;
+    Vector rhs_;
     std::vector<std::vector<unsigned int>> colours_;
   };
 } // namespace nsfd

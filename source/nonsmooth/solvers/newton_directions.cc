@@ -1,4 +1,5 @@
 #include "dual_newton.h"
+
 #include "nonsmooth/linear_spring.h"
 
 #include <algorithm>
@@ -118,11 +119,11 @@ namespace nsfd
     }
     // rows without compliance are approached by proximal steps
     const auto size = [&](const Vector &r) {
-      z_.assign(work.n_owned, 0.);
+      cg_.z.assign(work.n_owned, 0.);
       for (std::size_t k = 0; k < work.n_owned; ++k)
         if (compliance_[k] >= 0.)
-          z_[k] = r[k] * r[k] / majorant(work, k);
-      return std::sqrt(communicator.sum(z_.data(), work.n_owned));
+          cg_.z[k] = r[k] * r[k] / majorant(work, k);
+      return std::sqrt(communicator.sum(cg_.z.data(), work.n_owned));
     };
     if (!work.dynamics.inverts()) {
       for (std::size_t k = 0; k < work.n; ++k)
@@ -131,20 +132,20 @@ namespace nsfd
               (compliance_[k] + majorant(work, k)) * work.evaluation.defect[k];
       const double goal = tolerance * size(rhs_);
       for (unsigned int round = 0; round < 5; ++round) {
-        Ap_.resize(work.n);
-        work.dynamics.apply_delassus(dP.data(), Ap_.data());
-        r_ = rhs_;
+        cg_.q.resize(work.n);
+        work.dynamics.apply_delassus(dP.data(), cg_.q.data());
+        cg_.r = rhs_;
         for (std::size_t k = 0; k < work.n; ++k) {
-          Ap_[k] += work.problem.free_velocity[k];
-          r_[k] += compliance_[k] * (dP[k] - (*work.impulse)[k]) + Ap_[k] -
-                   work.evaluation.velocity[k];
+          cg_.q[k] += work.problem.free_velocity[k];
+          cg_.r[k] += compliance_[k] * (dP[k] - (*work.impulse)[k]) + cg_.q[k] -
+                      work.evaluation.velocity[k];
         }
-        if (!(size(r_) > goal))
+        if (!(size(cg_.r) > goal))
           break;
         ++work.report.krylov;
-        p_ = dP;
-        work.dynamics.solve_springs(p_.data(), Ap_.data(), r_.data(), 0.1,
-                                    dP.data());
+        cg_.p = dP;
+        work.dynamics.solve_springs(cg_.p.data(), cg_.q.data(), cg_.r.data(),
+                                    0.1, dP.data());
       }
     }
     for (std::size_t k = 0; k < work.n; ++k)
@@ -169,49 +170,39 @@ namespace nsfd
         dP[k] = -defect[k];
         moved = true;
       }
-    Ap_.assign(work.n, 0.);
+    cg_.q.assign(work.n, 0.);
     if (communicator.any(moved))
-      work.dynamics.apply_delassus(dP.data(), Ap_.data());
+      work.dynamics.apply_delassus(dP.data(), cg_.q.data());
     for (std::size_t k = 0; k < work.n; ++k)
       if (compliance_[k] >= 0.)
-        rhs_[k] = -(compliance_[k] + majorant(work, k)) * defect[k] - Ap_[k];
+        rhs_[k] = -(compliance_[k] + majorant(work, k)) * defect[k] - cg_.q[k];
 
     if (work.inner) {
-      z_.assign(work.n, 0.);
+      cg_.z.assign(work.n, 0.);
       work.report.krylov += work.inner->solve_inner(
-          {compliance_, tolerance, 2000, nullptr, nullptr, 0.}, rhs_, z_);
+          {compliance_, tolerance, 2000, nullptr, nullptr, 0.}, rhs_, cg_.z);
       for (std::size_t k = 0; k < work.n; ++k)
-        dP[k] += z_[k];
+        dP[k] += cg_.z[k];
       return;
     }
     work.dynamics.prepare_preconditioner(compliance_);
-    r_ = rhs_;
-    z_.assign(work.n, 0.);
-    work.dynamics.precondition(r_.data(), z_.data());
-    p_ = z_;
-    double rz = communicator.dot(r_.data(), z_.data(), work.n_owned);
-    const double target = tolerance * tolerance * rz;
-    const unsigned int limit = 2000;
-    for (unsigned int k = 0; k < limit && rz > target; ++k) {
-      work.dynamics.apply_delassus(p_.data(), Ap_.data());
-      for (std::size_t j = 0; j < work.n; ++j)
-        Ap_[j] = compliance_[j] >= 0. ? Ap_[j] + compliance_[j] * p_[j] : 0.;
-      const double pAp = communicator.dot(p_.data(), Ap_.data(), work.n_owned);
-      if (!(pAp > 0.))
-        break;
-      const double alpha = rz / pAp;
-      for (std::size_t j = 0; j < work.n; ++j) {
-        dP[j] += alpha * p_[j];
-        r_[j] -= alpha * Ap_[j];
-      }
-      work.dynamics.precondition(r_.data(), z_.data());
-      const double next = communicator.dot(r_.data(), z_.data(), work.n_owned);
-      const double beta = next / rz;
-      rz = next;
-      for (std::size_t j = 0; j < work.n; ++j)
-        p_[j] = z_[j] + beta * p_[j];
-      ++work.report.krylov;
-    }
+    cg_.r = rhs_;
+    cg_.z.assign(work.n, 0.);
+    const auto product = [&](const Vector &in, Vector &out) {
+      work.dynamics.apply_delassus(in.data(), out.data());
+      for (std::size_t k = 0; k < work.n; ++k)
+        out[k] = compliance_[k] >= 0. ? out[k] + compliance_[k] * in[k] : 0.;
+    };
+    const auto precondition = [&](const Vector &in, Vector &out) {
+      work.dynamics.precondition(in.data(), out.data());
+    };
+    const auto dot = [&](const Vector &a, const Vector &b) {
+      return communicator.dot(a.data(), b.data(), work.n_owned);
+    };
+    work.report.krylov +=
+        krylov::conjugate_gradients(product, precondition, dot,
+                                    {tolerance, 2000}, cg_, dP)
+            .iterations;
   }
 
   /**
@@ -247,31 +238,31 @@ namespace nsfd
     }
     work.dynamics.prepare_preconditioner(compliance_);
     const auto precondition = [&](const Vector &in, Vector &out) {
-      r_.assign(work.n, 0.);
+      cg_.r.assign(work.n, 0.);
       for (std::size_t k = 0; k < work.n; ++k)
         if (compliance_[k] >= 0.)
-          r_[k] = (compliance_[k] + majorant(work, k)) * in[k];
+          cg_.r[k] = (compliance_[k] + majorant(work, k)) * in[k];
       out.assign(work.n, 0.);
-      work.dynamics.precondition(r_.data(), out.data());
+      work.dynamics.precondition(cg_.r.data(), out.data());
       for (std::size_t k = 0; k < work.n; ++k)
         if (compliance_[k] < 0.)
           out[k] = in[k];
     };
     const auto matrix = [&](const Vector &in, Vector &out) {
       out.resize(work.n);
-      Ap_.resize(work.n);
-      work.dynamics.apply_delassus(in.data(), Ap_.data());
+      cg_.q.resize(work.n);
+      work.dynamics.apply_delassus(in.data(), cg_.q.data());
       for (std::size_t k = 0; k < work.n; ++k)
-        Ap_[k] -= (1. - shift) * majorant(work, k) * in[k];
+        cg_.q[k] -= (1. - shift) * majorant(work, k) * in[k];
       for (std::size_t i = 0; i < coupled_.size(); ++i)
         for (unsigned int c = 0; c < dim; ++c) {
           const std::size_t k = i * dim + c;
           double value = 0.;
           if (coupled_[i])
             for (unsigned int d = 0; d < dim; ++d)
-              value += jacobian_[k * dim + d] * Ap_[i * dim + d];
+              value += jacobian_[k * dim + d] * cg_.q[i * dim + d];
           else
-            value = -slopes_[k] * Ap_[k];
+            value = -slopes_[k] * cg_.q[k];
           out[k] = in[k] - value;
         }
     };
@@ -280,71 +271,21 @@ namespace nsfd
     for (std::size_t k = 0; k < work.n; ++k)
       scale[k] = majorant(work, k);
     const auto dot = [&](const Vector &a, const Vector &b) {
-      p_.resize(work.n_owned);
+      cg_.p.resize(work.n_owned);
       for (std::size_t k = 0; k < work.n_owned; ++k)
-        p_[k] = scale[k] * a[k] * b[k];
-      return communicator.sum(p_.data(), work.n_owned);
+        cg_.p[k] = scale[k] * a[k] * b[k];
+      return communicator.sum(cg_.p.data(), work.n_owned);
     };
 
-    const unsigned int limit = 120;
-    std::vector<Vector> V(1), Z;
-    V[0] = work.evaluation.defect;
-    for (double &value : V[0])
+    dP = work.evaluation.defect;
+    for (double &value : dP)
       value = -value;
-    const double beta = std::sqrt(dot(V[0], V[0]));
-    dP.assign(work.n, 0.);
-    if (beta == 0.)
-      return;
-    for (double &value : V[0])
-      value /= beta;
-    std::vector<Vector> H;
-    Vector g{beta}, cosines, sines;
-    unsigned int k = 0;
-    for (; k < limit && std::abs(g[k]) > tolerance * beta; ++k) {
-      Z.emplace_back();
-      precondition(V[k], Z[k]);
-      V.emplace_back();
-      matrix(Z[k], V[k + 1]);
-      H.emplace_back(k + 2);
-      for (unsigned int j = 0; j <= k; ++j) {
-        H[k][j] = dot(V[k + 1], V[j]);
-        for (std::size_t i = 0; i < work.n; ++i)
-          V[k + 1][i] -= H[k][j] * V[j][i];
-      }
-      const double norm = std::sqrt(dot(V[k + 1], V[k + 1]));
-      H[k][k + 1] = norm;
-      ++work.report.krylov;
-      if (norm > 0.)
-        for (double &value : V[k + 1])
-          value /= norm;
-      for (unsigned int j = 0; j < k; ++j) {
-        const double a = H[k][j], b = H[k][j + 1];
-        H[k][j] = cosines[j] * a + sines[j] * b;
-        H[k][j + 1] = -sines[j] * a + cosines[j] * b;
-      }
-      const double length = std::hypot(H[k][k], norm);
-      if (length == 0.)
-        break;
-      cosines.push_back(H[k][k] / length);
-      sines.push_back(norm / length);
-      H[k][k] = length;
-      g.push_back(-sines[k] * g[k]);
-      g[k] *= cosines[k];
-      if (norm == 0.) {
-        ++k;
-        break;
-      }
-    }
-    Vector y(k);
-    for (unsigned int i = k; i-- > 0;) {
-      y[i] = g[i];
-      for (unsigned int j = i + 1; j < k; ++j)
-        y[i] -= H[j][i] * y[j];
-      y[i] /= H[i][i];
-    }
-    for (unsigned int j = 0; j < k; ++j)
-      for (std::size_t i = 0; i < work.n; ++i)
-        dP[i] += y[j] * Z[j][i];
+    krylov::BasisOptions options;
+    options.flexible = true;
+    options.passes = 1;
+    work.report.krylov +=
+        krylov::gmres(matrix, precondition, dot, {tolerance, 120}, options, dP)
+            .iterations;
   }
 
   template class DualNewton<2>;

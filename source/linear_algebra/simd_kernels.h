@@ -8,7 +8,7 @@
  * by side. Every lane sees the same operations in the same order, whatever
  * shares its vector: results do not depend on how bodies and faces are grouped.
  */
-namespace nsfd::lane
+namespace nsfd::simd
 {
   /** Bodies, or faces, that one vector holds. */
   constexpr unsigned int width = 16;
@@ -110,4 +110,4 @@ namespace nsfd::lane
    */
   void invert(unsigned int n, const double *W, const double *D,
               const double *part, double *work, float *inverse);
-} // namespace nsfd::lane
+} // namespace nsfd::simd

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "linear_algebra/lane_kernels.h"
+#include "inner_solver.h"
+#include "simd_layout.h"
 
 #include "core/neighbor_messages.h"
-#include "dynamics.h"
-#include "inner_solver.h"
 
 #include <algorithm>
 
@@ -12,19 +11,18 @@ namespace nsfd
 {
   /**
    * Newton systems of the element-wise path in single precision, body by body
-   * and face by face over lanes. Components are scaled to a diagonal of W of
-   * one, so nothing leaves the range of floats. Answers do not depend on the
-   * number of ranks.
+   * and face by face in batches, one per lane of a SIMD vector. Answers do not
+   * depend on the number of ranks.
    */
   template <int dim>
-  class LaneSystem
+  class SimdSystem
   {
   public:
-    LaneSystem(const Communicator &communicator, const Bodies &bodies,
+    SimdSystem(const Communicator &communicator, const Bodies &bodies,
                const InterfacePoints<dim> &points);
 
-    /** After M_hat has changed. */
-    void reinit(const Dynamics<dim> &dynamics);
+    /** After M_hat has changed. Collective. */
+    void reinit(const Dynamics<dim> &dynamics) { layout_.set_values(dynamics); }
 
     /** (W + D) x = r by conjugate gradients; returns the iterations. */
     unsigned int conjugate_gradients(const InnerSystem &system,
@@ -45,12 +43,6 @@ namespace nsfd
   private:
     using Floats = std::vector<float>;
 
-    void group_bodies();
-    void group_faces();
-    void place_points();
-    void set_values(const Dynamics<dim> &dynamics, lane::BodyGroup &group,
-                    const std::vector<unsigned int> &members);
-    void set_faces(const Dynamics<dim> &dynamics, lane::FaceGroup &group);
     void prepare(const std::vector<double> &D);
     void prepare_coupled(const InnerSystem &system);
     /** To the slots, through the bodies, and from other ranks. */
@@ -60,27 +52,16 @@ namespace nsfd
     void set_zero(Floats &v) const { std::fill(v.begin(), v.end(), 0.f); }
     double product(const Floats &a, const Floats &b);
     double orthogonalise(unsigned int k, double &scale, double *h);
-    void reduce(lane::ExactSum *sums, unsigned int count) const;
-    template <typename Function>
-    void for_components(const lane::FaceGroup &group,
-                        const Function &function) const;
+    void reduce(simd::ExactSum *sums, unsigned int count) const;
+    /** The largest entry of @p r over the roots of the diagonal of W, or times
+     * them. */
+    double scale_of(const std::vector<double> &r, bool by_velocity) const;
+    struct Directions;
+    struct Basis;
 
     const Communicator &communicator_;
-    const Bodies &bodies_;
     const InterfacePoints<dim> &points_;
-    std::vector<lane::BodyGroup> body_groups_;
-    std::vector<std::vector<unsigned int>> members_; ///< bodies, per group
-    std::vector<lane::FaceGroup> face_groups_;
-    std::vector<std::vector<double>> face_blocks_; ///< scaled, packed, by lane
-    std::vector<double> scale_; ///< per component, square root of its W
-    double unit_ = 1.;     ///< of the bodies' blocks: the largest diagonal of W
-    std::size_t size_ = 0; ///< of a vector over faces
-    std::size_t n_slots_ = 0;               ///< floats of the bodies' slots
-    std::array<std::vector<int>, 2> place_; ///< per point, of its sides
-    struct Extra {
-      int slot, place;
-    };
-    std::vector<Extra> extras_;
+    SimdLayout<dim> layout_;
     Floats X_, Y_; ///< at the slots
     Floats x_, r_, z_, p_, w_;
     std::vector<Floats> basis_;
