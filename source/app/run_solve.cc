@@ -1,7 +1,7 @@
 #include "command_line.h"
 #include "core/stopwatch.h"
-#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nonsmooth/frictional_contact/fclib.h"
+#include "nonsmooth/solvers/contact_solvers.h"
 #include "solve_command.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace nsfd
   namespace
   {
     struct Result {
-      ContactReport report;
+      SolverReport report;
       double seconds = 0.;
       unsigned int runs = 0;
     };
@@ -24,7 +24,7 @@ namespace nsfd
      * counts. All runs do the same. */
     Result solve(const ContactProblem &problem, const SolveCommand &command)
     {
-      ContactControl control;
+      SolverControl control;
       control.tolerance = command.tolerance;
       Result result;
       double total = 0.;
@@ -50,7 +50,7 @@ namespace nsfd
                    const ContactProblem &problem, const SolveCommand &command,
                    const Result &result)
     {
-      const ContactReport &report = result.report;
+      const SolverReport &report = result.report;
       const auto line = [&](const char *name, const std::string &text) {
         out << fmt::format("{:<14} {}\n", name, text);
       };
@@ -67,8 +67,8 @@ namespace nsfd
            fmt::format("{} ({} products with W, {} factorisations)",
                        report.iterations, report.products,
                        report.factorisations));
-      line("residual", fmt::format("{:.2e}, {} {:.0e}", report.error,
-                                   report.solved ? "solved to" : "NOT below",
+      line("residual", fmt::format("{:.2e}, {} {:.0e}", report.residual,
+                                   report.converged ? "solved to" : "NOT below",
                                    command.tolerance));
       line("penetration",
            fmt::format("{:.2e} of the largest |q|", report.penetration));
@@ -92,13 +92,13 @@ namespace nsfd
       void row(const std::string &name, const ContactProblem &problem,
                const Result &result) const
       {
-        const ContactReport &report = result.report;
+        const SolverReport &report = result.report;
         out << fmt::format(
             "{:<{}}  {} {:>8}  {:<14} {:>10} {:>7} {:>10}  {:.2e} {:>12}{}\n",
             name, width, problem.dimension, problem.n_contacts(), report.solver,
             report.iterations, report.factorisations, report.switches.size(),
-            report.error, milliseconds(result.seconds),
-            report.solved ? "" : "  NOT SOLVED");
+            report.residual, milliseconds(result.seconds),
+            report.converged ? "" : "  NOT SOLVED");
       }
     };
 
@@ -140,7 +140,7 @@ namespace nsfd
     std::size_t unsolved = 0;
     for (std::size_t i = 0; i < problems.size(); ++i) {
       const Result result = solve(problems[i], command);
-      unsolved += !result.report.solved;
+      unsolved += !result.report.converged;
       if (several)
         table.row(short_name(command.files[i]), problems[i], result);
       else

@@ -1,5 +1,5 @@
 #include "command_line.h"
-#include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nonsmooth/solvers/contact_solvers.h"
 #include "parameters/input_errors.h"
 #include "refuse_word.h"
 #include "solve_command.h"
@@ -20,9 +20,8 @@ namespace nsfd
     std::string solvers_text()
     {
       std::string text = "Solvers:\n";
-      for (const auto &[name, entry] :
-           ContactSolverRegistry::instance().entries())
-        text += fmt::format("  {:<20}{}\n", name, entry.text);
+      for (const auto &[name, line] : contact_solvers())
+        text += fmt::format("  {:<20}{}\n", name, line);
       return text + "Exit code: 0 all solved, 3 one is not, 1 a file holds no "
                     "problem (none is solved).\n"
                     "Example:\n"
@@ -82,11 +81,14 @@ namespace nsfd
     if (names.empty())
       return refuse(err, "nsfd solve", "no problem is named",
                     "write for example: nsfd solve tests/problems");
-    const auto &registry = ContactSolverRegistry::instance();
-    if (!registry.knows(command.solver))
+    std::vector<std::string> solvers;
+    for (const auto &solver : contact_solvers())
+      solvers.push_back(solver.first);
+    if (std::find(solvers.begin(), solvers.end(), command.solver) ==
+        solvers.end())
       return refuse(err, "nsfd solve",
                     fmt::format("there is no solver `{}`", command.solver),
-                    did_you_mean(command.solver, registry.names(),
+                    did_you_mean(command.solver, solvers,
                                  "`nsfd solve --help` prints them all"));
     if (!(command.tolerance > 0. && command.tolerance < 1.))
       return refuse(err, "nsfd solve",

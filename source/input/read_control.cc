@@ -49,7 +49,8 @@ namespace nsfd
     std::vector<NamedText> solvers = {
         {"auto", "dual newton; what it cannot solve goes to the others"}};
     for (const auto &[name, entry] : SolverRegistry<2>::instance().entries())
-      solvers.push_back({name, entry.text});
+      if (name != "auto") // of stored problems
+        solvers.push_back({name, entry.text});
     return solvers;
   }
 

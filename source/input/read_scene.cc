@@ -1,7 +1,7 @@
 #include "read_scene.h"
 
 #include "mesh/mesh_types.h"
-#include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nonsmooth/solvers/contact_solvers.h"
 #include "nsfd/adaptivity/indicator.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/postprocess/observable.h"
@@ -209,8 +209,8 @@ namespace nsfd
     append_registered("observable", ObservableRegistry::instance());
     append("mesh", mesh_types());
     append("solver", known_solvers());
-    append_registered("solver of stored problems",
-                      ContactSolverRegistry::instance());
+    for (const auto &[name, text] : contact_solvers())
+      parts.push_back({"solver of stored problems", name, text});
     return parts;
   }
 } // namespace nsfd

@@ -1,3 +1,4 @@
+#include "natural_map.h"
 #include "solver.h"
 
 #include "core/cost.h"
@@ -97,7 +98,7 @@ namespace nsfd
     const auto sums = dynamics_.communicator().sums(terms_.data(), 2, n);
     const double scale = std::sqrt(sums[1]) + floor_;
     const double norm = std::sqrt(sums[0]);
-    error = norm == 0. ? 0. : norm / scale;
+    error = relative_natural_map(norm, scale);
     worst_error = scale > 0. ? std::sqrt(worst_error) / scale : 0.;
   }
 

@@ -4,16 +4,11 @@
 #include "nsfd/core/registry.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
 #include "point_law.h"
+#include "solver_report.h"
 
 namespace nsfd
 {
-  /** How far a solve has to go, and how much it may cost. */
-  struct SolverControl {
-    double tolerance = 1e-8;               ///< of the relative natural map
-    unsigned int maximum_iterations = 200; ///< Newton steps, or 100 sweeps each
-    unsigned int idle_rounds = 2; ///< line searches that did not halve the
-                                  ///< error before the solve is given up
-  };
+  class ContactSolver;
 
   /**
    * The point laws at the current impulses: velocities U, the solutions P* of
@@ -87,8 +82,9 @@ namespace nsfd
   };
 
   /**
-   * Solves a one-step problem: impulses in and out (warm start), velocities
-   * out. No printing, no throwing; the report tells.
+   * Solves the cone problem of a step, with the laws of its points: impulses in
+   * and out (warm start), velocities out. No printing, no throwing; the report
+   * tells.
    */
   template <int dim>
   class NonsmoothSolver
@@ -100,6 +96,12 @@ namespace nsfd
                                const SolverControl &control,
                                std::vector<double> &impulse,
                                LawEvaluation<dim> &evaluation) = 0;
+
+    /**
+     * The same solver for problems of contact and friction alone whose W is
+     * assembled; null where it needs the laws of points.
+     */
+    virtual const ContactSolver *contact_solver() const { return nullptr; }
 
     /** What one solve leaves to the next, if anything. */
     virtual void remember(Archive &) {}

@@ -1,7 +1,7 @@
 #include "save_problem.h"
 
-#include "nonsmooth/condense.h"
 #include "nonsmooth/frictional_contact/fclib.h"
+#include "nonsmooth/solvers/condense.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>

@@ -6,8 +6,8 @@
 // Every solver and storage of Siconos runs in a process of its own with a time
 // limit; one counts if its impulses are a solution in the measure of
 // natural_map_error(). Times are of the solve alone, the best of several runs.
-#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nonsmooth/frictional_contact/fclib.h"
+#include "nonsmooth/solvers/contact_solvers.h"
 
 extern "C" {
 #include <siconos/numerics/CSparseMatrix.h>
@@ -189,10 +189,10 @@ namespace
     double total = 0.;
     for (int i = 0; i < 1000 && total < 0.2; ++i) {
       std::vector<double> r(problem.n_rows());
-      ContactControl control;
+      SolverControl control;
       control.tolerance = tolerance;
       const double start = cpu_seconds();
-      const ContactReport report =
+      const SolverReport report =
           solve_contact_problem(problem, name, control, r);
       const double seconds = cpu_seconds() - start;
       total += seconds;

@@ -2,8 +2,8 @@
 #include "breaking_plate.h"
 #include "make_scene.h"
 
-#include "nonsmooth/condense.h"
-#include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nonsmooth/solvers/condense.h"
+#include "nonsmooth/solvers/contact_solvers.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ end
       EXPECT_LT(natural_map_error(contacts, contacts.solution), 1e-8)
           << "step " << k;
       std::vector<double> r;
-      EXPECT_TRUE(solve_contact_problem(contacts, "auto", {}, r).solved)
+      EXPECT_TRUE(solve_contact_problem(contacts, "auto", {}, r).converged)
           << "step " << k;
     }
     EXPECT_GT(pressed, 0u);

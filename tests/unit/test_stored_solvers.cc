@@ -1,5 +1,6 @@
 // Stored contact problems: error measure, one contact, every solver.
-#include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nonsmooth/solver.h"
+#include "nonsmooth/solvers/contact_solvers.h"
 
 #include "nonsmooth/frictional_contact/one_contact.h"
 
@@ -227,6 +228,31 @@ namespace nsfd::test_stored_solvers
     EXPECT_NEAR(r[0], 1., 1e-9); // 1e-10 of the block is added to it
   }
 
+  std::vector<std::string> names()
+  {
+    std::vector<std::string> result;
+    for (const auto &solver : contact_solvers())
+      result.push_back(solver.first);
+    return result;
+  }
+
+  // one registry: those that know laws are among them where W is assembled
+  TEST(StoredSolvers, AreThoseOfRunsAndThoseThatNeedWAssembled)
+  {
+    const std::vector<std::string> expected{
+        "admm",         "auto",           "dual newton",
+        "gauss seidel", "interior point", "projected gradient",
+        "proximal"};
+    EXPECT_EQ(names(), expected);
+    for (const std::string &name : expected) {
+      EXPECT_TRUE(SolverRegistry<2>::instance().knows(name)) << name;
+      EXPECT_TRUE(SolverRegistry<3>::instance().create(name)->contact_solver())
+          << name;
+    }
+    EXPECT_FALSE(
+        SolverRegistry<2>::instance().create("chain")->contact_solver());
+  }
+
   class StoredSolverTest : public testing::TestWithParam<std::string>
   {
   };
@@ -240,13 +266,13 @@ namespace nsfd::test_stored_solvers
       const Known known = manufacture(options);
       ASSERT_LT(natural_map_error(known.problem, known.r), 1e-14);
       std::vector<double> r;
-      ContactControl control;
+      SolverControl control;
       control.tolerance = 1e-10;
-      const ContactReport report =
+      const SolverReport report =
           solve_contact_problem(known.problem, GetParam(), control, r);
-      EXPECT_TRUE(report.solved) << report.error;
+      EXPECT_TRUE(report.converged) << report.residual;
       EXPECT_GT(report.iterations, 0u);
-      EXPECT_EQ(report.error, natural_map_error(known.problem, r));
+      EXPECT_EQ(report.residual, natural_map_error(known.problem, r));
       // error times condition: W has its eigenvalues in 1 .. 5
       for (std::size_t j = 0; j < r.size(); ++j)
         EXPECT_NEAR(r[j], known.r[j], 1e-8) << j;
@@ -266,9 +292,9 @@ namespace nsfd::test_stored_solvers
         options.asymmetry = asymmetry;
         const Known known = manufacture(options);
         std::vector<double> r;
-        const ContactReport report =
+        const SolverReport report =
             solve_contact_problem(known.problem, GetParam(), {}, r);
-        EXPECT_TRUE(report.solved) << d << "D: " << report.error;
+        EXPECT_TRUE(report.converged) << d << "D: " << report.residual;
       }
   }
 
@@ -284,11 +310,12 @@ namespace nsfd::test_stored_solvers
         options.q_scale = q;
         const Known known = manufacture(options);
         std::vector<double> r;
-        ContactControl control;
+        SolverControl control;
         control.tolerance = 1e-9 * std::min(w, 1. / w);
-        const ContactReport report =
+        const SolverReport report =
             solve_contact_problem(known.problem, GetParam(), control, r);
-        EXPECT_TRUE(report.solved) << w << " " << q << " " << report.error;
+        EXPECT_TRUE(report.converged)
+            << w << " " << q << " " << report.residual;
         for (std::size_t j = 0; j < r.size(); ++j)
           EXPECT_NEAR(r[j] * w / q, known.r[j] * w / q, 1e-6) << j;
       }
@@ -297,18 +324,18 @@ namespace nsfd::test_stored_solvers
   TEST_P(StoredSolverTest, DoesNothingWhereNothingIsToDo)
   {
     std::vector<double> r;
-    const ContactReport report = solve_contact_problem(
+    const SolverReport report = solve_contact_problem(
         one_contact(3, 0.5, {1., 2., 3.}), GetParam(), {}, r);
-    EXPECT_TRUE(report.solved);
+    EXPECT_TRUE(report.converged);
     EXPECT_EQ(report.iterations, 0u);
     EXPECT_EQ(r, (std::vector<double>{0., 0., 0.}));
 
     Options options;
     Known known = manufacture(options);
     std::vector<double> start = known.r;
-    const ContactReport again =
+    const SolverReport again =
         solve_contact_problem(known.problem, GetParam(), {}, start);
-    EXPECT_TRUE(again.solved);
+    EXPECT_TRUE(again.converged);
     EXPECT_EQ(again.iterations, 0u);
   }
 
@@ -318,28 +345,26 @@ namespace nsfd::test_stored_solvers
     ContactProblem problem = one_contact(3, 0.5, {-1., 0., 0.});
     problem.value = {0., 1., 1.};
     std::vector<double> r;
-    ContactControl control;
+    SolverControl control;
     control.maximum_iterations = 30;
-    const ContactReport report =
+    const SolverReport report =
         solve_contact_problem(problem, GetParam(), control, r);
     // the measure divides by |r|: huge impulses satisfy it, but nothing hides
     // that the contact closes
-    EXPECT_GT(std::max(report.error / control.tolerance, report.penetration),
+    EXPECT_GT(std::max(report.residual / control.tolerance, report.penetration),
               0.99);
-    EXPECT_EQ(report.solved, report.error <= control.tolerance);
+    EXPECT_EQ(report.converged, report.residual <= control.tolerance);
     EXPECT_NEAR(report.penetration, 1., 1e-12);
     for (const double x : r)
       EXPECT_TRUE(std::isfinite(x));
   }
 
-  INSTANTIATE_TEST_SUITE_P(
-      All, StoredSolverTest,
-      testing::ValuesIn(ContactSolverRegistry::instance().names()),
-      [](const auto &info) {
-        std::string name = info.param;
-        std::replace(name.begin(), name.end(), ' ', '_');
-        return name;
-      });
+  INSTANTIATE_TEST_SUITE_P(All, StoredSolverTest, testing::ValuesIn(names()),
+                           [](const auto &info) {
+                             std::string name = info.param;
+                             std::replace(name.begin(), name.end(), ' ', '_');
+                             return name;
+                           });
 
   // dimension, rank, friction, asymmetry at random: the chain must not give up
   TEST(StoredProblems, TheChainSolvesRandomProblems)
@@ -355,9 +380,10 @@ namespace nsfd::test_stored_solvers
       options.asymmetry = k % 3 ? 0. : 1e-5;
       const Known known = manufacture(options);
       std::vector<double> r;
-      const ContactReport report =
+      const SolverReport report =
           solve_contact_problem(known.problem, "auto", {}, r);
-      EXPECT_TRUE(report.solved) << "problem " << k << ", " << report.error;
+      EXPECT_TRUE(report.converged)
+          << "problem " << k << ", " << report.residual;
     }
   }
 } // namespace nsfd::test_stored_solvers

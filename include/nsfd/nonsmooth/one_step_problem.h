@@ -84,36 +84,6 @@ namespace nsfd
     void resize(std::size_t n);
   };
 
-  /** P and U of a problem, and what they cost. */
-  struct SolverReport {
-    bool converged = false;
-    double residual = 0.; ///< relative natural map, see residual.h
-    unsigned int newton = 0, krylov = 0, sweeps = 0, line_searches = 0;
-    unsigned int law_calls = 0;  ///< sweeps of the point law over all points
-    std::size_t worst_point = 0; ///< local index of the worst point
-    double worst_error = 0.;     ///< its share, this rank
-    std::vector<std::string> switches; ///< hand-overs between methods
-
-    /** The work of a further solve. */
-    void add_work(const SolverReport &next)
-    {
-      newton += next.newton;
-      krylov += next.krylov;
-      sweeps += next.sweeps;
-      line_searches += next.line_searches;
-      switches.insert(switches.end(), next.switches.begin(),
-                      next.switches.end());
-    }
-
-    /** Its work, and where it has come to. */
-    void go_on_with(const SolverReport &next)
-    {
-      add_work(next);
-      residual = next.residual;
-      converged = next.converged;
-    }
-  };
-
   /**
    * Where point @p i of a discretization is among the points of a step: the
    * @p n_of_step points of the step alone are behind the first @p n_owned, see

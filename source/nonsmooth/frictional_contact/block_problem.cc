@@ -1,6 +1,7 @@
 #include "block_problem.h"
 
 #include "contact_cone.h"
+#include "nonsmooth/natural_map.h"
 
 namespace nsfd::stored
 {
@@ -123,7 +124,7 @@ namespace nsfd::stored
     }
     const double scale =
         std::max({q_norm, std::sqrt(impulses), std::sqrt(velocities)});
-    return scale > 0. ? std::sqrt(sum) / scale : std::sqrt(sum);
+    return relative_natural_map(std::sqrt(sum), scale > 0. ? scale : 1.);
   }
 
   template struct BlockProblem<2>;

@@ -1,6 +1,7 @@
 #include "contact_problem.h"
 
 #include "contact_cone.h"
+#include "nonsmooth/natural_map.h"
 
 namespace nsfd
 {
@@ -45,7 +46,7 @@ namespace nsfd
     }
     const double scale = std::sqrt(
         std::max({squared(problem.q), squared(impulse), squared(velocity)}));
-    return scale < 2.2e-16 ? std::sqrt(sum) : std::sqrt(sum) / scale;
+    return relative_natural_map(std::sqrt(sum), scale < 2.2e-16 ? 1. : scale);
   }
 
   double natural_map_error(const ContactProblem &problem,

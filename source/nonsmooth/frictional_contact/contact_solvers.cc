@@ -1,4 +1,4 @@
-// The solvers of stored problems by name.
+// What all methods for an assembled W have in common.
 #include "session.h"
 
 namespace nsfd
@@ -25,10 +25,47 @@ namespace nsfd
       return deepest > 0. ? deepest / largest : 0.;
     }
 
-    template <int d, typename Method>
-    ContactReport run(const ContactProblem &problem,
-                      const ContactControl &control,
-                      std::vector<double> &impulse)
+    /** @p limit of iterations; 0: the method's own. */
+    template <int d>
+    void run(const ContactMethod method, Session<d> &s,
+             const unsigned int limit)
+    {
+      const auto up_to = [limit](const unsigned int own) {
+        return limit ? limit : own;
+      };
+      switch (method) {
+      case ContactMethod::automatic:
+        automatic(s);
+        return;
+      case ContactMethod::gauss_seidel:
+        gauss_seidel(s, up_to(10000));
+        return;
+      case ContactMethod::admm:
+        admm(s, up_to(10000));
+        return;
+      case ContactMethod::projected_gradient:
+        projected_gradient(s, up_to(10000));
+        return;
+      default:
+        break;
+      }
+      // the others start near the solution: a few sweeps
+      gauss_seidel(s, 10);
+      if (method == ContactMethod::interior_point)
+        interior_point(s, up_to(150));
+      else if (method == ContactMethod::proximal)
+        proximal(s, up_to(100));
+      else {
+        stored::NewtonSettings settings;
+        settings.limit = up_to(100);
+        settings.idle = settings.limit;
+        newton(s, settings);
+      }
+    }
+
+    template <int d>
+    SolverReport run(const ContactMethod method, const ContactProblem &problem,
+                     const SolverControl &control, std::vector<double> &impulse)
     {
       Session<d> s(problem, control.tolerance);
       if (!is_zero(impulse)) {
@@ -37,11 +74,12 @@ namespace nsfd
         s.judge();
       }
       if (!s.solved())
-        Method::run(s, control.maximum_iterations);
+        run(method, s, control.maximum_iterations);
       for (std::size_t j = 0; j < impulse.size(); ++j)
         impulse[j] = s.r[j] * s.problem.impulse_unit;
-      ContactReport report;
-      report.error = s.error;
+      SolverReport report;
+      report.residual = s.error;
+      report.converged = s.solved();
       report.solver = s.finisher;
       report.iterations = s.iterations;
       report.products = s.products;
@@ -49,121 +87,51 @@ namespace nsfd
       report.switches = s.switches;
       return report;
     }
-
-    /** @tparam Method has `run(session, limit)`, a limit of 0 is its own */
-    template <typename Method>
-    class Solver final : public ContactSolver
-    {
-    public:
-      ContactReport solve(const ContactProblem &problem,
-                          const ContactControl &control,
-                          std::vector<double> &impulse) const override
-      {
-        return problem.dimension == 2
-                   ? run<2, Method>(problem, control, impulse)
-                   : run<3, Method>(problem, control, impulse);
-      }
-    };
-
-    struct Automatic {
-      template <int d>
-      static void run(Session<d> &s, unsigned int)
-      {
-        automatic(s);
-      }
-    };
-    struct GaussSeidel {
-      template <int d>
-      static void run(Session<d> &s, const unsigned int limit)
-      {
-        gauss_seidel(s, limit ? limit : 10000);
-      }
-    };
-
-    // Newton's method starts near the solution: a few sweeps
-    struct DualNewton {
-      template <int d>
-      static void run(Session<d> &s, const unsigned int limit)
-      {
-        gauss_seidel(s, 10);
-        stored::NewtonSettings settings;
-        settings.limit = limit ? limit : 100;
-        settings.idle = settings.limit;
-        newton(s, settings);
-      }
-    };
-    struct Proximal {
-      template <int d>
-      static void run(Session<d> &s, const unsigned int limit)
-      {
-        gauss_seidel(s, 10);
-        proximal(s, limit ? limit : 100);
-      }
-    };
-    struct InteriorPoint {
-      template <int d>
-      static void run(Session<d> &s, const unsigned int limit)
-      {
-        gauss_seidel(s, 10);
-        interior_point(s, limit ? limit : 150);
-      }
-    };
-    struct Admm {
-      template <int d>
-      static void run(Session<d> &s, const unsigned int limit)
-      {
-        admm(s, limit ? limit : 10000);
-      }
-    };
-    struct ProjectedGradient {
-      template <int d>
-      static void run(Session<d> &s, const unsigned int limit)
-      {
-        projected_gradient(s, limit ? limit : 10000);
-      }
-    };
-
-    NSFD_REGISTER(ContactSolverRegistry, Solver<Automatic>, "auto",
-                  "a chain of the others, each as long as it promises to pay");
-    NSFD_REGISTER(ContactSolverRegistry, Solver<GaussSeidel>, "gauss seidel",
-                  "sweeps of exact local solves");
-    NSFD_REGISTER(ContactSolverRegistry, Solver<DualNewton>, "dual newton",
-                  "semismooth Newton on the impulses, near minimum-norm steps");
-    NSFD_REGISTER(ContactSolverRegistry, Solver<Proximal>, "proximal",
-                  "proximal point around Newton");
-    NSFD_REGISTER(ContactSolverRegistry, Solver<InteriorPoint>,
-                  "interior point", "primal-dual, the friction law in it");
-    NSFD_REGISTER(ContactSolverRegistry, Solver<Admm>, "admm",
-                  "alternating directions with balanced penalty");
-    NSFD_REGISTER(ContactSolverRegistry, Solver<ProjectedGradient>,
-                  "projected gradient", "accelerated, with restarts");
   } // namespace
 
-  ContactReport solve_contact_problem(const ContactProblem &problem,
-                                      const std::string &solver,
-                                      const ContactControl &control,
-                                      std::vector<double> &impulse)
+  template <ContactMethod method>
+  SolverReport
+  AssembledMethod<method>::solve_assembled(const ContactProblem &problem,
+                                           const SolverControl &control,
+                                           std::vector<double> &impulse) const
+  {
+    return problem.dimension == 2 ? run<2>(method, problem, control, impulse)
+                                  : run<3>(method, problem, control, impulse);
+  }
+
+  SolverReport solve_contact_problem(const ContactProblem &problem,
+                                     const ContactSolver &solver,
+                                     const std::string &name,
+                                     const SolverControl &control,
+                                     std::vector<double> &impulse)
   {
     if (impulse.size() != problem.n_rows())
       impulse.assign(problem.n_rows(), 0.);
-    ContactReport report;
+    SolverReport report;
     std::vector<double> u;
     const auto judge = [&] {
       relative_velocity(problem, impulse, u);
-      report.error = natural_map_error(problem, impulse, u);
-      report.solved = report.error <= control.tolerance;
+      report.residual = natural_map_error(problem, impulse, u);
+      report.converged = report.residual <= control.tolerance;
     };
     // nothing to do, found out without a product
     if (is_zero(impulse))
       judge();
-    if (!report.solved) {
-      report = ContactSolverRegistry::instance().create(solver)->solve(
-          problem, control, impulse);
+    if (!report.converged) {
+      report = solver.solve_assembled(problem, control, impulse);
       judge();
     }
     report.penetration = penetration(problem.q, u, problem.dimension);
     if (report.solver.empty())
-      report.solver = report.iterations > 0 ? solver : "none";
+      report.solver = report.iterations > 0 ? name : "none";
     return report;
   }
+
+  template class AssembledMethod<ContactMethod::automatic>;
+  template class AssembledMethod<ContactMethod::gauss_seidel>;
+  template class AssembledMethod<ContactMethod::newton>;
+  template class AssembledMethod<ContactMethod::proximal>;
+  template class AssembledMethod<ContactMethod::interior_point>;
+  template class AssembledMethod<ContactMethod::admm>;
+  template class AssembledMethod<ContactMethod::projected_gradient>;
 } // namespace nsfd

@@ -17,12 +17,13 @@ namespace nsfd
     /**
      * Steps in which nothing but contact and friction acts, as between rigid
      * bodies: the Coulomb problem itself, its matrix assembled body by body,
-     * for the chain of solvers that knows nothing of bodies. Rows of walls and
-     * heaps depend on each other; that chain is made for it. It works on the
-     * first rank, with the bodies of all.
+     * for a solver that needs this and knows nothing of bodies. Rows of walls
+     * and heaps depend on each other; these solvers are made for it. It works
+     * on the first rank, with the bodies of all. All other steps go to the
+     * cascade of solvers that know laws.
      */
     template <int dim>
-    class ContactsAlone final : public NonsmoothSolver<dim>
+    class AssembledSteps : public NonsmoothSolver<dim>
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
@@ -53,6 +54,9 @@ namespace nsfd
         return go_on(problem, dynamics, energy_scale, control, impulse,
                      evaluation, report);
       }
+
+    protected:
+      virtual const ContactSolver &assembled() const = 0;
 
     private:
       /** No springs, joints or motions, and no lift by sliding. */
@@ -261,10 +265,10 @@ namespace nsfd
           for (std::size_t k = 0; k < seen.size(); ++k)
             for (unsigned int c = 0; c < dim; ++c)
               r[number_of_seen_[k] * dim + c] = seen[k][c] * unit_;
-          ContactControl control;
+          SolverControl control;
           control.tolerance = tolerance;
-          const ContactReport part =
-              solve_contact_problem(contact_, "auto", control, r);
+          const SolverReport part =
+              solve_contact_problem(contact_, assembled(), "", control, r);
           counts = {{part.factorisations, part.iterations, part.products}};
           for (std::size_t k = 0; k < seen.size(); ++k)
             for (unsigned int c = 0; c < dim; ++c)
@@ -289,6 +293,50 @@ namespace nsfd
       std::vector<int> n_seen_;                  ///< by rank
       double unit_ = 1.;
     };
+
+    template <int dim>
+    class ContactsAlone final : public AssembledSteps<dim>
+    {
+    protected:
+      const ContactSolver &assembled() const override { return solver_; }
+
+    private:
+      AssembledMethod<ContactMethod::automatic> solver_;
+    };
+
+    /** A method that needs W assembled, also for problems that bring it. */
+    template <int dim, ContactMethod method>
+    class Assembled final : public AssembledSteps<dim>,
+                            public AssembledMethod<method>
+    {
+    public:
+      const ContactSolver *contact_solver() const override { return this; }
+
+    protected:
+      const ContactSolver &assembled() const override { return *this; }
+    };
+
+    template <ContactMethod method>
+    bool add(const char *name, const char *text)
+    {
+      return SolverRegistry<2>::instance().add<Assembled<2, method>>(name,
+                                                                     text) &&
+             SolverRegistry<3>::instance().add<Assembled<3, method>>(name,
+                                                                     text);
+    }
+
+    // for steps, a run chooses among those that know laws by itself
+    const bool assembled_methods[] = {
+        add<ContactMethod::automatic>(
+            "auto", "a cascade of the others, each as long as it promises to "
+                    "pay"),
+        add<ContactMethod::proximal>(
+            "proximal", "proximal point around Newton, W assembled"),
+        add<ContactMethod::admm>(
+            "admm", "alternating directions with balanced penalty, W "
+                    "assembled"),
+        add<ContactMethod::projected_gradient>(
+            "projected gradient", "accelerated, with restarts, W assembled")};
 
     using ContactsAlone2 = ContactsAlone<2>;
     using ContactsAlone3 = ContactsAlone<3>;

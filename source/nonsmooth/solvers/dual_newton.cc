@@ -152,8 +152,8 @@ namespace nsfd
       }
     };
     remember();
-    while (evaluation.error > control.tolerance &&
-           report.newton < control.maximum_iterations) {
+    const unsigned int most = control.iterations_or(200);
+    while (evaluation.error > control.tolerance && report.newton < most) {
       ++report.newton;
       const double before = evaluation.error;
       // The inner tolerance falls with the error, never far below the goal.
@@ -215,7 +215,7 @@ namespace nsfd
       best_of_round = best_error;
       const bool soft = dynamics.communicator().any(softens(evaluation));
       if (idle_rounds > control.idle_rounds / (soft ? 4 : 1) ||
-          report.sweeps >= 5 * control.maximum_iterations)
+          report.sweeps >= 5 * most)
         break;
       // Without friction and damage it is round-off of long steps that stops
       // Newton's method; sweeps, which use W alone, have less of it. Where laws
@@ -256,10 +256,10 @@ namespace nsfd
     using DualNewton2 = DualNewton<2>;
     using DualNewton3 = DualNewton<3>;
     NSFD_REGISTER(SolverRegistry<2>, DualNewton2, "dual newton",
-                  "Newton on the dual problem with exact line search; friction "
-                  "and damage in its derivative");
+                  "Newton on the dual problem, friction and damage in its "
+                  "derivative; in a run with exact line search");
     NSFD_REGISTER(SolverRegistry<3>, DualNewton3, "dual newton",
-                  "Newton on the dual problem with exact line search; friction "
-                  "and damage in its derivative");
+                  "Newton on the dual problem, friction and damage in its "
+                  "derivative; in a run with exact line search");
   } // namespace
 } // namespace nsfd

@@ -2,6 +2,7 @@
 
 #include "delassus/inner_solver.h"
 #include "linear_algebra/krylov.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nonsmooth/solver.h"
 
 namespace nsfd
@@ -26,7 +27,8 @@ namespace nsfd
    * Newton systems are solved in single precision where the dynamics can.
    */
   template <int dim>
-  class DualNewton final : public NonsmoothSolver<dim>
+  class DualNewton final : public NonsmoothSolver<dim>,
+                           public AssembledMethod<ContactMethod::newton>
   {
   public:
     SolverReport solve(const OneStepProblem<dim> &problem,
@@ -34,6 +36,8 @@ namespace nsfd
                        const SolverControl &control,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation) override;
+
+    const ContactSolver *contact_solver() const override { return this; }
 
   private:
     using Vector = std::vector<double>;

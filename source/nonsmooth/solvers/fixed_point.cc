@@ -82,7 +82,7 @@ namespace nsfd
         }
         finished = !(error > control.tolerance) ||
                    idle > 20 * (control.idle_rounds + 1) ||
-                   rounds > control.maximum_iterations || std::isnan(error);
+                   rounds > control.iterations_or(200) || std::isnan(error);
         return !finished;
       }
 
@@ -187,7 +187,7 @@ namespace nsfd
           const std::size_t n = Round::stride * problem.n_owned;
           Vector owned(x.begin(), x.begin() + n);
           accelerated_rounds(communicator, anderson_,
-                             control.maximum_iterations + 1, owned,
+                             control.iterations_or(200) + 1, owned,
                              [&](Vector &mixed) {
                                std::copy_n(mixed.begin(), n, x.begin());
                                round.complete(x);

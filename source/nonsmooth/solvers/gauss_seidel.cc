@@ -1,3 +1,4 @@
+#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nonsmooth/solver.h"
 
 #include "core/cost.h"
@@ -219,7 +220,9 @@ namespace nsfd
   {
     /** Sweeps of the full law until the natural map is small. */
     template <int dim>
-    class GaussSeidel final : public NonsmoothSolver<dim>
+    class GaussSeidel final
+        : public NonsmoothSolver<dim>,
+          public AssembledMethod<ContactMethod::gauss_seidel>
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
@@ -234,7 +237,7 @@ namespace nsfd
         evaluation.update(impulse);
         unsigned int batch = 5;
         while (evaluation.error > control.tolerance &&
-               report.sweeps < 100 * control.maximum_iterations) {
+               report.sweeps < 100 * control.iterations_or(200)) {
           gauss_seidel(problem, dynamics, colours_, batch, impulse);
           report.sweeps += batch;
           batch = std::min(100u, batch * 2);
@@ -247,6 +250,8 @@ namespace nsfd
         return report;
       }
 
+      const ContactSolver *contact_solver() const override { return this; }
+
     private:
       std::vector<std::vector<unsigned int>> colours_;
     };
@@ -254,11 +259,11 @@ namespace nsfd
     using GaussSeidel2 = GaussSeidel<2>;
     using GaussSeidel3 = GaussSeidel<3>;
     NSFD_REGISTER(SolverRegistry<2>, GaussSeidel2, "gauss seidel",
-                  "nonlinear Gauss-Seidel over coloured faces, damage and "
-                  "friction in the local solve");
+                  "nonlinear Gauss-Seidel, friction and damage in the local "
+                  "solve; in a run over coloured faces");
     NSFD_REGISTER(SolverRegistry<3>, GaussSeidel3, "gauss seidel",
-                  "nonlinear Gauss-Seidel over coloured faces, damage and "
-                  "friction in the local solve");
+                  "nonlinear Gauss-Seidel, friction and damage in the local "
+                  "solve; in a run over coloured faces");
   } // namespace
 
   template std::vector<std::vector<unsigned int>>

@@ -2,6 +2,7 @@
 #include "gathered.h"
 
 #include "core/archive.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
 
 namespace nsfd
 {
@@ -14,7 +15,9 @@ namespace nsfd
      * Coulomb's law is not convex: what is not solved is reported.
      */
     template <int dim>
-    class InteriorPoint final : public NonsmoothSolver<dim>
+    class InteriorPoint final
+        : public NonsmoothSolver<dim>,
+          public AssembledMethod<ContactMethod::interior_point>
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
@@ -44,6 +47,8 @@ namespace nsfd
           iterates_ = system_->may_iterate();
         archive.numbers("iterates", iterates_);
       }
+
+      const ContactSolver *contact_solver() const override { return this; }
 
     private:
       using Stage = typename ContactPath<dim>::Stage;

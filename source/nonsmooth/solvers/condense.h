@@ -1,7 +1,7 @@
 #pragma once
 
 #include "nonsmooth/frictional_contact/contact_problem.h"
-#include "solver.h"
+#include "nonsmooth/solver.h"
 
 namespace nsfd
 {

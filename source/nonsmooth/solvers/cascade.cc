@@ -21,10 +21,10 @@ namespace nsfd
      * that it is none.
      */
     template <int dim>
-    class Chain final : public NonsmoothSolver<dim>
+    class Cascade final : public NonsmoothSolver<dim>
     {
     public:
-      Chain() : newton_(SolverRegistry<dim>::instance().create("dual newton"))
+      Cascade() : newton_(SolverRegistry<dim>::instance().create("dual newton"))
       {
       }
 
@@ -55,7 +55,7 @@ namespace nsfd
             lasts && !rubs && static_cast<long long>(n) <= largest_factor<dim>;
         SolverControl part = control;
         if (brief)
-          part.maximum_iterations = std::min(part.maximum_iterations, 10u);
+          part.maximum_iterations = std::min(part.iterations_or(200), 10u);
         const std::vector<double> start(impulse);
         SolverReport report = first->solve(problem, dynamics, energy_scale,
                                            part, impulse, evaluation);
@@ -167,12 +167,12 @@ namespace nsfd
       std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;
     };
 
-    using Chain2 = Chain<2>;
-    using Chain3 = Chain<3>;
-    NSFD_REGISTER(SolverRegistry<2>, Chain2, "chain",
+    using Cascade2 = Cascade<2>;
+    using Cascade3 = Cascade<3>;
+    NSFD_REGISTER(SolverRegistry<2>, Cascade2, "chain",
                   "dual newton, then interior point where it fails on contact; "
                   "at long steps the other way round");
-    NSFD_REGISTER(SolverRegistry<3>, Chain3, "chain",
+    NSFD_REGISTER(SolverRegistry<3>, Cascade3, "chain",
                   "dual newton, then interior point where it fails on contact; "
                   "at long steps the other way round");
   } // namespace

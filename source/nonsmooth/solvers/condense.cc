@@ -1,7 +1,7 @@
 #include "condense.h"
 
 #include "cohesive_laws/friction_weight.h"
-#include "springs.h"
+#include "nonsmooth/springs.h"
 
 #include <cmath>
 
