@@ -2,9 +2,7 @@
 
 #include "core/gather.h"
 #include "face_pieces.h"
-#include "mesh/owned_cells.h"
 
-#include "discretization/cell_geometry.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
@@ -35,7 +33,8 @@ namespace nsfd
                             const Discretization<dim> &discretization,
                             const Communicator &communicator)
       : input_(input), discretization_(discretization),
-        communicator_(communicator), row_(&no_row_)
+        communicator_(communicator), mesh_(input, discretization),
+        motion_(input, discretization)
   {
   }
 
@@ -43,16 +42,8 @@ namespace nsfd
   void RunViewOf<dim>::find(const Triangulation<dim> &triangulation,
                             const MeshGroups<dim> &groups)
   {
-    samplers_.clear();
+    mesh_.find(triangulation, groups);
     find_points();
-    find_boundary_faces(triangulation, groups);
-    reach_.clear();
-    for (unsigned int b = 0; b < discretization_.bodies().size(); ++b) {
-      double reach = 0.;
-      for (const auto &corner : discretization_.corners(b))
-        reach = std::max(reach, corner.distance(discretization_.centre(b)));
-      reach_.push_back(reach);
-    }
   }
 
   template <int dim>
@@ -73,164 +64,39 @@ namespace nsfd
   }
 
   template <int dim>
-  void
-  RunViewOf<dim>::find_boundary_faces(const Triangulation<dim> &triangulation,
-                                      const MeshGroups<dim> &groups)
-  {
-    boundary_faces_.assign(input_.boundaries.size(), {});
-    unsigned int body = 0;
-    for (const auto &cell : owned_cells(triangulation)) {
-      for (const unsigned int f : cell->face_indices())
-        for (unsigned int b = 0; b < input_.boundaries.size(); ++b)
-          if (groups.holds_boundary_face(input_.boundaries[b].where, cell, f))
-            boundary_faces_[b].push_back({{body, f}});
-      ++body;
-    }
-  }
-
-  template <int dim>
-  void RunViewOf<dim>::show(const State &state, const State *previous,
-                            const HistoryRow &row)
-  {
-    state_ = &state;
-    // equilibria do not move; a mesh that has changed has no step behind it
-    previous_ = previous && state.point_force.empty() &&
-                        previous->velocity.size() == state.velocity.size()
-                    ? previous
-                    : nullptr;
-    row_ = &row;
-    motion_.reset();
-    displacement_.reset();
-    velocity_.reset();
-    stresses_.reset();
-  }
-
-  template <int dim>
-  void RunViewOf<dim>::forget()
-  {
-    state_ = previous_ = nullptr;
-    row_ = &no_row_;
-    motion_.reset();
-    displacement_.reset();
-    velocity_.reset();
-    stresses_.reset();
-  }
-
-  template <int dim>
-  const std::vector<double> &RunViewOf<dim>::displacement() const
-  {
-    if (!displacement_)
-      displacement_ = discretization_.to_nodal(state_->displacement);
-    return *displacement_;
-  }
-
-  template <int dim>
-  const std::vector<double> &RunViewOf<dim>::velocity() const
-  {
-    if (!velocity_)
-      velocity_ = discretization_.to_nodal(state_->velocity);
-    return *velocity_;
-  }
-
-  template <int dim>
-  CellStresses<dim> &RunViewOf<dim>::stresses() const
-  {
-    if (!stresses_)
-      stresses_ = std::make_unique<CellStresses<dim>>(discretization_, *state_);
-    return *stresses_;
-  }
-
-  template <int dim>
-  const typename RunViewOf<dim>::Motion &RunViewOf<dim>::motion() const
-  {
-    if (motion_)
-      return *motion_;
-    motion_.emplace();
-    std::vector<double> q = state_->displacement, v = state_->velocity,
-                        a(v.size(), 0.);
-    motion_->time = state_->time;
-    if (previous_ && row_->time_step > 0.) {
-      const double h = row_->time_step, theta = input_.time.work_theta(),
-                   bulk = input_.time.bulk_theta(),
-                   kick = input_.time.kick(h, previous_->last_step);
-      motion_->time -= (1. - theta) * h;
-      for (std::size_t k = 0; k < q.size(); ++k) {
-        a[k] = (v[k] - previous_->velocity[k]) / kick;
-        v[k] = theta * v[k] + (1. - theta) * previous_->velocity[k];
-        q[k] = bulk * q[k] + (1. - bulk) * previous_->displacement[k];
-      }
-    }
-    motion_->displacement = discretization_.to_nodal(q);
-    motion_->velocity = discretization_.to_nodal(v);
-    motion_->acceleration = discretization_.to_nodal(a);
-    return *motion_;
-  }
-
-  template <int dim>
-  RunView::Vector RunViewOf<dim>::traction(const std::size_t i) const
-  {
-    const auto &points = discretization_.points();
-    const double *frame = &points.frame[i * dim * dim];
-    Vector result{};
-    const auto add = [&](const double factor, const double *local) {
-      for (unsigned int r = 0; r < dim; ++r)
-        for (unsigned int c = 0; c < dim; ++c)
-          result[c] += factor * local[r] * frame[r * dim + c];
-    };
-    if (state_->kind[i] == PointKind::bonded)
-      add(1., &state_->bond_traction[i * dim]);
-    else if (!state_->point_force.empty())
-      add(-1. / points.weight[i], &state_->point_force[i * dim]);
-    else if (row_->time_step > 0.)
-      add(-1. / (points.weight[i] * row_->time_step),
-          &state_->impulse[i * dim]);
-    if (!state_->pressure.empty())
-      for (unsigned int c = 0; c < dim; ++c)
-        result[c] -= state_->pressure[i] * frame[c];
-    return result;
-  }
-
-  template <int dim>
   RunView::PointState RunViewOf<dim>::at(const std::size_t i) const
   {
     const double *frame = &discretization_.points().frame[i * dim * dim];
+    const State &state = *motion_.state();
     PointState result;
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c) {
-        result.jump[c] += state_->jump[i * dim + r] * frame[r * dim + c];
+        result.jump[c] += state.jump[i * dim + r] * frame[r * dim + c];
         result.velocity[c] +=
-            state_->relative_velocity[i * dim + r] * frame[r * dim + c];
+            state.relative_velocity[i * dim + r] * frame[r * dim + c];
       }
-    result.traction = traction(i);
-    result.beta = state_->beta[i];
-    result.contact = state_->contact[i] != 0;
-    if (result.contact && row_->time_step > 0.)
-      result.pressure = std::max(0., state_->impulse[i * dim]) /
-                        (discretization_.points().weight[i] * row_->time_step);
-    if (result.contact && !state_->point_force.empty())
-      result.pressure = std::max(0., state_->point_force[i * dim]) /
+    result.traction = motion_.traction(i);
+    result.beta = state.beta[i];
+    result.contact = state.contact[i] != 0;
+    if (result.contact && motion_.row().time_step > 0.)
+      result.pressure =
+          std::max(0., state.impulse[i * dim]) /
+          (discretization_.points().weight[i] * motion_.row().time_step);
+    if (result.contact && !state.point_force.empty())
+      result.pressure = std::max(0., state.point_force[i * dim]) /
                         discretization_.points().weight[i];
     return result;
   }
 
   namespace
   {
-    bool is_at(const PointOrigin origin, const NamedSurface &surface)
+    bool is_second(const SceneInput &input, const unsigned int material,
+                   const NamedSurface &contact)
     {
-      return origin.block == surface.block &&
-             origin.kind == (surface.kind == NamedSurface::Kind::obstacle
-                                 ? PointOrigin::Kind::obstacle
-                                 : PointOrigin::Kind::interface);
+      return input.materials[material].name ==
+             input.contacts[contact.block].materials[1];
     }
   } // namespace
-
-  template <int dim>
-  bool RunViewOf<dim>::is_second(const unsigned int material,
-                                 const NamedSurface &contact) const
-  {
-    return input_.materials[material].name ==
-           input_.contacts[contact.block].materials[1];
-  }
 
   template <int dim>
   std::vector<RunView::Place>
@@ -253,13 +119,14 @@ namespace nsfd
           place.opening += state.jump[c] * place.normal[c];
         }
       }
-    for (const SurfaceTouch &touch : state_->touches) {
+    for (const SurfaceTouch &touch : motion_.state()->touches) {
       if (touch.block != surface.block ||
           touch.obstacle != (surface.kind == NamedSurface::Kind::obstacle) ||
           surface.kind == NamedSurface::Kind::interface)
         continue;
       const double sign =
-          touch.obstacle || is_second(touch.material_2, surface) ? 1. : -1.;
+          touch.obstacle || is_second(input_, touch.material_2, surface) ? 1.
+                                                                         : -1.;
       Place &place = result.emplace_back();
       place.position = touch.position;
       place.area = touch.weight;
@@ -269,9 +136,10 @@ namespace nsfd
       for (unsigned int c = 0; c < 3; ++c) {
         normal += touch.impulse[c] * touch.normal[c];
         place.normal[c] = sign * touch.normal[c];
-        place.force[c] = sign * touch.impulse[c] / row_->time_step;
+        place.force[c] = sign * touch.impulse[c] / motion_.row().time_step;
       }
-      place.pressure = std::max(0., normal) / (place.area * row_->time_step);
+      place.pressure =
+          std::max(0., normal) / (place.area * motion_.row().time_step);
     }
     return result;
   }
@@ -285,8 +153,8 @@ namespace nsfd
                           driven.begin());
     Vector result{};
     for (unsigned int c = 0; c < dim; ++c)
-      if (first + c < row_->reactions.size())
-        result[c] = row_->reactions[first + c];
+      if (first + c < motion_.row().reactions.size())
+        result[c] = motion_.row().reactions[first + c];
     return result;
   }
 
@@ -299,59 +167,6 @@ namespace nsfd
                                                                  [origin.block]
                                                              .broken_beta()
                                                        : 0.;
-  }
-
-  template <int dim>
-  const Sampler<dim> &RunViewOf<dim>::slots_of(const unsigned int body) const
-  {
-    const BodyShape<dim> &shape = discretization_.shape(body);
-    const auto known = samplers_.find(&shape);
-    if (known != samplers_.end())
-      return known->second;
-    return samplers_
-        .emplace(&shape,
-                 Sampler<dim>(discretization_.element(), shape.slot_places))
-        .first->second;
-  }
-
-  /** In the order of the bodies. */
-  template <int dim>
-  std::vector<typename RunViewOf<dim>::Slot>
-  RunViewOf<dim>::slots_on(const NamedSurface &surface) const
-  {
-    std::vector<Slot> slots;
-    const auto add_face = [&](const unsigned int body,
-                              const unsigned int face) {
-      const auto &faces = discretization_.shape(body).slot_faces;
-      for (unsigned int s = 0; s < faces.size(); ++s)
-        if (faces[s] == face)
-          slots.push_back({body, s});
-    };
-    if (surface.kind == NamedSurface::Kind::boundary) {
-      for (const auto &face : boundary_faces_[surface.block])
-        add_face(face[0], face[1]);
-      return slots;
-    }
-    const bool is_obstacle = surface.kind == NamedSurface::Kind::obstacle;
-    if (is_obstacle)
-      for (const auto &face : discretization_.obstacle_faces())
-        if (face.obstacle == surface.block)
-          add_face(face.body, face.face);
-    const Bodies &bodies = discretization_.bodies();
-    const auto &origins = discretization_.origins();
-    const auto is_there = [&](const unsigned int point) {
-      return point < origins.size() && is_at(origins[point], surface);
-    };
-    for (unsigned int b = 0; b < bodies.size(); ++b)
-      for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
-           ++s) {
-        bool holds = is_there(bodies.slot_point[s]);
-        for (const auto &extra : bodies.extra_points)
-          holds = holds || (extra.first == s && is_there(extra.second));
-        if (holds)
-          slots.push_back({b, unsigned(s - bodies.first_slot[b])});
-      }
-    return slots;
   }
 
   /** Rows: weight, displacement, velocity, stress, times the weight. */
@@ -394,91 +209,53 @@ namespace nsfd
   template <int dim>
   RunView::Means RunViewOf<dim>::on(const NamedSurface &surface) const
   {
-    const auto slots = slots_on(surface);
+    const auto slots = mesh_.slots_on(surface);
     const std::size_t n = slots.size();
     std::vector<double> terms(13 * n, 0.);
     for (std::size_t k = 0; k < n; ++k) {
       const unsigned int b = slots[k].body, s = slots[k].slot;
-      const Sampler<dim> &sampler = slots_of(b);
+      const Sampler<dim> &sampler = mesh_.slots_of(b);
       const double weight = discretization_.shape(b).slot_normals[s].norm();
-      if (!state_) {
+      if (!motion_.state()) {
         terms[k] = weight;
         continue;
       }
       const std::size_t node = discretization_.first_node(b) * dim;
-      const double *u = displacement().data() + node;
+      const double *u = motion_.displacement().data() + node;
       add_terms<dim>(
           terms, n, k, weight, sampler.value(s, u),
-          sampler.value(s, velocity().data() + node),
-          stresses().at(b, sampler, s, displacement(), velocity()).stress);
+          sampler.value(s, motion_.velocity().data() + node),
+          motion_.stresses()
+              .at(b, sampler, s, motion_.displacement(), motion_.velocity())
+              .stress);
     }
     return mean_of(terms);
-  }
-
-  /** In the reference cell, by Newton's iteration; nothing if outside. */
-  template <int dim>
-  std::optional<Point<dim>>
-  RunViewOf<dim>::reference_place(const unsigned int body,
-                                  const dealii::Point<dim> &x) const
-  {
-    constexpr double slack = 1e-9;
-    if (x.distance(discretization_.centre(body)) > reach_[body] * (1. + slack))
-      return {};
-    const ReferenceCell cell = discretization_.element().reference_cell();
-    const auto corners = discretization_.corners(body);
-    dealii::Point<dim> xi = cell.template barycenter<dim>();
-    for (unsigned int k = 0; k < 20; ++k)
-      xi += invert(jacobian(cell, corners, xi)) *
-            (x - map_point(cell, corners, xi));
-    double last = 1.;
-    bool inside = true;
-    for (unsigned int c = 0; c < dim; ++c) {
-      last -= xi[c];
-      inside = inside && xi[c] >= -slack && xi[c] <= 1. + slack;
-    }
-    if (!inside || (cell.is_simplex() && last < -slack))
-      return {};
-    return xi;
   }
 
   template <int dim>
   RunView::Means RunViewOf<dim>::at(const Vector &place) const
   {
-    dealii::Point<dim> x;
-    for (unsigned int c = 0; c < dim; ++c)
-      x[c] = place[c];
-    std::vector<std::pair<unsigned int, dealii::Point<dim>>> cells;
-    for (unsigned int b = 0; b < reach_.size(); ++b)
-      if (const auto xi = reference_place(b, x))
-        cells.emplace_back(b, *xi);
+    const auto cells = mesh_.cells_at(place);
     const std::size_t n = cells.size();
     std::vector<double> terms(13 * n, 0.);
     for (std::size_t k = 0; k < n; ++k) {
-      const unsigned int b = cells[k].first;
-      if (!state_) {
+      const unsigned int b = cells[k].body;
+      if (!motion_.state()) {
         terms[k] = 1.;
         continue;
       }
-      const Sampler<dim> sampler(discretization_.element(), {cells[k].second});
+      const Sampler<dim> sampler(discretization_.element(),
+                                 {cells[k].reference});
       const std::size_t node = discretization_.first_node(b) * dim;
-      const double *u = displacement().data() + node;
+      const double *u = motion_.displacement().data() + node;
       add_terms<dim>(
           terms, n, k, 1., sampler.value(0, u),
-          sampler.value(0, velocity().data() + node),
-          stresses().at(b, sampler, 0, displacement(), velocity()).stress);
+          sampler.value(0, motion_.velocity().data() + node),
+          motion_.stresses()
+              .at(b, sampler, 0, motion_.displacement(), motion_.velocity())
+              .stress);
     }
     return mean_of(terms);
-  }
-
-  template <int dim>
-  bool RunViewOf<dim>::reaches(const unsigned int body, const Vector &centre,
-                               const double radius) const
-  {
-    const auto x = discretization_.centre(body);
-    double square = 0.;
-    for (unsigned int c = 0; c < dim; ++c)
-      square += (x[c] - centre[c]) * (x[c] - centre[c]);
-    return square < (radius + reach_[body]) * (radius + reach_[body]);
   }
 
   template <int dim>
@@ -486,10 +263,8 @@ namespace nsfd
       const Vector &centre, const double radius,
       const std::function<void(const CellPoint &)> &visit) const
   {
-    const Motion &now = motion();
-    for (unsigned int b = 0; b < reach_.size(); ++b) {
-      if (!reaches(b, centre, radius))
-        continue;
+    const auto &now = motion_.middle();
+    for (const unsigned int b : mesh_.cells_in(centre, radius)) {
       const BodyShape<dim> &shape = discretization_.shape(b);
       const auto &material = input_.materials[discretization_.material_of(b)];
       const std::size_t node = discretization_.first_node(b) * dim;
@@ -533,12 +308,12 @@ namespace nsfd
       const Vector &centre, const double radius,
       const std::function<void(const SidePoint &)> &visit) const
   {
-    const Motion &now = motion();
+    const auto &now = motion_.middle();
+    const State &state = *motion_.state();
+    const State *previous = motion_.previous();
     const Bodies &bodies = discretization_.bodies();
     const auto &points = discretization_.points();
-    for (unsigned int b = 0; b < reach_.size(); ++b) {
-      if (!reaches(b, centre, radius))
-        continue;
+    for (const unsigned int b : mesh_.cells_in(centre, radius)) {
       const auto corners = discretization_.corners(b);
       const std::size_t node = discretization_.first_node(b) * dim;
       for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
@@ -547,7 +322,7 @@ namespace nsfd
         if (i >= points.n_points || points.faces[points.face_of[i]].boundary)
           continue;
         const unsigned int slot = unsigned(s - bodies.first_slot[b]);
-        const Sampler<dim> &sampler = slots_of(b);
+        const Sampler<dim> &sampler = mesh_.slots_of(b);
         const auto gradient =
             sampler.gradient(slot, corners, now.displacement.data() + node);
         SidePoint side;
@@ -563,18 +338,18 @@ namespace nsfd
             in_space<dim>(sampler.value(slot, now.velocity.data() + node));
         side.stress = discretization_.stress(b, sampler.position(slot, corners),
                                              gradient.data());
-        side.traction = traction(i);
+        side.traction = motion_.traction(i);
         // as the displacements: in the middle of the step
         const double bulk = input_.time.bulk_theta();
         for (unsigned int r = 0; r < dim; ++r) {
-          double u = state_->jump[i * dim + r];
-          if (previous_ && row_->time_step > 0.)
-            u = bulk * u + (1. - bulk) * previous_->jump[i * dim + r];
+          double u = state.jump[i * dim + r];
+          if (previous && motion_.row().time_step > 0.)
+            u = bulk * u + (1. - bulk) * previous->jump[i * dim + r];
           for (unsigned int c = 0; c < dim; ++c)
             side.jump[c] += u * points.frame[(i * dim + r) * dim + c];
         }
-        side.kind = state_->kind[i];
-        side.beta = state_->beta[i];
+        side.kind = state.kind[i];
+        side.beta = state.beta[i];
         side.block = discretization_.origins()[i].block;
         side.broken_beta = input_.interfaces[side.block].broken_beta();
         visit(side);
