@@ -7,6 +7,7 @@
 #include "nsfd/scene/scene_input.h"
 #include "time_integration/moreau_jean.h"
 #include "time_integration/quasi_static.h"
+#include "time_integration/smooth_motion.h"
 #include "time_integration/step_control.h"
 
 #include <memory>
@@ -15,12 +16,10 @@
 
 namespace nsfd
 {
-  /** Sentences to standard error, as `FILE: KIND: SENTENCE`; rank 0 only. */
-  void print_problems(const Communicator &communicator, const SceneInput &input,
-                      const char *kind,
-                      const std::vector<std::string> &problems);
-
-  /** The parts that a scene names, in the order in which they are built. */
+  /**
+   * The parts that a scene names, in the order in which they are built: the one
+   * factory of runs and tests.
+   */
   template <int dim>
   struct Model {
     std::unique_ptr<dealii::Triangulation<dim>> triangulation;
@@ -36,17 +35,27 @@ namespace nsfd
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
-    std::unique_ptr<QuasiStatic<dim>> quasi_static; ///< or null
+    std::unique_ptr<SmoothMotion<dim>> smooth_motion; ///< in its place, or null
+    std::unique_ptr<QuasiStatic<dim>> equilibria;     ///< before it, or null
 
+    /** What takes the steps of a run, one after the other. */
+    std::vector<TimeIntegrator<dim> *> integrators() const;
+
+    /** Step in time that the input asks for, s. */
+    double dynamic_step(const SceneInput &input) const;
     /** Steps in time from @p start on. */
     std::unique_ptr<StepControl> dynamic_control(const SceneInput &input,
                                                  double start) const;
+    /** Steps of the load from @p start on. */
+    std::unique_ptr<StepControl> load_control(const SceneInput &input,
+                                              double start) const;
 
     /**
-     * False with messages on standard error if the input does not fit the
-     * mesh. Collective.
+     * All parts. Returns sentences on where the input does not fit the mesh;
+     * none if all is built. Collective.
      */
-    bool build(const SceneInput &input, const Communicator &communicator);
+    std::vector<std::string> build(const SceneInput &input,
+                                   const Communicator &communicator);
 
     /**
      * After cells have changed: all parts again, and steps that the symplectic
@@ -74,18 +83,9 @@ namespace nsfd
                          const Communicator &communicator,
                          std::vector<std::string> &problems);
     void join_all(const SceneInput &input);
-    double dynamic_step(const SceneInput &input) const;
     void choose_path(const SceneInput &input);
     void build_dynamics(const SceneInput &input,
                         const Communicator &communicator);
     void build_stepper(const SceneInput &input);
-    void find_unused_blocks(const SceneInput &input,
-                            const Communicator &communicator,
-                            std::vector<std::string> &problems) const;
-    void warn_of_unused_interfaces(const SceneInput &input,
-                                   const Communicator &communicator) const;
-    void find_impossible_bonds(const SceneInput &input,
-                               const Communicator &communicator,
-                               std::vector<std::string> &problems) const;
   };
 } // namespace nsfd

@@ -169,21 +169,17 @@ namespace nsfd
   stage_timings(const Model<dim> &model, const double setup,
                 const double output)
   {
-    const auto &t = model.stepper->timings();
-    std::vector<std::pair<std::string, double>> stages = {
-        {"set-up", setup},
-        {"loads and free motion", t.assembly},
-        {"nonsmooth solve", t.solve},
-        {"update of bodies", t.update},
-        {"energy ledger", t.ledger},
-        {"output", output}};
-    if (model.moving)
-      stages.insert(stages.begin() + 2, {"contact search", t.contact_search});
-    if (model.quasi_static) {
-      const auto &q = model.quasi_static->timings();
-      stages.insert(stages.begin() + 1,
-                    {"equilibria", q.assembly + q.solve + q.update});
-    }
+    std::vector<std::pair<std::string, double>> stages = {{"set-up", setup}};
+    const auto add = [&stages](const TimeIntegrator<dim> &integrator) {
+      const auto more = integrator.stage_seconds();
+      stages.insert(stages.end(), more.begin(), more.end());
+    };
+    if (model.smooth_motion)
+      add(*model.smooth_motion);
+    if (model.equilibria)
+      add(*model.equilibria);
+    add(*model.stepper);
+    stages.emplace_back("output", output);
     return stages;
   }
 

@@ -9,18 +9,18 @@
 
 namespace nsfd
 {
-  void SolvedSteps::add(const Kind kind, const double residual)
+  void SolvedSteps::add(const ResidualKind kind, const double residual)
   {
     switch (kind) {
-    case Kind::dynamic:
+    case ResidualKind::one_step_problem:
       ++dynamic_;
       residual_ = std::max(residual_, residual);
       break;
-    case Kind::quasi_static:
+    case ResidualKind::force_balance:
       ++quasi_static_;
       imbalance_ = std::max(imbalance_, residual);
       break;
-    case Kind::smooth:
+    case ResidualKind::none:
       ++smooth_;
     }
   }

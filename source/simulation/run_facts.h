@@ -5,18 +5,17 @@
 
 #include "records/certificate.h"
 #include "time_integration/energy_watch.h"
+#include "time_integration/time_integrator.h"
 
 namespace nsfd
 {
   class Archive;
 
-  /** How the accepted steps of a run were solved, by kind. */
+  /** How the accepted steps of a run were solved, by what their residual is. */
   class SolvedSteps
   {
   public:
-    enum class Kind { dynamic, quasi_static, smooth };
-
-    void add(Kind kind, double residual);
+    void add(ResidualKind kind, double residual);
     void fill(RunFacts &facts) const;
     void remember(Archive &archive);
 

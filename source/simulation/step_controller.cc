@@ -17,10 +17,11 @@ namespace nsfd
 
   /** Down the ladder at once where points soften, up one level per step. */
   template <int dim>
-  void StepController<dim>::choose_step(const State &state)
+  void StepController<dim>::choose_step(const TimeIntegrator<dim> &integrator,
+                                        const State &state)
   {
     auto &control = *model_.control;
-    double limit = model_.stepper->automatic_step(state, control.base_step());
+    double limit = integrator.automatic_step(state, control.base_step());
     if (control.time() < redo_until_)
       limit = std::min(limit, redo_step_);
     control.limit(limit);
@@ -32,16 +33,16 @@ namespace nsfd
    * True if the step is to be taken again, with shorter ones to its end.
    */
   template <int dim>
-  bool StepController<dim>::is_beyond_uniqueness(const StepReport &report,
-                                                 const State &state,
-                                                 const State &next)
+  bool StepController<dim>::is_beyond_uniqueness(
+      const TimeIntegrator<dim> &integrator, const StepReport &report,
+      const State &state, const State &next)
   {
     auto &control = *model_.control;
     if (input_.time.step_kind != StepKind::automatic || !report.beyond_unique ||
         !control.can_halve())
       return false;
     const double h = control.step();
-    const double unique = model_.stepper->unique_step(state, next);
+    const double unique = integrator.unique_step(state, next);
     if (h < unique)
       return false; // by laws alone that no step is short enough for
     redo_until_ = control.time() + h * (1. - 1e-9);
@@ -70,6 +71,32 @@ namespace nsfd
   }
 
   template <int dim>
+  auto StepController<dim>::shorten(const TimeIntegrator<dim> &integrator,
+                                    const StepRejected &rejected,
+                                    std::string &failure) -> Outcome
+  {
+    using Cure = StepRejected::Cure;
+    failure = rejected.what();
+    if (rejected.cure() == Cure::next_integrator)
+      return Outcome::handed_over;
+    if (rejected.cure() == Cure::none)
+      return Outcome::failed;
+    if (!integrator.counts_rejected_steps())
+      ++rejected_;
+    ++attempts_;
+    auto &control = *model_.control;
+    const double length = control.step() * rejected.share();
+    if (control.halve()) {
+      while (control.step() > length && control.halve()) {
+      }
+      return Outcome::again;
+    }
+    failure +=
+        fmt::format("; {} halvings did not help", input_.time.maximum_halvings);
+    return Outcome::failed;
+  }
+
+  template <int dim>
   auto StepController<dim>::step(TimeIntegrator<dim> &integrator,
                                  const State &state, State &next,
                                  StepReport &report, std::string &failure)
@@ -77,33 +104,30 @@ namespace nsfd
   {
     auto &control = *model_.control;
     if (input_.time.step_kind == StepKind::automatic)
-      choose_step(state);
+      choose_step(integrator, state);
+    StepRequest step;
+    step.length = control.step();
+    step.end = control.next_time();
+    step.can_be_shorter = control.can_halve();
     // A shorter step is the cure for a step with several solutions, but not
     // for every hard one: each further attempt may cost twice as much.
-    const unsigned int doublings =
-        control.can_halve() ? std::min(attempts_, 10u) : 10;
+    step.idle_rounds <<= step.can_be_shorter ? std::min(attempts_, 10u) : 10;
     // the one place that catches StepRejected and shortens the step
     try {
       const stop_request::Interruptible interruptible(communicator_.size());
-      report = integrator.advance(state, control.step(), next,
-                                  SolverControl().idle_rounds << doublings);
+      report = integrator.take_step(state, step, next);
     } catch (const StepRejected &rejected) {
       failure = bad_formulas_text(communicator_);
       if (!failure.empty())
         return Outcome::failed;
-      ++rejected_;
-      ++attempts_;
-      if (control.halve())
-        return Outcome::again;
-      failure = fmt::format("{}; {} halvings did not help", rejected.what(),
-                            input_.time.maximum_halvings);
-      return Outcome::failed;
+      return shorten(integrator, rejected, failure);
     }
     // no shorter step makes numbers of what is none
     failure = bad_formulas_text(communicator_);
     if (!failure.empty())
       return Outcome::failed;
-    return is_beyond_uniqueness(report, state, next) || overshoots(report)
+    return is_beyond_uniqueness(integrator, report, state, next) ||
+                   overshoots(report)
                ? Outcome::again
                : Outcome::taken;
   }

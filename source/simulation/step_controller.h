@@ -27,29 +27,35 @@ namespace nsfd
 
     enum class Outcome {
       taken,
-      again, ///< to be taken again, shorter
+      again,       ///< to be taken again, shorter
+      handed_over, ///< by the integrator: the next one goes on from the state
       failed
     };
 
     /**
      * A step of @p integrator from @p state. Formulas that gave no number, and
      * a step that no bisection helps, are failures, with the reason in
-     * @p failure. Collective.
+     * @p failure; so is why a step was handed over. Collective.
      */
     Outcome step(TimeIntegrator<dim> &integrator, const State &state,
                  State &next, StepReport &report, std::string &failure);
 
     /** The step was accepted by everybody else as well. */
     void accept() { attempts_ = 0; }
+    /** Attempts of another integrator do not count. */
+    void restart() { attempts_ = 0; }
 
     void fill_counters(std::map<std::string, double> &counters) const;
     void serialize(Archive &archive);
 
   private:
-    void choose_step(const State &state);
-    bool is_beyond_uniqueness(const StepReport &report, const State &state,
+    void choose_step(const TimeIntegrator<dim> &integrator, const State &state);
+    bool is_beyond_uniqueness(const TimeIntegrator<dim> &integrator,
+                              const StepReport &report, const State &state,
                               const State &next);
     bool overshoots(const StepReport &report);
+    Outcome shorten(const TimeIntegrator<dim> &integrator,
+                    const StepRejected &rejected, std::string &failure);
 
     const SceneInput &input_;
     Model<dim> &model_;

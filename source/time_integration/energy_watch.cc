@@ -2,6 +2,7 @@
 
 #include "core/archive.h"
 #include "nsfd/scene/scene_input.h"
+#include "state/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,6 +69,23 @@ namespace nsfd
     default:
       return true;
     }
+  }
+
+  LineChanges changes_of_energy(const EnergyLines &before, const State &after)
+  {
+    LineChanges changes;
+    changes.scale = after.largest_energy;
+    const auto take = [&](const WatchedLine line,
+                          double EnergyLines::*const member) {
+      changes.taken[std::size_t(line)] = after.energy.*member - before.*member;
+    };
+    take(WatchedLine::friction, &EnergyLines::friction);
+    take(WatchedLine::damage, &EnergyLines::damage);
+    take(WatchedLine::impact, &EnergyLines::impact);
+    take(WatchedLine::viscous, &EnergyLines::viscous);
+    take(WatchedLine::plastic, &EnergyLines::plastic);
+    take(WatchedLine::scheme, &EnergyLines::numerical);
+    return changes;
   }
 
   void EnergyWatch::add(const LineChanges &step)

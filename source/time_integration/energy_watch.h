@@ -6,7 +6,9 @@
 namespace nsfd
 {
   class Archive;
+  struct EnergyLines;
   struct SceneInput;
+  struct State;
 
   /** Lines of the energy balance that must not give energy. */
   enum class WatchedLine : unsigned int {
@@ -46,6 +48,9 @@ namespace nsfd
     double scale = 0.; ///< the largest energy so far, or what the loads would
                        ///< give in this step without impulses, J
   };
+
+  /** Of a step from energies @p before to @p after that no point splits. */
+  LineChanges changes_of_energy(const EnergyLines &before, const State &after);
 
   /**
    * The lines over a whole run, in J. `given` is the most that a line gave

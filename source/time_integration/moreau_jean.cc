@@ -66,6 +66,21 @@ namespace nsfd
     c["activation_rounds"] = double(counters_.activation_rounds);
   }
 
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  MoreauJean<dim>::stage_seconds() const
+  {
+    std::vector<std::pair<std::string, double>> stages = {
+        {"loads and free motion", timings_.assembly},
+        {"nonsmooth solve", timings_.solve},
+        {"update of bodies", timings_.update},
+        {"energy ledger", timings_.ledger}};
+    if (input_.large_motion)
+      stages.insert(stages.begin() + 1,
+                    {"contact search", timings_.contact_search});
+    return stages;
+  }
+
   template class MoreauJean<2>;
   template class MoreauJean<3>;
 } // namespace nsfd

@@ -47,15 +47,14 @@ namespace nsfd
      * @p state; infinite if there is none.
      */
     double unique_step(const State &state) const;
-    /** The same by the points that softened between two states. */
-    double unique_step(const State &old, const State &next) const;
+    double unique_step(const State &old, const State &next) const override;
     /** Share of unique_step() that `step = auto` takes. */
     static constexpr double bound_share = 0.95;
-    /** What `step = auto` takes from @p state, at most @p time_step. */
-    double automatic_step(const State &state, double time_step) const;
+    double automatic_step(const State &state, double time_step) const override;
 
     const std::vector<double> &reactions() const override;
     void fill_counters(std::map<std::string, double> &counters) const override;
+    std::vector<std::pair<std::string, double>> stage_seconds() const override;
 
     /** Of the points of the mesh. */
     const OneStepProblem<dim> &problem() const { return problem_; }

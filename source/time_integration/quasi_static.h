@@ -1,124 +1,72 @@
 #pragma once
 
-#include "step_costs.h"
-#include "time_integrator.h"
+#include "equilibrium_search.h"
 
-#include "delassus/dynamics.h"
-#include "nsfd/discretization/discretization.h"
-
-#include <memory>
+#include "nsfd/scene/scene_input.h"
 
 namespace nsfd
 {
-  template <int dim>
-  class Relaxation;
-  template <int dim>
-  class StaticLedger;
-
-  /** An equilibrium, and how it lies to the one before it. */
-  struct EquilibriumReport {
-    StepReport step;
-    double left_over = 0.; ///< energy that the cohesion did not take, J
-    bool stable = true;    ///< softening leaves some stiffness everywhere
-    bool jumps = false;    ///< not stable, or what is left over or missing is
-                           ///< no small part of what the step has moved
-    /// a point is beyond the peak of its law, and was never pulled as far as a
-    /// hundredth below it
-    bool skips_peak = false;
-    double peak_seen = 1.; ///< the most that it has seen of it
-    /// of the step to take instead, where that can be told
-    double share = 1.;
-    std::string place; ///< of the face that is worst in this
-
-    /** No continuation, but what may follow one: downhill, over the peak. */
-    bool may_follow() const { return !skips_peak && left_over >= 0.; }
-    bool accepted() const { return !jumps && !skips_peak; }
-  };
-
   /**
-   * Equilibria under the loads and the prescribed motion of a time, without
-   * inertia (section 3.1 of the report): rounds of long implicit steps from
-   * rest, accelerated by KINSOL, until the forces left over are small against
-   * those present. Has matrices, solver and scene of its own, with theta = 1
-   * and cohesion at the end point, whatever the dynamic steps use.
-   *
-   * A step remembers only what its equilibrium says: damage, friction and
-   * contact see the change from the equilibrium before it, not the rounds.
-   *
-   * Softening leaves several equilibria. The one that continues the last is
-   * looked for where nothing is damaged yet, then with the laws next to the
-   * last one, and, where that has gone astray, along the path of an overdamped
-   * motion: damage grows as far as it must, bit by bit.
+   * Equilibria from one load to the next as steps of a run: the first is the
+   * equilibrium at t = 0. A step is rejected where no equilibrium is found or
+   * one leaves energy over; where no shorter one is left to be tried, the scene
+   * says whether that ends the run, or its integrator of dynamics goes on, or
+   * the next equilibrium is taken with a note.
    */
   template <int dim>
-  class QuasiStatic
+  class QuasiStatic final : public TimeIntegrator<dim>
   {
   public:
-    /** The scene must ask for equilibria: SceneInput::statics. */
-    QuasiStatic(const SceneInput &input, const Communicator &communicator,
-                const Discretization<dim> &discretization);
-    ~QuasiStatic();
-
     /**
-     * The equilibrium at t = 0 next to @p given, in one step of the load. Its
-     * energy is the initial energy. @throws StepRejected, for good.
+     * The scene must ask for equilibria: SceneInput::statics. @p dynamics and
+     * @p solver are as for EquilibriumSearch.
      */
-    State start(const State &given);
+    QuasiStatic(const SceneInput &input,
+                const Discretization<dim> &discretization,
+                std::unique_ptr<Dynamics<dim>> dynamics,
+                std::unique_ptr<NonsmoothSolver<dim>> solver);
 
-    /**
-     * From the equilibrium @p old to @p next at @p time. @throws StepRejected
-     * if none was found: no support, or none near @p old. If the step @p
-     * may_be_shortened, one that is bound to skip a peak is not even solved.
-     */
-    EquilibriumReport advance(const State &old, double time, State &next,
-                              bool may_be_shortened = false);
-
-    /** Force on each driven boundary, dim per boundary. */
-    const std::vector<double> &reactions() const;
-
-    /** Of what a step moves; what is left over above it makes a jump. */
-    static constexpr double jump_share = 0.01;
-
-    void remember(Archive &archive);
-
-    struct Counters {
-      unsigned long long equilibria = 0, rounds = 0, step_changes = 0;
-    };
-    const Counters &counters() const { return counters_; }
-    const StepCounters &solver_counters() const;
-    const StepTimings &timings() const;
-    const typename Dynamics<dim>::Counters &dynamics_counters() const
+    State start_from(const State &given) override
     {
-      return dynamics_->counters();
+      return search_.start(given);
+    }
+    bool takes_steps() const override { return statics_.steps; }
+
+    StepReport advance(const State &old, double time_step, State &next,
+                       unsigned int idle_rounds) override;
+    /** The load is that of the end of the step. */
+    StepReport take_step(const State &old, const StepRequest &step,
+                         State &next) override;
+
+    /** At rest, with the impulses of its forces. */
+    void hand_over(State &state, double time_step) const override;
+
+    const std::vector<double> &reactions() const override
+    {
+      return search_.reactions();
+    }
+    ResidualKind residual_kind() const override
+    {
+      return ResidualKind::force_balance;
+    }
+    bool counts_rejected_steps() const override { return true; }
+    void fill_counters(std::map<std::string, double> &counters) const override;
+    std::vector<std::pair<std::string, double>> stage_seconds() const override;
+
+    void serialize(Archive &archive) override;
+    void serialize_solver(Archive &archive) override
+    {
+      search_.remember(archive);
     }
 
-  private:
-    enum class Way { held, near, damped };
-    void find(const State &old, double time, Way way, State &next,
-              StepReport &report);
-    EquilibriumReport try_way(const State &old, double time, Way way, bool path,
-                              State &next);
-    bool settle(std::vector<double> &q, unsigned int rounds, double goal,
-                StepReport &report, const State *old);
-    void follow_damped(std::vector<double> &q, StepReport &report);
-    std::string face_of_all(double value, std::size_t point) const;
-    bool round(std::vector<double> &q, StepReport &report);
-    bool accelerate(std::vector<double> &q, StepReport &report);
-    void refuse_loose_motion(const State &old, double time);
+    EquilibriumSearch<dim> &search() { return search_; }
 
-    const SceneInput &input_;
-    const std::unique_ptr<const SceneInput> scene_;
-    const Communicator &communicator_;
-    const Discretization<dim> &discretization_;
-    std::unique_ptr<Dynamics<dim>> dynamics_;
-    std::unique_ptr<NonsmoothSolver<dim>> solver_;
-    std::unique_ptr<Relaxation<dim>> relaxation_;
-    std::unique_ptr<StaticLedger<dim>> ledger_;
-    double crossing_, h_;      ///< s, of a cell; pseudo-time step of the rounds
-    double first_h_;           ///< of every solve
-    double goal_ = 0.;         ///< of the rounds: share of the forces left over
-    std::vector<double> held_; ///< where springs in place of laws balance
-    bool solved_ = true;       ///< the point laws, in the last round
-    Counters counters_;
+  private:
+    [[noreturn]] void refuse(const std::string &what, bool may_follow) const;
+
+    const StaticInput &statics_;
+    EquilibriumSearch<dim> search_;
+    unsigned int shortened_ = 0, jumps_ = 0;
+    double released_ = 0., first_jump_ = 0.; ///< J; s
   };
 } // namespace nsfd

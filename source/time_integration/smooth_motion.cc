@@ -150,6 +150,7 @@ namespace nsfd
     report.solver.newton = unsigned(counters.steps - before.steps);
     report.solver.krylov = unsigned(counters.iterations - before.iterations);
     close_books(old, next, report);
+    report.changes = changes_of_energy(old.energy, next);
     return report;
   }
 
@@ -236,14 +237,27 @@ namespace nsfd
   template <int dim>
   SmoothMotion<dim>::SmoothMotion(const SceneInput &input,
                                   const Discretization<dim> &discretization,
-                                  Dynamics<dim> &dynamics, const State &start)
-      : equations_(
-            std::make_unique<Equations>(input, discretization, dynamics, start))
+                                  Dynamics<dim> &dynamics)
+      : input_(input), discretization_(discretization), dynamics_(dynamics)
   {
   }
 
   template <int dim>
   SmoothMotion<dim>::~SmoothMotion() = default;
+
+  template <int dim>
+  State SmoothMotion<dim>::start_from(const State &given)
+  {
+    resume_from(given);
+    return given;
+  }
+
+  template <int dim>
+  void SmoothMotion<dim>::resume_from(const State &state)
+  {
+    equations_ =
+        std::make_unique<Equations>(input_, discretization_, dynamics_, state);
+  }
 
   template <int dim>
   StepReport SmoothMotion<dim>::advance(const State &old, const double h,
@@ -253,7 +267,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void SmoothMotion<dim>::remember(Archive &archive)
+  void SmoothMotion<dim>::serialize(Archive &archive)
   {
     equations_->remember(archive);
   }
@@ -265,9 +279,16 @@ namespace nsfd
   }
 
   template <int dim>
-  auto SmoothMotion<dim>::counters() const -> const Counters &
+  auto SmoothMotion<dim>::counters() const -> Counters
   {
-    return equations_->counters;
+    return equations_ ? equations_->counters : Counters();
+  }
+
+  template <int dim>
+  std::vector<std::pair<std::string, double>>
+  SmoothMotion<dim>::stage_seconds() const
+  {
+    return {{"integration", counters().seconds}};
   }
 
   template <int dim>

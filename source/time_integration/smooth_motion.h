@@ -27,15 +27,18 @@ namespace nsfd
   class SmoothMotion final : public TimeIntegrator<dim>
   {
   public:
-    /**
-     * @p dynamics holds the stiffness of the bodies and bonds. The scales of
-     * the tolerances come from @p start and from the loads and motions until
-     * the end. Collective.
-     */
+    /** @p dynamics holds the stiffness of the bodies and bonds. */
     SmoothMotion(const SceneInput &input,
                  const Discretization<dim> &discretization,
-                 Dynamics<dim> &dynamics, const State &start);
+                 Dynamics<dim> &dynamics);
     ~SmoothMotion() override;
+
+    /**
+     * The scales of the tolerances come from @p given and from the loads and
+     * motions until the end. Collective.
+     */
+    State start_from(const State &given) override;
+    void resume_from(const State &state) override;
 
     /**
      * From @p old over @p time_step, in as many steps of the pairs as the
@@ -46,19 +49,24 @@ namespace nsfd
 
     /** At the end of the step. */
     const std::vector<double> &reactions() const override;
+    ResidualKind residual_kind() const override { return ResidualKind::none; }
     void fill_counters(std::map<std::string, double> &counters) const override;
+    std::vector<std::pair<std::string, double>> stage_seconds() const override;
 
-    void remember(Archive &archive);
+    void serialize(Archive &archive) override;
 
     struct Counters {
       unsigned long long steps = 0, evaluations = 0, iterations = 0,
                          linear_solves = 0;
       double seconds = 0.; ///< CPU time of advance()
     };
-    const Counters &counters() const;
+    Counters counters() const;
 
   private:
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    Dynamics<dim> &dynamics_;
     class Equations;
-    std::unique_ptr<Equations> equations_;
+    std::unique_ptr<Equations> equations_; ///< since the start
   };
 } // namespace nsfd

@@ -34,6 +34,13 @@ namespace nsfd
                base_;
   }
 
+  double StepControl::next_time() const
+  {
+    StepControl after = *this;
+    after.accept();
+    return after.time();
+  }
+
   double StepControl::step() const { return std::ldexp(base_, -int(level_)); }
 
   void StepControl::accept()

@@ -20,6 +20,8 @@ namespace nsfd
 
     bool finished() const { return base_count_ == n_base_; }
     double time() const;
+    /** The end of the present step. */
+    double next_time() const;
     double step() const;
     double base_step() const { return base_; }
     unsigned int level() const { return level_; }

@@ -54,8 +54,9 @@ namespace nsfd
       explicit Changing(const std::string &text)
           : input(make_input(text)), communicator(MPI_COMM_WORLD)
       {
-        if (!model.build(*input, communicator))
-          throw std::invalid_argument("no model");
+        const auto problems = model.build(*input, communicator);
+        if (!problems.empty())
+          throw std::invalid_argument(problems.front());
         model.dynamics->reinit(model.control->step(), input->time.bulk_theta());
         adaptive =
             std::make_unique<AdaptiveMesh<dim>>(*input, communicator, model);

@@ -1,7 +1,5 @@
 #include "make_scene.h"
 
-#include "time_integration/quasi_static.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,13 +16,12 @@ namespace nsfd::test_quasi_static
     template <int dim>
     struct Statics {
       test::Scene<dim> scene;
-      QuasiStatic<dim> quasi_static;
+      EquilibriumSearch<dim> &quasi_static;
       State state, next;
 
       explicit Statics(const std::string &text,
                        const std::vector<std::string> &set = {})
-          : scene(text, set), quasi_static(*scene.input, scene.communicator,
-                                           *scene.discretization),
+          : scene(text, set), quasi_static(scene.equilibria->search()),
             state(scene.state), next(state)
       {
       }

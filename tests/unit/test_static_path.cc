@@ -2,7 +2,6 @@
 #include "make_scene.h"
 
 #include "nsfd/cohesive_laws/cohesive_law.h"
-#include "time_integration/quasi_static.h"
 #include "time_integration/step_control.h"
 
 #include <fmt/format.h>
@@ -72,18 +71,16 @@ end
     Pull pull(const std::string &scene, const double step)
     {
       test::Scene<2> bar(scene);
-      QuasiStatic<2> statics(*bar.input, bar.communicator, *bar.discretization);
+      EquilibriumSearch<2> &statics = bar.equilibria->search();
       State state = statics.start(bar.state), next = state;
       StepControl control(1., step, 10);
       Pull result;
       while (!control.finished()) {
-        StepControl after = control;
-        after.accept();
         EquilibriumReport found;
         bool exists = true;
         try {
-          found =
-              statics.advance(state, after.time(), next, control.can_halve());
+          found = statics.advance(state, control.next_time(), next,
+                                  control.can_halve());
         } catch (const StepRejected &) {
           exists = false;
         }

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "model.h"
+
+namespace nsfd
+{
+  /**
+   * Boundaries and obstacles that hold nowhere, as @p problems; interfaces that
+   * do, as warnings on standard error. Collective.
+   */
+  template <int dim>
+  void find_unused_blocks(const SceneInput &input, const Model<dim> &model,
+                          const Communicator &communicator,
+                          std::vector<std::string> &problems);
+
+  /** Bonds act through the bulk of cells, and rigid ones have none. */
+  template <int dim>
+  void find_impossible_bonds(const SceneInput &input, const Model<dim> &model,
+                             const Communicator &communicator,
+                             std::vector<std::string> &problems);
+} // namespace nsfd

@@ -1,0 +1,154 @@
+#include "model.h"
+
+#include "time_integration/stable_step.h"
+
+#include <deal.II/grid/tria.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// How long the steps of a model are.
+
+namespace nsfd
+{
+  template <int dim>
+  void Model<dim>::build_control(const SceneInput &input,
+                                 std::vector<std::string> &problems)
+  {
+    if (input.time.step_kind != StepKind::time &&
+        discretization->crossing_time() == 0.) {
+      problems.push_back("Time/step: all bodies are rigid, there is no "
+                         "crossing time; write the step as a time");
+      return;
+    }
+    const bool quasi_static = input.statics && input.statics->steps;
+    // more are a slip of the pen, and are counted in 32 bits
+    constexpr double most_steps = 1e9;
+    const auto demand_fewer = [&](const char *entry, const double duration,
+                                  const double step) {
+      if (duration / step <= most_steps)
+        return true;
+      problems.push_back(fmt::format(
+          "Time/{}: {:.4g} s in steps of {:.4g} s are {:.2g} steps, more than "
+          "{:g}: write a shorter time or longer steps",
+          entry, duration, step, duration / step, most_steps));
+      return false;
+    };
+    const double until = input.statics ? input.statics->until : 0.;
+    if (quasi_static && !demand_fewer("step", until, input.statics->step))
+      return;
+    if (input.may_move() &&
+        !demand_fewer("end", input.time.end - until, dynamic_step(input)))
+      return;
+    control =
+        quasi_static ? load_control(input, 0.) : dynamic_control(input, 0.);
+  }
+
+  /** All bonds that the scene may have. */
+  template <int dim>
+  void Model<dim>::join_all(const SceneInput &input)
+  {
+    const auto &origins = discretization->origins();
+    std::vector<std::uint8_t> joined(origins.size(), 0);
+    for (std::size_t i = 0; i < origins.size(); ++i)
+      joined[i] =
+          origins[i].kind == PointOrigin::Kind::interface &&
+          input.interfaces[origins[i].block].intact == IntactFaces::bonded;
+    bonded->set_bonds(joined);
+  }
+
+  /** Bodies, and bonds between them, are explicit in the symplectic scheme. */
+  template <int dim>
+  double Model<dim>::stable_limit(const SceneInput &input,
+                                  const Communicator &communicator,
+                                  const double enough)
+  {
+    if (!bonded)
+      return communicator.min(stable_step(discretization->bodies()));
+    join_all(input);
+    dynamics->reinit(control->step(), 0.);
+    return stable_step(*dynamics, enough);
+  }
+
+  /** The base step, halved as often as the smallest cells. */
+  template <int dim>
+  double
+  Model<dim>::step_of_smallest_cells(const Communicator &communicator) const
+  {
+    int level = 0;
+    for (const auto &cell : triangulation->active_cell_iterators())
+      if (cell->is_locally_owned())
+        level = std::max(level, cell->level());
+    return std::ldexp(control->base_step(), -int(communicator.max(level)));
+  }
+
+  template <int dim>
+  void Model<dim>::check_stability(const SceneInput &input,
+                                   const Communicator &communicator,
+                                   std::vector<std::string> &problems)
+  {
+    const double limit = stable_limit(input, communicator,
+                                      std::numeric_limits<double>::infinity());
+    if (dynamic_step(input) > limit)
+      problems.push_back(fmt::format(
+          "Time/step is {:.4g} s, and the symplectic scheme is stable up to "
+          "{:.4g} s: write at most `{:.3f} crossings`",
+          dynamic_step(input), limit,
+          0.999 * limit / discretization->crossing_time()));
+  }
+
+  template <int dim>
+  double Model<dim>::dynamic_step(const SceneInput &input) const
+  {
+    return input.time.step * (input.time.step_kind == StepKind::time
+                                  ? 1.
+                                  : discretization->crossing_time());
+  }
+
+  template <int dim>
+  std::unique_ptr<StepControl>
+  Model<dim>::dynamic_control(const SceneInput &input, const double start) const
+  {
+    return std::make_unique<StepControl>(input.time.end, dynamic_step(input),
+                                         input.time.maximum_halvings, start);
+  }
+
+  template <int dim>
+  std::unique_ptr<StepControl>
+  Model<dim>::load_control(const SceneInput &input, const double start) const
+  {
+    return std::make_unique<StepControl>(input.statics->until,
+                                         input.statics->step,
+                                         input.time.maximum_halvings, start);
+  }
+
+  template void Model<2>::build_control(const SceneInput &,
+                                        std::vector<std::string> &);
+  template void Model<3>::build_control(const SceneInput &,
+                                        std::vector<std::string> &);
+  template double Model<2>::stable_limit(const SceneInput &,
+                                         const Communicator &, double);
+  template double Model<3>::stable_limit(const SceneInput &,
+                                         const Communicator &, double);
+  template double Model<2>::step_of_smallest_cells(const Communicator &) const;
+  template double Model<3>::step_of_smallest_cells(const Communicator &) const;
+  template void Model<2>::check_stability(const SceneInput &,
+                                          const Communicator &,
+                                          std::vector<std::string> &);
+  template void Model<3>::check_stability(const SceneInput &,
+                                          const Communicator &,
+                                          std::vector<std::string> &);
+  template double Model<2>::dynamic_step(const SceneInput &) const;
+  template double Model<3>::dynamic_step(const SceneInput &) const;
+  template std::unique_ptr<StepControl>
+  Model<2>::dynamic_control(const SceneInput &, double) const;
+  template std::unique_ptr<StepControl>
+  Model<3>::dynamic_control(const SceneInput &, double) const;
+  template std::unique_ptr<StepControl>
+  Model<2>::load_control(const SceneInput &, double) const;
+  template std::unique_ptr<StepControl>
+  Model<3>::load_control(const SceneInput &, double) const;
+} // namespace nsfd

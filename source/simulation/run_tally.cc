@@ -1,0 +1,106 @@
+#include "run_tally.h"
+
+#include "run_info.h"
+
+#include "core/archive.h"
+#include "core/stopwatch.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  RunTally<dim>::RunTally(const SceneInput &input, const Model<dim> &model,
+                          const TimeStepping<dim> &steps,
+                          const Communicator &communicator)
+      : input_(input), model_(model), steps_(steps),
+        communicator_(communicator), wall_start_(wall_seconds()),
+        setup_start_(cpu_seconds())
+  {
+  }
+
+  template <int dim>
+  void RunTally<dim>::add(const StepReport &report)
+  {
+    beyond_unique_ += report.beyond_unique;
+    released_ += report.released;
+    watch_.add(report.changes);
+    costs_.record(report.solver, model_.dynamics->counters().delassus);
+    solved_steps_.add(steps_.integrator().residual_kind(),
+                      report.solver.residual);
+    for (const auto &name : report.solver.switches)
+      ++switches_[name];
+    ledger_defect_max_ = std::max(ledger_defect_max_, report.ledger_defect);
+    residual_max_ = std::max(residual_max_, report.solver.residual);
+  }
+
+  template <int dim>
+  void
+  RunTally<dim>::fill_counters(const State &state,
+                               std::map<std::string, double> &counters) const
+  {
+    const auto &dynamics = model_.dynamics->counters();
+    auto &c = counters;
+    c["delassus_applications"] = double(dynamics.delassus);
+    c["block_factorisations"] = double(dynamics.factorisations);
+    c["global_factorisations"] = double(dynamics.global_factorisations);
+    c["coarse_spaces"] = double(dynamics.coarse_spaces);
+    c["global_solves"] = double(dynamics.global_solves);
+    c["inner_iterations"] = double(dynamics.inner_iterations);
+    // products with W and, inside the preconditioner, with A
+    c["operator_applications"] =
+        double(dynamics.delassus + dynamics.inner_iterations);
+    if (model_.bonded)
+      c["released_bonds"] = double(released_);
+    c["steps_beyond_uniqueness"] = beyond_unique_;
+    c["penetration_excess"] = state.penetration_excess;
+    count_points(input_, *model_.discretization, communicator_, c);
+    c["body_classes"] = communicator_.max(
+        double(model_.discretization->bodies().classes.size()));
+    for (const auto &[name, count] : switches_)
+      c["switches_to_" + name] = count;
+    steps_.fill_counters(c);
+  }
+
+  /** Without what was counted before the checkpoint. */
+  template <int dim>
+  RunTotals
+  RunTally<dim>::of_process(const State &state, const double output,
+                            const unsigned int failed_checkpoints) const
+  {
+    RunTotals sums;
+    fill_counters(state, sums.counters);
+    if (resumed_)
+      sums.counters["resumed"] = 1.;
+    if (failed_checkpoints > 0)
+      sums.counters["failed_checkpoints"] = failed_checkpoints;
+    sums.timings = stage_timings(model_, setup_seconds_, output);
+    sums.wall_seconds = wall_seconds() - wall_start_;
+    sums.cpu_seconds = cpu_seconds();
+    return sums;
+  }
+
+  template <int dim>
+  RunTotals RunTally<dim>::totals(const State &state, const double output,
+                                  const unsigned int failed_checkpoints) const
+  {
+    RunTotals sums = of_process(state, output, failed_checkpoints);
+    earlier_.add_to(sums);
+    return sums;
+  }
+
+  template <int dim>
+  void RunTally<dim>::serialize(Archive &archive, const State &state,
+                                const double output,
+                                const unsigned int failed_checkpoints)
+  {
+    watch_.remember(archive);
+    archive.numbers("largest", ledger_defect_max_, residual_max_);
+    solved_steps_.remember(archive);
+    costs_.remember(archive);
+    earlier_.remember(archive, of_process(state, output, failed_checkpoints));
+  }
+
+  template class RunTally<2>;
+  template class RunTally<3>;
+} // namespace nsfd

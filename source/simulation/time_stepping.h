@@ -1,0 +1,79 @@
+#pragma once
+
+#include "step_controller.h"
+
+namespace nsfd
+{
+  /**
+   * The integrators of a run, one after the other, and their steps: equilibria
+   * where the scene asks for them, then what moves in time.
+   */
+  template <int dim>
+  class TimeStepping
+  {
+  public:
+    TimeStepping(const SceneInput &input, Model<dim> &model,
+                 const Communicator &communicator)
+        : input_(input), model_(model), communicator_(communicator),
+          controller_(input, model, communicator)
+    {
+    }
+
+    /**
+     * Makes of @p state what the first step starts from. Collective. Errors
+     * raised: StepRejected.
+     */
+    void start(State &state);
+
+    /**
+     * Whether the end of the run is reached. Where one integrator has come to
+     * its end, the next one takes @p state. Collective.
+     */
+    bool finished(State &state);
+
+    enum class Outcome {
+      taken,
+      again, ///< to be taken again: shorter, or by the next integrator
+      failed
+    };
+
+    /**
+     * A step from @p state to @p next, or the reason in @p failure. Collective.
+     */
+    Outcome step(State &state, State &next, StepReport &report,
+                 std::string &failure);
+
+    /** The step was accepted: the ladder goes on. */
+    void accept();
+
+    TimeIntegrator<dim> &integrator() const
+    {
+      return *model_.integrators()[stage_];
+    }
+
+    void fill_counters(std::map<std::string, double> &counters) const;
+
+    /** Another integrator follows. */
+    bool is_first_of_two() const
+    {
+      return stage_ + 1 < model_.integrators().size();
+    }
+    /** As stored, from @p state on; before serialize(). Collective. */
+    void resume(const State &state, bool is_first_of_two);
+    /** What later steps depend on. Collective. */
+    void serialize(Archive &archive);
+    /** What solvers keep from step to step. Collective. */
+    void serialize_solvers(Archive &archive);
+    /** Other steps, or to another end. Errors raised: BadCheckpoint. */
+    void renew_steps(double time);
+
+  private:
+    void hand_over(State &state);
+
+    const SceneInput &input_;
+    Model<dim> &model_;
+    const Communicator &communicator_;
+    StepController<dim> controller_;
+    std::size_t stage_ = 0; ///< among Model::integrators()
+  };
+} // namespace nsfd

@@ -1,0 +1,407 @@
+#include "equilibrium_search.h"
+
+#include "loose_motion.h"
+#include "peak_rule.h"
+#include "relaxation.h"
+#include "static_ledger.h"
+
+#include "core/accelerated_rounds.h"
+#include "core/archive.h"
+#include "core/stopwatch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  namespace
+  {
+    // The longest and the shortest pseudo-time step, in crossings of a cell.
+    // Above, (h/crossing)^2 times round-off would be seen in the jumps.
+    constexpr double longest = 300., shortest = 0.05;
+    constexpr unsigned int most_rounds = 200, accelerated = 12;
+    // with springs in place of laws; and how often these are damaged further
+    constexpr unsigned int most_held_rounds = 40, most_bits = 100;
+
+    /**
+     * Ten crossings of all bodies: then masses hold against their slowest
+     * vibration with less than a hundredth of its stiffness.
+     */
+    template <int dim>
+    double first_step(const SceneInput &input,
+                      const Discretization<dim> &discretization)
+    {
+      double speed = 0.;
+      for (unsigned int m = 0; m < input.materials.size(); ++m)
+        if (!input.materials[m].rigid)
+          speed = std::max(speed, discretization.pressure_wave_speed(m));
+      const double crossing = discretization.crossing_time();
+      return std::clamp(10. * discretization.extent() / speed, 30. * crossing,
+                        100. * crossing);
+    }
+  } // namespace
+
+  template <int dim>
+  EquilibriumSearch<dim>::EquilibriumSearch(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      std::unique_ptr<Dynamics<dim>> dynamics,
+      std::unique_ptr<NonsmoothSolver<dim>> solver)
+      : input_(input),
+        scene_(std::make_unique<const SceneInput>(static_scene(input))),
+        communicator_(dynamics->communicator()),
+        discretization_(discretization), dynamics_(std::move(dynamics)),
+        solver_(std::move(solver)), crossing_(discretization.crossing_time()),
+        h_(first_step(input, discretization)), first_h_(h_)
+  {
+    dynamics_->reinit(h_, 1.);
+    relaxation_ = std::make_unique<Relaxation<dim>>(*scene_, discretization,
+                                                    *dynamics_, *solver_);
+    ledger_ = std::make_unique<StaticLedger<dim>>(*scene_, discretization,
+                                                  *dynamics_);
+  }
+
+  template <int dim>
+  EquilibriumSearch<dim>::~EquilibriumSearch() = default;
+
+  template <int dim>
+  const std::vector<double> &EquilibriumSearch<dim>::reactions() const
+  {
+    return ledger_->reactions();
+  }
+
+  template <int dim>
+  void EquilibriumSearch<dim>::remember(Archive &archive)
+  {
+    const Archive::Part part(archive, "equilibria");
+    relaxation_->remember(archive);
+    dynamics_->remember(archive);
+    solver_->remember(archive);
+  }
+
+  template <int dim>
+  const StepCounters &EquilibriumSearch<dim>::solver_counters() const
+  {
+    return relaxation_->counters();
+  }
+
+  template <int dim>
+  const StepTimings &EquilibriumSearch<dim>::timings() const
+  {
+    return relaxation_->timings();
+  }
+
+  template <int dim>
+  State EquilibriumSearch<dim>::start(const State &given)
+  {
+    State state = given;
+    StepReport report;
+    find(given, 0., Way::near, state, report);
+    ledger_->book(*relaxation_, std::vector<double>(given.velocity.size(), 0.),
+                  given, state, report);
+    const EnergyLines found = state.energy;
+    state.energy = {};
+    state.energy.elastic = found.elastic;
+    state.energy.cohesive = found.cohesive;
+    state.initial_energy = found.elastic + found.cohesive;
+    state.largest_energy = state.initial_energy;
+    state.pressure_work = state.positive_friction_work = 0.;
+    state.step = 0;
+    state.time = 0.;
+    return state;
+  }
+
+  /** Named by the last rank that has the largest @p value. */
+  template <int dim>
+  std::string EquilibriumSearch<dim>::face_of_all(const double value,
+                                                  const std::size_t point) const
+  {
+    const bool mine = value == communicator_.max(value);
+    const int rank =
+        int(communicator_.max(mine ? double(communicator_.rank()) : -1.));
+    std::string place = relaxation_->face(point);
+    int length = int(place.size());
+    MPI_Bcast(&length, 1, MPI_INT, rank, communicator_.mpi());
+    place.resize(std::size_t(length));
+    MPI_Bcast(place.data(), length, MPI_CHAR, rank, communicator_.mpi());
+    return place;
+  }
+
+  template <int dim>
+  EquilibriumReport
+  EquilibriumSearch<dim>::try_way(const State &old, const double time,
+                                  const Way way, const bool path, State &next)
+  {
+    EquilibriumReport report;
+    std::vector<double> forces_old(old.velocity.size(), 0.);
+    if (discretization_.has_loads())
+      discretization_.add_loads(old.time, forces_old);
+    find(old, time, way, next, report.step);
+    report.stable = relaxation_->softening() < 1.;
+    const EnergyLeft left =
+        ledger_->book(*relaxation_, forces_old, old, next, report.step);
+    report.left_over = left.energy;
+    report.jumps =
+        !report.stable || std::abs(left.energy) > jump_share * left.turnover;
+    const auto [seen, point] = relaxation_->least_passage(next, path);
+    report.peak_seen = -communicator_.max(-seen);
+    report.skips_peak = report.peak_seen < Passage::least_share;
+    if (report.skips_peak)
+      report.place = face_of_all(-seen, point);
+    else if (report.jumps)
+      report.place = face_of_all(left.worst, left.worst_point);
+    return report;
+  }
+
+  template <int dim>
+  EquilibriumReport
+  EquilibriumSearch<dim>::advance(const State &old, const double time,
+                                  State &next, const bool may_be_shortened)
+  {
+    if (!relaxation_->has_laws())
+      return try_way(old, time, Way::near, false, next);
+
+    // nothing damages: one equilibrium, and next to the last one
+    relaxation_->begin(old, time, time - old.time);
+    relaxation_->hold_laws();
+    held_ = old.displacement;
+    StepReport held;
+    typename Relaxation<dim>::Prediction ahead;
+    ahead.damages = true;
+    const bool predicted = settle(held_, most_held_rounds,
+                                  input_.statics->tolerance, held, nullptr);
+    if (predicted)
+      ahead = relaxation_->prediction();
+    EquilibriumReport best;
+    if (may_be_shortened && ahead.certain) {
+      best.skips_peak = true;
+      best.share = ahead.share;
+      return best;
+    }
+
+    // what comes to its peak first is there; what follows is pulled there
+    const bool at_peak = predicted && ahead.share == 1.;
+    std::string failure;
+    bool found = false;
+    State best_next;
+    std::vector<double> reactions;
+    for (const Way way : {Way::held, Way::near, Way::damped}) {
+      if (way == Way::held && ahead.damages)
+        continue;
+      EquilibriumReport report;
+      try {
+        report = try_way(old, time, way, at_peak && way == Way::damped, next);
+      } catch (const StepRejected &rejected) {
+        failure = rejected.what();
+        continue;
+      }
+      const auto merit = [](const EquilibriumReport &x) {
+        return x.accepted() ? 3 : x.may_follow() ? 1 + x.stable : 0;
+      };
+      if (!found || merit(report) > merit(best)) {
+        found = true;
+        best = report;
+        best_next = next;
+        reactions = ledger_->reactions();
+      }
+      if (best.accepted())
+        break;
+    }
+    if (!found)
+      throw StepRejected(failure);
+    next = best_next;
+    ledger_->set_reactions(reactions);
+    if (best.skips_peak)
+      best.share = ahead.share;
+    return best;
+  }
+
+  /**
+   * Rounds with KINSOL near the equilibrium, where the map is smooth. False,
+   * with @p q as it was, if they have not come closer.
+   */
+  template <int dim>
+  bool EquilibriumSearch<dim>::accelerate(std::vector<double> &q,
+                                          StepReport &report)
+  {
+    const double start = relaxation_->imbalance();
+    std::vector<double> mixed = q, best = q;
+    double smallest = start;
+    accelerated_rounds(communicator_, 5, accelerated, mixed,
+                       [&](std::vector<double> &x) {
+                         const bool more = round(x, report);
+                         if (solved_ && relaxation_->imbalance() < smallest) {
+                           smallest = relaxation_->imbalance();
+                           best = x;
+                         }
+                         return more && relaxation_->imbalance() < 10. * start;
+                       });
+    q = best;
+    solved_ = true;
+    return smallest < start;
+  }
+
+  /** One long step. False if it ends the pass: in equilibrium, or unsolved. */
+  template <int dim>
+  bool EquilibriumSearch<dim>::round(std::vector<double> &q, StepReport &report)
+  {
+    // round-off of floating cells is seen in the jumps by (h/crossing)^2
+    const double ratio = h_ / crossing_,
+                 tolerance = std::max(0.1 * goal_, 1e-15 * ratio * ratio);
+    ++counters_.rounds;
+    const SolverReport solve = relaxation_->relax(q, h_, tolerance);
+    report.solver.add_work(solve);
+    solved_ = solve.converged;
+    report.solver.residual = relaxation_->imbalance();
+    report.solver.converged = solved_ && relaxation_->imbalance() <= goal_;
+    return solved_ && !report.solver.converged;
+  }
+
+  template <int dim>
+  void EquilibriumSearch<dim>::refuse_loose_motion(const State &old,
+                                                   const double time)
+  {
+    const std::string loose = loose_motion(discretization_, communicator_, old,
+                                           relaxation_->residual());
+    if (loose.empty())
+      return;
+    throw StepRejected(
+        fmt::format("no equilibrium at t = {:.6g}: the loads are not balanced, "
+                    "and nothing holds {}",
+                    time, loose));
+  }
+
+  /**
+   * Rounds until the forces left over are below @p goal. What nothing holds is
+   * named if it comes from @p old, and else ends them.
+   */
+  template <int dim>
+  bool EquilibriumSearch<dim>::settle(std::vector<double> &q,
+                                      const unsigned int rounds,
+                                      const double goal, StepReport &report,
+                                      const State *old)
+  {
+    double last = std::numeric_limits<double>::infinity(), near = 1e-3;
+    bool &converged = report.solver.converged;
+    converged = false;
+    goal_ = goal;
+    h_ = first_h_;
+    for (unsigned int n = 0; n < rounds; ++n) {
+      round(q, report);
+      if (converged)
+        break;
+      if (!solved_) { // several solutions: closer to the last iterate
+        if (h_ <= shortest * crossing_)
+          break;
+        h_ = std::max(h_ / 4., shortest * crossing_);
+        last = std::numeric_limits<double>::infinity();
+        ++counters_.step_changes;
+        continue;
+      }
+      const double ratio = relaxation_->imbalance() / last;
+      last = relaxation_->imbalance();
+      if (h_ < first_h_) {
+        h_ = std::min(2. * h_, first_h_);
+        last = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      // what only masses resist stays as it is
+      if (std::abs(ratio - 1.) < 1e-3) {
+        if (old == nullptr)
+          break;
+        refuse_loose_motion(*old, relaxation_->time());
+      }
+      if (ratio > 0.1 && last < near) {
+        if (!accelerate(q, report))
+          near = 0.1 * last;
+        last = relaxation_->imbalance();
+      } else if (ratio > 0.5 && h_ < longest * crossing_) {
+        h_ = std::min(4. * h_, longest * crossing_);
+        last = std::numeric_limits<double>::infinity();
+        ++counters_.step_changes;
+      } else if (ratio > 0.5 && n > most_rounds / 4)
+        near = std::numeric_limits<double>::infinity();
+    }
+    return converged;
+  }
+
+  /**
+   * Springs in place of the laws, damaged as far as they have been opened,
+   * again and again: as a motion goes that a damper slows down. Where
+   * equilibria of the laws lie on its way it comes to the first of them; from
+   * there on the laws themselves are solved. Damage that grows faster and
+   * faster is hurried.
+   */
+  template <int dim>
+  void EquilibriumSearch<dim>::follow_damped(std::vector<double> &q,
+                                             StepReport &report)
+  {
+    // an opening over G/R_max: what the laws find by themselves
+    constexpr double near = 1e-4, faster = 4.,
+                     let_go = std::numeric_limits<double>::max();
+    double last = let_go, growth, stretch = 1.;
+    relaxation_->hold_laws();
+    for (unsigned int n = 0; n < most_bits; ++n) {
+      settle(q, most_held_rounds, std::max(input_.statics->tolerance, 1e-6),
+             report, nullptr);
+      if (!solved_ || !relaxation_->let_damage_grow(growth, stretch))
+        break;
+      if (last < let_go && growth < let_go) {
+        // growth goes by 1 - stretch (1 - x); half way to where x leads
+        const double decay = (1. - growth / last) / stretch;
+        if (growth < near * decay)
+          break;
+        stretch = 2. * faster * stretch * decay > 1. ? std::max(1., 0.5 / decay)
+                                                     : faster * stretch;
+      } else
+        stretch = 1.;
+      last = growth;
+    }
+    relaxation_->free_laws();
+  }
+
+  template <int dim>
+  void EquilibriumSearch<dim>::find(const State &old, const double time,
+                                    const Way way, State &next,
+                                    StepReport &report)
+  {
+    std::vector<double> q = old.displacement;
+    if (way == Way::held) {
+      q = held_;
+      relaxation_->free_laws();
+    } else
+      relaxation_->begin(old, time, time - old.time);
+    if (way == Way::damped)
+      follow_damped(q, report);
+    if (!settle(q, most_rounds, input_.statics->tolerance, report, &old)) {
+      refuse_loose_motion(old, time);
+      throw StepRejected(fmt::format(
+          "no equilibrium was found at t = {:.6g}: {:.2e} of the forces are "
+          "left over; worst face {}",
+          time, relaxation_->imbalance(), relaxation_->worst_face()));
+    }
+    ++counters_.equilibria;
+    next.step = old.step + 1;
+    next.time = time;
+    next.last_step = 0.;
+    next.displacement = q;
+    next.velocity.assign(q.size(), 0.);
+    next.relative_velocity.assign(old.jump.size(), 0.);
+    next.point_force = relaxation_->point_force();
+    next.pressure = relaxation_->pressure();
+    next.impulse.assign(old.jump.size(), 0.);
+    next.viscous_traction = old.viscous_traction;
+    std::vector<double> change(q.size());
+    for (std::size_t k = 0; k < q.size(); ++k)
+      change[k] = q[k] - old.displacement[k];
+    next.jump.resize(old.jump.size());
+    dynamics_->relative_velocity(change.data(), next.jump.data());
+    for (std::size_t k = 0; k < next.jump.size(); ++k)
+      next.jump[k] += old.jump[k];
+  }
+
+  template class EquilibriumSearch<2>;
+  template class EquilibriumSearch<3>;
+} // namespace nsfd
