@@ -1,67 +1,274 @@
 #include "command_line.h"
 
+#include "common_options.h"
+#include "core/version.h"
+#include "help_text.h"
 #include "input/read_scene.h"
 #include "parameters/input_errors.h"
-#include "refuse_word.h"
+#include "study/study_input.h"
+#include "subcommand.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <ostream>
-
-#ifndef NSFD_VERSION
-#define NSFD_VERSION "unknown"
-#endif
-#ifndef NSFD_GIT_HASH
-#define NSFD_GIT_HASH ""
-#endif
 
 namespace nsfd
 {
   namespace
   {
-    const char *const short_help =
-        "nsfd - nonsmooth fracture dynamics\n"
-        "  nsfd FILE.prm             run a scene\n"
-        "  nsfd FILE.prm --check     only say whether it would run\n"
-        "  nsfd study FILE.prm       vary its parameters: errors, orders, "
-        "cost\n"
-        "  nsfd law NAME             drive one point of a cohesive law\n"
-        "  nsfd solve PROBLEM.hdf5   solve stored contact problems\n"
-        "  nsfd compare RUN RUN      what differs between runs\n"
-        "  nsfd --help               all options\n";
+    namespace fs = std::filesystem;
 
-    /** Options without a value, and what they switch on. */
-    struct Flag {
-      const char *name;
-      bool *target;
-      const char *text;
+    /** The words of a command line before they are parsed. */
+    struct Words {
+      std::string subcommand;       ///< empty: none is named
+      std::vector<std::string> all; ///< without the subcommand
+      std::string first;            ///< that is no option
+      std::vector<std::string> set; ///< values of --set
+      bool only_information = true; ///< --help, --version, --list
     };
 
-    /** What follows --resume; false if --output says something else. */
-    bool take_folder(std::string &folder, CommandLine &command_line)
+    /** An option of any subcommand, or null. */
+    const CLI::Option *option_of(const CLI::App &nsfd, const std::string &name)
     {
-      command_line.resume = true;
-      if (folder.size() > 4 && command_line.file.empty() &&
-          folder.compare(folder.size() - 4, 4, ".prm") == 0) {
-        std::swap(folder, command_line.file);
-        return true;
+      for (const CLI::App *sub : nsfd.get_subcommands(nullptr))
+        if (const CLI::Option *option = sub->get_option_no_throw(name))
+          return option;
+      return nullptr;
+    }
+
+    bool is_subcommand(const CLI::App &nsfd, const std::string &word)
+    {
+      for (const CLI::App *sub : nsfd.get_subcommands(nullptr))
+        if (sub->get_name() == word)
+          return true;
+      return false;
+    }
+
+    /** Finds the subcommand wherever it stands: --quiet law tvergaard. */
+    Words sorted_words(const CLI::App &nsfd, const int argc,
+                       const char *const *argv)
+    {
+      Words words;
+      std::error_code error;
+      for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const bool is_option = word.size() > 1 && word[0] == '-';
+        if (!is_option && words.subcommand.empty() && words.first.empty() &&
+            is_subcommand(nsfd, word)) {
+          words.subcommand = word;
+          continue;
+        }
+        words.all.push_back(word);
+        if (!is_option) {
+          words.only_information = false;
+          if (words.first.empty())
+            words.first = word;
+          continue;
+        }
+        words.only_information =
+            words.only_information && nsfd.get_option_no_throw(word) != nullptr;
+        if (word.compare(0, 6, "--set=") == 0)
+          words.set.push_back(word.substr(6));
+        const CLI::Option *option = option_of(nsfd, word);
+        if (option == nullptr || i + 1 == argc)
+          continue;
+        const std::string next = argv[i + 1];
+        const bool takes_next = option->get_items_expected_min() > 0 ||
+                                (option->get_items_expected_max() > 0 &&
+                                 fs::is_directory(next, error));
+        if (takes_next) {
+          words.all.push_back(next);
+          if (word == "--set")
+            words.set.push_back(next);
+          ++i;
+        }
       }
-      if (folder.empty())
-        return true;
-      if (!command_line.output.empty() && command_line.output != folder)
+      return words;
+    }
+
+    /** A word in the place of a file or a subcommand that is neither. */
+    void refuse_unknown(const CLI::App &nsfd, const std::string &word)
+    {
+      std::error_code error;
+      if (word.empty() || word.find_first_of("./") != std::string::npos ||
+          fs::exists(word, error))
+        return;
+      std::vector<std::string> names;
+      for (const CLI::App *sub : nsfd.get_subcommands(nullptr))
+        names.push_back(sub->get_name());
+      throw WrongUsage(
+          fmt::format("there is no subcommand and no file `{}`", word),
+          did_you_mean(word, names, "`nsfd --help` prints all subcommands"));
+    }
+
+    /** What no option has taken: an argument too many, or an option that does
+     * not exist, or not here. */
+    [[noreturn]] void refuse_extra(const CLI::App &nsfd,
+                                   const NamedSubcommand &chosen,
+                                   const std::string &program,
+                                   const std::string &word)
+    {
+      const std::string option = word.substr(0, word.find('='));
+      if (option.empty() || option[0] != '-')
+        throw WrongUsage(
+            fmt::format("`{}` is one {} too many", word, chosen.argument),
+            chosen.advice);
+      for (const CLI::App *other : nsfd.get_subcommands(nullptr))
+        if (other->get_option_no_throw(option) != nullptr)
+          throw WrongUsage(
+              fmt::format("there is no option `{}` here", option),
+              fmt::format("it belongs to `nsfd {}`", other->get_name()));
+      std::vector<std::string> known;
+      const CLI::App *sub = nsfd.get_subcommand(chosen.name);
+      for (const CLI::App *app : {sub, &nsfd})
+        for (const CLI::Option *other : app->get_options())
+          for (const std::string &name : other->get_lnames())
+            known.push_back("--" + name);
+      throw WrongUsage(
+          fmt::format("there is no option `{}`", option),
+          did_you_mean(option, known,
+                       fmt::format("`{} --help` prints them all", program)));
+    }
+
+    /** The names that a parameter file may write, with their texts. */
+    void print_list(std::ostream &out)
+    {
+      const std::vector<NamedPart> parts = named_parts();
+      std::size_t width = 0;
+      for (const NamedPart &part : parts)
+        width = std::max(width, part.name.size());
+      std::string kind;
+      for (const NamedPart &part : parts) {
+        if (part.kind != kind)
+          out << (kind.empty() ? "" : "\n") << part.kind << "\n";
+        kind = part.kind;
+        out << fmt::format("  {:<{}}  {}\n", part.name, width, part.text);
+        if (!part.example.empty())
+          out << fmt::format("  {:<{}}  for example: {}\n", "", width,
+                             part.example);
+      }
+    }
+
+    /** --help, --version or --list. */
+    bool print_information(const CLI::App &nsfd, const CLI::App *sub,
+                           std::ostream &out)
+    {
+      const auto given = [&](const std::string &name) {
+        for (const CLI::App *app : {&nsfd, sub})
+          if (app != nullptr)
+            if (const CLI::Option *option = app->get_option_no_throw(name))
+              if (option->count() > 0)
+                return true;
         return false;
-      command_line.output = folder;
+      };
+      if (given("--help"))
+        out << nsfd.help();
+      else if (given("--version"))
+        out << "nsfd " << version().number << " " << version().git_hash << "\n";
+      else if (given("--list"))
+        print_list(out);
+      else
+        return false;
       return true;
     }
 
-    /** Arguments that no option has taken. */
-    int fail_at(std::ostream &err, const std::string &word, const CLI::App &app)
+    const char *const footer =
+        "`nsfd law --help`, `nsfd study --help`, ... say more of a "
+        "subcommand.\n"
+        "Exit code: 0 done, 1 bad input (nothing was run), 2 wrong usage, 3 a "
+        "step could\n"
+        "not be solved, 4 stopped on request, 5 a fault of machine or "
+        "program, 6 runs\n"
+        "differ (compare), 7 the certificate is not ok (--strict).\n"
+        "Example:\n"
+        "  nsfd prm/quickstart.prm --set 'Time/end=40 us' --output "
+        "output/short";
+
+    /** The tree; its subcommands write into @p line. */
+    class Tree
     {
-      return refuse_word(err, "nsfd", word, app, "file",
-                         "run one scene at a time, or vary it: nsfd study");
-    }
+    public:
+      explicit Tree(CommandLine &line)
+          : nsfd_("Nonsmooth fracture dynamics: every cell is a body, faces "
+                  "carry cohesion, contact and friction.",
+                  "nsfd")
+      {
+        nsfd_.set_help_flag();
+        nsfd_.allow_extras();
+        nsfd_.fallthrough(); // to --version and --list
+        nsfd_.require_subcommand(0, 1);
+        nsfd_.formatter(std::make_shared<HelpText>());
+        nsfd_.footer(footer);
+        nsfd_
+            .add_flag("--list",
+                      "print the names of all laws, meshes, solvers, ...")
+            ->group("Information");
+        nsfd_.add_flag("--version", "print the version")->group("Information");
+        nsfd_.add_flag("-h,--help", "print this help")->group("Information");
+        for (const NamedSubcommand &one : subcommands_)
+          one.subcommand->declare(*nsfd_.add_subcommand(one.name, one.text),
+                                  line);
+      }
+
+      std::optional<int> parse(const int argc, const char *const *argv,
+                               CommandLine &line, std::ostream &out,
+                               std::ostream &err)
+      {
+        Words words = sorted_words(nsfd_, argc, argv);
+        if (words.all.empty() &&
+            (words.subcommand.empty() || words.subcommand == "run")) {
+          err << "nsfd - nonsmooth fracture dynamics\n"
+              << overview(nsfd_)
+              << wrapped("  nsfd --help", "print all options", 28);
+          return exit_code::wrong_usage;
+        }
+        if (words.subcommand.empty() && words.only_information) {
+          nsfd_.parse(argc, argv);
+          print_information(nsfd_, nullptr, out);
+          return exit_code::done;
+        }
+        const NamedSubcommand &chosen = choose(words);
+        if (chosen.name != std::string("run"))
+          line.program += std::string(" ") + chosen.name;
+        std::vector<std::string> &all = words.all;
+        all.insert(all.begin(), chosen.name);
+        std::reverse(all.begin(), all.end()); // as CLI11 takes them
+        nsfd_.parse(all);
+        const std::vector<std::string> extras = nsfd_.remaining(true);
+        if (!extras.empty())
+          refuse_extra(nsfd_, chosen, line.program, extras.front());
+        if (print_information(nsfd_, nsfd_.get_subcommand(chosen.name), out))
+          return exit_code::done;
+        common_options::check(line);
+        chosen.subcommand->check(line);
+        line.subcommand = chosen.subcommand;
+        return {};
+      }
+
+    private:
+      /** The subcommand that is named, or the one for the file. */
+      const NamedSubcommand &choose(const Words &words) const
+      {
+        std::string name = words.subcommand;
+        if (name.empty()) {
+          refuse_unknown(nsfd_, words.first);
+          name = "run";
+        }
+        if (name == "run" && is_study(words.first, words.set))
+          name = "study";
+        for (const NamedSubcommand &one : subcommands_)
+          if (one.name == name)
+            return one;
+        throw WrongUsage("there is no subcommand `" + name + "`");
+      }
+
+      CLI::App nsfd_;
+      const std::vector<NamedSubcommand> subcommands_ = {
+          run_subcommand(), study_subcommand(), law_subcommand(),
+          solve_subcommand(), compare_subcommand()};
+    };
   } // namespace
 
   std::vector<std::string> CommandLine::overrides() const
@@ -72,129 +279,34 @@ namespace nsfd
     return result;
   }
 
-  void print_list(std::ostream &out)
+  std::string CommandLine::text() const
   {
-    const std::vector<NamedPart> parts = named_parts();
-    std::size_t width = 0;
-    for (const NamedPart &part : parts)
-      width = std::max(width, part.name.size());
-    std::string kind;
-    for (const NamedPart &part : parts) {
-      if (part.kind != kind)
-        out << (kind.empty() ? "" : "\n") << part.kind << "\n";
-      kind = part.kind;
-      out << fmt::format("  {:<{}}  {}\n", part.name, width, part.text);
-      if (!part.example.empty())
-        out << fmt::format("  {:<{}}  for example: {}\n", "", width,
-                           part.example);
-    }
+    std::string result;
+    for (const std::string &word : words)
+      result += (result.empty() ? "" : " ") + word;
+    return result;
   }
 
   std::optional<int> parse_command_line(const int argc, const char *const *argv,
-                                        CommandLine &command_line,
-                                        std::ostream &out, std::ostream &err)
+                                        CommandLine &line, std::ostream &out,
+                                        std::ostream &err)
   {
-    if (argc < 2) {
-      err << short_help;
+    line.words.assign(argv, argv + argc);
+    const auto refuse = [&](const std::string &message,
+                            const std::string &advice) {
+      err << line.program << ": " << message << "\n";
+      if (!advice.empty())
+        err << "  " << advice << "\n";
       return exit_code::wrong_usage;
-    }
-    if (argv[1] == std::string("law"))
-      return parse_law_command_line(argc - 1, argv + 1, command_line, out, err);
-
-    CLI::App app("Nonsmooth fracture dynamics: every cell is a body, faces "
-                 "carry cohesion, contact and friction.",
-                 "nsfd");
-    app.set_help_flag();
-    app.allow_extras();
-    app.footer("nsfd run FILE.prm is the same.\n"
-               "Or: nsfd study FILE.prm --vary 'Section/name=a, b', every "
-               "combination of values; nsfd study --help says more.\n"
-               "    nsfd law NAME, drive one interface point along a path; "
-               "nsfd law --help says more.\n"
-               "    nsfd solve PROBLEM.hdf5, stored contact problems; "
-               "nsfd solve --help says more.\n"
-               "    nsfd compare RUN RUN, folders of results side by side; "
-               "nsfd compare --help says more.");
-    bool help = false, list = false, version = false;
-    app.add_option("FILE.prm", command_line.file, "the scene to run");
-    // one value per --set: further words are not its own
-    app.add_option_function<std::vector<std::string>>(
-           "--set",
-           [&](const std::vector<std::string> &values) {
-             command_line.set = values;
-           },
-           "change an entry, 'Section/name=value'; repeatable")
-        ->type_size(1)
-        ->allow_extra_args(false)
-        ->type_name("TEXT");
-    app.add_option("--output", command_line.output,
-                   "folder for the results, default output/FILE")
-        ->type_name("DIR");
-    std::string folder; // to resume in
-    auto *resume =
-        app.add_option("--resume", folder,
-                       "go on from the last checkpoint in DIR, default the "
-                       "folder of the results")
-            ->type_name("[DIR]")
-            ->expected(0, 1);
-    const Flag flags[] = {
-        {"--force", &command_line.force,
-         "replace the files of an earlier run, and no others"},
-        {"--check", &command_line.check,
-         "say whether it would run, do not run it"},
-        {"--print-parameters", &command_line.print_parameters,
-         "print the complete file, all defaults with their texts"},
-        {"--quiet", &command_line.quiet, "print errors only"},
-        {"--verbose", &command_line.verbose, "print a line for every step"},
-        {"--strict", &command_line.strict,
-         "exit code 7 if the certificate is not ok"},
-        {"--list", &list, "print the names of all laws, meshes, solvers, ..."},
-        {"--version", &version, "print the version"},
-        {"--help", &help, "print this help"}};
-    for (const Flag &flag : flags)
-      app.add_flag(flag.name, *flag.target, flag.text);
-
+    };
+    Tree tree(line);
     try {
-      app.parse(argc, argv);
+      return tree.parse(argc, argv, line, out, err);
+    } catch (const WrongUsage &error) {
+      return refuse(error.what(), error.advice());
     } catch (const CLI::ParseError &error) {
-      return refuse(err, "nsfd", error.what(),
-                    "`nsfd --help` prints all options");
+      return refuse(error.what(),
+                    "`" + line.program + " --help` prints all options");
     }
-    if (resume->count() > 0 &&
-        !take_folder(folder, command_line)) // the file is no folder
-      return refuse(err, "nsfd",
-                    "--resume " + folder + " and --output " +
-                        command_line.output + " are two folders",
-                    "a run goes on in the folder of its checkpoint: name one");
-    if (command_line.resume && command_line.force)
-      return refuse(err, "nsfd", "--force and --resume exclude each other",
-                    "--force begins again, --resume goes on");
-    if (command_line.quiet && command_line.verbose)
-      return refuse(err, "nsfd", "--quiet and --verbose exclude each other",
-                    "write one of them");
-    const std::vector<std::string> extras = app.remaining();
-    if (!extras.empty())
-      return fail_at(err, extras.front(), app);
-    if (help) {
-      out << app.help();
-      return exit_code::done;
-    }
-    if (version) {
-      out << "nsfd " << NSFD_VERSION << " " << NSFD_GIT_HASH << "\n";
-      return exit_code::done;
-    }
-    if (list) {
-      print_list(out);
-      return exit_code::done;
-    }
-    for (const std::string &assignment : command_line.set)
-      if (assignment.find('=') == std::string::npos)
-        return refuse(err, "nsfd",
-                      fmt::format("--set {}: there is no `=`", assignment),
-                      "write for example: --set 'Time/theta=0.5'");
-    if (command_line.file.empty())
-      return refuse(err, "nsfd", "no parameter file is named",
-                    "write for example: nsfd prm/quickstart.prm");
-    return {};
   }
 } // namespace nsfd

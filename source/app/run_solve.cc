@@ -1,4 +1,4 @@
-#include "command_line.h"
+#include "core/exit_code.h"
 #include "core/stopwatch.h"
 #include "nonsmooth/frictional_contact/fclib.h"
 #include "nonsmooth/solvers/contact_solvers.h"
@@ -102,7 +102,7 @@ namespace nsfd
       }
     };
 
-    std::string short_name(const std::string &file)
+    std::string stem_of(const std::string &file)
     {
       return std::filesystem::path(file).stem().string();
     }
@@ -133,21 +133,23 @@ namespace nsfd
 
     Table table{out, 7};
     for (const std::string &file : command.files)
-      table.width = std::max(table.width, int(short_name(file).size()));
-    const bool several = problems.size() > 1;
-    if (several)
+      table.width = std::max(table.width, int(stem_of(file).size()));
+    const bool several = problems.size() > 1, quiet = command.quiet;
+    if (several && !quiet)
       table.header();
     std::size_t unsolved = 0;
     for (std::size_t i = 0; i < problems.size(); ++i) {
       const Result result = solve(problems[i], command);
       unsolved += !result.report.converged;
+      if (quiet)
+        continue;
       if (several)
-        table.row(short_name(command.files[i]), problems[i], result);
+        table.row(stem_of(command.files[i]), problems[i], result);
       else
         print_one(out, command.files[i], problems[i], command, result);
       out.flush();
     }
-    if (several)
+    if (several && !quiet)
       out << fmt::format("{} of {} solved to {:.0e}\n",
                          problems.size() - unsolved, problems.size(),
                          command.tolerance);

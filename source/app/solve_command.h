@@ -1,7 +1,6 @@
 #pragma once
 
 #include <iosfwd>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,17 +11,8 @@ namespace nsfd
     std::vector<std::string> files; ///< folders have become their files
     std::string solver = "auto";
     double tolerance = 1e-8;
+    bool quiet = false; ///< the exit code says it
   };
-
-  /**
-   * Parse the arguments after `nsfd solve`. Reads no problem and starts no MPI.
-   *
-   * @return the exit code if the program is done, else nothing
-   */
-  std::optional<int> parse_solve_command_line(int argc, const char *const *argv,
-                                              SolveCommand &command,
-                                              std::ostream &out,
-                                              std::ostream &err);
 
   /**
    * Read all problems, then solve one after the other: a few lines for one

@@ -11,20 +11,9 @@ namespace nsfd
   struct CompareCommand {
     std::vector<std::string> runs; ///< folders, or summary.json files
     std::string output;            ///< empty: no file is written
-    bool force = false;
+    bool force = false, quiet = false;
     std::optional<double> tolerance;
   };
-
-  /**
-   * Parse the arguments after `nsfd compare`. Starts no MPI, reads no file.
-   *
-   * @return the exit code if the program is done, else nothing
-   */
-  std::optional<int> parse_compare_command_line(int argc,
-                                                const char *const *argv,
-                                                CompareCommand &command,
-                                                std::ostream &out,
-                                                std::ostream &err);
 
   /**
    * Print what differs between the first run and the others; with an output

@@ -31,18 +31,20 @@ namespace nsfd
       return exit_code::bad_input;
 
     const Comparison comparison = compare_runs(std::move(runs));
-    out << comparison_text(comparison);
     const auto largest = comparison.largest();
-    out << fmt::format("largest difference of results: {:.2e}",
-                       largest.difference);
-    if (!largest.name.empty())
-      out << ", " << largest.name;
     const bool within =
         !command.tolerance || largest.difference <= *command.tolerance;
-    if (command.tolerance)
-      out << fmt::format("; {} {:g}", within ? "within" : "beyond",
-                         *command.tolerance);
-    out << "\n";
+    if (!command.quiet) {
+      out << comparison_text(comparison);
+      out << fmt::format("largest difference of results: {:.2e}",
+                         largest.difference);
+      if (!largest.name.empty())
+        out << ", " << largest.name;
+      if (command.tolerance)
+        out << fmt::format("; {} {:g}", within ? "within" : "beyond",
+                           *command.tolerance);
+      out << "\n";
+    }
     if (!command.output.empty()) {
       OutputFolder &folder = OutputFolder::instance();
       folder.describe(nlohmann::json{
@@ -53,7 +55,8 @@ namespace nsfd
                             comparison_json(comparison, command.tolerance));
       write_comparison_page(comparison, command.output);
       folder.finish();
-      out << command.output << "/compare.html\n";
+      if (!command.quiet)
+        out << command.output << "/compare.html\n";
     }
     return within ? exit_code::done : exit_code::differs;
   }

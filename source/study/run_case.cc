@@ -18,7 +18,6 @@
 #include <fstream>
 #include <numeric>
 #include <sstream>
-#include <stdexcept>
 
 namespace nsfd
 {
@@ -59,8 +58,8 @@ namespace nsfd
         path_ = (base != nullptr ? fs::path(base) : fs::temp_directory_path()) /
                 "nsfd_XXXXXX";
         if (mkdtemp(path_.data()) == nullptr)
-          throw std::runtime_error("cannot create '" + path_ +
-                                   "': " + std::strerror(errno));
+          throw OutputError("cannot create '" + path_ +
+                            "': " + std::strerror(errno));
       }
       ~MpiFiles()
       {
@@ -146,8 +145,8 @@ namespace nsfd
                        pointers(words).data(), pointers(variables).data());
       posix_spawn_file_actions_destroy(&actions);
       if (failed != 0)
-        throw std::runtime_error("cannot start '" + words[0] +
-                                 "': " + std::strerror(failed));
+        throw OutputError("cannot start '" + words[0] +
+                          "': " + std::strerror(failed));
       return wait_for(pid);
     }
 

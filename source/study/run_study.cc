@@ -113,7 +113,7 @@ namespace nsfd
     void fill_provenance(StudyResults &study, const StudyCommand &command)
     {
       const Version program = version();
-      study.command_line = "nsfd " + command.command_line;
+      study.command_line = command.command_line;
       study.version = program.number;
       study.git_hash = program.git_hash;
       study.build_type = program.build_type;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <iosfwd>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,23 +14,6 @@ namespace nsfd
          print_parameters = false;
     std::string command_line; ///< all of it, for the record
   };
-
-  /**
-   * True if the arguments of main() ask for a study: `study`, or a file with a
-   * section `Study`.
-   */
-  bool asks_for_study(int argc, const char *const *argv);
-
-  /**
-   * Parse the arguments after `nsfd study`, or after `nsfd` if the file is a
-   * study. Starts no MPI and runs nothing.
-   *
-   * @return the exit code if the program is done, else nothing
-   */
-  std::optional<int> parse_study_command_line(int argc, const char *const *argv,
-                                              StudyCommand &command,
-                                              std::ostream &out,
-                                              std::ostream &err);
 
   /**
    * Check all combinations, run each in processes of its own, write tables and
