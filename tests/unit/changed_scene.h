@@ -77,6 +77,12 @@ end
     std::string place;   ///< part of the line that is blamed; empty: none
   };
 
+  /** For the names that GoogleTest prints. */
+  inline void PrintTo(const BadInput &bad, std::ostream *stream)
+  {
+    *stream << bad.name;
+  }
+
   inline std::string with_change(const BadInput &change)
   {
     const std::size_t at = base_file.find(change.old_text);

@@ -416,11 +416,6 @@ namespace nsfd::changed_scene::test_bad_input
          "subsection Body: floor"},
     };
 
-    void PrintTo(const BadInput &bad, std::ostream *stream)
-    {
-      *stream << bad.name;
-    }
-
     class BadInputTest : public testing::TestWithParam<BadInput>
     {
     };

@@ -1,6 +1,7 @@
 #include "make_scene.h"
 
 #include "delassus/sparse_assembly.h"
+#include "discretization/node_coordinates.h"
 
 #include <gtest/gtest.h>
 
