@@ -221,7 +221,7 @@ namespace nsfd
             (words.subcommand.empty() || words.subcommand == "run")) {
           err << "nsfd - nonsmooth fracture dynamics\n"
               << overview(nsfd_)
-              << wrapped("  nsfd --help", "print all options", 28);
+              << wrapped("  nsfd --help", "print all options", 30);
           return exit_code::wrong_usage;
         }
         if (words.subcommand.empty() && words.only_information) {

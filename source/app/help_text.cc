@@ -6,7 +6,7 @@ namespace nsfd
 {
   namespace
   {
-    constexpr std::size_t width = 79, option_column = 24, usage_column = 28;
+    constexpr std::size_t width = 79, option_column = 24, usage_column = 30;
 
     /** FILE.prm, as the usage shows it. */
     std::string positional(const CLI::App &app)
@@ -16,6 +16,14 @@ namespace nsfd
           return option->get_option_text().empty() ? option->get_name(true)
                                                    : option->get_option_text();
       return "";
+    }
+
+    std::vector<const CLI::Option *> in_group(const CLI::App &app,
+                                              const std::string &group)
+    {
+      return app.get_options([&group](const CLI::Option *option) {
+        return option->nonpositional() && option->get_group() == group;
+      });
     }
   } // namespace
 
@@ -69,21 +77,23 @@ namespace nsfd
   }
 
   std::string HelpText::make_help(const CLI::App *app, const std::string name,
-                                  const CLI::AppFormatMode mode) const
+                                  const CLI::AppFormatMode) const
   {
+    const std::vector<const CLI::Option *> arguments = app->get_options(
+        [](const CLI::Option *option) { return option->get_positional(); });
     if (app->get_parent() != nullptr)
       return wrapped("", name + ": " + app->get_description(), 0) +
              "\nUsage: " + name + " " + positional(*app) + " [OPTIONS]\n" +
-             make_positionals(app) + make_groups(app, mode) + "\n" +
-             make_footer(app);
+             make_group("Arguments", true, arguments) +
+             make_group("Options", false, in_group(*app, "Options")) +
+             make_group("Information", false, in_group(*app, "Information")) +
+             "\n" + make_footer(app);
     // the options of `run`, which needs no word, belong to the first help
     const CLI::App *run = app->get_subcommand("run");
-    const std::vector<const CLI::Option *> options =
-        run->get_options([](const CLI::Option *option) {
-          return option->nonpositional() && option->get_group() == "Options";
-        });
     return wrapped("", app->get_description(), 0) + "\nUsage:\n" +
-           overview(*app) + make_group("Options", false, options) +
-           make_groups(app, mode) + "\n" + make_footer(app);
+           overview(*app) +
+           make_group("Options", false, in_group(*run, "Options")) +
+           make_group("Information", false, in_group(*app, "Information")) +
+           "\n" + make_footer(app);
   }
 } // namespace nsfd

@@ -1,4 +1,5 @@
 #include "common_options.h"
+#include "help_text.h"
 #include "input/read_scene.h"
 #include "material_point/path.h"
 #include "material_point/read_law.h"
@@ -16,7 +17,7 @@ namespace nsfd
     {
       std::string text = "Paths:\n";
       for (const NamedPath &path : named_paths())
-        text += fmt::format("  {:<14}{}\n", path.name, path.text);
+        text += wrapped(fmt::format("  {:<14}", path.name), path.text, 16);
       text += "  FILE.csv      marks: a header opening,slip,reaction and SI "
               "numbers\n"
               "Examples:\n"
@@ -24,7 +25,7 @@ namespace nsfd
               "  nsfd law michel-suquet --path 'shear cycle' --set "
               "friction=0.3\n"
               "  nsfd law camacho-ortiz --set 'strength=5 MPa' --opening '0, "
-              "1 um, 0, 3 um'\n";
+              "1 um, 0, 3 um'";
       return text;
     }
 

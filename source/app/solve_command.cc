@@ -1,6 +1,7 @@
 #include "solve_command.h"
 
 #include "common_options.h"
+#include "help_text.h"
 #include "nonsmooth/solvers/contact_solvers.h"
 #include "parameters/input_errors.h"
 #include "processes.h"
@@ -21,11 +22,12 @@ namespace nsfd
     {
       std::string text = "Solvers:\n";
       for (const auto &[name, line] : contact_solvers())
-        text += fmt::format("  {:<20}{}\n", name, line);
+        text += wrapped(fmt::format("  {:<20}", name), line, 22);
       return text + "Exit code: 0 all solved, 3 one is not, 1 a file holds no "
-                    "problem (none is solved).\n"
+                    "problem (none is\n"
+                    "solved).\n"
                     "Example:\n"
-                    "  nsfd solve tests/problems\n";
+                    "  nsfd solve tests/problems";
     }
 
     /** The problems of a folder in the order of their names. */

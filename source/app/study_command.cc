@@ -106,7 +106,7 @@ namespace nsfd
 
   NamedSubcommand study_subcommand()
   {
-    return {"study", "run it for every combination of some values", "file",
+    return {"study", "run a scene for every combination of values", "file",
             "a study varies one scene; vary its parameters",
             std::make_shared<StudyCommandLine>()};
   }
