@@ -1,9 +1,12 @@
 #pragma once
 
 #include "input/read_scene.h"
+#include "parameters/bad_values.h"
 #include "simulation/model.h"
 #include "time_integration/linear_moreau_jean.h"
 #include "time_integration/newton_moreau_jean.h"
+
+#include <fmt/format.h>
 
 #include <memory>
 #include <stdexcept>
@@ -45,9 +48,11 @@ namespace nsfd
                      const std::vector<std::string> &overrides = {})
           : SceneBase{make_input(text, overrides)}
       {
+        take_bad_values(); // of formulas that tests before this one evaluated
         const auto problems = this->build(*input, communicator);
         if (!problems.empty())
-          throw std::invalid_argument(problems.front());
+          throw std::invalid_argument(
+              fmt::format("{}", fmt::join(problems, "\n")));
         time_step = this->dynamic_step(*input);
         this->dynamics->reinit(time_step, input->time.bulk_theta());
         state = this->stepper->initial_state();

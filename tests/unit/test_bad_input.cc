@@ -265,8 +265,9 @@ namespace nsfd::changed_scene::test_bad_input
         {"misspelt_choice", "set mass = consistent", "set mass = consistant",
          "did you mean `consistent`?", "set mass = consistant"},
         {"method", "set method = auto", "set method = magic",
-         "method = magic is not one of: auto, anderson, chain, contacts alone, "
-         "dual newton, fixed point, gauss seidel, interior point",
+         "method = magic is not one of: auto, admm, anderson, chain, contacts "
+         "alone, dual newton, fixed point, gauss seidel, interior point, "
+         "projected gradient, proximal",
          "set method = magic"},
         {"unknown_law", "camacho-ortiz", "camacho-ortis",
          "did you mean `camacho-ortiz`?", "set law = camacho-ortis"},
