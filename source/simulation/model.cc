@@ -9,6 +9,7 @@
 #include "discretization/node_coordinates.h"
 #include "discretization/point_factors.h"
 #include "input/formula_check.h"
+#include "nonsmooth/solver_name.h"
 
 #include <deal.II/grid/tria.h>
 
@@ -35,9 +36,8 @@ namespace nsfd
     std::unique_ptr<NonsmoothSolver<dim>> make_solver(const SceneInput &input,
                                                       const char *automatic)
     {
-      const std::string &method = input.solver.method;
-      return SolverRegistry<dim>::instance().create(method == "auto" ? automatic
-                                                                     : method);
+      return SolverRegistry<dim>::instance().create(
+          solver_name(input.solver.method, automatic));
     }
   } // namespace
 
@@ -65,9 +65,9 @@ namespace nsfd
     if (!problems.empty())
       return problems;
     charge_memory("blocks of the bodies");
-    method = input.time.scheme == Scheme::arkode ? "arkode"
-             : input.solver.method == "auto"     ? "chain"
-                                                 : input.solver.method;
+    method = input.time.scheme == Scheme::arkode
+                 ? "arkode"
+                 : solver_name(input.solver.method, "chain");
     build_stepper(input);
     if (input.time.scheme == Scheme::arkode)
       smooth_motion = std::make_unique<SmoothMotion<dim>>(

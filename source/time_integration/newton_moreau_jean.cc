@@ -8,6 +8,7 @@
 
 #include "core/cost.h"
 #include "core/stopwatch.h"
+#include "nonsmooth/solver_name.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
@@ -20,11 +21,6 @@ namespace nsfd
   namespace
   {
     constexpr unsigned int most_iterations = 40;
-
-    std::string solver_name(const SceneInput &input, const char *automatic)
-    {
-      return input.solver.method == "auto" ? automatic : input.solver.method;
-    }
   } // namespace
 
   template <int dim>
@@ -37,7 +33,7 @@ namespace nsfd
                            this->free_motion_, this->step_problem_,
                            this->timings_},
             bodies)),
-        solver_name_(solver_name(input, "contacts alone"))
+        solver_name_(solver_name(input.solver.method, "contacts alone"))
   {
   }
 
@@ -51,7 +47,7 @@ namespace nsfd
                            this->free_motion_, this->step_problem_,
                            this->timings_},
             bodies)),
-        solver_name_(solver_name(input, "chain"))
+        solver_name_(solver_name(input.solver.method, "chain"))
   {
   }
 

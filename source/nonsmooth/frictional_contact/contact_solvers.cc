@@ -25,26 +25,22 @@ namespace nsfd
       return deepest > 0. ? deepest / largest : 0.;
     }
 
-    /** @p limit of iterations; 0: the method's own. */
     template <int d>
     void run(const ContactMethod method, Session<d> &s,
-             const unsigned int limit)
+             const SolverControl &control)
     {
-      const auto up_to = [limit](const unsigned int own) {
-        return limit ? limit : own;
-      };
       switch (method) {
       case ContactMethod::automatic:
         automatic(s);
         return;
       case ContactMethod::gauss_seidel:
-        gauss_seidel(s, up_to(10000));
+        gauss_seidel(s, control.iterations_or(10000));
         return;
       case ContactMethod::admm:
-        admm(s, up_to(10000));
+        admm(s, control.iterations_or(10000));
         return;
       case ContactMethod::projected_gradient:
-        projected_gradient(s, up_to(10000));
+        projected_gradient(s, control.iterations_or(10000));
         return;
       default:
         break;
@@ -52,12 +48,12 @@ namespace nsfd
       // the others start near the solution: a few sweeps
       gauss_seidel(s, 10);
       if (method == ContactMethod::interior_point)
-        interior_point(s, up_to(150));
+        interior_point(s, control.iterations_or(150));
       else if (method == ContactMethod::proximal)
-        proximal(s, up_to(100));
+        proximal(s, control.iterations_or(100));
       else {
         stored::NewtonSettings settings;
-        settings.limit = up_to(100);
+        settings.limit = control.iterations_or(100);
         settings.idle = settings.limit;
         newton(s, settings);
       }
@@ -74,7 +70,7 @@ namespace nsfd
         s.judge();
       }
       if (!s.solved())
-        run(method, s, control.maximum_iterations);
+        run(method, s, control);
       for (std::size_t j = 0; j < impulse.size(); ++j)
         impulse[j] = s.r[j] * s.problem.impulse_unit;
       SolverReport report;
