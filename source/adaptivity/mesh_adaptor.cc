@@ -21,7 +21,7 @@ namespace nsfd
 
     /** The point is not as it was born. */
     template <int dim>
-    bool remembers(const MeshState<dim> &mesh, const std::size_t i)
+    bool has_history(const MeshState<dim> &mesh, const std::size_t i)
     {
       const State &state = mesh.state;
       const auto &law =
@@ -39,7 +39,7 @@ namespace nsfd
       for_all_places(bodies, mesh.discretization.points().n_points,
                      [&](const std::size_t body, unsigned int,
                          const std::size_t point, unsigned int) {
-                       if (remembers(mesh, point))
+                       if (has_history(mesh, point))
                          result[body] = true;
                      });
       return result;

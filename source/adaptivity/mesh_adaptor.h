@@ -8,7 +8,7 @@ namespace nsfd
 {
   /**
    * Decides which cells change: smaller where an indicator asks for it, larger
-   * where no one minds, where no point of their faces remembers anything, so
+   * where no one minds, where no point of their faces keeps anything, so
    * that nothing heals, and where the larger cell has the motion of the smaller
    * ones: their energies may change by 1e-4, of that of the family or of as
    * many mean cells.

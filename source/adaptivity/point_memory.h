@@ -8,7 +8,7 @@
 namespace nsfd
 {
   /**
-   * What a point remembers, as one row of numbers: where it was, what it
+   * The history of a point, as one row of numbers: where it was, what it
    * belongs to, and its history. Rows of one state have the same length.
    */
   template <int dim>

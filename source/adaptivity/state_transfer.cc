@@ -317,8 +317,8 @@ namespace nsfd
 
   /** An intrinsic point that is open farther than it ever was is damaged. */
   template <int dim>
-  void remember_opening(const OneStepProblem<dim> &problem, const std::size_t i,
-                        State &state)
+  void record_opening(const OneStepProblem<dim> &problem, const std::size_t i,
+                      State &state)
   {
     const auto &interaction = problem.interactions[problem.interaction[i]];
     const Reach reach = reach_of<dim>(interaction, &state.jump[i * dim]);
@@ -349,7 +349,7 @@ namespace nsfd
     memory_.resize(n, state);
 
     // rows of both sides of every point; the first entry says what it is
-    enum Kind { none, remembered, inside_a_cell };
+    enum Kind { none, kept, inside_a_cell };
     const unsigned int size = memory_.size();
     std::array<std::vector<double>, 2> rows;
     rows.fill(std::vector<double>(n * size, double(none)));
@@ -365,9 +365,7 @@ namespace nsfd
                         point, fresh, inside);
           if (memory)
             std::copy_n(memory, size, row);
-          row[Memory::face] = memory   ? remembered
-                              : inside ? inside_a_cell
-                                       : none;
+          row[Memory::face] = memory ? kept : inside ? inside_a_cell : none;
         });
     fresh.dynamics.exchange({{rows[0].data(), rows[1].data()}}, size);
 
@@ -375,14 +373,14 @@ namespace nsfd
       const bool boundary = points.faces[points.face_of[i]].boundary;
       const double *row = &rows[boundary ? 1 : 0][i * size];
       switch (Kind(int(row[Memory::face]))) {
-      case remembered:
+      case kept:
         memory_.restore(row, points.weight[i], i, state);
         for (unsigned int c = 0; c < dim; ++c)
           state.jump[i * dim + c] += row[Memory::offset + c];
         set_springs(fresh, row, i, state);
         if (row[Memory::compliance] !=
             fresh.discretization.origins()[i].compliance)
-          remember_opening(fresh.problem, i, state);
+          record_opening(fresh.problem, i, state);
         break;
       case inside_a_cell:
         // intact, even where the block says `broken` or `contact`
@@ -390,7 +388,7 @@ namespace nsfd
           state.kind[i] = PointKind::prescribed;
           state.beta[i] = 1.;
         }
-        remember_opening(fresh.problem, i, state);
+        record_opening(fresh.problem, i, state);
         break;
       case none:
         break;

@@ -32,7 +32,7 @@ namespace nsfd
   CellStresses<dim>::~CellStresses() = default;
 
   template <int dim>
-  bool CellStresses<dim>::remembers(const unsigned int body) const
+  bool CellStresses<dim>::is_history_dependent(const unsigned int body) const
   {
     return any_memory() &&
            materials_[discretization_.material_of(body)] != nullptr;
@@ -51,7 +51,7 @@ namespace nsfd
   CellStresses<dim>::visit(const unsigned int body, const dealii::Point<dim> &x,
                            const double *gradient)
   {
-    if (!remembers(body))
+    if (!is_history_dependent(body))
       return discretization_.stress(body, x, gradient);
     if (body != body_)
       point_ = 0;
@@ -159,7 +159,7 @@ namespace nsfd
                         const std::vector<double> &displacement,
                         const std::vector<double> &velocity)
   {
-    if (remembers(body)) {
+    if (is_history_dependent(body)) {
       if (nodes_.empty() || body != sampled_)
         nodes_ = at_nodes(body, displacement);
       sampled_ = body;

@@ -14,7 +14,7 @@ namespace nsfd
   template <int dim>
   class Sampler;
 
-  /** Cauchy stresses of a state, also of materials that remember. */
+  /** Cauchy stresses of a state, also of history-dependent materials. */
   template <int dim>
   class CellStresses
   {
@@ -25,9 +25,9 @@ namespace nsfd
 
     using Stress = std::array<double, 6>; ///< xx, yy, zz, xy, xz, yz, Pa
 
-    /** A material of the scene remembers. */
+    /** A material of the scene is history dependent. */
     bool any_memory() const { return !first_.empty(); }
-    bool remembers(unsigned int body) const;
+    bool is_history_dependent(unsigned int body) const;
 
     /** At the points of Discretization::visit_quadrature(), in its order, from
         the displacement gradient there: without that of viscosity. */
@@ -48,15 +48,15 @@ namespace nsfd
     };
     /**
      * At place @p q of a sampler in a cell, from nodal displacements and
-     * velocities of the mesh. Of a body that remembers: what is nearest to its
-     * quadrature points in the mean square.
+     * velocities of the mesh. Of a history-dependent body: what is nearest to
+     * its quadrature points in the mean square.
      */
     Sample at(unsigned int body, const Sampler<dim> &sampler, unsigned int q,
               const std::vector<double> &displacement,
               const std::vector<double> &velocity);
 
   private:
-    /** Of a body that remembers, at its nodes: 6 stresses and the equivalent
+    /** Of a history-dependent body, at its nodes: 6 stresses and the equivalent
         plastic strain. */
     std::vector<double> at_nodes(unsigned int body,
                                  const std::vector<double> &nodal) const;
@@ -66,7 +66,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const State &state_;
     std::vector<std::unique_ptr<const HistoryMaterial<dim>>> materials_;
-    std::vector<std::size_t> first_;    ///< by cell; empty: nothing remembers
+    std::vector<std::size_t> first_;    ///< by cell; empty: nothing keeps
     unsigned int body_ = 0, point_ = 0; ///< visited next
     std::vector<double> nodes_;         ///< those of the body sampled last
     unsigned int sampled_ = 0;

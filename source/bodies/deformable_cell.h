@@ -42,7 +42,7 @@ namespace nsfd
 
   /**
    * A cell whose forces are no linear function of its displacements, or depend
-   * on what it remembers. Its forces between two displacements are
+   * on what it keeps. Its forces between two displacements are
    *
    *   f_ic = sum_q JxW_q (F S)_cd grad_i,d
    *
@@ -65,7 +65,7 @@ namespace nsfd
     unsigned int n_nodes() const { return n_nodes_; }
     unsigned int n_dofs() const { return n_nodes_ * dim; }
 
-    /** Numbers that the cell remembers from step to step. */
+    /** Numbers that the cell keeps from step to step. */
     virtual std::size_t n_history() const { return 0; }
     /** Of a cell that has never been strained. */
     virtual void begin_history(double *) const {}
@@ -74,10 +74,10 @@ namespace nsfd
     virtual double energy(const double *u,
                           const double *history = nullptr) const = 0;
 
-    /** The work f.(u1 - u0) less the change of energy; what the cell remembers
+    /** The work f.(u1 - u0) less the change of energy; what the cell keeps
         then goes to @p history, n_history() numbers, unless it is null. */
-    virtual CellLosses book(const CellMotion &motion,
-                            double *history = nullptr) const = 0;
+    virtual CellLosses account(const CellMotion &motion,
+                               double *history = nullptr) const = 0;
 
     /** @p f has n_dofs() entries, in N. */
     bool force(const CellMotion &motion, double *f) const;

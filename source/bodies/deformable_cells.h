@@ -8,11 +8,11 @@
 
 namespace nsfd
 {
-  /** Numbers that a point of a material remembers; 0: none. */
+  /** Numbers that a point of a material keeps; 0: none. */
   unsigned int n_history(const SceneInput &input, unsigned int material);
 
   /** Of the cells in State::material_history: where each begins, and the end.
-      Nothing but 0 for those whose materials remember nothing. */
+      Nothing but 0 for those whose materials have no history. */
   template <int dim>
   std::vector<std::size_t>
   first_histories(const Discretization<dim> &discretization);

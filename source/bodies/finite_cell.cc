@@ -49,7 +49,7 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  CellLosses FiniteCell<dim>::book(const CellMotion &motion, double *) const
+  CellLosses FiniteCell<dim>::account(const CellMotion &motion, double *) const
   {
     CellLosses losses;
     Ends<dim> ends;

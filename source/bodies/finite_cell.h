@@ -28,8 +28,8 @@ namespace nsfd
     double energy(const double *u,
                   const double *history = nullptr) const override;
     /** The part (theta - 1/2) dS:dE of the work is numerical. */
-    CellLosses book(const CellMotion &motion,
-                    double *history = nullptr) const override;
+    CellLosses account(const CellMotion &motion,
+                       double *history = nullptr) const override;
 
   private:
     using typename DeformableCell<dim>::Point;

@@ -30,7 +30,7 @@ namespace nsfd
           return true;
         break;
       case PointKind::free:
-      case PointKind::parted:
+      case PointKind::separated:
         break;
       }
     return false;

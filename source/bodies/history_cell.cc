@@ -66,8 +66,8 @@ namespace nsfd
   }
 
   template <int dim>
-  CellLosses HistoryCell<dim>::book(const CellMotion &motion,
-                                    double *history) const
+  CellLosses HistoryCell<dim>::account(const CellMotion &motion,
+                                       double *history) const
   {
     CellLosses losses;
     double F0[dim * dim], F1[dim * dim];

@@ -8,10 +8,10 @@
 namespace nsfd
 {
   /**
-   * A cell whose material remembers. Of finite strain its forces are those of
-   * FiniteCell with another stress; of small strain F is 1 and C is 2 eps, so
-   * that the work of a step is sum_q JxW_q S:d eps. What the points remember
-   * stands one behind the other.
+   * A cell of a history-dependent material. Of finite strain its forces are
+   * those of FiniteCell with another stress; of small strain F is 1 and C is 2
+   * eps, so that the work of a step is sum_q JxW_q S:d eps. The history of the
+   * points stands one behind the other.
    */
   template <int dim>
   class HistoryCell final : public DeformableCell<dim>
@@ -27,7 +27,8 @@ namespace nsfd
     }
     void begin_history(double *history) const override;
     double energy(const double *u, const double *history) const override;
-    CellLosses book(const CellMotion &motion, double *history) const override;
+    CellLosses account(const CellMotion &motion,
+                       double *history) const override;
 
   private:
     using typename DeformableCell<dim>::Point;

@@ -15,13 +15,13 @@ namespace nsfd
     for (unsigned int b = 0; b < bodies_.size(); ++b) {
       if (!cells_.of(b))
         continue;
-      remembering_.push_back(b);
+      history_bodies_.push_back(b);
       BodyClass body = bodies_.classes[bodies_.class_of[b]];
       body.bodies = {b};
       bodies_.class_of[b] = unsigned(bodies_.classes.size());
       bodies_.classes.push_back(std::move(body));
     }
-    for (const unsigned int b : remembering_) // nothing is left in those
+    for (const unsigned int b : history_bodies_) // nothing is left in those
       bodies_.classes[discretization.bodies().class_of[b]].bodies.clear();
   }
 
@@ -62,7 +62,7 @@ namespace nsfd
   bool InelasticBodies<dim>::set_tangents(const std::vector<double> &v)
   {
     bool changed = false;
-    for (const unsigned int b : remembering_) {
+    for (const unsigned int b : history_bodies_) {
       BodyClass &body = bodies_.classes[bodies_.class_of[b]];
       const unsigned int n = body.n_dofs;
       tangent_.resize(std::size_t(n) * n);
@@ -82,7 +82,7 @@ namespace nsfd
   template <int dim>
   void InelasticBodies<dim>::put_old_velocities(std::vector<double> &v) const
   {
-    for (const unsigned int b : remembering_)
+    for (const unsigned int b : history_bodies_)
       std::copy(old_->velocity.begin() + long(bodies_.first_dof[b]),
                 old_->velocity.begin() + long(bodies_.first_dof[b + 1]),
                 v.begin() + long(bodies_.first_dof[b]));
@@ -92,7 +92,7 @@ namespace nsfd
   bool InelasticBodies<dim>::move(const std::vector<double> &r,
                                   std::vector<double> &v)
   {
-    for (const unsigned int b : remembering_) {
+    for (const unsigned int b : history_bodies_) {
       const std::size_t first = bodies_.first_dof[b];
       FiniteStep step;
       step.time_step = time_step_;
@@ -110,7 +110,7 @@ namespace nsfd
   }
 
   template <int dim>
-  std::vector<BodyEnergies> InelasticBodies<dim>::book(State &next) const
+  std::vector<BodyEnergies> InelasticBodies<dim>::account(State &next) const
   {
     std::vector<BodyEnergies> all;
     const Bodies &cells = discretization_.bodies(); // with their moduli
@@ -147,7 +147,7 @@ namespace nsfd
       if (!cell)
         continue;
       double *history = next.material_history.data() + cells_.first_history(b);
-      const CellLosses losses = cell->book(motion_of(b, u), history);
+      const CellLosses losses = cell->account(motion_of(b, u), history);
       result.elastic += cell->energy(u, history);
       result.of_strain += losses.numerical;
       result.plastic += losses.plastic;

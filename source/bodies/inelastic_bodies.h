@@ -12,7 +12,7 @@ namespace nsfd
   struct BodyEnergies;
 
   /**
-   * The bodies of a scene of small motions with materials that remember. To
+   * The bodies of a scene of small motions with history-dependent materials. To
    * Dynamics, bodies() are linear: a cell of such a material is a class of its
    * own, with the tangent of its motion as its stiffness.
    */
@@ -31,14 +31,15 @@ namespace nsfd
                const std::vector<double> &forces);
     /** Tangents of the motion with @p v; true if there are others now. */
     bool set_tangents(const std::vector<double> &v);
-    /** Of the cells that remember, those at the start of the step. */
+    /** Of the history-dependent cells, those at the start of the step. */
     void put_old_velocities(std::vector<double> &v) const;
-    /** The cells that remember move under the generalised impulses @p r, from
-        velocities near @p v; false if one of them has no solution. */
+    /** The history-dependent cells move under the generalised impulses @p r,
+       from velocities near @p v; false if one of them has no solution. */
     bool move(const std::vector<double> &r, std::vector<double> &v);
     /** By body, energies of the step to @p next, whose motion is known, losses,
-        work of the loads; what the materials remember goes into @p next. */
-    std::vector<BodyEnergies> book(State &next) const;
+        work of the loads; the internal variables of the materials goes into @p
+       next. */
+    std::vector<BodyEnergies> account(State &next) const;
 
   private:
     void set_end(const std::vector<double> &v, std::size_t body);
@@ -47,7 +48,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     DeformableCells<dim> cells_;
     Bodies bodies_;
-    std::vector<unsigned int> remembering_; ///< bodies
+    std::vector<unsigned int> history_bodies_; ///< bodies
     FiniteScratch scratch_;
 
     // of the step

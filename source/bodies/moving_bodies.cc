@@ -340,15 +340,15 @@ namespace nsfd
             motion_.v.data() + bodies_.first_dof[b], bodies_.classes[b].n_dofs,
             next.velocity.data() + discretization_.bodies().first_dof[c]);
         if (cells_.of(c)->n_history() > 0)
-          cells_.of(c)->book(motion_of(c), next.material_history.data() +
-                                               cells_.first_history(c));
+          cells_.of(c)->account(motion_of(c), next.material_history.data() +
+                                                  cells_.first_history(c));
       }
     }
     rigid_motions_.share(next);
   }
 
   template <int dim>
-  std::vector<BodyEnergies> MovingBodies<dim>::book() const
+  std::vector<BodyEnergies> MovingBodies<dim>::account() const
   {
     std::vector<BodyEnergies> all;
     std::vector<double> history;
@@ -383,7 +383,7 @@ namespace nsfd
       }
       const CellMotion motion = motion_of(c);
       history.resize(cells_.of(c)->n_history());
-      const CellLosses losses = cells_.of(c)->book(motion, history.data());
+      const CellLosses losses = cells_.of(c)->account(motion, history.data());
       result.elastic += cells_.of(c)->energy(motion.end, history.data());
       result.of_strain += losses.numerical;
       result.plastic += losses.plastic;

@@ -87,7 +87,7 @@ namespace nsfd
     /** The motion of the step into @p next. Collective. */
     void finish(State &next) const;
     /** Energies at the end of the step, losses, work of the loads, by body. */
-    std::vector<BodyEnergies> book() const;
+    std::vector<BodyEnergies> account() const;
     /** M (x, y): the kinetic product of velocities by unknown, by body. */
     std::vector<double> kinetic_products(const std::vector<double> &x,
                                          const std::vector<double> &y) const;

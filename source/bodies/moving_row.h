@@ -42,12 +42,12 @@ namespace nsfd
     double weight = 0.;                 ///< m or m^2
     unsigned int interaction = 0; ///< index into OneStepProblem::interactions
     unsigned int block = 0;
-    std::size_t place = nowhere; ///< of what it remembers
+    std::size_t place = nowhere; ///< of what it keeps
     /// place of the corner that would ask for nearly the same from the other
     /// side: both know the same bound of their overlap
     std::size_t twin = nowhere;
     bool released = false; ///< a body has been let go of in the last step
-    double share = 1.;     ///< of the impulse that its place remembers
+    double share = 1.;     ///< of the impulse that its place keeps
     std::array<double, dim> jump{}; ///< of a pin: how far it is off, m
   };
 } // namespace nsfd

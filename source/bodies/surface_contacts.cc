@@ -143,17 +143,17 @@ namespace nsfd
       for (unsigned int i = faces[f].first;
            is_between(f) && i < faces[f].first + faces[f].count; ++i)
         if (state.kind[i] != PointKind::free &&
-            state.kind[i] != PointKind::parted)
+            state.kind[i] != PointKind::separated)
           held.insert(pair(f));
     std::vector<unsigned int> let_go;
     for (std::size_t f = 0; f < faces.size(); ++f)
       if (is_between(f) && held.count(pair(f)) == 0) {
-        if (state.kind[faces[f].first] != PointKind::parted)
+        if (state.kind[faces[f].first] != PointKind::separated)
           let_go.insert(let_go.end(),
                         {bodies_of(f).body_1, bodies_of(f).body_2});
         for (unsigned int i = faces[f].first;
              i < faces[f].first + faces[f].count; ++i)
-          state.kind[i] = PointKind::parted;
+          state.kind[i] = PointKind::separated;
       }
     if (!all_.any(!let_go.empty()))
       return;
@@ -177,7 +177,7 @@ namespace nsfd
   {
     const int f = cells_.kind_of(cell, face);
     return f < 0 ? f == SurfaceCells<dim>::boundary
-                 : parted_[std::size_t(f)] != 0;
+                 : separated_[std::size_t(f)] != 0;
   }
 
   /** Normals at rest of the surfaces that meet at the nodes of rigid bodies. */
@@ -201,15 +201,15 @@ namespace nsfd
   template <int dim>
   bool SurfaceContacts<dim>::follow(const State &state)
   {
-    if (!share_parted(state) && known_) {
+    if (!share_separated(state) && known_) {
       if (!input_.contacts.empty())
         share_motion(state);
       return false;
     }
     known_ = true;
     joined_.clear();
-    for (std::size_t f = 0; f < parted_.size(); ++f)
-      if (!parted_[f]) {
+    for (std::size_t f = 0; f < separated_.size(); ++f)
+      if (!separated_[f]) {
         const auto &face = cells_.mesh_faces()[f];
         joined_.insert(pair_of(face.body_1, face.body_2));
       }
@@ -227,25 +227,26 @@ namespace nsfd
     return true;
   }
 
-  /** Which faces of all ranks are parted; true if others than before. */
+  /** Which faces of all ranks are separated; true if others than before. */
   template <int dim>
-  bool SurfaceContacts<dim>::share_parted(const State &state)
+  bool SurfaceContacts<dim>::share_separated(const State &state)
   {
     const auto &points = discretization_.points();
-    parted_.resize(cells_.mesh_faces().size(), 0);
+    separated_.resize(cells_.mesh_faces().size(), 0);
     std::vector<int> changed;
     for (std::size_t f = 0; f < points.faces.size(); ++f) {
       const int face = cells_.mesh_face(f);
       if (face < 0 || points.faces[f].first >= points.n_owned)
         continue;
-      const char now = state.kind[points.faces[f].first] == PointKind::parted;
-      if (now != parted_[std::size_t(face)])
+      const char now =
+          state.kind[points.faces[f].first] == PointKind::separated;
+      if (now != separated_[std::size_t(face)])
         changed.push_back(face);
     }
     if (!all_.any(!changed.empty()))
       return false;
     for (const int face : gather_all(all_, changed))
-      parted_[std::size_t(face)] ^= 1;
+      separated_[std::size_t(face)] ^= 1;
     return true;
   }
 

@@ -12,17 +12,17 @@
 namespace nsfd
 {
   /**
-   * The surfaces of the moving bodies: sides of the mesh, lips of faces that
-   * have broken between two bodies, balls. It says which of their places touch
-   * another surface or an obstacle in a step.
+   * The surfaces of the moving bodies: sides of the mesh, crack faces of faces
+   * that have broken between two bodies, balls. It says which of their places
+   * touch another surface or an obstacle in a step.
    *
    * A place of a surface is a node on a face of a cell, a ball or, in space, an
-   * edge; what it remembers (slip, wear, the last impulse) stays with it
+   * edge; what it keeps (slip, wear, the last impulse) stays with it
    * whatever it touches, in the arrays `surface_...` of the state. Contacts of
    * two edges belong to that of body 2; those of one edge share what it
-   * remembers.
+   * keeps.
    *
-   * All ranks know all surfaces, where they are and what they remember, and get
+   * All ranks know all surfaces, where they are and what they keep, and get
    * the same rows; each rank looks for what its own bodies touch. Bodies, cells
    * and nodes are those of SurfaceCells.
    */
@@ -36,7 +36,7 @@ namespace nsfd
                     const MovingBodies<dim> &bodies,
                     const Communicator &communicator);
 
-    /** Nothing remembered; broken faces are surfaces from the start.
+    /** Nothing kept; broken faces are surfaces from the start.
         Collective. */
     void set_initial(State &state) const;
 
@@ -48,11 +48,11 @@ namespace nsfd
 
     /**
      * Points between two bodies that nothing holds together any more are left
-     * to the search: `parted`. Collective.
+     * to the search: `separated`. Collective.
      */
     void part(State &state) const;
     /** After the step of the last call of rows(). */
-    void remember_facets(State &next) const;
+    void store_facets(State &next) const;
 
     /** What may touch in a step of @p time_step from @p old, on all ranks the
         same. Collective. */
@@ -84,7 +84,7 @@ namespace nsfd
     void number_edges();
     bool is_surface(unsigned int cell, unsigned int face) const;
     bool follow(const State &state);
-    bool share_parted(const State &state);
+    bool share_separated(const State &state);
     void set_surfaces();
     void set_sides();
     void set_moving_nodes();
@@ -129,7 +129,7 @@ namespace nsfd
       Vector normal;
     };
     std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
-    std::vector<char> parted_; ///< per mesh face
+    std::vector<char> separated_; ///< per mesh face
     bool known_ = false;
     std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
     std::vector<double> x_, v_; ///< of them by node, and centres

@@ -45,7 +45,7 @@ namespace nsfd
       result.insert(result.end(), rows.begin(), rows.end());
     }
     // an explicit forecast is known already; the overlap of springs that let
-    // go has to be remembered even if it is about to open
+    // go has to be kept even if it is about to open
     const auto &time = input_.time;
     if (time.forecast_gamma2 == 0. && old.surface_worn.empty())
       result.erase(std::remove_if(result.begin(), result.end(),
@@ -328,7 +328,7 @@ namespace nsfd
 
   /** Which facets points were over at the start of the step. */
   template <int dim>
-  void SurfaceContacts<dim>::remember_facets(State &next) const
+  void SurfaceContacts<dim>::store_facets(State &next) const
   {
     next.surface_facet.assign(first_place_.back(), Surfaces<dim>::no_key);
     next.surface_gap.assign(first_place_.back(), 0.);

@@ -25,7 +25,7 @@ namespace nsfd
     const Communicator &communicator() const { return communicator_; }
     const RankOrder &unknowns() const { return *unknowns_; }
     const RankOrder &points() const { return *points_; }
-    /** Of the numbers that materials remember. */
+    /** Of the numbers that materials keep. */
     const RankOrder &histories() const { return *histories_; }
 
     /** CellId::to_binary() of all active cells, four numbers each; root. */

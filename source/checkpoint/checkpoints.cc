@@ -83,14 +83,14 @@ namespace nsfd
   }
 
   template <int dim>
-  std::string Checkpoints<dim>::write(const RememberAll &remember)
+  std::string Checkpoints<dim>::write(const SerializeAll &serialize)
   {
     std::unique_ptr<Hdf5Image> image;
     if (communicator_.is_root())
       image = std::make_unique<Hdf5Image>(checkpoint_file::head_size);
     write_head(image.get());
     CheckpointWriter<dim> writer(orders(), image.get());
-    remember(writer);
+    serialize(writer);
     std::string failure;
     if (image)
       try {
@@ -119,7 +119,7 @@ namespace nsfd
 
   template <int dim>
   void Checkpoints<dim>::read(const FoundCheckpoint &found,
-                              const RememberAll &remember) const
+                              const SerializeAll &serialize) const
   {
     const auto &order = orders();
     std::vector<std::uint64_t> fingerprint;
@@ -132,7 +132,7 @@ namespace nsfd
       throw BadCheckpoint("the mesh is not that of the checkpoint: its cells, "
                           "their places or their faces differ");
     CheckpointReader<dim> reader(order, image);
-    remember(reader);
+    serialize(reader);
   }
 
   template class Checkpoints<2>;

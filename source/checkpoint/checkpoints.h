@@ -19,15 +19,15 @@ namespace nsfd
   struct RunOptions;
 
   /** What all parts of a run carry along, to or from an archive. */
-  using RememberAll = std::function<void(Archive &)>;
+  using SerializeAll = std::function<void(Archive &)>;
 
   /** The newest whole checkpoint of a folder. */
   struct FoundCheckpoint {
     std::filesystem::path file;
     std::unique_ptr<Hdf5Image> image; ///< on the first rank
     bool same_solver = true;          ///< what solvers have kept is of use
-    bool same_steps = true;           ///< the ladder of steps goes on
-    std::string notes; ///< about older files, and changed parameters
+    bool same_steps = true; ///< the sequence of bisected steps goes on
+    std::string notes;      ///< about older files, and changed parameters
   };
 
   /**
@@ -58,16 +58,17 @@ namespace nsfd
     bool is_due(unsigned int step) const;
 
     /**
-     * Store all that @p remember names; empty, or why it could not be: the
+     * Store all that @p serialize names; empty, or why it could not be: the
      * checkpoints before are as they were then. Collective.
      */
-    std::string write(const RememberAll &remember);
+    std::string write(const SerializeAll &serialize);
 
     /** A file of this or an earlier step is there; on the first rank. */
     bool has_earlier() const;
 
     /** @throws BadCheckpoint if it belongs to another mesh. Collective. */
-    void read(const FoundCheckpoint &found, const RememberAll &remember) const;
+    void read(const FoundCheckpoint &found,
+              const SerializeAll &serialize) const;
 
     /** Bodies and points are others now. */
     void mesh_changed() { orders_.reset(); }

@@ -12,7 +12,7 @@ namespace nsfd
    *   d^2 = <u_N>_+^2 + C_T / C_N |u_T|^2,
    *   beta = 1 up to d_0 = R_max / C, 0 beyond,   G = R_max^2 / (2 C).
    *
-   * The law that (7)-(11) of the report give for a stored energy linear in
+   * The law that (7)-(11) of [AM06] give for a stored energy linear in
    * beta, w = G. The traction jumps at d_0, the area I(d) under it does not:
    * the stored energy G turns into damage at once. Two of stiffness, strength
    * and toughness are free.

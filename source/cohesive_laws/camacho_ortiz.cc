@@ -13,7 +13,7 @@ namespace nsfd
    *
    * Unloading is on the secant to the origin, R = T(d_m) / d_m (<u_N>_+ n +
    * a^2 u_T): opening to d_m and closing again dissipates R_max d_m / 2. (The
-   * literal form (5) of the report keeps the traction while closing.) The
+   * literal form (5) of [AM06] keeps the traction while closing.) The
    * interface starts to open at the stress |<t_N>_+ n + t_T / a| = R_max.
    */
   class CamachoOrtiz final : public CohesiveLaw

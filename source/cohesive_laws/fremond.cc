@@ -133,7 +133,7 @@ namespace nsfd
   } // namespace
 
   /**
-   * The thermodynamic form (7)-(11) of the report after Fremond, for any free
+   * The thermodynamic form (7)-(11) of [AM06] after Fremond, for any free
    * energy and pseudo-potential of the kind
    *
    *   psi(b, u) = f(b) C d^2 / 2 - w (1 - g(b)),  C d^2 = C_N <u_N>_+^2 +

@@ -7,7 +7,7 @@ namespace nsfd
 {
   /**
    * Share of the friction coefficient that acts at damage @p beta, equation
-   * (18) of the report: kappa = (1 - beta)^s, from 0 (intact) to 1 (broken).
+   * (18) of [AM06]: kappa = (1 - beta)^s, from 0 (intact) to 1 (broken).
    * The exponent s = 0 stands for kappa = 1.
    */
   inline double kappa(const double beta, const double exponent)

@@ -13,7 +13,7 @@ namespace nsfd
   } // namespace
 
   /**
-   * The law of Michel and Suquet, equation (19) of the report, intrinsic and
+   * The law of Michel and Suquet, equation (19) of [AM06], intrinsic and
    * elastic up to d_c:
    *
    *   beta = 1,  (3 d_c - d) / (d_c + d),  0      on [0, d_c), [d_c, 3 d_c),

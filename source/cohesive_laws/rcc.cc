@@ -12,7 +12,7 @@ namespace nsfd
    * Adhesion of Raous, Cangemi and Cocu. Their intensity b minimises
    * b^2 C d^2 / 2 - w b, so b = min(1, w / (C d^2)) at rest, with
    * C d^2 = C_N <u_N>_+^2 + C_T |u_T|^2, and the traction is b^2 C u. In the
-   * form (4) of the report the damage is therefore beta = b^2:
+   * form (4) of [AM06] the damage is therefore beta = b^2:
    *
    *   T = C d up to u_0 = sqrt(w / C),   T = w^2 / (C d^3) beyond,   G = w,
    *

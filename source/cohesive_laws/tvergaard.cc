@@ -6,7 +6,7 @@
 namespace nsfd
 {
   /**
-   * Tvergaard's law, equations (12)-(17) of the report, intrinsic:
+   * Tvergaard's law, equations (12)-(17) of [AM06], intrinsic:
    *
    *   lambda^2 = (<u_N>_+ / delta_N)^2 + (|u_T| / delta_T)^2,
    *   beta = <1 - lambda>_+^2,

@@ -120,7 +120,7 @@ namespace nsfd
     std::vector<EdgePair<dim>> edges; ///< by edge, then by the other one
   };
 
-  /** Bodies that are still glued; asked for two different bodies only. */
+  /** Bodies that are still joined; asked for two different bodies only. */
   using JoinedBodies = std::function<bool(unsigned int, unsigned int)>;
 
   /** List i is entries first[i] to first[i + 1]. */
@@ -161,8 +161,8 @@ namespace nsfd
                std::function<bool(unsigned int)> is_own);
 
     /**
-     * To be called when the surfaces or the glued bodies are no longer those of
-     * the last call of `find`.
+     * To be called when the surfaces or the joined bodies are no longer those
+     * of the last call of `find`.
      */
     void topology_changed() { searched_at_.clear(); }
 

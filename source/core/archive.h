@@ -17,7 +17,7 @@ namespace nsfd
   /**
    * What a part carries from one step to the next, by name. The same lines
    * write it to a checkpoint and read it back; a part has them in a function
-   * `remember(Archive &)`. Everything here is collective. Values come back bit
+   * `serialize(Archive &)`. Everything here is collective. Values come back bit
    * by bit; those over bodies and points also on another number of ranks.
    * @throws BadCheckpoint if what is read is not there, or of another size.
    */
@@ -46,7 +46,7 @@ namespace nsfd
                         std::vector<std::uint8_t> &values) = 0;
 
     /**
-     * What the materials of the cells remember, cell by cell as
+     * What the materials of the cells keep, cell by cell as
      * first_histories() has it, or none at all.
      */
     virtual void histories(const std::string &name,

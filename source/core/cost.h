@@ -21,7 +21,7 @@ namespace nsfd
     sums,            ///< reductions over points and ranks
     sweeps,          ///< of Gauss-Seidel
     update,          ///< of the bodies
-    ledger,          ///< energies and history
+    energy_balance,  ///< energies and history
     output,          ///< files, pictures, comparison with exact values
     delassus_single, ///< applications of W in single precision
     messages,        ///< waiting for other ranks

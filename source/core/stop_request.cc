@@ -34,7 +34,7 @@ namespace nsfd::stop_request
                               {SIGXCPU, "SIGXCPU"},
                               {SIGPIPE, "a closed standard output"}};
 
-    std::atomic<bool> is_first{true}, remembers{false}, watches{false};
+    std::atomic<bool> is_first{true}, catches{false}, watches{false};
     std::atomic<int> request{0};          ///< the signal, 0: none
     std::atomic<double> request_time{0.}; ///< s
     int scope_ranks = 0;                  ///< 0: not in a step
@@ -69,7 +69,7 @@ namespace nsfd::stop_request
 
     extern "C" void on_signal(const int signal)
     {
-      if (!remembers) {
+      if (!catches) {
         if (is_first) {
           say("nsfd: ended by ");
           say(name_of(signal));
@@ -114,12 +114,12 @@ namespace nsfd::stop_request
     catch_all();
   }
 
-  void remember_signals(const bool watches_output)
+  void catch_signals(const bool watches_output)
   {
     struct stat status = {};
     watches = watches_output && fstat(STDOUT_FILENO, &status) == 0 &&
               (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
-    remembers = true;
+    catches = true;
     catch_all(); // libraries may have taken some
   }
 

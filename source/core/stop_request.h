@@ -4,7 +4,7 @@ namespace nsfd
 {
   /**
    * A step that is left because the run was asked to end. No std::exception:
-   * what mends or reports errors must not take it for one.
+   * what handles or reports errors must not take it for one.
    */
   struct StopRequested {
   };
@@ -24,11 +24,11 @@ namespace nsfd
     void end_at_signals(bool first);
 
     /**
-     * From here on it is remembered, for requested() and within Interruptible.
+     * From here on it is kept, for requested() and within Interruptible.
      * Another signal, a second later, ends the process. With
      * @p watches_output a standard output without a reader counts as one.
      */
-    void remember_signals(bool watches_output);
+    void catch_signals(bool watches_output);
 
     /** This process was asked to end; others may know nothing of it yet. */
     bool requested();

@@ -15,7 +15,7 @@ namespace nsfd
 {
   namespace
   {
-    /// of iterations: the ledger shows what a product with W leaves
+    /// of iterations: the energy balance shows what a product with W leaves
     constexpr double tight = 1e-12;
 
     template <int dim>
@@ -37,16 +37,16 @@ namespace nsfd
       void apply(Operator op, const double *x, double *y) const override;
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
-      void remember(Archive &archive) override;
+      void serialize(Archive &archive) override;
 
     private:
       void bonds_changed() override
       {
-        valid_ = joined_valid_ = is_glued_ = false;
+        valid_ = joined_valid_ = is_joined_ = false;
       }
       void solve(const double *b, double *x) const;
       void solve(SpdSolver &solver, const double *b, double *x) const;
-      void glue() const;
+      void conform() const;
       void prepare(SpdSolver &solver, const SparseRows &matrix,
                    SparseRows &kept) const;
       void update() const;
@@ -57,12 +57,12 @@ namespace nsfd
       void prepare_joined();
 
       mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
-      std::unique_ptr<GluedSpace> glued_; ///< null: factors need none
-      std::unique_ptr<SpdSolver> factor_; ///< of M_hat
+      std::unique_ptr<ConformingSpace> conforming_; ///< null: factors need none
+      std::unique_ptr<SpdSolver> factor_;           ///< of M_hat
       std::unique_ptr<SpdSolver> joined_; ///< of A = M_hat + H^T D^{-1} H
       mutable SparseRows factor_matrix_, joined_matrix_;
-      mutable bool is_glued_ = false; ///< for the step and the bonds
-      mutable bool valid_ = false;    ///< factor_
+      mutable bool is_joined_ = false; ///< for the step and the bonds
+      mutable bool valid_ = false;     ///< factor_
       bool joined_valid_ = false;
       /// the system was factored as a dense one: W may be condensed later,
       /// within the iterations of a system prepared without
@@ -71,7 +71,7 @@ namespace nsfd
       mutable CondensedDelassus condensed_;  ///< W of the rows, if it pays
       std::vector<double> D_;                ///< of the system to precondition
       std::vector<double> inverse_D_;        ///< of the one that was factored
-      std::vector<double> inverse_D_coarse_; ///< of the glued space (`cg`)
+      std::vector<double> inverse_D_coarse_; ///< of the joined space (`cg`)
       unsigned long long coarse_version_ = 0;
       std::vector<double> diagonal_; ///< of W, from above
       /// applications after which a new factor is cheaper than going on
@@ -102,13 +102,13 @@ namespace nsfd
       if (!direct) {
         const SparseAssembly<dim> nodes(communicator, bodies, points,
                                         coordinates);
-        glued_ = std::make_unique<GluedSpace>(
+        conforming_ = std::make_unique<ConformingSpace>(
             communicator, dim, nodes.unknowns(), nodes.node_pairs());
       }
       for (auto *one : {&factor_, &joined_})
         *one = direct ? make_cholesky_solver(communicator)
-                      : make_glued_cg_solver(communicator, bodies.first_dof,
-                                             largest_coarse_factor<dim>);
+                      : make_two_level_cg(communicator, bodies.first_dof,
+                                          largest_coarse_factor<dim>);
     }
 
     /**
@@ -116,9 +116,9 @@ namespace nsfd
      * stays as long as the step and the bonds do.
      */
     template <int dim>
-    void Bonded<dim>::glue() const
+    void Bonded<dim>::conform() const
     {
-      if (is_glued_)
+      if (is_joined_)
         return;
       std::vector<char> faces;
       for (const auto &face : this->points_.faces)
@@ -126,9 +126,9 @@ namespace nsfd
             std::all_of(this->bonded_.begin() + face.first,
                         this->bonded_.begin() + face.first + face.count,
                         [](const std::uint8_t bonded) { return bonded != 0; }));
-      glued_->glue(faces);
-      glued_->touch();
-      is_glued_ = true;
+      conforming_->conform(faces);
+      conforming_->touch();
+      is_joined_ = true;
     }
 
     template <int dim>
@@ -137,10 +137,10 @@ namespace nsfd
     {
       const Charge charge(Cost::preconditioner);
       const bool first = solver.counters().factorisations == 0;
-      if (glued_) { // iterations go on looking at their matrix
-        glue();
+      if (conforming_) { // iterations go on looking at their matrix
+        conform();
         kept = matrix;
-        solver.prepare(kept, glued_->space(), first);
+        solver.prepare(kept, conforming_->space(), first);
       } else
         solver.prepare(matrix, CoarseSpace(), first);
       ++this->counters_.global_factorisations;
@@ -150,7 +150,7 @@ namespace nsfd
     void Bonded<dim>::reinit(const double time_step, const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
-        valid_ = joined_valid_ = is_glued_ = false;
+        valid_ = joined_valid_ = is_joined_ = false;
       Dynamics<dim>::reinit(time_step, theta);
     }
 
@@ -321,8 +321,8 @@ namespace nsfd
                                 this->bonded_, inverse_D_.data()),
               joined_matrix_);
       joined_valid_ = true;
-      if (glued_ && coarse_version_ != glued_->space().version) {
-        coarse_version_ = glued_->space().version;
+      if (conforming_ && coarse_version_ != conforming_->space().version) {
+        coarse_version_ = conforming_->space().version;
         inverse_D_coarse_ = inverse_D_;
       }
     }
@@ -332,9 +332,9 @@ namespace nsfd
      * systems had been solved, and how good an old factor is on its springs.
      */
     template <int dim>
-    void Bonded<dim>::remember(Archive &archive)
+    void Bonded<dim>::serialize(Archive &archive)
     {
-      BondedDynamics<dim>::remember(archive);
+      BondedDynamics<dim>::serialize(archive);
       bool factored = valid_, joined = joined_valid_,
            condensed = !condensed_.empty();
       std::size_t n_solves = n_solves_;
@@ -343,7 +343,7 @@ namespace nsfd
                       n_applied);
       archive.points("D", D_);
       archive.points("springs", inverse_D_);
-      archive.points("springs_of_glued_space", inverse_D_coarse_);
+      archive.points("springs_of_conforming_space", inverse_D_coarse_);
       if (!archive.reads())
         return;
       bonds_changed();
@@ -357,7 +357,7 @@ namespace nsfd
       if (joined) {
         const std::vector<double> springs(inverse_D_);
         set_diagonal();
-        if (glued_) { // and with it inverse_D_coarse_
+        if (conforming_) { // and with it inverse_D_coarse_
           inverse_D_ = inverse_D_coarse_;
           prepare_joined();
           inverse_D_ = springs;

@@ -39,7 +39,7 @@ namespace nsfd
 
     void apply(Operator op, const double *x, double *y) const override;
 
-    void remember(Archive &archive) override;
+    void serialize(Archive &archive) override;
 
   protected:
     /** Other points are bonded now. */

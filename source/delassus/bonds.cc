@@ -39,9 +39,9 @@ namespace nsfd
   }
 
   template <int dim>
-  void BondedDynamics<dim>::remember(Archive &archive)
+  void BondedDynamics<dim>::serialize(Archive &archive)
   {
-    Dynamics<dim>::remember(archive);
+    Dynamics<dim>::serialize(archive);
     std::vector<std::uint8_t> bonded(bonded_);
     archive.points("bonded", bonded);
     if (archive.reads())

@@ -69,7 +69,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::remember(Archive &archive)
+  void Dynamics<dim>::serialize(Archive &archive)
   {
     double h = time_step_, theta = theta_;
     archive.numbers("step", h, theta);

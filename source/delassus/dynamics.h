@@ -176,7 +176,7 @@ namespace nsfd
       unsigned long long factorisations = 0; ///< of body blocks
       /// matrices of all bodies that were assembled and made ready to solve
       unsigned long long global_factorisations = 0;
-      /// glued spaces that were built again (`cg`)
+      /// joined spaces that were built again (`cg`)
       unsigned long long coarse_spaces = 0;
       /// iterations inside precondition(), each one product with A (`cg`)
       unsigned long long inner_iterations = 0;
@@ -191,7 +191,7 @@ namespace nsfd
      * What changes the bits of later steps: the step, and what is kept of
      * earlier solves. Factors are made again from it.
      */
-    virtual void remember(Archive &archive);
+    virtual void serialize(Archive &archive);
 
     /** Contribution of each body to W P, used by Gauss-Seidel. */
     struct ClassBlocks {
@@ -269,10 +269,10 @@ namespace nsfd
   /**
    * Preconditioned by the sparse matrix A of all bodies: for long steps.
    * @p solver is `direct` (Cholesky factor) or `cg` (conjugate gradients
-   * preconditioned by body blocks and the glued space); `auto` takes the
+   * preconditioned by body blocks and the joined space); `auto` takes the
    * factor while it is the cheaper one. @p coordinates holds, per unknown of a
    * deformable body, the coordinate of its node along its own component:
-   * nodes at the same place on a face can be glued. Empty: nothing is glued.
+   * nodes at the same place on a face can be joined. Empty: nothing is joined.
    */
   template <int dim>
   std::unique_ptr<Dynamics<dim>>

@@ -45,7 +45,7 @@ namespace nsfd
       bool inverts() const override { return inverts_; }
       bool solve_springs(const double *P, const double *U, const double *r,
                          double tolerance, double *next) override;
-      void remember(Archive &archive) override;
+      void serialize(Archive &archive) override;
 
     private:
       StepShares share() const
@@ -54,8 +54,8 @@ namespace nsfd
       }
       void set_body_stiffness();
       void set_springs(const std::vector<double> &D);
-      bool loose_springs_changed(const std::vector<char> &glued) const;
-      void glue(const std::vector<char> &faces);
+      bool loose_springs_changed(const std::vector<char> &joined) const;
+      void conform(const std::vector<char> &faces);
       void use_cg();
       void prepare_cg();
       void prepare_again();
@@ -64,7 +64,7 @@ namespace nsfd
       void add_jump(const std::vector<double> &change, double *next);
 
       SparseAssembly<dim> assembly_;
-      GluedSpace glued_;
+      ConformingSpace conforming_;
       std::unique_ptr<SpdSolver> solver_;
       bool direct_, prepared_ = false;
       std::vector<double> body_stiffness_; ///< of the softer body, per point
@@ -74,7 +74,7 @@ namespace nsfd
       std::vector<double> difference_,
           velocity_;             ///< of the last solve_springs()
       std::vector<double> jump_; ///< H velocity_, to more than its round-off
-      std::vector<char> without_jump_; ///< per point: the glued space has none
+      std::vector<char> without_jump_; ///< per point: the joined space has none
       bool all_without_jump_ = false;
     };
 
@@ -86,8 +86,8 @@ namespace nsfd
                                         const std::vector<double> &coordinates)
         : Dynamics<dim>(communicator, bodies, points),
           assembly_(communicator, bodies, points, coordinates),
-          glued_(communicator, dim, assembly_.unknowns(),
-                 assembly_.node_pairs())
+          conforming_(communicator, dim, assembly_.unknowns(),
+                      assembly_.node_pairs())
     {
       assembly_.forget_coordinates();
       const auto n = communicator.sum_integer(bodies.n_dofs());
@@ -105,9 +105,8 @@ namespace nsfd
     void SparseDynamics<dim>::use_cg()
     {
       direct_ = prepared_ = coarse_valid_ = false;
-      solver_ =
-          make_glued_cg_solver(this->communicator_, this->bodies_.first_dof,
-                               largest_coarse_factor<dim>);
+      solver_ = make_two_level_cg(this->communicator_, this->bodies_.first_dof,
+                                  largest_coarse_factor<dim>);
     }
 
     template <int dim>
@@ -160,18 +159,18 @@ namespace nsfd
     }
 
     /**
-     * The coarse matrix knows the springs of faces that are not glued. It
+     * The coarse matrix knows the springs of faces that are not joined. It
      * stays a good one while they keep their order of magnitude; what is
      * small against the inertia of the bodies does not count.
      */
     template <int dim>
     bool SparseDynamics<dim>::loose_springs_changed(
-        const std::vector<char> &glued) const
+        const std::vector<char> &joined) const
     {
       const auto &points = this->points_;
       for (std::size_t f = 0; f < points.faces.size(); ++f) {
         const auto &face = points.faces[f];
-        if (glued[f])
+        if (joined[f])
           continue;
         const unsigned int n = face.count * dim;
         const double *W = this->face_block(f);
@@ -188,15 +187,15 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::glue(const std::vector<char> &faces)
+    void SparseDynamics<dim>::conform(const std::vector<char> &faces)
     {
-      const auto before = glued_.space().version;
-      glued_.glue(faces);
-      if (glued_.space().version == before &&
+      const auto before = conforming_.space().version;
+      conforming_.conform(faces);
+      if (conforming_.space().version == before &&
           this->communicator_.any(!coarse_valid_ ||
                                   loose_springs_changed(faces)))
-        glued_.touch();
-      if (glued_.space().version != before)
+        conforming_.touch();
+      if (conforming_.space().version != before)
         inverse_D_coarse_ = inverse_D_;
       coarse_valid_ = true;
     }
@@ -218,7 +217,7 @@ namespace nsfd
       if (direct_)
         try {
           assembly_.assemble(share(), inverse_D_);
-          solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
+          solver_->prepare(assembly_.matrix(), conforming_.space(), !prepared_);
           coarse_valid_ = prepared_ = true;
           return;
         } catch (const std::runtime_error &) {
@@ -228,16 +227,16 @@ namespace nsfd
     }
 
     /**
-     * Springs of glued faces vanish on the glued space, and come into the
+     * Springs of joined faces vanish on the joined space, and come into the
      * matrix after the coarse one has been formed: of what is left of the mass
      * beside them, their round-off would leave nothing.
      */
     template <int dim>
     void SparseDynamics<dim>::prepare_cg()
     {
-      glue(assembly_.carrying(share(), inverse_D_));
+      conform(assembly_.carrying(share(), inverse_D_));
       const auto &points = this->points_;
-      const auto faces = glued_.without_jump();
+      const auto faces = conforming_.without_jump();
       without_jump_.resize(points.n_points);
       bool all = true;
       for (std::size_t i = 0; i < points.n_points; ++i) {
@@ -248,10 +247,10 @@ namespace nsfd
       all_without_jump_ = !this->communicator_.any(!all);
       assembly_.assemble(share(), inverse_D_, faces);
       solver_->prepare_coarse(
-          assembly_.matrix(), glued_.space(),
+          assembly_.matrix(), conforming_.space(),
           [this](const double *x, double *y) { add_smooth(x, y); });
       assembly_.add_springs(inverse_D_, faces);
-      solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
+      solver_->prepare(assembly_.matrix(), conforming_.space(), !prepared_);
       prepared_ = true;
       this->counters_.coarse_spaces = solver_->counters().coarse_spaces;
     }
@@ -288,7 +287,7 @@ namespace nsfd
         add(&BodyClass::damping, shares.damping);
     }
 
-    /** y += A x for x in the glued space. */
+    /** y += A x for x in the joined space. */
     template <int dim>
     void SparseDynamics<dim>::add_smooth(const double *x, double *y) const
     {
@@ -378,20 +377,20 @@ namespace nsfd
       return true;
     }
     /**
-     * Where the next iterations start, which springs the glued space was built
+     * Where the next iterations start, which springs the joined space was built
      * with, and whether factors have failed for good.
      */
     template <int dim>
-    void SparseDynamics<dim>::remember(Archive &archive)
+    void SparseDynamics<dim>::serialize(Archive &archive)
     {
-      Dynamics<dim>::remember(archive);
+      Dynamics<dim>::serialize(archive);
       bool direct = direct_;
       archive.numbers("solver", direct, valid_, inverts_);
       archive.bodies("velocity", velocity_);
       archive.points("jump", jump_);
       archive.points("D", D_);
       archive.points("springs", inverse_D_);
-      archive.points("springs_of_glued_space", inverse_D_coarse_);
+      archive.points("springs_of_conforming_space", inverse_D_coarse_);
       if (!archive.reads())
         return;
       if (direct_ && !direct)
@@ -401,14 +400,14 @@ namespace nsfd
         prepare_again();
     }
 
-    /** Factors and glued space as they were when D_ was prepared. */
+    /** Factors and joined space as they were when D_ was prepared. */
     template <int dim>
     void SparseDynamics<dim>::prepare_again()
     {
       set_body_stiffness();
       if (direct_) {
         assembly_.assemble(share(), inverse_D_);
-        solver_->prepare(assembly_.matrix(), glued_.space(), !prepared_);
+        solver_->prepare(assembly_.matrix(), conforming_.space(), !prepared_);
         coarse_valid_ = prepared_ = true;
         return;
       }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "glued_space.h"
+#include "conforming_space.h"
 
 #include "linear_algebra/spd_solver.h"
 #include "nsfd/discretization/bodies.h"

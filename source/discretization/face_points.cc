@@ -288,7 +288,7 @@ namespace nsfd
       return false;
     }
 
-    /** The first one that holds; a face without one is remembered. */
+    /** The first one that holds; a face without one is kept. */
     template <int dim>
     unsigned int FaceCollector<dim>::block_of(const Cell &first,
                                               const Cell &second,

@@ -25,7 +25,7 @@ namespace nsfd
       if (scene.has_history())
         return refuse(true,
                       fmt::format("the mesh of scenes with {} does not change",
-                                  remembering_model(scene)),
+                                  history_dependent_model(scene)),
                       "remove the section Adaptivity, or write model = linear "
                       "elastic");
       refuse(has_simplices(scene),

@@ -80,7 +80,7 @@ namespace nsfd
       reader.error("path",
                    fmt::format("path = global has one matrix for all steps, "
                                "and bodies of {} get softer",
-                               remembering_model(scene)),
+                               history_dependent_model(scene)),
                    "write auto or element-wise");
     if (solver.method == "gauss seidel" && scene.has_bonded_faces())
       reader.error("method",

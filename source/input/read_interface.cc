@@ -116,7 +116,7 @@ namespace nsfd
                                          : "without memory",
                       scene.large_motion ? "motion = large"
                       : all_rigid(scene) ? "rigid ones only"
-                                         : remembering_model(scene)),
+                                         : history_dependent_model(scene)),
           "write rigid");
     }
 
@@ -241,9 +241,10 @@ namespace nsfd
 
     void read_crack_pressure(SectionReader &reader, InterfaceInput &input)
     {
-      const std::string name = "crack pressure",
-                        text = "Pa, of x, y, z, t: pushes the lips of broken "
-                               "points apart";
+      const std::string
+          name = "crack pressure",
+          text = "Pa, of x, y, z, t: pushes the crack faces of broken "
+                 "points apart";
       const std::string threshold = "pressure threshold",
                         threshold_text =
                             "beta up to which a point counts as broken";

@@ -478,7 +478,7 @@ namespace nsfd
     }
   } // namespace
 
-  std::string remembering_model(const SceneInput &scene)
+  std::string history_dependent_model(const SceneInput &scene)
   {
     for (const MaterialInput &material : scene.materials)
       if (material.plastic)

@@ -120,8 +120,8 @@ namespace nsfd
                                                      Unit unit,
                                                      const std::string &text);
 
-  /** "model = j2 plastic" where a material remembers its strains, else "". */
-  std::string remembering_model(const SceneInput &scene);
+  /** "model = j2 plastic" where a material keeps its strains, else "". */
+  std::string history_dependent_model(const SceneInput &scene);
 
   /** True if the cells are triangles or tetrahedra. */
   bool has_simplices(const SceneInput &scene);

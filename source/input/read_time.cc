@@ -155,7 +155,7 @@ namespace nsfd
         reader.error("start",
                      fmt::format("equilibria of scenes with {} are not there "
                                  "yet",
-                                 remembering_model(scene)),
+                                 history_dependent_model(scene)),
                      "write given, and let the scene come to rest");
         return true;
       }
@@ -316,8 +316,9 @@ namespace nsfd
         return false;
       reader.error("scheme",
                    fmt::format("scheme = {} is not there for {}", scheme,
-                               scene.large_motion ? "motion = large"
-                                                  : remembering_model(scene)),
+                               scene.large_motion
+                                   ? "motion = large"
+                                   : history_dependent_model(scene)),
                    "write scheme = moreau-jean");
       reader.accept_everything();
       return true;

@@ -141,7 +141,7 @@ namespace nsfd
    * aggregation (ML) stands for its inverse.
    */
   std::unique_ptr<SpdSolver>
-  make_glued_cg_solver(const Communicator &communicator,
-                       const std::vector<std::size_t> &first_dof,
-                       long long largest_factor);
+  make_two_level_cg(const Communicator &communicator,
+                    const std::vector<std::size_t> &first_dof,
+                    long long largest_factor);
 } // namespace nsfd

@@ -14,7 +14,7 @@ namespace nsfd
   };
 
   /**
-   * The uniaxial example of section 3.1 of the report: an elastic bar pulls a
+   * The uniaxial example of section 3.1 of [AM06]: an elastic bar pulls a
    * point open. Its grip moves by U, the point opens by u, and the bar carries
    *
    *     k (U - u),        k = E / L.

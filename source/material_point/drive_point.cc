@@ -103,7 +103,7 @@ namespace nsfd
         row_.cohesive_tangential = energies.cohesive_traction[1];
         row_.friction =
             U[1] != 0. ? sign(U[1]) * solution.frozen.threshold : friction;
-        book(energies, arrived);
+        account(energies, arrived);
         change_kind(energies, solution.damages);
       }
 
@@ -176,7 +176,7 @@ namespace nsfd
             row_.opening, row_.slip, error));
       }
 
-      void book(const PointEnergies<2> &energies, const Vector &U)
+      void account(const PointEnergies<2> &energies, const Vector &U)
       {
         row_.stored = energies.stored;
         row_.damage += energies.damage;

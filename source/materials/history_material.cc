@@ -167,7 +167,7 @@ namespace nsfd
       }
     };
 
-    /** C is F^T F; F_p^{-1} = G comes first of what is remembered. */
+    /** C is F^T F; F_p^{-1} = G comes first of what is kept. */
     template <int dim>
     class FiniteJ2 final : public J2Material<dim>
     {

@@ -20,7 +20,7 @@ namespace nsfd
   public:
     virtual ~HistoryMaterial() = default;
 
-    /** Numbers that a point remembers. */
+    /** Internal variables of a point, their number. */
     virtual unsigned int n_history() const = 0;
     /** Of a point that has never been strained. */
     virtual void begin(double *history) const = 0;
@@ -41,7 +41,7 @@ namespace nsfd
     /** Stored, J per volume; infinite where det C <= 0. */
     virtual double energy(const Voigt<dim> &C, const double *history) const = 0;
 
-    /** What is remembered at C1 goes to @p history, unless it is null. False
+    /** What is kept at C1 goes to @p history, unless it is null. False
         where det C <= 0 or numbers are not finite. */
     virtual bool step(const Way &way, bool with_tangent, Step &result,
                       double *history) const = 0;
@@ -62,13 +62,13 @@ namespace nsfd
 
   /**
    * Flow on the surface of von Mises (J2Flow), of small strain: a point
-   * remembers its plastic strain and its p, 7 numbers.
+   * keeps its plastic strain and its p, 7 numbers.
    *
    * Of finite strain: multiplicative, F = F_e F_p, with Hencky's law between
    * E = ln(F_e^T F_e) / 2 and its stress. From the F_p of the start a step is
    * one of small strain in E; then F_e^T F_e = exp(2 E), and F_p changes
    * without spin: exp(dp N) where strains are coaxial. Its determinant stays
-   * 1. A point remembers F_p^{-1}, alpha and p, 16 numbers. Not in plane
+   * 1. A point keeps F_p^{-1}, alpha and p, 16 numbers. Not in plane
    * stress: throws invalid_argument.
    */
   template <int dim>

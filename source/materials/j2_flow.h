@@ -35,7 +35,7 @@ namespace nsfd
     J2Flow(double young, double poisson, bool plane_stress,
            const PlasticInput &plastic);
 
-    /** What the material remembers besides its elastic strain. */
+    /** What the material keeps besides its elastic strain. */
     struct Memory {
       Strain alpha{};         ///< sum of plastic strains
       double equivalent = 0.; ///< p

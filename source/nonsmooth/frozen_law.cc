@@ -108,7 +108,7 @@ namespace nsfd
     case PointKind::rigid:
       return frozen; // has no secant before it opens
     case PointKind::bonded:
-    case PointKind::parted:
+    case PointKind::separated:
     case PointKind::free:
       beta = 0.;
       break;

@@ -104,7 +104,7 @@ namespace nsfd
     virtual const ContactSolver *contact_solver() const { return nullptr; }
 
     /** What one solve leaves to the next, if anything. */
-    virtual void remember(Archive &) {}
+    virtual void serialize(Archive &) {}
   };
 
   template <int dim>

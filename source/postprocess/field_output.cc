@@ -80,7 +80,7 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  void FieldOutput<dim>::remember(Archive &archive)
+  void FieldOutput<dim>::serialize(Archive &archive)
   {
     archive.numbers("fields_written", number_);
     if (archive.reads() && communicator_.is_root())
@@ -89,14 +89,14 @@ namespace nsfd
       if (*series) {
         const Archive::Part part(
             archive, series == &xdmf_fields_ ? "fields" : "interfaces");
-        (*series)->remember(archive);
+        (*series)->serialize(archive);
       }
     if (xdmf_fields_)
       return;
     for (auto *series : {&fields_, &interfaces_}) {
       const Archive::Part part(archive,
                                series == &fields_ ? "fields" : "interfaces");
-      series->remember(archive);
+      series->serialize(archive);
     }
   }
 

@@ -39,7 +39,7 @@ namespace nsfd
     void mesh_changed();
 
     /** The series so far. Later files of an earlier run are removed. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     /** A picture's worth of data; empty except on rank 0. Collective. */
     Snapshot snapshot(const State &state,

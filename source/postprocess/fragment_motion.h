@@ -16,8 +16,8 @@ namespace nsfd
   /**
    * Mass, place, momentum, spin and energy of every fragment, with the mass
    * matrices of the bodies, so that the momenta of the fragments add up to that
-   * of the scene and their kinetic energies to that of the ledger. Sums do not
-   * depend on the ranks.
+   * of the scene and their kinetic energies to that of the energy balance. Sums
+   * do not depend on the ranks.
    */
   template <int dim>
   class FragmentMotion

@@ -116,7 +116,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void FragmentOutput<dim>::remember(Archive &archive)
+  void FragmentOutput<dim>::serialize(Archive &archive)
   {
     std::uintmax_t n_bytes = file_ ? file_->n_bytes() : 0;
     archive.numbers("fragments_bytes", n_bytes);

@@ -31,7 +31,7 @@ namespace nsfd
   class FragmentOutput
   {
   public:
-    /** If the run @p resumes, the file is left to remember(). */
+    /** If the run @p resumes, the file is left to serialize(). */
     FragmentOutput(const std::string &directory, FragmentMotion<dim> motion,
                    const Communicator &communicator, bool resumes);
 
@@ -45,7 +45,7 @@ namespace nsfd
     void mesh_changed(const State &start);
 
     /** After reading, the file ends where it did at the checkpoint. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     /** The last ones; on the first rank. */
     const std::vector<FragmentRecord> &records() const { return records_; }

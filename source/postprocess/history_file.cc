@@ -58,7 +58,7 @@ namespace nsfd
                                 e.impact,
                                 e.numerical,
                                 e.work,
-                                row.ledger_defect,
+                                row.balance_residual,
                                 row.broken_area,
                                 double(row.fragments),
                                 double(row.active),
@@ -83,7 +83,7 @@ namespace nsfd
       row.time_step = x[2];
       row.energy = {x[3], x[4], x[5],  x[6],  x[7],
                     x[8], x[9], x[10], x[11], x[12]};
-      row.ledger_defect = x[13];
+      row.balance_residual = x[13];
       row.broken_area = x[14];
       row.fragments = unsigned(x[15]);
       row.active = unsigned(x[16]);

@@ -145,9 +145,9 @@ namespace nsfd
   }
 
   template <int dim>
-  void Observers<dim>::remember_file(Archive &archive, const std::size_t k,
-                                     const bool of_profile,
-                                     std::string &failure)
+  void Observers<dim>::serialize_file(Archive &archive, const std::size_t k,
+                                      const bool of_profile,
+                                      std::string &failure)
   {
     const auto names = titles(k, of_profile);
     if (names.empty())
@@ -169,16 +169,16 @@ namespace nsfd
   }
 
   template <int dim>
-  void Observers<dim>::remember(Archive &archive)
+  void Observers<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "observables");
     std::string failure;
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const Archive::Part one(archive, records_[k].name);
-      remember_file(archive, k, false, failure);
-      remember_file(archive, k, true, failure);
+      serialize_file(archive, k, false, failure);
+      serialize_file(archive, k, true, failure);
       archive.common("last", records_[k].last);
-      input_.observables[k].observable->remember(archive);
+      input_.observables[k].observable->serialize(archive);
     }
     if (communicator_.any(!failure.empty()))
       throw BadCheckpoint(failure);

@@ -54,7 +54,7 @@ namespace nsfd
     const std::vector<ObservableRecord> &records() const { return records_; }
 
     /** How far the files have come; cuts them after reading. Collective. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     struct Files {
@@ -62,8 +62,8 @@ namespace nsfd
     };
     std::string path(std::size_t k, const char *ending) const;
     std::vector<std::string> titles(std::size_t k, bool of_profile) const;
-    void remember_file(Archive &archive, std::size_t k, bool of_profile,
-                       std::string &failure);
+    void serialize_file(Archive &archive, std::size_t k, bool of_profile,
+                        std::string &failure);
 
     const SceneInput &input_;
     const Communicator &communicator_;

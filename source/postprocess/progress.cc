@@ -59,7 +59,7 @@ namespace nsfd
         "step {:<6}  t {:.4e}  active {:<6}  broken {:<7}  newton {:<3}  "
         "krylov {:<5}  res {:<7}  defect {}",
         row.step, row.time, row.active, brief(row.broken_area, 1), row.newton,
-        row.krylov, brief(row.residual, 1), brief(row.ledger_defect, 0));
+        row.krylov, brief(row.residual, 1), brief(row.balance_residual, 0));
   }
 
   std::string Progress::duration(const double seconds)

@@ -308,7 +308,7 @@ namespace nsfd
       account.add("work of loads", energy(e.work));
       if (!report.history.empty())
         account.add_sum("difference", energy(sum - initial_energy - e.work));
-      account.add("worst defect", relative(report.summary.ledger_defect_max),
+      account.add("worst defect", relative(report.summary.balance_residual_max),
                   "relative, all steps");
       return account.card("Energy ledger at t = " +
                           engineering(report.summary.final_time, "s", 4));

@@ -205,7 +205,7 @@ namespace nsfd
                    column([](const auto &row) { return row.residual; }),
                    Colour::blue);
     chart.add_line("ledger defect", step_, column([](const auto &row) {
-                     return std::abs(row.ledger_defect);
+                     return std::abs(row.balance_residual);
                    }),
                    Colour::orange);
     return {"accuracy", chart};

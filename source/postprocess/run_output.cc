@@ -1,6 +1,6 @@
 #include "run_output.h"
 
-#include "remember_pictures.h"
+#include "serialize_pictures.h"
 #include "units_file.h"
 
 #include "core/archive.h"
@@ -172,22 +172,22 @@ namespace nsfd
   }
 
   template <int dim>
-  void RunOutput<dim>::remember(Archive &archive)
+  void RunOutput<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "output");
-    remember_history(archive);
+    serialize_history(archive);
     archive.numbers("due", next_fields_, fields_current_);
     if (fields_)
-      fields_->remember(archive);
+      fields_->serialize(archive);
     if (fragments_)
-      fragments_->remember(archive);
-    nsfd::remember(snapshots_, archive);
+      fragments_->serialize(archive);
+    nsfd::serialize(snapshots_, archive);
     if (archive.reads() && communicator_.is_root())
       write_descriptions();
   }
 
   template <int dim>
-  void RunOutput<dim>::remember_history(Archive &archive)
+  void RunOutput<dim>::serialize_history(Archive &archive)
   {
     std::uintmax_t n_bytes = history_file_ ? history_file_->n_bytes() : 0;
     archive.numbers("history_bytes", n_bytes);

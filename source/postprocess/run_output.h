@@ -29,7 +29,7 @@ namespace nsfd
   public:
     /**
      * Starts all files in the claimed directory of the input, or, if the run
-     * @p resumes, leaves them to remember(). A @p verbose run says every step.
+     * @p resumes, leaves them to serialize(). A @p verbose run says every step.
      */
     RunOutput(const SceneInput &input, const RunInfo &info, bool quiet,
               bool verbose, const Discretization<dim> &discretization,
@@ -68,7 +68,7 @@ namespace nsfd
      * row of the checkpoint, and the series of fields go on after its last.
      * @throws std::runtime_error if history.csv does not reach it. Collective.
      */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     /** summary.json and the report; nothing except on rank 0. */
     void write_summary(const Summary &summary,
@@ -81,7 +81,7 @@ namespace nsfd
     bool is_due(const State &state) const;
     void keep(const HistoryRow &row);
     void write_descriptions() const;
-    void remember_history(Archive &archive);
+    void serialize_history(Archive &archive);
     void write_page(const Summary &summary, const RunFindings &findings) const;
 
     const SceneInput &input_;

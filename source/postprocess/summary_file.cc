@@ -182,7 +182,7 @@ namespace nsfd
       json["crack_pressure_work"] = number(*summary.pressure_work);
     if (summary.viscous_traction_max)
       json["viscous_traction_max"] = number(*summary.viscous_traction_max);
-    json["ledger_defect_max"] = number(summary.ledger_defect_max);
+    json["ledger_defect_max"] = number(summary.balance_residual_max);
     json["residual_max"] = number(summary.residual_max);
     json["penetration_max"] = number(summary.penetration_max);
     json["penetration_bound"] = number(summary.penetration_bound);

@@ -185,7 +185,7 @@ namespace nsfd
     write();
   }
 
-  void PvdSeries::remember(Archive &archive)
+  void PvdSeries::serialize(Archive &archive)
   {
     std::vector<double> times;
     std::string names;

@@ -68,7 +68,7 @@ namespace nsfd
     void add(double time, const std::string &file);
 
     /** Its entries; the file is written again when they have been read. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     void write() const;

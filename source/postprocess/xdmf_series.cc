@@ -281,7 +281,7 @@ namespace nsfd
                                                  "</Xdmf>\n");
   }
 
-  void XdmfSeries::remember(Archive &archive)
+  void XdmfSeries::serialize(Archive &archive)
   {
     std::vector<double> times, lengths;
     std::string texts;

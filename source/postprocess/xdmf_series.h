@@ -33,7 +33,7 @@ namespace nsfd
      * removed from the files; a file that was cut off in the middle of a time
      * is put aside as NAME_damaged.h5.
      */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     struct Entry {

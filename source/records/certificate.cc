@@ -125,7 +125,7 @@ namespace nsfd
     {
       if (accepted(facts) == 0)
         return unmeasured_line("ledger defect", "no step was accepted");
-      const double defect = std::abs(facts.ledger_defect);
+      const double defect = std::abs(facts.balance_residual);
       Line line = line_of("ledger defect", defect, largest_defect,
                           within(defect <= largest_defect));
       if (line.verdict == Verdict::bad)
@@ -226,8 +226,8 @@ namespace nsfd
       if (accepted(facts) == 0)
         return unmeasured_line("taken again",
                                fmt::format("{} attempts, no step was accepted",
-                                           facts.rejected + facts.redone));
-      const double again = double(facts.rejected + facts.redone);
+                                           facts.rejected + facts.overshoots));
+      const double again = double(facts.rejected + facts.overshoots);
       const double kept = double(accepted(facts));
       Line line = line_of("taken again", again, kept, within(again < kept),
                           "{:.0f} steps", "less than ");
@@ -237,7 +237,7 @@ namespace nsfd
                                              : "shorten Time/step");
       else if (again > 0.)
         line.remark = fmt::format("{} not solved, {} too long", facts.rejected,
-                                  facts.redone);
+                                  facts.overshoots);
       return line;
     }
   } // namespace

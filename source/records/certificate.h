@@ -33,7 +33,7 @@ namespace nsfd
     unsigned long long smooth_steps = 0, steps = 0, static_steps = 0;
     double residual = 0., tolerance = 0.; ///< worst one, of the steps in time
     double imbalance = 0., static_tolerance = 0.; ///< the same of equilibria
-    double ledger_defect = 0.;
+    double balance_residual = 0.;
     std::vector<GivenEnergy> given; ///< by the lines that must not
     double penetration = 0., penetration_bound = 0.; ///< largest ones, m
     double penetration_excess = 0.; ///< of a point above its own bound, m
@@ -48,7 +48,7 @@ namespace nsfd
     unsigned long long beyond_unique = 0, solution_jumps = 0;
     /// nothing: no point has softened; length 0: between rigid bodies
     std::optional<ZoneResolution> zone;
-    unsigned long long rejected = 0, redone = 0; ///< attempts
+    unsigned long long rejected = 0, overshoots = 0; ///< attempts
     MotionLimits limits;
   };
 
@@ -89,7 +89,7 @@ namespace nsfd
    *                   has closed, and the overlap of its
    *                   released spring; beyond it, the tolerance times the
    *                   displacement and the round-off of positions
-   *     ledger defect 1e-9 of the largest energy
+   *     energy balance defect 1e-9 of the largest energy
    *     given by ...  by friction, damage, impacts and whatever else must not
    *                   give energy, in any stretch of steps: GivenEnergy
    *     uniqueness    no step in which a softening face may have had several

@@ -137,7 +137,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void AdaptiveMesh<dim>::remember(Archive &archive)
+  void AdaptiveMesh<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "adaptive_mesh");
     archive.numbers("sums", changes_, largest_cells_, cells_sum_, steps_,

@@ -37,7 +37,7 @@ namespace nsfd
     State restore(const std::vector<std::uint32_t> &ids);
 
     /** What has been counted so far. Collective. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     /**
      * Whether the mesh is good enough for a step from @p state to @p next, as

@@ -465,7 +465,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Extremes<dim>::remember(Archive &archive)
+  void Extremes<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "extremes");
     const auto visit = [&](const std::string &name, Peak &peak) {

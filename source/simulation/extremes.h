@@ -45,7 +45,7 @@ namespace nsfd
     /** Largest sum of both bounds of a point so far, m. Collective. */
     double penetration_bound() const;
 
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     static constexpr unsigned int interval = 16; ///< steps

@@ -30,7 +30,7 @@ namespace nsfd
     std::unique_ptr<Dynamics<dim>> dynamics;
     BondedDynamics<dim> *bonded = nullptr; ///< the same, if faces are bonded
     std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
-    /// of small motions with materials that remember, or null
+    /// of small motions with history-dependent materials, or null
     std::unique_ptr<InelasticBodies<dim>> inelastic;
     std::string method; ///< name of the nonsmooth solver
     std::unique_ptr<NonsmoothSolver<dim>> solver;

@@ -52,7 +52,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void RunCosts<dim>::remember(Archive &archive)
+  void RunCosts<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "costs");
     for (std::size_t k = 0; k < counts_.size(); ++k) {

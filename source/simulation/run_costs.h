@@ -22,7 +22,7 @@ namespace nsfd
     /** Measures the machine if the run took more than a second. Collective. */
     CostRecord finish(const Dynamics<dim> &dynamics) const;
 
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     /// in how many steps a number of iterations was needed

@@ -34,7 +34,7 @@ namespace nsfd
     facts.imbalance = imbalance_;
   }
 
-  void SolvedSteps::remember(Archive &archive)
+  void SolvedSteps::serialize(Archive &archive)
   {
     archive.numbers("solved_steps", dynamic_, quasi_static_, smooth_, residual_,
                     imbalance_);
@@ -164,10 +164,10 @@ namespace nsfd
     facts.tolerance = input.solver.tolerance;
     if (input.statics)
       facts.static_tolerance = input.statics->tolerance;
-    facts.ledger_defect = summary.ledger_defect_max;
+    facts.balance_residual = summary.balance_residual_max;
     const EnergyLines &e = summary.energy;
     if (!std::isfinite(e.kinetic + e.elastic + e.cohesive + e.numerical))
-      facts.ledger_defect = std::numeric_limits<double>::quiet_NaN();
+      facts.balance_residual = std::numeric_limits<double>::quiet_NaN();
     facts.given = given_energy(input, watch, state);
     facts.penetration = summary.penetration_max;
     facts.penetration_bound = summary.penetration_bound;
@@ -191,7 +191,8 @@ namespace nsfd
     facts.beyond_unique = counter("steps_beyond_uniqueness");
     facts.solution_jumps = counter("solution_jumps");
     facts.rejected = counter("rejected_steps");
-    facts.redone = counter("redone_steps") + counter("shortened_load_steps");
+    facts.overshoots =
+        counter("redone_steps") + counter("shortened_load_steps");
     if (facts.softens)
       facts.zone =
           zone_resolution(input, *model.discretization,

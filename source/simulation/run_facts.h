@@ -17,7 +17,7 @@ namespace nsfd
   public:
     void add(ResidualKind kind, double residual);
     void fill(RunFacts &facts) const;
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     unsigned long long dynamic_ = 0, quasi_static_ = 0, smooth_ = 0;

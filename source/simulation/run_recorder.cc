@@ -134,7 +134,7 @@ namespace nsfd
     row.time = state.time;
     row.time_step = time_step;
     row.energy = state.energy;
-    row.ledger_defect = report.ledger_defect;
+    row.balance_residual = report.balance_residual;
     row.broken_area = state.broken_area;
     row.fragments = fragments_->count();
     row.active = report.active;
@@ -212,7 +212,7 @@ namespace nsfd
     s.final_time = state.time;
     s.energy = state.energy;
     s.setup_seconds = tally_.setup_seconds();
-    s.ledger_defect_max = tally_.ledger_defect_max();
+    s.balance_residual_max = tally_.balance_residual_max();
     s.residual_max = tally_.residual_max();
     s.penetration_max = state.penetration;
     s.positive_friction_work = state.positive_friction_work;
@@ -267,17 +267,17 @@ namespace nsfd
   {
     archive.numbers("last_step", last_step_);
     if (observer_)
-      observer_->remember(archive);
-    extremes_->remember(archive);
+      observer_->serialize(archive);
+    extremes_->serialize(archive);
     tally_.serialize(archive, state, output_->cpu(), failed_checkpoints);
   }
 
   template <int dim>
   void RunRecorder<dim>::serialize_files(Archive &archive)
   {
-    output_->remember(archive);
+    output_->serialize(archive);
     if (observers_)
-      observers_->remember(archive);
+      observers_->serialize(archive);
   }
 
   template class RunRecorder<2>;

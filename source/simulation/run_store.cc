@@ -4,7 +4,7 @@
 
 #include "core/archive.h"
 #include "core/cost.h"
-#include "time_integration/remember_state.h"
+#include "time_integration/serialize_state.h"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ namespace nsfd
   template <int dim>
   void RunStore<dim>::serialize_state(Archive &archive)
   {
-    remember(parts_.state, archive);
+    serialize(parts_.state, archive);
     bool is_static = parts_.steps.is_first_of_two();
     archive.numbers("is_static", is_static, has_solvers_);
     if (archive.reads())
@@ -64,7 +64,7 @@ namespace nsfd
     if (with_solvers)
       parts_.steps.serialize_solvers(archive);
     if (parts_.adaptive)
-      parts_.adaptive->remember(archive);
+      parts_.adaptive->serialize(archive);
     parts_.recorder.serialize(archive, parts_.state, n_failed());
   }
 

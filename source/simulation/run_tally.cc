@@ -30,7 +30,8 @@ namespace nsfd
                       report.solver.residual);
     for (const auto &name : report.solver.switches)
       ++switches_[name];
-    ledger_defect_max_ = std::max(ledger_defect_max_, report.ledger_defect);
+    balance_residual_max_ =
+        std::max(balance_residual_max_, report.balance_residual);
     residual_max_ = std::max(residual_max_, report.solver.residual);
   }
 
@@ -94,11 +95,11 @@ namespace nsfd
                                 const double output,
                                 const unsigned int failed_checkpoints)
   {
-    watch_.remember(archive);
-    archive.numbers("largest", ledger_defect_max_, residual_max_);
-    solved_steps_.remember(archive);
-    costs_.remember(archive);
-    earlier_.remember(archive, of_process(state, output, failed_checkpoints));
+    watch_.serialize(archive);
+    archive.numbers("largest", balance_residual_max_, residual_max_);
+    solved_steps_.serialize(archive);
+    costs_.serialize(archive);
+    earlier_.serialize(archive, of_process(state, output, failed_checkpoints));
   }
 
   template class RunTally<2>;

@@ -34,7 +34,7 @@ namespace nsfd
     RunTotals totals(const State &state, double output,
                      unsigned int failed_checkpoints) const;
 
-    double ledger_defect_max() const { return ledger_defect_max_; }
+    double balance_residual_max() const { return balance_residual_max_; }
     double residual_max() const { return residual_max_; }
     const SolvedSteps &solved_steps() const { return solved_steps_; }
     const EnergyWatch &watch() const { return watch_; }
@@ -61,7 +61,7 @@ namespace nsfd
     RunCosts<dim> costs_;
     SolvedSteps solved_steps_;
     EnergyWatch watch_; ///< of the lines that must not give energy
-    double ledger_defect_max_ = 0., residual_max_ = 0.;
+    double balance_residual_max_ = 0., residual_max_ = 0.;
     unsigned int beyond_unique_ = 0;
     unsigned long long released_ = 0; ///< bonds
     std::map<std::string, unsigned int> switches_;

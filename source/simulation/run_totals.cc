@@ -53,7 +53,7 @@ namespace nsfd
     totals.cpu_seconds += earlier_.cpu_seconds;
   }
 
-  void EarlierTotals::remember(Archive &archive, const RunTotals &present)
+  void EarlierTotals::serialize(Archive &archive, const RunTotals &present)
   {
     const Archive::Part part(archive, "totals");
     RunTotals stored = present;

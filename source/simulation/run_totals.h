@@ -23,7 +23,7 @@ namespace nsfd
     void add_to(RunTotals &totals) const;
 
     /** @p present: as this process has counted so far. */
-    void remember(Archive &archive, const RunTotals &present);
+    void serialize(Archive &archive, const RunTotals &present);
 
   private:
     RunTotals earlier_;

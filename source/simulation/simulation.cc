@@ -157,8 +157,7 @@ namespace nsfd
     template <int dim>
     void Simulation<dim>::watch_signals() const
     {
-      stop_request::remember_signals(communicator_.is_root() &&
-                                     !options_.quiet);
+      stop_request::catch_signals(communicator_.is_root() && !options_.quiet);
     }
 
     template <int dim>

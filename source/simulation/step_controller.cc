@@ -15,7 +15,8 @@ namespace nsfd
     return fmt::format("{}", fmt::join(bad_formulas(communicator), "; "));
   }
 
-  /** Down the ladder at once where points soften, up one level per step. */
+  /** Down the step levels at once where points soften, up one level per step.
+   */
   template <int dim>
   void StepController<dim>::choose_step(const TimeIntegrator<dim> &integrator,
                                         const State &state)
@@ -48,14 +49,14 @@ namespace nsfd
     redo_until_ = control.time() + h * (1. - 1e-9);
     redo_step_ = MoreauJean<dim>::bound_share * unique;
     control.limit(redo_step_);
-    ++redone_;
+    ++overshoots_;
     return true;
   }
 
   /**
    * A bonded point went too far beyond its strength. True if the step is to be
    * taken again, to where the first of them reaches it; three levels down the
-   * ladder a front is steeper than the mesh resolves.
+   * step levels a front is steeper than the mesh resolves.
    */
   template <int dim>
   bool StepController<dim>::overshoots(const StepReport &report)
@@ -66,7 +67,7 @@ namespace nsfd
       return false;
     const double h = control.step();
     control.limit(std::clamp(report.share, 0.125, 0.5) * h);
-    ++redone_;
+    ++overshoots_;
     return true;
   }
 
@@ -137,7 +138,7 @@ namespace nsfd
   StepController<dim>::fill_counters(std::map<std::string, double> &c) const
   {
     c["rejected_steps"] = rejected_;
-    c["redone_steps"] = redone_;
+    c["redone_steps"] = overshoots_;
   }
 
   template <int dim>

@@ -12,7 +12,7 @@ namespace nsfd
   /**
    * How long a step of time is: the base step, bisected where a step is
    * rejected, where `step = auto` asks for one that has a single solution, or
-   * where bonded points went too far beyond their strength. The ladder of
+   * where bonded points went too far beyond their strength. The step levels of
    * bisected steps itself is Model::control.
    */
   template <int dim>
@@ -60,7 +60,7 @@ namespace nsfd
     const SceneInput &input_;
     Model<dim> &model_;
     const Communicator &communicator_;
-    unsigned int rejected_ = 0, redone_ = 0;
+    unsigned int rejected_ = 0, overshoots_ = 0;
     unsigned int attempts_ = 0; ///< at the present step, all rejected
     double redo_until_ = 0., redo_step_ = 0.; ///< s
   };

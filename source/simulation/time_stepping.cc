@@ -21,7 +21,8 @@ namespace nsfd
   void TimeStepping<dim>::hand_over(State &state)
   {
     const TimeIntegrator<dim> &last = integrator();
-    if (last.takes_steps()) // or the ladder is that of the next one already
+    if (last.takes_steps()) // or the step levels is that of the next one
+                            // already
       model_.control = model_.dynamic_control(input_, state.time);
     last.hand_over(state, model_.control->step());
     controller_.restart();
@@ -92,7 +93,7 @@ namespace nsfd
   void TimeStepping<dim>::serialize(Archive &archive)
   {
     controller_.serialize(archive);
-    model_.control->remember(archive);
+    model_.control->serialize(archive);
     for (TimeIntegrator<dim> *one : model_.integrators())
       one->serialize(archive);
   }
@@ -101,8 +102,8 @@ namespace nsfd
   void TimeStepping<dim>::serialize_solvers(Archive &archive)
   {
     const Archive::Part part(archive, "solver");
-    model_.dynamics->remember(archive);
-    model_.solver->remember(archive);
+    model_.dynamics->serialize(archive);
+    model_.solver->serialize(archive);
     for (TimeIntegrator<dim> *one : model_.integrators())
       one->serialize_solver(archive);
   }

@@ -43,7 +43,7 @@ namespace nsfd
     Outcome step(State &state, State &next, StepReport &report,
                  std::string &failure);
 
-    /** The step was accepted: the ladder goes on. */
+    /** The step was accepted: the step levels goes on. */
     void accept();
 
     TimeIntegrator<dim> &integrator() const

@@ -64,7 +64,7 @@ namespace nsfd
     std::vector<double> rigid;
     std::vector<double> obstacle_shift; ///< of moving ones, 3 per obstacle, m
     /// per place of a surface, see bodies/surface_contacts.h: dim components,
-    /// and what a point remembers
+    /// and its history
     std::vector<double> surface_impulse, surface_slip, surface_worn,
         surface_wear_speed, surface_overlap, surface_approach;
     std::vector<std::uint8_t> surface_contact;
@@ -74,7 +74,7 @@ namespace nsfd
     std::vector<double> surface_gap;
     /// of the bodies of this rank, in the last step only: a checkpoint has none
     std::vector<SurfaceTouch> touches;
-    /// what materials with history remember, cell by cell and point by point
+    /// what history-dependent materials keep, cell by cell and point by point
     /// of the cell quadrature, see bodies/history_cell.h; empty without such
     std::vector<double> material_history;
   };

@@ -85,7 +85,7 @@ namespace nsfd
       result.applications = number(counters, "operator_applications") / steps;
       result.block_factorisations = number(counters, "block_factorisations");
       result.global_factorisations = number(counters, "global_factorisations");
-      result.ledger_defect = number(summary, "ledger_defect_max");
+      result.balance_residual = number(summary, "ledger_defect_max");
       result.residual = number(summary, "residual_max");
       const Json dissipated = summary.value("dissipated", Json::object());
       const double energy =

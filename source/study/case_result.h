@@ -24,7 +24,7 @@ namespace nsfd
     double dofs = 0., cells = 0., steps = 0.;
     double newton = 0., krylov = 0., applications = 0.; ///< per step
     double block_factorisations = 0., global_factorisations = 0.;
-    double ledger_defect = 0., residual = 0.; ///< largest of all steps
+    double balance_residual = 0., residual = 0.; ///< largest of all steps
     /// lost by the time discretization, over all energy there was at the end
     double numerical_dissipation = 0.;
     double peak_memory_mb = 0.; ///< mean of the repeats

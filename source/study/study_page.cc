@@ -283,7 +283,7 @@ namespace nsfd
             percent(r.solve_spread()),
             fmt::format("{}", r.solve.size()),
             fmt::format("{:.0f}", r.peak_memory_mb),
-            fmt::format("{:.1e}", r.ledger_defect),
+            fmt::format("{:.1e}", r.balance_residual),
             fmt::format("{:.1e}", r.numerical_dissipation)};
         for (const std::string &error : errors) {
           const auto found = r.errors.find(error);
@@ -377,8 +377,8 @@ namespace nsfd
     }
     diagrams.add(
         "ledger_defect",
-        balance_chart(study, "Ledger defect", "relative defect",
-                      [](const CaseResult &r) { return r.ledger_defect; }));
+        balance_chart(study, "EnergyBalance defect", "relative defect",
+                      [](const CaseResult &r) { return r.balance_residual; }));
     diagrams.add("numerical_dissipation",
                  balance_chart(study, "Numerical dissipation",
                                "share of the energy, absolute value",

@@ -68,7 +68,7 @@ namespace nsfd
           {"product_gain", [](const CaseResult &r) { return r.product_gain; }},
           {"residual_max", [](const CaseResult &r) { return r.residual; }},
           {"ledger_defect_max",
-           [](const CaseResult &r) { return r.ledger_defect; }},
+           [](const CaseResult &r) { return r.balance_residual; }},
           {"numerical_dissipation",
            [](const CaseResult &r) { return r.numerical_dissipation; }}};
       return all;
@@ -136,7 +136,7 @@ namespace nsfd
                             "{:>8.0f} {:>9.1e}",
                             name_of(r.status), r.dofs, r.steps,
                             r.solve_median(), 50. * r.solve_spread(),
-                            r.peak_memory_mb, r.ledger_defect);
+                            r.peak_memory_mb, r.balance_residual);
         if (!errors.empty()) {
           const auto found = r.errors.find(errors[0]);
           text += found == r.errors.end()

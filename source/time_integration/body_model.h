@@ -67,8 +67,8 @@ namespace nsfd
     virtual void finish(const LawEvaluation<dim> &evaluation,
                         State &next) const = 0;
     /** Of the bodies in the step to @p next, whose motion is known; what
-        materials remember goes there. */
-    virtual BodyEnergies book(State &next) const = 0;
+        materials keep goes there. */
+    virtual BodyEnergies account(State &next) const = 0;
     /** Points and bodies are booked in @p next: what is left. */
     virtual void book_rest(State &, StepReport &) const {}
     /** The step is accepted: what later ones need to know of it. */

@@ -11,7 +11,7 @@ namespace nsfd
   struct State;
 
   /**
-   * The pressure of a fluid in open cracks, (22) of the report: p n on points
+   * The pressure of a fluid in open cracks, (22) of [AM06]: p n on points
    * whose beta at the start of a step is at or below the threshold of their
    * block, nothing on the others. So it is a load, known before the step is
    * solved, and contact and friction act next to it.

@@ -8,9 +8,9 @@
 namespace nsfd
 {
   /**
-   * K q at both ends of explicit steps. The books of a step ask for the force
-   * that moves the next one, and of bonded bodies it is the most expensive part
-   * of either.
+   * K q at both ends of explicit steps. The energy balance of a step ask for
+   * the force that moves the next one, and of bonded bodies it is the most
+   * expensive part of either.
    */
   template <int dim>
   class ElasticForces

@@ -104,7 +104,7 @@ namespace nsfd
     }
   }
 
-  void EnergyWatch::remember(Archive &archive)
+  void EnergyWatch::serialize(Archive &archive)
   {
     std::vector<double> sums(fallen.begin(), fallen.end());
     sums.insert(sums.end(), given.begin(), given.end());

@@ -63,7 +63,7 @@ namespace nsfd
     double scale = 0.; ///< the largest one
 
     void add(const LineChanges &step);
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
   };
 
   /** Share of the largest energy that counts as none. */

@@ -1,9 +1,9 @@
 #include "equilibrium_search.h"
 
-#include "loose_motion.h"
 #include "peak_rule.h"
 #include "relaxation.h"
-#include "static_ledger.h"
+#include "rigid_body_modes.h"
+#include "static_balance.h"
 
 #include "core/accelerated_rounds.h"
 #include "core/archive.h"
@@ -59,8 +59,8 @@ namespace nsfd
     dynamics_->reinit(h_, 1.);
     relaxation_ = std::make_unique<Relaxation<dim>>(*scene_, discretization,
                                                     *dynamics_, *solver_);
-    ledger_ = std::make_unique<StaticLedger<dim>>(*scene_, discretization,
-                                                  *dynamics_);
+    balance_ = std::make_unique<StaticBalance<dim>>(*scene_, discretization,
+                                                    *dynamics_);
   }
 
   template <int dim>
@@ -69,16 +69,16 @@ namespace nsfd
   template <int dim>
   const std::vector<double> &EquilibriumSearch<dim>::reactions() const
   {
-    return ledger_->reactions();
+    return balance_->reactions();
   }
 
   template <int dim>
-  void EquilibriumSearch<dim>::remember(Archive &archive)
+  void EquilibriumSearch<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "equilibria");
-    relaxation_->remember(archive);
-    dynamics_->remember(archive);
-    solver_->remember(archive);
+    relaxation_->serialize(archive);
+    dynamics_->serialize(archive);
+    solver_->serialize(archive);
   }
 
   template <int dim>
@@ -99,8 +99,9 @@ namespace nsfd
     State state = given;
     StepReport report;
     find(given, 0., Way::near, state, report);
-    ledger_->book(*relaxation_, std::vector<double>(given.velocity.size(), 0.),
-                  given, state, report);
+    balance_->account(*relaxation_,
+                      std::vector<double>(given.velocity.size(), 0.), given,
+                      state, report);
     const EnergyLines found = state.energy;
     state.energy = {};
     state.energy.elastic = found.elastic;
@@ -141,7 +142,7 @@ namespace nsfd
     find(old, time, way, next, report.step);
     report.stable = relaxation_->softening() < 1.;
     const EnergyLeft left =
-        ledger_->book(*relaxation_, forces_old, old, next, report.step);
+        balance_->account(*relaxation_, forces_old, old, next, report.step);
     report.left_over = left.energy;
     report.jumps =
         !report.stable || std::abs(left.energy) > jump_share * left.turnover;
@@ -204,7 +205,7 @@ namespace nsfd
         found = true;
         best = report;
         best_next = next;
-        reactions = ledger_->reactions();
+        reactions = balance_->reactions();
       }
       if (best.accepted())
         break;
@@ -212,7 +213,7 @@ namespace nsfd
     if (!found)
       throw StepRejected(failure);
     next = best_next;
-    ledger_->set_reactions(reactions);
+    balance_->set_reactions(reactions);
     if (best.skips_peak)
       best.share = ahead.share;
     return best;
@@ -260,11 +261,11 @@ namespace nsfd
   }
 
   template <int dim>
-  void EquilibriumSearch<dim>::refuse_loose_motion(const State &old,
-                                                   const double time)
+  void EquilibriumSearch<dim>::refuse_rigid_body_modes(const State &old,
+                                                       const double time)
   {
-    const std::string loose = loose_motion(discretization_, communicator_, old,
-                                           relaxation_->residual());
+    const std::string loose = rigid_body_modes(discretization_, communicator_,
+                                               old, relaxation_->residual());
     if (loose.empty())
       return;
     throw StepRejected(
@@ -311,7 +312,7 @@ namespace nsfd
       if (std::abs(ratio - 1.) < 1e-3) {
         if (old == nullptr)
           break;
-        refuse_loose_motion(*old, relaxation_->time());
+        refuse_rigid_body_modes(*old, relaxation_->time());
       }
       if (ratio > 0.1 && last < near) {
         if (!accelerate(q, report))
@@ -376,7 +377,7 @@ namespace nsfd
     if (way == Way::damped)
       follow_damped(q, report);
     if (!settle(q, most_rounds, input_.statics->tolerance, report, &old)) {
-      refuse_loose_motion(old, time);
+      refuse_rigid_body_modes(old, time);
       throw StepRejected(fmt::format(
           "no equilibrium was found at t = {:.6g}: {:.2e} of the forces are "
           "left over; worst face {}",

@@ -13,7 +13,7 @@ namespace nsfd
   template <int dim>
   class Relaxation;
   template <int dim>
-  class StaticLedger;
+  class StaticBalance;
 
   /** An equilibrium, and how it lies to the one before it. */
   struct EquilibriumReport {
@@ -37,12 +37,12 @@ namespace nsfd
 
   /**
    * Equilibria under the loads and the prescribed motion of a time, without
-   * inertia (section 3.1 of the report): rounds of long implicit steps from
+   * inertia (section 3.1 of [AM06]): rounds of long implicit steps from
    * rest, accelerated by KINSOL, until the forces left over are small against
    * those present. Has matrices, solver and scene of its own, with theta = 1
    * and cohesion at the end point, whatever the dynamic steps use.
    *
-   * A step remembers only what its equilibrium says: damage, friction and
+   * A step keeps only what its equilibrium says: damage, friction and
    * contact see the change from the equilibrium before it, not the rounds.
    *
    * Softening leaves several equilibria. The one that continues the last is
@@ -84,7 +84,7 @@ namespace nsfd
     /** Of what a step moves; what is left over above it makes a jump. */
     static constexpr double jump_share = 0.01;
 
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     struct Counters {
       unsigned long long equilibria = 0, rounds = 0, step_changes = 0;
@@ -109,7 +109,7 @@ namespace nsfd
     std::string face_of_all(double value, std::size_t point) const;
     bool round(std::vector<double> &q, StepReport &report);
     bool accelerate(std::vector<double> &q, StepReport &report);
-    void refuse_loose_motion(const State &old, double time);
+    void refuse_rigid_body_modes(const State &old, double time);
 
     const SceneInput &input_;
     const std::unique_ptr<const SceneInput> scene_;
@@ -118,7 +118,7 @@ namespace nsfd
     std::unique_ptr<Dynamics<dim>> dynamics_;
     std::unique_ptr<NonsmoothSolver<dim>> solver_;
     std::unique_ptr<Relaxation<dim>> relaxation_;
-    std::unique_ptr<StaticLedger<dim>> ledger_;
+    std::unique_ptr<StaticBalance<dim>> balance_;
     double crossing_, h_;      ///< s, of a cell; pseudo-time step of the rounds
     double first_h_;           ///< of every solve
     double goal_ = 0.;         ///< of the rounds: share of the forces left over

@@ -127,9 +127,9 @@ namespace nsfd
   }
 
   template <int dim>
-  BodyEnergies InelasticModel<dim>::book(State &next) const
+  BodyEnergies InelasticModel<dim>::account(State &next) const
   {
-    return sum(parts_.dynamics.communicator(), bodies_.book(next));
+    return sum(parts_.dynamics.communicator(), bodies_.account(next));
   }
 
   template <int dim>

@@ -31,7 +31,7 @@ namespace nsfd
     double error() const override;
     void finish(const LawEvaluation<dim> &evaluation,
                 State &next) const override;
-    BodyEnergies book(State &next) const override;
+    BodyEnergies account(State &next) const override;
 
     StepPoints<dim> points() override;
     const std::vector<double> &velocity() const override { return v_; }

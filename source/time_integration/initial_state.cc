@@ -54,7 +54,7 @@ namespace nsfd
         state.two_sided[i] = block.intact == IntactFaces::spring;
         const auto &interaction = problem.interactions[problem.interaction[i]];
         const double factor = problem.opening_factor[i];
-        // below the elastic limit there is nothing to remember
+        // below the elastic limit there is nothing to keep
         // (just below, so that round-off does not damage it)
         Reach history = reach_of<dim>(interaction, &state.jump[i * dim]);
         history.opening =
@@ -80,7 +80,7 @@ namespace nsfd
       std::vector<double> stored(problem.n_owned, 0.);
       for (std::size_t i = 0; i < problem.n_owned; ++i) {
         if (state.kind[i] == PointKind::bonded ||
-            state.kind[i] == PointKind::parted)
+            state.kind[i] == PointKind::separated)
           continue; // in the stiffness of the bodies, or nowhere
         if (state.two_sided[i])
           start.compression_stiffness[i] = intact_stiffness<dim>(problem, i);
@@ -147,7 +147,7 @@ namespace nsfd
     if (bonded)
       bonded->set_bonds(bonded_points(state));
     set_energies(dynamics, problem, state);
-    begin_books(state);
+    begin_balance(state);
     return state;
   }
 
@@ -163,7 +163,7 @@ namespace nsfd
     return state;
   }
 
-  void begin_books(State &state)
+  void begin_balance(State &state)
   {
     const auto &energy = state.energy;
     state.initial_energy = energy.kinetic + energy.elastic + energy.cohesive;

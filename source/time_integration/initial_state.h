@@ -44,7 +44,7 @@ namespace nsfd
                        const Discretization<dim> &discretization);
 
   /**
-   * What the points are and remember at t = 0, from the jumps of @p state; gaps
+   * What the points are and keep at t = 0, from the jumps of @p state; gaps
    * of obstacles go into these.
    */
   template <int dim>
@@ -59,5 +59,5 @@ namespace nsfd
                           const State &state);
 
   /** From the energies of @p state on. */
-  void begin_books(State &state);
+  void begin_balance(State &state);
 } // namespace nsfd

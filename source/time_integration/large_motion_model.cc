@@ -1,6 +1,6 @@
 #include "large_motion_model.h"
 
-#include "common_books.h"
+#include "common_balance.h"
 #include "contact_fields.h"
 #include "core/gather.h"
 #include "initial_state.h"
@@ -126,7 +126,7 @@ namespace nsfd
     if (contacts_)
       contacts_->set_initial(state);
     complete(state);
-    begin_books(state);
+    begin_balance(state);
     return state;
   }
 
@@ -387,9 +387,9 @@ namespace nsfd
   }
 
   template <int dim>
-  BodyEnergies LargeMotionModel<dim>::book(State &) const
+  BodyEnergies LargeMotionModel<dim>::account(State &) const
   {
-    return sum(parts_.dynamics.communicator(), bodies_.book());
+    return sum(parts_.dynamics.communicator(), bodies_.account());
   }
 
   template <int dim>
@@ -403,7 +403,7 @@ namespace nsfd
     for (std::size_t i = 0; i < parts_.problem.n_owned; ++i)
       stored.push_back(problem_.weight[i] * stored_energy<dim>(problem_, i));
     next.energy.numerical -= all.sum(stored) - old_.energy.cohesive;
-    close_books(old_, next, report);
+    close_balance(old_, next, report);
   }
 
   template <int dim>
@@ -411,7 +411,7 @@ namespace nsfd
   {
     if (contacts_) {
       history_.leave(*start_, next);
-      contacts_->remember_facets(next);
+      contacts_->store_facets(next);
       if (!parts_.input.observables.empty())
         next.touches = history_.touches(next);
     }

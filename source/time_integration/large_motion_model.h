@@ -41,7 +41,7 @@ namespace nsfd
     double error() const override;
     void finish(const LawEvaluation<dim> &evaluation,
                 State &next) const override;
-    BodyEnergies book(State &next) const override;
+    BodyEnergies account(State &next) const override;
     void book_rest(State &next, StepReport &report) const override;
     void accept(State &next) override;
 

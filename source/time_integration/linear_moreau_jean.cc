@@ -1,10 +1,10 @@
 #include "linear_moreau_jean.h"
 
 #include "bond_release.h"
-#include "common_books.h"
+#include "common_balance.h"
 #include "elastic_forces.h"
+#include "energy_balance.h"
 #include "initial_state.h"
-#include "ledger.h"
 #include "point_name.h"
 #include "save_problem.h"
 
@@ -120,13 +120,13 @@ namespace nsfd
     if (old.step == 0)
       charge_memory("vectors of a step and its solver");
     const Stopwatch watch(this->timings_.ledger);
-    const Charge charge(Cost::ledger);
+    const Charge charge(Cost::energy_balance);
     if (elastic_forces_)
       elastic_forces_->finish(next);
-    const BodyEnergies bodies = this->ledger_->book_bodies(
+    const BodyEnergies bodies = this->balance_->book_bodies(
         this->free_motion_.loads(), h, old, next, elastic_forces_.get());
-    this->ledger_->book(this->problem_, evaluation, origins, bodies, old, next,
-                        report);
+    this->balance_->account(this->problem_, evaluation, origins, bodies, old,
+                            next, report);
     const TakenStep step{old, next, h, energy_scale, evaluation.worst_point};
     this->check_.check_balance(step, report);
     relate_defect(energy_scale, next, report);

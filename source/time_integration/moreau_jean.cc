@@ -1,6 +1,6 @@
 #include "moreau_jean.h"
 
-#include "ledger.h"
+#include "energy_balance.h"
 #include "step_data.h"
 #include "uniqueness.h"
 
@@ -15,8 +15,8 @@ namespace nsfd
       : input_(input), discretization_(discretization), dynamics_(dynamics),
         problem_(constant_data(input, discretization)),
         uniqueness_(std::make_unique<UniquenessBound<dim>>(input, dynamics)),
-        ledger_(std::make_unique<Ledger<dim>>(input, discretization, dynamics,
-                                              *uniqueness_)),
+        balance_(std::make_unique<EnergyBalance<dim>>(input, discretization,
+                                                      dynamics, *uniqueness_)),
         free_motion_(input, discretization, dynamics),
         step_problem_(input, discretization, dynamics, counters_),
         check_(input, [this](const std::size_t i) { return describe(i); })
@@ -50,7 +50,7 @@ namespace nsfd
   template <int dim>
   const std::vector<double> &MoreauJean<dim>::reactions() const
   {
-    return ledger_->reactions();
+    return balance_->reactions();
   }
 
   template <int dim>

@@ -14,7 +14,7 @@ namespace nsfd
 {
   struct SceneInput;
   template <int dim>
-  class Ledger;
+  class EnergyBalance;
   template <int dim>
   class UniquenessBound;
 
@@ -81,7 +81,7 @@ namespace nsfd
     Counters counters_;
     OneStepProblem<dim> problem_;
     std::unique_ptr<UniquenessBound<dim>> uniqueness_;
-    std::unique_ptr<Ledger<dim>> ledger_;
+    std::unique_ptr<EnergyBalance<dim>> balance_;
     FreeMotion<dim> free_motion_;
     StepProblem<dim> step_problem_;
     StepCheck check_;

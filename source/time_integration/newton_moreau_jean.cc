@@ -1,9 +1,9 @@
 #include "newton_moreau_jean.h"
 
-#include "common_books.h"
+#include "common_balance.h"
+#include "energy_balance.h"
 #include "inelastic_model.h"
 #include "large_motion_model.h"
-#include "ledger.h"
 #include "save_problem.h"
 
 #include "core/cost.h"
@@ -171,14 +171,14 @@ namespace nsfd
     this->check_.check_solution(h, old.time, report.solver,
                                 evaluation->worst_point);
     const Stopwatch watch(this->timings_.ledger);
-    const Charge charge(Cost::ledger);
+    const Charge charge(Cost::energy_balance);
     next.step = old.step + 1;
     next.time = old.time + h;
     next.last_step = h;
     next.impulse = impulse_;
     bodies_->finish(*evaluation, next);
-    this->ledger_->book(points.problem, *evaluation, points.origins,
-                        bodies_->book(next), points.old, next, report);
+    this->balance_->account(points.problem, *evaluation, points.origins,
+                            bodies_->account(next), points.old, next, report);
     bodies_->book_rest(next, report);
     const TakenStep step{old, next, h, energy_scale_, evaluation->worst_point};
     this->check_.check_balance(step, report);

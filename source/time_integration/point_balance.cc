@@ -1,6 +1,6 @@
 #include "point_balance.h"
 
-#include "common_books.h"
+#include "common_balance.h"
 #include "step_data.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -49,7 +49,8 @@ namespace nsfd
   template <int dim>
   void PointBalance<dim>::add(const std::size_t i)
   {
-    if (old_.kind[i] == PointKind::bonded || old_.kind[i] == PointKind::parted)
+    if (old_.kind[i] == PointKind::bonded ||
+        old_.kind[i] == PointKind::separated)
       return; // its energy is one of the bodies, or of other points
     Vector U, U_theta;
     for (unsigned int c = 0; c < dim; ++c) {
@@ -69,7 +70,7 @@ namespace nsfd
     const auto energies =
         point_energies<dim>(problem_, i, U, evaluation_.solutions[i].frozen);
     add_law(i, U_theta, energies);
-    remember(i, energies);
+    keep_history(i, energies);
     add_penetration(i);
   }
 
@@ -198,11 +199,11 @@ namespace nsfd
   }
 
   template <int dim>
-  void PointBalance<dim>::remember(const std::size_t i,
-                                   const PointEnergies<dim> &energies)
+  void PointBalance<dim>::keep_history(const std::size_t i,
+                                       const PointEnergies<dim> &energies)
   {
     const auto &solution = evaluation_.solutions[i];
-    const bool breaks = remember_damage<dim>(
+    const bool breaks = record_damage<dim>(
         energies, i, problem_.kind[i] == PointKind::rigid && solution.damages,
         old_, next_);
     if (breaks)

@@ -21,7 +21,7 @@ namespace nsfd
 
   /**
    * The energy balance of the points of a step, one after the other, and what
-   * they remember of it: d_m, beta, kind, slip, bound of the penetration.
+   * they keep of it: d_m, beta, kind, slip, bound of the penetration.
    */
   template <int dim>
   class PointBalance
@@ -89,7 +89,7 @@ namespace nsfd
     void add_law(std::size_t i, const Vector &U_theta,
                  const PointEnergies<dim> &energies);
     double add_lift(std::size_t i);
-    void remember(std::size_t i, const PointEnergies<dim> &energies);
+    void keep_history(std::size_t i, const PointEnergies<dim> &energies);
     void add_penetration(std::size_t i);
 
     const Discretization<dim> &discretization_;

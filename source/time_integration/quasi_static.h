@@ -56,7 +56,7 @@ namespace nsfd
     void serialize(Archive &archive) override;
     void serialize_solver(Archive &archive) override
     {
-      search_.remember(archive);
+      search_.serialize(archive);
     }
 
     EquilibriumSearch<dim> &search() { return search_; }

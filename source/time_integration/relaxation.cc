@@ -84,7 +84,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Relaxation<dim>::remember(Archive &archive)
+  void Relaxation<dim>::serialize(Archive &archive)
   {
     archive.numbers("largest_forces", point_scale_, present_);
   }

@@ -23,7 +23,7 @@ namespace nsfd
    *
    * the proximal map of the potential energy, which equilibria leave where
    * they are. The mass holds what floats. Everything a step of the load
-   * remembers is taken from the equilibrium before it: d_m, the sliding
+   * keeps is taken from the equilibrium before it: d_m, the sliding
    * (u_T - u_T,k in place of h U_T) and the gap, u_N >= 0 in place of its
    * velocity. So the iterates q leave no trace, and the equilibrium obeys the
    * laws over the step of the load exactly.
@@ -116,7 +116,7 @@ namespace nsfd
       return solutions_;
     }
     /** The largest forces so far. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     const std::vector<double> &forces() const { return free_motion_.loads(); }
     const std::vector<double> &pressure() const { return pressure_; }

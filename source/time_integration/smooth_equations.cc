@@ -60,7 +60,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void SmoothEquations<dim>::remember(Archive &archive)
+  void SmoothEquations<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "smooth_motion");
     archive.numbers("scales", velocity_scale_, displacement_scale_,

@@ -37,7 +37,7 @@ namespace nsfd
     void solve_shifted(double gamma, const Vector &b, Vector &x);
 
     /** Scales of the start, and the step of the pairs. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     typename SmoothMotion<dim>::Counters counters;
 

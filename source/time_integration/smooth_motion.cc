@@ -1,7 +1,7 @@
 #include "smooth_equations.h"
 
 #include "bond_release.h"
-#include "common_books.h"
+#include "common_balance.h"
 
 #include "core/cost.h"
 #include "core/stop_request.h"
@@ -149,7 +149,7 @@ namespace nsfd
     report.solver.converged = true;
     report.solver.newton = unsigned(counters.steps - before.steps);
     report.solver.krylov = unsigned(counters.iterations - before.iterations);
-    close_books(old, next, report);
+    close_balance(old, next, report);
     report.changes = changes_of_energy(old.energy, next);
     return report;
   }
@@ -269,7 +269,7 @@ namespace nsfd
   template <int dim>
   void SmoothMotion<dim>::serialize(Archive &archive)
   {
-    equations_->remember(archive);
+    equations_->serialize(archive);
   }
 
   template <int dim>

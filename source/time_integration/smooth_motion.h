@@ -20,8 +20,8 @@ namespace nsfd
    *
    * with rows r of joints and prescribed motion, whose impulses mu since the
    * start of a recorded step keep H_r v = g exactly, without a derivative of
-   * g. The work of the loads is integrated along: the ledger shows the error
-   * of the integration.
+   * g. The work of the loads is integrated along: the energy balance shows the
+   * error of the integration.
    */
   template <int dim>
   class SmoothMotion final : public TimeIntegrator<dim>

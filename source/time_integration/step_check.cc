@@ -32,13 +32,13 @@ namespace nsfd
   {
     // what is not a number is not within the bound
     starts_cold_ = true;
-    if (!(report.ledger_defect * step.next.largest_energy <=
+    if (!(report.balance_residual * step.next.largest_energy <=
           1e-6 * std::max(step.next.largest_energy, step.energy_scale)))
       throw StepRejected(fmt::format(
           "the energies of the step of {:.4g} at t = {:.6g} do not add up "
           "(relative defect {:.1e}): rows that ask for the same have made "
           "impulses too large; worst face {}",
-          step.time_step, step.old.time, report.ledger_defect,
+          step.time_step, step.old.time, report.balance_residual,
           describe_(step.worst_point)));
     starts_cold_ = false;
   }
@@ -58,7 +58,7 @@ namespace nsfd
                              std::sqrt(step.energy_scale * changes.impulses));
     const double bound = energy_round_off * changes.scale + changes.noise +
                          // no line is known better than the balance closes
-                         10. * report.ledger_defect * next.largest_energy;
+                         10. * report.balance_residual * next.largest_energy;
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
       const bool two_sided =

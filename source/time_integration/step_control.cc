@@ -66,10 +66,10 @@ namespace nsfd
     return true;
   }
 
-  void StepControl::remember(Archive &archive)
+  void StepControl::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "step_control");
-    archive.numbers("ladder", start_, end_, base_, n_base_, base_count_,
+    archive.numbers("step_levels", start_, end_, base_, n_base_, base_count_,
                     position_, level_, maximum_level_, n_halvings_, ceiling_);
   }
 

@@ -5,7 +5,7 @@ namespace nsfd
   class Archive;
 
   /**
-   * Steps on a ladder: the base step divides the time to the end evenly; level
+   * Steps by bisection: the base step divides the time to the end evenly; level
    * l takes base / 2^l. A rejected step goes down one level at once; a success
    * goes up one level where the position allows it, so that every time is a
    * multiple of the base step again. Times are computed from counters, not
@@ -29,16 +29,16 @@ namespace nsfd
     /** The step was taken. */
     void accept();
     bool can_halve() const { return level_ < maximum_level_; }
-    /** One level down. False if the ladder ends here. */
+    /** One level down. False if no finer level is allowed. */
     bool halve();
-    /** Down until step() <= @p limit, as far as the ladder goes. */
+    /** Down until step() <= @p limit, as far as levels go. */
     void limit(double limit);
     /** Do not go up above steps of @p limit at the next accept(). */
     void set_ceiling(double limit) { ceiling_ = limit; }
 
     unsigned int halvings() const { return n_halvings_; }
 
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     double end_, base_, ceiling_;

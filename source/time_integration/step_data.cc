@@ -99,7 +99,7 @@ namespace nsfd
       problem.mask[i] = 0;
       problem.compression_stiffness[i] = 0.;
       if (old.kind[i] == PointKind::bonded ||
-          old.kind[i] == PointKind::parted) {
+          old.kind[i] == PointKind::separated) {
         problem.kind[i] = PointKind::free; // without contact: no impulse
         return;
       }

@@ -39,7 +39,7 @@ namespace nsfd
       to.released_overlap[i] =
           std::max(to.released_overlap[i], old.surface_overlap[row.twin]);
     }
-    // lips of springs that were closed are born with their overlap
+    // crack faces of springs that were closed are born with their overlap
     if (row.released)
       to.released_overlap[i] = std::max(to.released_overlap[i], -row.gap);
     to.contact[i] =

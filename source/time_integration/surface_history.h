@@ -7,7 +7,7 @@
 namespace nsfd
 {
   /**
-   * Contacts live for one step. What the places of their surfaces remember,
+   * Contacts live for one step. What the places of their surfaces keep,
    * `surface_...` of the state, they take over, and leave to them again.
    */
   template <int dim>

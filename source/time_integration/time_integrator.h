@@ -58,11 +58,11 @@ namespace nsfd
   /** What an accepted step reports besides its state. */
   struct StepReport {
     SolverReport solver;
-    double ledger_defect = 0.;  ///< of this step, relative
-    LineChanges changes;        ///< of the energy balance
-    unsigned int active = 0;    ///< points in contact or damaging
-    bool beyond_unique = false; ///< step above the uniqueness bound
-    unsigned int released = 0;  ///< points that leave their bond
+    double balance_residual = 0.; ///< of this step, relative
+    LineChanges changes;          ///< of the energy balance
+    unsigned int active = 0;      ///< points in contact or damaging
+    bool beyond_unique = false;   ///< step above the uniqueness bound
+    unsigned int released = 0;    ///< points that leave their bond
     double overshoot = 0.; ///< their largest traction over the strength, less 1
     double share = 1.; ///< of the step at which the first of them reached it
     std::string note;  ///< for the user, where there is something to say

@@ -74,12 +74,12 @@ namespace nsfd
   }
 
   template <int dim>
-  void CaseObserver<dim>::remember(Archive &archive)
+  void CaseObserver<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "verification");
     archive.numbers("time_step", time_step_);
     archive.points("first_beta", first_beta_);
-    case_.remember(archive);
+    case_.serialize(archive);
   }
 
   template <int dim>

@@ -34,7 +34,7 @@ namespace nsfd
     void mesh_changed(const State &start);
 
     /** What has been seen so far. Collective. */
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
     /** Relative errors at the time of @p state. Collective. */
     void finish(const State &state, std::map<std::string, double> &errors);

@@ -28,7 +28,7 @@ namespace nsfd::cases
       return (n_ * ta_ - t_ * a_) / variance;
     }
 
-    void remember(Archive &archive)
+    void serialize(Archive &archive)
     {
       archive.numbers("line_fit", n_, t_, a_, tt_, ta_);
     }

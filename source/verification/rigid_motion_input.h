@@ -87,7 +87,7 @@ namespace nsfd::cases
       last_ = angle;
     }
     double turned() const { return turned_; }
-    void remember(Archive &archive, const std::string &name)
+    void serialize(Archive &archive, const std::string &name)
     {
       archive.numbers(name, last_, turned_);
     }
@@ -96,7 +96,7 @@ namespace nsfd::cases
     double last_ = 0., turned_ = 0.;
   };
 
-  inline void remember(Archive &archive, const std::string &name, Vec3 &v)
+  inline void serialize(Archive &archive, const std::string &name, Vec3 &v)
   {
     archive.numbers(name, v[0], v[1], v[2]);
   }

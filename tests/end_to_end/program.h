@@ -104,7 +104,7 @@ namespace end_to_end
     unsigned int ranks = 1;
     bool report = false; ///< pictures take longer than most scenes
     double seconds = 120.;
-    /// J, for the ledger of a scene in which hardly anything moves
+    /// J, for the energy balance of a scene in which hardly anything moves
     double energy_scale = 0.;
   };
 
@@ -132,8 +132,8 @@ namespace end_to_end
 
   /**
    * The same, and what holds for every good run: exit code 0, completed, the
-   * ledger closed to 1e-9, no step above its tolerance. Failures are added to
-   * the current test.
+   * energy balance closed to 1e-9, no step above its tolerance. Failures are
+   * added to the current test.
    */
   Result good_run(const Workspace &workspace, const std::string &name,
                   const Launch &what);

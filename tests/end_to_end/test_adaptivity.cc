@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-// Meshes that follow the motion: orders on hanging faces, books, ranks.
+// Meshes that follow the motion: orders on hanging faces, energy balance,
+// ranks.
 
 namespace end_to_end::test_adaptivity
 {

@@ -52,8 +52,9 @@ namespace end_to_end::test_long_steps
         }
   }
 
-  // (C L/E) step^2 up to the inverse of machine precision. The ledger of these
-  // steps shows the round-off of the bodies, doc/stability.md: no good_run()
+  // (C L/E) step^2 up to the inverse of machine precision. The energy balance
+  // of these steps shows the round-off of the bodies, doc/stability.md: no
+  // good_run()
   TEST(LongSteps, StiffCorner)
   {
     const std::vector<std::pair<std::string, std::string>> corner = {

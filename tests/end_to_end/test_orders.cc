@@ -58,7 +58,7 @@ namespace end_to_end::test_orders
   }
 
   // The same mode, seen by both: what is left is the error of space, and the
-  // ledger, the frequency and the motion of joints of the pairs.
+  // energy balance, the frequency and the motion of joints of the pairs.
   TEST(OrdersTest, PairsOfArkode)
   {
     const Workspace workspace;
@@ -148,7 +148,7 @@ namespace end_to_end::test_orders
 
   // At this degree rigid and driven rows ask for the same; with theta = 1 their
   // impulses drift on the element-wise path, in elastic bodies as well, and the
-  // ledger says so: the global one.
+  // energy balance says so: the global one.
   TEST(OrdersTest, StepOfADampedWave)
   {
     const Workspace workspace;

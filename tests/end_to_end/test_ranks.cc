@@ -234,9 +234,9 @@ namespace end_to_end::test_ranks
 
   namespace
   {
-    // obstacles, balls, pins, springs that break and lips that meet again,
-    // several bodies, edges in space, materials that remember; short, since
-    // ranks that share a core wait for each other in every sum
+    // obstacles, balls, pins, springs that break and crack faces that meet
+    // again, several bodies, edges in space, history-dependent materials;
+    // short, since ranks that share a core wait for each other in every sum
     const std::vector<RankRow> moving_rows = {
         {"rocking", {"Time/end=0.05 s"}, {}},
         {"cradle", {"Time/end=20 ms"}, {}},

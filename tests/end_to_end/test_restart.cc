@@ -248,7 +248,7 @@ namespace end_to_end::test_restart
   }
 
   // Large motions do not know how many ranks there are: rigid bodies, surfaces
-  // and what they remember go from two to three, plastic cells from one to two.
+  // and what they keep go from two to three, plastic cells from one to two.
   TEST(Restart, OnOtherRanksAfterLargeMotions)
   {
     const std::vector<std::tuple<Launch, unsigned int, unsigned int>> rows = {

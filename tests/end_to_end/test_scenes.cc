@@ -143,7 +143,7 @@ namespace end_to_end::test_scenes
       }
     }
 
-    /** No line of the ledger does what physics forbids. */
+    /** No line of the energy balance does what physics forbids. */
     void expect_sound_history(const Result &result,
                               const double energy_scale = 0.)
     {
@@ -226,7 +226,8 @@ namespace end_to_end::test_scenes
   INSTANTIATE_TEST_SUITE_P(Table, SceneTest, testing::ValuesIn(all_scenes()),
                            [](const auto &info) { return info.param; });
 
-  // Damage, contact and friction in one: no exact solution, but a ledger.
+  // Damage, contact and friction in one: no exact solution, but a energy
+  // balance.
   TEST(Scenes, Quickstart)
   {
     Launch what{quickstart()};

@@ -226,7 +226,7 @@ namespace end_to_end::test_solvers
 
   // Rows joined rigidly all around leave W singular: impulses may grow along
   // its null space, but never so far that the step is wrong.
-  TEST(Solvers, GlobalPathClosesTheLedgerNextToRigidRows)
+  TEST(Solvers, GlobalPathClosesTheBalanceNextToRigidRows)
   {
     const Workspace workspace;
     const Result result =

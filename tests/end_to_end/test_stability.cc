@@ -191,7 +191,7 @@ namespace end_to_end::test_stability
   }
 
   // theta = 1, steps of 1000 crossings: equilibrium; theta = 1/2, of 100: the
-  // energy stays bounded (the ledger of longer ones: doc/stability.md).
+  // energy stays bounded (the energy balance of longer ones: doc/stability.md).
   TEST(Stability, LargeSteps)
   {
     const Workspace workspace;

@@ -91,7 +91,7 @@ end
         for (unsigned int d = 0; d + 1 < now.size(); ++d)
           ASSERT_NEAR(now[d], momenta[d], 1e-12 * momenta.back()) << d;
         ASSERT_LE(mesh.state.energy.kinetic, before.kinetic * (1. + 1e-12));
-        // the books stay closed
+        // the energy balance stay closed
         ASSERT_NEAR(closed(mesh.state.energy), closed(before),
                     1e-12 * before.kinetic);
         // 3 x over an edge of 4 (an area of 3 x 1)

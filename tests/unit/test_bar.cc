@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-// A bar that pulls one point: section 3.1 of the report. Exact values are
+// A bar that pulls one point: section 3.1 of [AM06]. Exact values are
 // closed forms in units of the law.
 
 using namespace nsfd;

@@ -10,7 +10,7 @@
 
 // Faces joined through the bulk: the stiffness is symmetric, exact on linear
 // fields, hardly less than that of the bodies alone; W is what its definition
-// says; a bond that breaks gives its energy to the books.
+// says; a bond that breaks gives its energy to the energy balance.
 
 using namespace nsfd;
 using nsfd::test::Scene;
@@ -385,7 +385,7 @@ end
   }
 
   /** Halves that are apart at the start: the bond stores it, and knows it. */
-  TEST(Bonded, JumpsAtTheStartAreInTheBooks)
+  TEST(Bonded, JumpsAtTheStartAreInTheBalance)
   {
     const std::string right = R"(
 subsection Material: right
@@ -403,11 +403,12 @@ end
                    right + solid);
     EXPECT_GT(scene.state.energy.elastic, 0.);
     for (unsigned int k = 0; k < 20; ++k)
-      EXPECT_LE(scene.advance().ledger_defect, 1e-12);
+      EXPECT_LE(scene.advance().balance_residual, 1e-12);
   }
 
-  /** Pulled until all bonds are gone: the ledger closes at every step. */
-  TEST(Bonded, BreaksWithClosedBooks)
+  /** Pulled until all bonds are gone: the energy balance closes at every step.
+   */
+  TEST(Bonded, BreaksWithClosedBalance)
   {
     const std::string brick = "set dimension = 2\nsubsection Mesh\n"
                               "  set type = rectangle\n"

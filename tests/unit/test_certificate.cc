@@ -27,7 +27,7 @@ namespace nsfd::test_certificate
       facts.steps = 100;
       facts.residual = 3e-9;
       facts.tolerance = 1e-8;
-      facts.ledger_defect = 2e-13;
+      facts.balance_residual = 2e-13;
       facts.given = {{"time scheme", 0., 1e-9, ""}};
       facts.penetration = 1e-7;
       facts.penetration_bound = 3e-7;
@@ -35,7 +35,7 @@ namespace nsfd::test_certificate
       facts.softens = true;
       facts.zone = ZoneResolution{4e-3, 1e-3, "all"};
       facts.rejected = 2;
-      facts.redone = 1;
+      facts.overshoots = 1;
       facts.extent = 1.;
       facts.limits.rotation = facts.limits.strain = facts.limits.stride =
           Peak{1e-3, 1e-4, {}};
@@ -102,10 +102,11 @@ namespace nsfd::test_certificate
            f.steps = 0;
          },
          Verdict::not_measured, "equilibria"},
-        {"Ledger", "ledger defect", [](RunFacts &f) { f.ledger_defect = 1e-8; },
-         Verdict::bad, "do not add up"},
-        {"LedgerUnknown", "ledger defect",
-         [](RunFacts &f) { f.ledger_defect = nan_value; }, Verdict::bad, ""},
+        {"Balance", "ledger defect",
+         [](RunFacts &f) { f.balance_residual = 1e-8; }, Verdict::bad,
+         "do not add up"},
+        {"BalanceUnknown", "ledger defect",
+         [](RunFacts &f) { f.balance_residual = nan_value; }, Verdict::bad, ""},
         {"Given", "given by friction",
          [](RunFacts &f) {
            f.given = {{"friction", 2e-9, 1e-9, "set sliding = energy safe"}};

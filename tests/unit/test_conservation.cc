@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "time_integration/common_books.h"
+#include "time_integration/common_balance.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@
 #include <vector>
 
 // Energy and momentum over whole steps. Balances are computed here from
-// states, matrices and impulses, not taken from the ledger that they check.
+// states, matrices and impulses, not taken from the energy balance that they
+// check.
 
 using namespace nsfd;
 using nsfd::test::Scene;
@@ -350,7 +351,7 @@ end
       }
   }
 
-  TEST(Conservation, LedgerClosesAndItsLinesHaveTheirSigns)
+  TEST(Conservation, BalanceClosesAndItsLinesHaveTheirSigns)
   {
     for (const std::string theta : {"0.5", "0.7"})
       for (const std::string other : {"Interface: all/friction=0.4",

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-// Pressure in open cracks, (22) of the report. Two rigid unit blocks of mass 1
+// Pressure in open cracks, (22) of [AM06]. Two rigid unit blocks of mass 1
 // next to each other: accelerations are numbers by hand, and 1e-12 is the
 // round-off of some hundred steps.
 
@@ -61,7 +61,7 @@ subsection Boundary: right
 end
 )";
 
-    TEST(CrackPressure, PushesTheLipsApart)
+    TEST(CrackPressure, PushesTheCrackFacesApart)
     {
       // v = p t / m each, u_N = p t^2
       test::Scene<2> scene(crack);
@@ -73,7 +73,7 @@ end
         EXPECT_NEAR(scene.state.pressure_work, 0.09 * t * t, 1e-12);
         EXPECT_EQ(scene.state.energy.work, scene.state.pressure_work);
         EXPECT_EQ(scene.state.impulse[0], 0.) << "no contact";
-        EXPECT_LT(report.ledger_defect, 1e-12);
+        EXPECT_LT(report.balance_residual, 1e-12);
       }
     }
 
@@ -93,10 +93,11 @@ end
 
     TEST(CrackPressure, AddsToTheContact)
     {
-      // pressed with 1 from outside: contact carries F = 1 - p, the lips F + p
+      // pressed with 1 from outside: contact carries F = 1 - p, the crack faces
+      // F + p
       test::Scene<2> scene(crack + pressed);
       for (unsigned int k = 0; k < 20; ++k) {
-        EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+        EXPECT_LT(scene.advance().balance_residual, 1e-12);
         EXPECT_NEAR(scene.state.impulse[0] / 0.01, 0.7, 1e-12);
         EXPECT_NEAR(scene.state.impulse[0] / 0.01 + scene.state.pressure[0], 1.,
                     1e-12);
@@ -153,7 +154,7 @@ end
         unsigned int intact = 0, damaged = 0, broken = 0;
         for (unsigned int k = 0; k < 100; ++k) {
           const State old = scene.state;
-          EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+          EXPECT_LT(scene.advance().balance_residual, 1e-12);
           plain.advance();
           const double force =
               (scene.state.relative_velocity[0] - old.relative_velocity[0]) /
@@ -201,7 +202,7 @@ end
       }
     }
 
-    TEST(CrackPressure, ClosesTheLedger)
+    TEST(CrackPressure, ClosesTheBalance)
     {
       // elastic cells that break, rub and are blown apart, in space and time
       for (const std::string path : {"element-wise", "global"})

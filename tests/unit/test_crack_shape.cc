@@ -129,7 +129,8 @@ namespace nsfd::test_crack_shape
     EXPECT_NEAR(shape.tortuosity, 1., round_off);
   }
 
-  // Two lips of length 2 above each other: twice as long as what they cover.
+  // Two crack faces of length 2 above each other: twice as long as what they
+  // cover.
   TEST(CrackShape, ParallelCracksCoverOnce)
   {
     std::vector<BrokenPoint> points;

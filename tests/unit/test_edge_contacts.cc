@@ -12,7 +12,7 @@
 #include <vector>
 
 // Whole steps of scenes with large motions. Energies and momenta are computed
-// here from states and masses, not taken from the ledger.
+// here from states and masses, not taken from the energy balance.
 
 using namespace nsfd;
 using namespace nsfd::test;
@@ -192,7 +192,7 @@ end
                      {"Contact: all/restitution=" + std::to_string(e)});
       double deepest = 0.;
       for (unsigned int k = 0; k < 20; ++k) {
-        EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+        EXPECT_LT(scene.advance().balance_residual, 1e-12);
         deepest = std::max(deepest, deepest_overlap(scene));
       }
       // masses 1 : 3, v_1 - v_2 = 2
@@ -241,7 +241,7 @@ end
     const double first = energy;
     const bool rubs = scene.input->contacts[0].friction > 0.;
     for (unsigned int k = 0; k < n_steps; ++k) {
-      EXPECT_LT(scene.advance().ledger_defect, 1e-9);
+      EXPECT_LT(scene.advance().balance_residual, 1e-9);
       // what sticks while it turns may give some of its friction back
       ASSERT_LE(scene.energy(), (rubs ? first : energy) + 1e-9 * first)
           << "step " << k;

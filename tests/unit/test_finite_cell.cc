@@ -59,7 +59,7 @@ namespace finite_strain::test_finite_cell
             middle[i] = (u0[i] + u1[i]) / 2.;
           }
           const double dissipated =
-              cell.finite->book({u0.data(), u1.data(), theta}).numerical;
+              cell.finite->account({u0.data(), u1.data(), theta}).numerical;
           if (theta > 0.5)
             EXPECT_GT(dissipated, 1e-3);
           else
@@ -188,7 +188,7 @@ namespace finite_strain::test_finite_cell
       EXPECT_FALSE(cell.finite->tangent({u, bad, 0.5}, K.data()));
       EXPECT_FALSE(cell.finite->symmetric_tangent({u, bad, 0.5}, K.data()));
       EXPECT_TRUE(std::isinf(cell.finite->energy(bad)));
-      EXPECT_TRUE(std::isnan(cell.finite->book({u, bad, 0.5}).numerical));
+      EXPECT_TRUE(std::isnan(cell.finite->account({u, bad, 0.5}).numerical));
     });
   }
 

@@ -42,8 +42,9 @@ namespace finite_strain::test_finite_flight
         end[i] += h * (theta * next[i] + (1. - theta) * v[i]);
         change[i] = next[i] - v[i];
       }
-      dissipated += cell.finite->book({u.data(), end.data(), theta}).numerical +
-                    (theta - 0.5) * scalar(change, applied(cell.mass, change));
+      dissipated +=
+          cell.finite->account({u.data(), end.data(), theta}).numerical +
+          (theta - 0.5) * scalar(change, applied(cell.mass, change));
       u = end;
       v = next;
       return true;

@@ -86,7 +86,7 @@ namespace plastic_flow::test_finite_flow
 
   // ------------------------------------------------------------ finite strain
 
-  /** A point of finite strain and its books. */
+  /** A point of finite strain and its energy balance. */
   struct Point {
     explicit Point(const PlasticInput &plastic)
         : law(make_history_material<3>(young, poisson, plastic, true, false)),
@@ -194,7 +194,7 @@ namespace plastic_flow::test_finite_flow
     }
   }
 
-  TEST(FiniteFlow, BooksOfAnyWayCloseAndNothingIsGained)
+  TEST(FiniteFlow, RandomStrainPathsCloseTheBalanceAndGainNothing)
   {
     for (const double viscosity : {0., 1e8})
       for (const double theta : {0.5, 0.7}) {

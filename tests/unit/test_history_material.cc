@@ -55,8 +55,8 @@ namespace plastic_flow::test_history_material
     {
       cell->begin_history(history.data());
       const Dofs fresh = history, rest(n_dofs, 0.);
-      cell->book({rest.data(), u0.data(), 0.5, 1., fresh.data()},
-                 history.data());
+      cell->account({rest.data(), u0.data(), 0.5, 1., fresh.data()},
+                    history.data());
     }
 
     CellMotion motion(const double theta) const
@@ -75,7 +75,7 @@ namespace plastic_flow::test_history_material
           Dofs f(n_dofs), after(used.history.size());
           ASSERT_TRUE(used.cell->force(used.motion(theta), f.data()));
           const CellLosses losses =
-              used.cell->book(used.motion(theta), after.data());
+              used.cell->account(used.motion(theta), after.data());
           EXPECT_GT(losses.plastic, 0.);
           double work = 0., moment = 0.;
           std::array<double, 2> total{};

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// Whole steps of scenes with materials that remember. Momenta are computed
+// Whole steps of scenes with history-dependent materials. Momenta are computed
 // here from states and masses.
 
 using namespace nsfd;
@@ -63,11 +63,11 @@ end
   }
 
   template <int dim>
-  void books_close(Scene<dim> &scene, const unsigned int n_steps)
+  void balance_closes(Scene<dim> &scene, const unsigned int n_steps)
   {
     double plastic = 0., viscous = 0.;
     for (unsigned int k = 0; k < n_steps; ++k) {
-      ASSERT_LT(scene.advance().ledger_defect, 1e-11) << k;
+      ASSERT_LT(scene.advance().balance_residual, 1e-11) << k;
       const EnergyLines &e = scene.state.energy;
       ASSERT_GE(e.plastic, plastic);
       ASSERT_GE(e.viscous, viscous);
@@ -109,15 +109,15 @@ end
     EXPECT_EQ(one.state.energy.plastic, 0.);
   }
 
-  TEST(InelasticMotion, BooksClose)
+  TEST(InelasticMotion, BalanceCloses)
   {
     for (const char *motion : {"motion=small", "motion=large"})
       for (const char *theta : {"Time/theta=0.5", "Time/theta=0.7"}) {
         SCOPED_TRACE(std::string(motion) + " " + theta);
         Scene<2> plastic(block, {motion, theta}),
             viscous(block, with(slowly, {motion, theta}));
-        books_close(plastic, 150);
-        books_close(viscous, 150);
+        balance_closes(plastic, 150);
+        balance_closes(viscous, 150);
         EXPECT_EQ(plastic.state.energy.viscous, 0.);
         EXPECT_GT(viscous.state.energy.viscous, 0.);
       }
@@ -137,7 +137,7 @@ end
   TEST(InelasticMotion, PlaneStress)
   {
     Scene<2> scene(block, {"plane=stress"});
-    books_close(scene, 150);
+    balance_closes(scene, 150);
   }
 
   TEST(InelasticMotion, ASecondStepFromTheSameStateIsTheSame)
@@ -166,7 +166,7 @@ end
                            "1 - 2 * (y - 0.5) + 0.8 * (x - 1)",
                            "Material: soft/initial velocity y=2 * (x - 1)"});
     const auto start = momenta(scene);
-    books_close(scene, 400);
+    balance_closes(scene, 400);
     const auto end = momenta(scene);
     EXPECT_LT(norm(difference(end[0], start[0])), 1e-10 * norm(start[0]));
     EXPECT_LT(norm(difference(end[1], start[1])), 1e-10 * norm(start[1]));
@@ -315,7 +315,7 @@ end
       SCOPED_TRACE(motion);
       Scene<3> scene(text, {motion});
       const auto start = momenta(scene);
-      books_close(scene, 80);
+      balance_closes(scene, 80);
       EXPECT_LT(norm(difference(momenta(scene)[0], start[0])), 1e-10);
     }
   }

@@ -135,7 +135,7 @@ namespace test_interior_point
     for (unsigned int k = 0; k < 4; ++k) {
       StepReport report;
       ASSERT_NO_THROW(report = scene.advance()) << k;
-      EXPECT_LE(report.ledger_defect, 1e-9);
+      EXPECT_LE(report.balance_residual, 1e-9);
     }
   }
 

@@ -63,7 +63,7 @@ namespace test_j2_flow
 
   double size(const Strain &A) { return std::sqrt(contract<3>(A, A)); }
 
-  /** A point and the books of its way. */
+  /** A point and the energy balance of its way. */
   struct Driven {
     Driven(const PlasticInput &plastic, const bool plane_stress = false)
         : flow(young, poisson, plane_stress, plastic)
@@ -342,7 +342,7 @@ namespace test_j2_flow
     std::uniform_real_distribution<double> uniform_{0., 1.};
   };
 
-  TEST(J2Flow, BooksOfAnyWayCloseAndNothingIsGained)
+  TEST(J2Flow, RandomStrainPathsCloseTheBalanceAndGainNothing)
   {
     for (const Case &c : cases()) {
       SCOPED_TRACE(c.name);

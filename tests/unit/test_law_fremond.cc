@@ -155,7 +155,7 @@ namespace test_law_fremond
     return result;
   }
 
-  TEST(ViscousAdhesion, ClosesTheLedgerOfARun)
+  TEST(ViscousAdhesion, ClosesTheBalanceOfARun)
   {
     const std::string blocks = R"(# blocks - two blocks fly apart.
 set dimension = 2
@@ -190,7 +190,7 @@ end
     for (const std::string rule : {"exact", "end point"}) {
       Scene<2> scene(blocks, {"Time/cohesion rule=" + rule});
       for (unsigned int k = 0; k < 200; ++k)
-        EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+        EXPECT_LT(scene.advance().balance_residual, 1e-12);
       const EnergyLines &e = scene.state.energy;
       EXPECT_GT(e.viscous, 0.01);
       EXPECT_GT(e.damage, 0.28) << "most of w = 0.3";

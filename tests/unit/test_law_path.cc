@@ -90,7 +90,7 @@ namespace test_law_path
     return CohesiveLawRegistry::instance().names();
   }
 
-  // Figure 5, left: marks of the report, in units of d_c and R_max.
+  // Figure 5, left: marks of [AM06], in units of d_c and R_max.
   TEST(LawPath, NormalCycle)
   {
     const double F = 1.4;

@@ -1,6 +1,6 @@
 #include "make_scene.h"
 
-#include "time_integration/common_books.h"
+#include "time_integration/common_balance.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@
 #include <vector>
 
 // Energy and momentum over whole steps. Balances are computed here from
-// states, matrices and impulses, not taken from the ledger that they check.
+// states, matrices and impulses, not taken from the energy balance that they
+// check.
 
 using namespace nsfd;
 using nsfd::test::Scene;
@@ -260,16 +261,16 @@ end
   }
 
   // A sum with something that is no number is never closed.
-  TEST(Conservation, BooksOfNoNumberAreNotClosed)
+  TEST(Conservation, BalanceOfNoNumberIsNotClosed)
   {
     State old, next;
     StepReport report;
     next.energy.kinetic = 2.;
     old.initial_energy = next.initial_energy = 2.;
-    close_books(old, next, report);
-    EXPECT_EQ(report.ledger_defect, 0.);
+    close_balance(old, next, report);
+    EXPECT_EQ(report.balance_residual, 0.);
     next.energy.plastic = std::numeric_limits<double>::quiet_NaN();
-    close_books(old, next, report);
-    EXPECT_TRUE(std::isnan(report.ledger_defect));
+    close_balance(old, next, report);
+    EXPECT_TRUE(std::isnan(report.balance_residual));
   }
 } // namespace test_lost_energy

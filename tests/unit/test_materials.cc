@@ -13,7 +13,7 @@
 
 // Graded, transversely isotropic and viscous materials in whole scenes: which
 // cells share their blocks, what a step does with them on every path, and
-// their books.
+// their energy balance.
 
 using namespace nsfd;
 using nsfd::test::Scene;
@@ -196,7 +196,7 @@ end
 
   // --- all of them, on all paths
 
-  TEST(LinearMaterials, PathsAgreeAndLedgersClose)
+  TEST(LinearMaterials, PathsAgreeAndBalancesClose)
   {
     const std::string graded =
         "  set Young modulus = exp(x / 8)\n  set Poisson ratio = 0.2 + y / 40\n"
@@ -318,7 +318,7 @@ end
     EXPECT_NEAR(power, 32. * (xx * 1. + xy * 0.4 + yy * -0.3), 1e-11);
   }
 
-  TEST(ViscousMaterial, SymplecticStepsAndFractureCloseTheLedger)
+  TEST(ViscousMaterial, SymplecticStepsAndFractureCloseTheBalance)
   {
     const std::string law = "  set law = michel-suquet\n  set stiffness = 21\n"
                             "  set strength = 0.1\n  set friction = 0.3";

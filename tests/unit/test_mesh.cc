@@ -115,14 +115,14 @@ namespace mesh_checks::test_mesh
     EXPECT_TRUE(contains(problems_of<3>(scene_of(plate_3d)), "no cell"));
   }
 
-  TEST(Mesh, BodiesAreGluedWhereFacesCoincide)
+  TEST(Mesh, BodiesAreJoinedWhereFacesCoincide)
   {
     const MeshInput a = box("rectangle", {0., 0.}, {1., 1.}, {4, 4});
     MeshInput b = box("rectangle", {1., 0.}, {3., 1.}, {8, 4});
-    const auto glued = report<2>(scene_of<2>({a, b}));
-    EXPECT_EQ(glued.n_cells, 48u);
-    EXPECT_NEAR(glued.volume, 3., 1e-12);
-    EXPECT_NEAR(glued.inner_face_area, 11 * 1. + 3 * 3., 1e-11);
+    const auto joined = report<2>(scene_of<2>({a, b}));
+    EXPECT_EQ(joined.n_cells, 48u);
+    EXPECT_NEAR(joined.volume, 3., 1e-12);
+    EXPECT_NEAR(joined.inner_face_area, 11 * 1. + 3 * 3., 1e-11);
 
     // rounding of the corner is no gap
     b.lower[0] += 1e-13;

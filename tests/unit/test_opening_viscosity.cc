@@ -55,7 +55,7 @@ end
         unsigned int broken = 0;
         for (unsigned int k = 0; k < 150; ++k) {
           const State old = scene.state;
-          EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+          EXPECT_LT(scene.advance().balance_residual, 1e-12);
           const double speed = (scene.state.jump[0] - old.jump[0]) / 0.01;
           EXPECT_GT(speed, 0.);
           if (old.beta[0] > 0.) {
@@ -102,7 +102,7 @@ end
       EXPECT_GT(after, 10u);
     }
 
-    TEST(OpeningViscosity, ClosesTheLedger)
+    TEST(OpeningViscosity, ClosesTheBalance)
     {
       for (const std::string path : {"element-wise", "global"})
         for (const std::string solver : {"dual newton", "gauss seidel"})

@@ -174,7 +174,7 @@ namespace output_checks::test_output
     row.newton = 4;
     row.krylov = 81;
     row.residual = 8.1e-11;
-    row.ledger_defect = 2e-13;
+    row.balance_residual = 2e-13;
     std::istringstream words(Progress::line(row));
     std::string word, line;
     while (words >> word)

@@ -190,7 +190,7 @@ namespace output_checks::test_pictures
 
     Report report;
     report.summary.completed = true;
-    report.summary.ledger_defect_max = nan_value;
+    report.summary.balance_residual_max = nan_value;
     report.summary.energy.work = nan_value;
     report.history = {history_row(0)};
     report.history[0].energy.elastic = nan_value;

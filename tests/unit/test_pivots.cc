@@ -1,4 +1,4 @@
-#include "nonsmooth/solvers/pivots.h"
+#include "nonsmooth/solvers/lemke.h"
 
 #include <gtest/gtest.h>
 
@@ -32,12 +32,12 @@ namespace test_pivots
   TEST(Pivots, OneContact)
   {
     Vector r;
-    ASSERT_TRUE(nsfd::solve_by_pivots({1, 0, 0, 1}, {1, 3}, {0.5}, 1, r));
+    ASSERT_TRUE(nsfd::solve_by_lemke({1, 0, 0, 1}, {1, 3}, {0.5}, 1, r));
     EXPECT_EQ(r, Vector({0., 0.}));
-    ASSERT_TRUE(nsfd::solve_by_pivots({1, 0, 0, 1}, {-2, 0.5}, {0.5}, 1, r));
+    ASSERT_TRUE(nsfd::solve_by_lemke({1, 0, 0, 1}, {-2, 0.5}, {0.5}, 1, r));
     EXPECT_NEAR(r[0], 2., 1e-14);
     EXPECT_NEAR(r[1], -0.5, 1e-14);
-    ASSERT_TRUE(nsfd::solve_by_pivots({1, 0, 0, 1}, {-2, 3.}, {0.5}, 1, r));
+    ASSERT_TRUE(nsfd::solve_by_lemke({1, 0, 0, 1}, {-2, 3.}, {0.5}, 1, r));
     EXPECT_NEAR(r[0], 2., 1e-14);
     EXPECT_NEAR(r[1], -1., 1e-14);
   }
@@ -48,7 +48,7 @@ namespace test_pivots
     const Vector W{1, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1},
         q{-2, 3, -2, 3};
     Vector r;
-    ASSERT_TRUE(nsfd::solve_by_pivots(W, q, {0.5, 0.5}, 1, r));
+    ASSERT_TRUE(nsfd::solve_by_lemke(W, q, {0.5, 0.5}, 1, r));
     EXPECT_NEAR(r[0] + r[2], 2., 1e-13);
     EXPECT_NEAR(r[1] + r[3], -1., 1e-13);
     EXPECT_LE(violation(W, q, {0.5, 0.5}, r), 1e-13);
@@ -75,7 +75,7 @@ namespace test_pivots
           for (std::size_t k = 0; k < rank; ++k)
             W[i * n + j] += A[i * rank + k] * A[j * rank + k];
       }
-      if (!nsfd::solve_by_pivots(W, q, mu, 1, r))
+      if (!nsfd::solve_by_lemke(W, q, mu, 1, r))
         continue;
       ++solved;
       EXPECT_LE(violation(W, q, mu, r), 1e-9) << trial;

@@ -78,7 +78,7 @@ end
       bar_2.start();
       for (unsigned int k = 1; k <= 4; ++k) {
         const auto report = bar_2.to(0.25 * k);
-        EXPECT_LT(report.step.ledger_defect, 1e-9);
+        EXPECT_LT(report.step.balance_residual, 1e-9);
         EXPECT_FALSE(report.jumps);
       }
       const double sigma = 3e6, A = 0.1;
@@ -148,7 +148,7 @@ end
       pressed.to(0.3);
       EXPECT_LT(pressed.state.energy.elastic, 1e-12) << "the gap is open";
       const auto report = pressed.to(1.);
-      EXPECT_LT(report.step.ledger_defect, 1e-9);
+      EXPECT_LT(report.step.balance_residual, 1e-9);
       EXPECT_NEAR(pressed.quasi_static.reactions()[0] / (2e9 * 0.002 * 0.04),
                   1., 1e-9);
       EXPECT_LT(pressed.state.penetration, 1e-12);
@@ -184,7 +184,7 @@ end
       double push = 0., last = 0.;
       for (const double t : {0.2, 0.4, 0.49}) {
         const auto report = pushed.to(t);
-        EXPECT_LT(report.step.ledger_defect, 1e-9);
+        EXPECT_LT(report.step.balance_residual, 1e-9);
         // as long as all sticks, what is left is the round-off of the jumps
         EXPECT_GE(pushed.state.energy.friction,
                   last - 1e-12 * pushed.state.energy.elastic)
@@ -277,7 +277,7 @@ end
         for (unsigned int step = 1; step <= n; ++step) {
           const auto report = pulled.to(double(step) / n);
           EXPECT_TRUE(report.accepted());
-          EXPECT_LT(report.step.ledger_defect, 1e-9);
+          EXPECT_LT(report.step.balance_residual, 1e-9);
         }
         EXPECT_GE(pulled.state.energy.numerical, 0.);
         EXPECT_LT(pulled.state.energy.numerical, 1e-9 * taken);

@@ -66,7 +66,7 @@ end
         const StepReport report = scene.advance();
         ASSERT_EQ(report.active, 0u);
         EXPECT_NEAR(kept_energy(scene), start, 1e-12 * start);
-        EXPECT_LT(report.ledger_defect, 1e-12);
+        EXPECT_LT(report.balance_residual, 1e-12);
         swing = std::max(swing, std::abs(scene.energy() - plain));
       }
       EXPECT_GT(swing, 1e-4 * plain) << "the plain energy is not the one kept";
@@ -93,7 +93,7 @@ end
       double t = 0.;
       for (unsigned int step = 0; step < 60; ++step) {
         const double h = first * std::array{1., 0.5, 0.7}[step % 3];
-        EXPECT_LT(scene.advance(h).ledger_defect, 1e-12);
+        EXPECT_LT(scene.advance(h).balance_residual, 1e-12);
         t += h;
       }
       const auto &d = *scene.discretization;
@@ -143,7 +143,7 @@ end
     }
 
     // Every face is bonded until it breaks.
-    TEST(SymplecticTest, BondsBreakWithClosedBooks)
+    TEST(SymplecticTest, BondsBreakWithClosedBalance)
     {
       std::string text = test::breaking_plate;
       const std::string intrinsic =
@@ -212,7 +212,7 @@ end
       }
     }
 
-    TEST(SymplecticTest, LedgerThroughFracture)
+    TEST(SymplecticTest, BalanceThroughFracture)
     {
       test::Scene<2> scene(test::breaking_plate, {"Time/scheme=symplectic",
                                                   "Time/step=0.05 crossings"});

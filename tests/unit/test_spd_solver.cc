@@ -13,7 +13,7 @@
 #include <vector>
 
 // The sparse matrix of all bodies against its factors M, K and H, the numbers
-// of the glued space against places in space, and both solvers against the
+// of the joined space against places in space, and both solvers against the
 // matrix.
 
 using namespace nsfd;
@@ -170,15 +170,16 @@ end
   }
 
   template <int dim>
-  void check_glue(const std::string &input)
+  void check_joined(const std::string &input)
   {
     for (const bool broken : {false, true}) {
       const Parts<dim> parts(input, broken);
-      GluedSpace glued(parts.scene.communicator, dim, parts.assembly.unknowns(),
-                       parts.assembly.node_pairs());
+      ConformingSpace joined(parts.scene.communicator, dim,
+                             parts.assembly.unknowns(),
+                             parts.assembly.node_pairs());
       const auto carrying = parts.assembly.carrying(parts.s, parts.k);
-      glued.glue(carrying);
-      const CoarseSpace &space = glued.space();
+      joined.conform(carrying);
+      const CoarseSpace &space = joined.space();
       EXPECT_EQ(std::size_t(space.n_global), dim * count_nodes(parts, broken));
       // one unknown has one place, and the modes are rigid motions of it
       std::vector<Vector> at(space.n_global);
@@ -189,21 +190,21 @@ end
                     *std::max_element(x.begin(), x.end()), 1e-9);
       EXPECT_EQ(space.modes.size(), dim == 2 ? 3u : 6u);
       const auto version = space.version;
-      glued.glue(carrying);
+      joined.conform(carrying);
       EXPECT_EQ(space.version, version) << "nothing has changed";
-      glued.glue(std::vector<char>(carrying.size(), 0));
+      joined.conform(std::vector<char>(carrying.size(), 0));
       EXPECT_EQ(space.n_global,
                 static_cast<long long>(parts.coordinates.size()));
       EXPECT_GT(space.version, version);
     }
   }
 
-  TEST(SpdSolver, GluedNodesAreOneWhereFacesCarry)
+  TEST(SpdSolver, JoinedNodesAreOneWhereFacesCarry)
   {
-    check_glue<2>(quads);
-    check_glue<2>(triangles);
-    check_glue<3>(hexes);
-    check_glue<3>(tets);
+    check_joined<2>(quads);
+    check_joined<2>(triangles);
+    check_joined<3>(hexes);
+    check_joined<3>(tets);
   }
 
   template <int dim>
@@ -213,14 +214,14 @@ end
       const Parts<dim> parts(input, broken);
       const auto &A = parts.assembly.matrix();
       const auto &communicator = parts.scene.communicator;
-      GluedSpace glued(communicator, dim, parts.assembly.unknowns(),
-                       parts.assembly.node_pairs());
-      glued.glue(parts.assembly.carrying(parts.s, parts.k));
+      ConformingSpace joined(communicator, dim, parts.assembly.unknowns(),
+                             parts.assembly.node_pairs());
+      joined.conform(parts.assembly.carrying(parts.s, parts.k));
       const auto &first = parts.scene.discretization->bodies().first_dof;
       const Vector x = random_vector(first.back(), 7), b = product(A, x);
       const auto check = [&](SpdSolver &solver, const char *name,
                              const unsigned int most) {
-        solver.prepare(A, glued.space(), true);
+        solver.prepare(A, joined.space(), true);
         Vector y(x.size(), 0.);
         EXPECT_LE(solver.solve(b.data(), y.data(), 1e-12), most) << name;
         EXPECT_TRUE(solver.converged()) << name;
@@ -237,16 +238,16 @@ end
         solver.solve(b.data(), y.data(), 0.5);
         for (std::size_t i = 0; i < y.size(); ++i)
           ASSERT_NEAR(y[i], again[i], 1e-8) << name;
-        solver.prepare(A, glued.space(), false);
+        solver.prepare(A, joined.space(), false);
         EXPECT_LE(solver.counters().coarse_spaces, 1u) << "kept";
         EXPECT_EQ(solver.counters().factorisations, 2u);
       };
       check(*make_cholesky_solver(communicator), "factor", 0);
       // a good preconditioner: half a digit per iteration, whatever the mesh
-      check(*make_glued_cg_solver(communicator, first, 1000000),
-            "glued space, exact", 70);
-      check(*make_glued_cg_solver(communicator, first, 0),
-            "glued space, multigrid", 90);
+      check(*make_two_level_cg(communicator, first, 1000000),
+            "joined space, exact", 70);
+      check(*make_two_level_cg(communicator, first, 0),
+            "joined space, multigrid", 90);
     }
   }
 
@@ -261,7 +262,7 @@ end
   /**
    * Springs of 1e16 the inertia of a body leave nothing of the mass in a sum
    * with them: a free translation t, A t = M t, comes back only from who keeps
-   * the glued space apart.
+   * the joined space apart.
    */
   template <int dim>
   void check_stiff(const std::string &input)
@@ -275,9 +276,9 @@ end
     const auto &communicator = parts.scene.communicator;
     const auto &dynamics = *parts.scene.dynamics;
     auto &assembly = parts.assembly;
-    GluedSpace glued(communicator, dim, assembly.unknowns(),
-                     assembly.node_pairs());
-    glued.glue(assembly.carrying(parts.s, parts.k));
+    ConformingSpace joined(communicator, dim, assembly.unknowns(),
+                           assembly.node_pairs());
+    joined.conform(assembly.carrying(parts.s, parts.k));
     const auto &first = parts.scene.discretization->bodies().first_dof;
     const std::size_t n = first.back();
     const auto add_bodies = [&](const double *x, double *y) {
@@ -289,12 +290,12 @@ end
       for (std::size_t i = 0; i < n; ++i)
         y[i] += parts.s * z[i];
     };
-    const auto solver = make_glued_cg_solver(communicator, first, 1000000);
-    const auto faces = glued.without_jump();
+    const auto solver = make_two_level_cg(communicator, first, 1000000);
+    const auto faces = joined.without_jump();
     assembly.assemble(parts.s, parts.k, faces);
-    solver->prepare_coarse(assembly.matrix(), glued.space(), add_bodies);
+    solver->prepare_coarse(assembly.matrix(), joined.space(), add_bodies);
     assembly.add_springs(parts.k, faces);
-    solver->prepare(assembly.matrix(), glued.space(), true);
+    solver->prepare(assembly.matrix(), joined.space(), true);
     Vector t(n, 0.), b(n), rest(n), coarse(n);
     for (std::size_t i = 0; i < n; i += dim)
       t[i] = 1.;

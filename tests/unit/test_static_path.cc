@@ -67,7 +67,7 @@ end
       bool refused = false;
     };
 
-    /** Down the ladder, as a run does. */
+    /** Down the step levels, as a run does. */
     Pull pull(const std::string &scene, const double step)
     {
       test::Scene<2> bar(scene);
@@ -100,7 +100,7 @@ end
         control.accept();
         result.missing = std::max(result.missing, state.energy.numerical -
                                                       next.energy.numerical);
-        result.defect = std::max(result.defect, found.step.ledger_defect);
+        result.defect = std::max(result.defect, found.step.balance_residual);
         std::swap(state, next);
         result.end = statics.reactions()[2];
         result.peak = std::max(result.peak, result.end);

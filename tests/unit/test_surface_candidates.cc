@@ -364,18 +364,18 @@ namespace surface_scene::test_surface_candidates
     EXPECT_EQ(searches_at(0.81 * skin, reach), 4u);
   }
 
-  TEST(SurfaceSearch, GluedBodiesOfAChangedTopology)
+  TEST(SurfaceSearch, JoinedBodiesOfAChangedTopology)
   {
     const auto scene = cells<2>(2);
     SurfaceSearch<2> search;
     NearPairs<2> pairs;
-    bool glued = true;
+    bool are_joined = true;
     const JoinedBodies joined = [&](unsigned int, unsigned int) {
-      return glued;
+      return are_joined;
     };
     search.find(scene.surfaces, scene.x.data(), 0.1, joined, pairs);
     EXPECT_TRUE(pairs.points.empty());
-    glued = false;
+    are_joined = false;
     search.topology_changed();
     search.find(scene.surfaces, scene.x.data(), 0.1, joined, pairs);
     expect_opposite_sides<2>(scene, pairs, 2);

@@ -50,7 +50,7 @@ namespace test_surface_mechanisms
   }
 
   /** Two blocks of mass 1 that the plateau pulls together again. */
-  TEST(Plateau, ClosesTheLedgerOfARun)
+  TEST(Plateau, ClosesTheBalanceOfARun)
   {
     const std::string blocks = R"(# blocks - flung apart and pulled back.
 set dimension = 2
@@ -92,7 +92,7 @@ end
       Scene<2> scene(blocks, {"Solver/method=" + solver});
       double largest = 0.;
       for (unsigned int k = 0; k < 200; ++k) {
-        EXPECT_LT(scene.advance().ledger_defect, 1e-9);
+        EXPECT_LT(scene.advance().balance_residual, 1e-9);
         largest = std::max(largest, scene.state.jump[0]);
       }
       EXPECT_GT(largest, 0.01);
@@ -257,14 +257,14 @@ subsection Solver
 end
 )";
 
-  // The asperities end: lifted by the saturation, no more, and the ledger
-  // closes all the way.
+  // The asperities end: lifted by the saturation, no more, and the energy
+  // balance closes all the way.
   TEST(SlidingLift, Saturates)
   {
     Scene<2> scene(slider, {"Obstacle: plane/dilatancy=0.2",
                             "Obstacle: plane/dilatancy saturation=5e-3"});
     for (unsigned int k = 0; k < 300; ++k) {
-      EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+      EXPECT_LT(scene.advance().balance_residual, 1e-12);
       EXPECT_GE(scene.state.energy.friction, 0.);
     }
     const double height = scene.state.jump[0];
@@ -280,7 +280,7 @@ end
   {
     Scene<2> scene(slider, {"Obstacle: plane/wear coefficient=1e-6"});
     for (unsigned int k = 0; k < 200; ++k)
-      EXPECT_LT(scene.advance().ledger_defect, 1e-12);
+      EXPECT_LT(scene.advance().balance_residual, 1e-12);
     double worn = 0., slip = 0.;
     for (std::size_t i = 0; i < 2; ++i) {
       worn += scene.state.worn[i] / 2.;

@@ -50,7 +50,7 @@ namespace nsfd
    *
    * With beta(d) falling along the envelope (1 intact, 0 broken), the traction
    * of an intrinsic law is R = beta (C_N <u_N>_+ n + C_T u_T) (equations (3)
-   * and (4) of the report), T(d) = beta(d) C_N d. An extrinsic law is rigid
+   * and (4) of [AM06]), T(d) = beta(d) C_N d. An extrinsic law is rigid
    * before activation, and unloads on the secant from the largest opening d_m:
    * R = (T(d_m) / d_m) (<u_N>_+ n + r^2 u_T).
    *

@@ -157,7 +157,7 @@ namespace nsfd
 
     /**
      * Stress xx, yy, zz, xy, xz, yz from a displacement gradient at @p x, of a
-     * material that remembers nothing; see bodies/cell_stresses.h for others.
+     * material without history; see bodies/cell_stresses.h for others.
      */
     std::array<double, 6> stress(unsigned int body, const dealii::Point<dim> &x,
                                  const double *gradient) const;

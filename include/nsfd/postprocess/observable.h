@@ -192,7 +192,7 @@ namespace nsfd
     virtual std::string text() const = 0;
 
     /** What it has collected so far; nothing if it has no memory. */
-    virtual void remember(Archive &) {}
+    virtual void serialize(Archive &) {}
   };
 
   using ObservableRegistry =

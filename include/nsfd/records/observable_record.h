@@ -24,7 +24,7 @@ namespace nsfd
     unsigned long long n_rows = 0; ///< written
     unsigned int stride = 1;       ///< of them in `rows`
 
-    /** Books a row at @p time; @p keeps it for the chart. */
+    /** Writes a row at @p time; @p keeps it for the chart. */
     void add(double time, const std::vector<double> &values, bool keeps);
   };
 } // namespace nsfd

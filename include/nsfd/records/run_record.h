@@ -16,7 +16,8 @@ namespace nsfd
    * The energy lines of a run, in J (J/m of depth in two dimensions). `work`
    * is the work of loads (pressure in cracks is one) and prescribed motion
    * since t = 0; the dissipated
-   * lines are sums since t = 0. Closed ledger: kinetic + elastic + cohesive
+   * lines are sums since t = 0. Closed energy balance: kinetic + elastic +
+   * cohesive
    * + dissipated lines - initial energy - work = 0.
    */
   struct EnergyLines {
@@ -31,7 +32,7 @@ namespace nsfd
     unsigned int step = 0;
     double time = 0., time_step = 0.;
     EnergyLines energy;
-    double ledger_defect = 0.; ///< relative to the largest energy so far
+    double balance_residual = 0.; ///< relative to the largest energy so far
     double broken_area = 0.;
     unsigned int fragments = 1;
     unsigned int active = 0; ///< points in contact or with evolving damage
@@ -51,7 +52,7 @@ namespace nsfd
     double wall_seconds = 0., cpu_seconds = 0., setup_seconds = 0.;
     double peak_memory_mb = 0.;
     EnergyLines energy;
-    double ledger_defect_max = 0., residual_max = 0., penetration_max = 0.,
+    double balance_residual_max = 0., residual_max = 0., penetration_max = 0.,
            penetration_bound = 0., positive_friction_work = 0.,
            rigid_drift_max = 0.;
     std::optional<double> pressure_work; ///< in cracks, if the scene has one

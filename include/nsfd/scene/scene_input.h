@@ -202,7 +202,7 @@ namespace nsfd
     double opening_viscosity = 0.; ///< eta in Pa s/m, while beta > 0
     double viscous_limit = std::numeric_limits<double>::infinity(); ///< Pa
     SlidingInput sliding;
-    /// Pa, of x, y, z, t: on the lips of points with beta <= threshold
+    /// Pa, of x, y, z, t: on the crack faces of points with beta <= threshold
     std::optional<Expression> crack_pressure;
     double pressure_threshold = 0.;
     /// beta up to which a point is broken: above 0 for laws with a tail
@@ -329,7 +329,7 @@ namespace nsfd
   enum class SolutionJump {
     stop,    ///< ends with the last equilibrium
     dynamic, ///< goes on from it with Moreau-Jean
-    relax    ///< takes the next equilibrium, books what is left over
+    relax    ///< takes the next equilibrium, counts the released energy
   };
 
   /** Equilibria: at the start, and from step to step of the load. */
@@ -423,7 +423,7 @@ namespace nsfd
           return true;
       return false;
     }
-    /** Materials that remember how they were strained. */
+    /** Materials that keep how they were strained. */
     bool has_history() const
     {
       for (const auto &material : materials)

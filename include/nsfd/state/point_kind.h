@@ -13,6 +13,6 @@ namespace nsfd
     rigid,      ///< extrinsic before activation: U = 0 up to the strength
     free,       ///< contact and friction only, beta = 0
     bonded,     ///< carries through the bulk, not by an impulse
-    parted      ///< broken, its lips are left to the search for contacts
+    separated   ///< broken, its crack faces are left to the search for contacts
   };
 } // namespace nsfd

@@ -107,7 +107,7 @@ namespace nsfd
     virtual void see_broken_points(const std::vector<BrokenPoint> &) {}
 
     /** What observe() has collected so far; nothing if it has no memory. */
-    virtual void remember(Archive &) {}
+    virtual void serialize(Archive &) {}
 
     /** Relative errors and scene quantities, added to `errors`. */
     virtual void finish(std::map<std::string, double> &) const {}

@@ -167,7 +167,7 @@ namespace nsfd::stored
     };
     const Stage stages[] = {{0., 1.}, {1e-3, 3e-3}, {1e-5, 3e-4}};
     Best<d> best(s);
-    double polished = std::numeric_limits<double>::infinity(), mean = 1.;
+    double refined = std::numeric_limits<double>::infinity(), mean = 1.;
     unsigned int k = 0;
     for (const Stage &stage : stages) {
       std::vector<double> scale(s.problem.n, 1.);
@@ -189,8 +189,8 @@ namespace nsfd::stored
         if (length == 0. || !std::isfinite(s.error))
           break;
         best.keep();
-        if (s.error < 1e-4 && s.error < 0.1 * polished) {
-          polished = s.error;
+        if (s.error < 1e-4 && s.error < 0.1 * refined) {
+          refined = s.error;
           NewtonSettings settings;
           settings.limit = 4;
           newton(s, settings);

@@ -89,11 +89,11 @@ namespace nsfd
         return report;
       }
 
-      void remember(Archive &archive) override
+      void serialize(Archive &archive) override
       {
         if (!path_)
           path_ = SolverRegistry<dim>::instance().create("interior point");
-        path_->remember(archive);
+        path_->serialize(archive);
       }
 
     private:

@@ -22,7 +22,7 @@ namespace nsfd
         report_(report), frozen_(problem.n_points),
         is_candidate_(problem.n_points, 0), others_(problem.n_points, 1),
         best_error_(std::numeric_limits<double>::infinity()),
-        polished_(best_error_)
+        refined_(best_error_)
   {
     for (std::size_t i = 0; i < problem.n_points; ++i)
       if (problem.contact[i] && has_frozen_law<dim>(problem, i) &&
@@ -472,9 +472,9 @@ namespace nsfd
       if (judge())
         return true;
       short_steps = alpha < 0.1 ? short_steps + 1 : 0;
-      if (best_error_ < 1e-5 && best_error_ < 0.1 * polished_) {
-        polished_ = best_error_;
-        if (polish())
+      if (best_error_ < 1e-5 && best_error_ < 0.1 * refined_) {
+        refined_ = best_error_;
+        if (refine())
           return true;
       }
       if (short_steps >= 4 && mean_gap() < 1e-9 * first_gap)

@@ -49,9 +49,9 @@ namespace nsfd
 
     /**
      * Newton's method on the full laws from the best impulses, and where it
-     * goes round between the states of a few points, mend().
+     * goes round between the states of a few points, solve_cluster().
      */
-    bool polish();
+    bool refine();
 
     /** Back to the best impulses. */
     void restore();
@@ -62,7 +62,7 @@ namespace nsfd
      * two dimensions. True below the tolerance; false also if there is nothing
      * to be done, and then @p moved is false.
      */
-    bool mend(bool &moved);
+    bool solve_cluster(bool &moved);
 
   private:
     struct Candidate {
@@ -86,7 +86,7 @@ namespace nsfd
     void set_imbalance(const Vector &P);
     void equilibrate(const Vector &P, bool from_rest);
     bool newton(unsigned int patience);
-    std::vector<std::size_t> find_knot() const;
+    std::vector<std::size_t> find_cluster() const;
     void find_candidates();
     void start(double floor, double centre);
     bool step(double sigma, double &alpha);
@@ -116,6 +116,6 @@ namespace nsfd
     LinearisedLaws<dim> laws_;
     Vector y_, U_, S_, P_, best_, b_, residual_, dy_, dU_, dP_;
     double best_error_;
-    double mean_impulse_ = 0., polished_ = 0., softening_ = 1e-7;
+    double mean_impulse_ = 0., refined_ = 0., softening_ = 1e-7;
   };
 } // namespace nsfd

@@ -145,13 +145,13 @@ namespace nsfd
     unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
     double best_error = std::numeric_limits<double>::infinity(),
            best_of_round = best_error, shift = 0.;
-    const auto remember = [&] {
+    const auto keep_best = [&] {
       if (evaluation.error < best_error) {
         best_error = evaluation.error;
         best = impulse;
       }
     };
-    remember();
+    keep_best();
     const unsigned int most = control.iterations_or(200);
     while (evaluation.error > control.tolerance && report.newton < most) {
       ++report.newton;
@@ -175,7 +175,7 @@ namespace nsfd
           evaluation.error <= control.tolerance) {
         impulse.swap(trial);
         stalled = 0;
-        remember();
+        keep_best();
         continue;
       }
       shift = 1e-3;
@@ -184,14 +184,14 @@ namespace nsfd
       evaluation.velocity = velocity_;
       evaluation.error = before;
       if (coupled && shorten(work, before, dP, impulse, trial)) {
-        remember();
+        keep_best();
         continue;
       }
       if (coupled)
         symmetric_direction(work, forcing, dP);
       bool moved = line_search(work, dP, impulse);
       evaluation.update(impulse);
-      remember();
+      keep_best();
       // Monotone in the convex objective: let it run a few times.
       if (moved &&
           (coupled ? stalled >= 4 && stalled % 5 != 4 : stalled % 5 != 4)) {
@@ -235,7 +235,7 @@ namespace nsfd
       report.sweeps += sweeps;
       sweeps = std::min(80u, sweeps * 2);
       evaluation.update(impulse);
-      remember();
+      keep_best();
       if (!(evaluation.error < std::numeric_limits<double>::infinity()))
         break;
     }

@@ -12,7 +12,7 @@ namespace nsfd
   {
     /**
      * Fixed point on damage and friction around the contact solve, the first
-     * of the three procedures at the end of section 5.3 of the report. With
+     * of the three procedures at the end of section 5.3 of [AM06]. With
      * the openings d' and the friction thresholds s of all points given, the
      * step is a convex problem for the dual Newton method; its solution gives
      * new d' and s. Points that are rigid before the step keep their full law

@@ -41,7 +41,7 @@ namespace nsfd
       }
 
       /** Whether iterations have failed, so that factors came back. */
-      void remember(Archive &archive) override
+      void serialize(Archive &archive) override
       {
         if (system_)
           iterates_ = system_->may_iterate();
@@ -101,15 +101,15 @@ namespace nsfd
       /** Dear parts last; each begins where the one before has come to. */
       bool run(ContactPath<dim> &path)
       {
-        if (path.alternate(40, 0.5) || path.polish() ||
-            path.alternate(60, 1.) || path.polish() ||
-            path.follow({1., 1.}, 60) || path.polish())
+        if (path.alternate(40, 0.5) || path.refine() ||
+            path.alternate(60, 1.) || path.refine() ||
+            path.follow({1., 1.}, 60) || path.refine())
           return true;
         for (const Stage stage : {Stage{1e-3, 3e-3}, Stage{1e-5, 3e-4}})
-          if (path.alternate(20, 1.) || path.follow(stage, 60) || path.polish())
+          if (path.alternate(20, 1.) || path.follow(stage, 60) || path.refine())
             return true;
-        return path.alternate(200, 0.5) || path.polish() ||
-               path.follow({1., 1.}, 60) || path.polish();
+        return path.alternate(200, 0.5) || path.refine() ||
+               path.follow({1., 1.}, 60) || path.refine();
       }
 
       std::unique_ptr<Gathered<dim>> gathered_; // before what refers to it

@@ -125,11 +125,11 @@ namespace nsfd
   }
 
   template <int dim>
-  bool polish(const OneStepProblem<dim> &problem, BodySystem<dim> &system,
-              const Dynamics<dim> &dynamics, const double tolerance,
-              const unsigned int patience, double &softening,
-              std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
-              SolverReport &report)
+  bool newton_refinement(const OneStepProblem<dim> &problem,
+                         BodySystem<dim> &system, const Dynamics<dim> &dynamics,
+                         const double tolerance, const unsigned int patience,
+                         double &softening, std::vector<double> &impulse,
+                         LawEvaluation<dim> &evaluation, SolverReport &report)
   {
     const std::size_t n = impulse.size();
     LinearisedLaws<dim> laws;
@@ -180,12 +180,12 @@ namespace nsfd
 
   template class LinearisedLaws<2>;
   template class LinearisedLaws<3>;
-  template bool polish<2>(const OneStepProblem<2> &, BodySystem<2> &,
-                          const Dynamics<2> &, double, unsigned int, double &,
-                          std::vector<double> &, LawEvaluation<2> &,
-                          SolverReport &);
-  template bool polish<3>(const OneStepProblem<3> &, BodySystem<3> &,
-                          const Dynamics<3> &, double, unsigned int, double &,
-                          std::vector<double> &, LawEvaluation<3> &,
-                          SolverReport &);
+  template bool newton_refinement<2>(const OneStepProblem<2> &, BodySystem<2> &,
+                                     const Dynamics<2> &, double, unsigned int,
+                                     double &, std::vector<double> &,
+                                     LawEvaluation<2> &, SolverReport &);
+  template bool newton_refinement<3>(const OneStepProblem<3> &, BodySystem<3> &,
+                                     const Dynamics<3> &, double, unsigned int,
+                                     double &, std::vector<double> &,
+                                     LawEvaluation<3> &, SolverReport &);
 } // namespace nsfd

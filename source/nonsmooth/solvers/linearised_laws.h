@@ -53,9 +53,9 @@ namespace nsfd
    * that of the first one.
    */
   template <int dim>
-  bool polish(const OneStepProblem<dim> &problem, BodySystem<dim> &system,
-              const Dynamics<dim> &dynamics, double tolerance,
-              unsigned int patience, double &softening,
-              std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
-              SolverReport &report);
+  bool newton_refinement(const OneStepProblem<dim> &problem,
+                         BodySystem<dim> &system, const Dynamics<dim> &dynamics,
+                         double tolerance, unsigned int patience,
+                         double &softening, std::vector<double> &impulse,
+                         LawEvaluation<dim> &evaluation, SolverReport &report);
 } // namespace nsfd

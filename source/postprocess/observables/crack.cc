@@ -57,7 +57,7 @@ namespace nsfd
     }
 
     std::string text() const override { return text_; }
-    void remember(Archive &archive) override { front_.remember(archive); }
+    void serialize(Archive &archive) override { front_.serialize(archive); }
 
   private:
     /** Broken pieces of faces that reach from one side to the other. */

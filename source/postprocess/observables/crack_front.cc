@@ -134,7 +134,7 @@ namespace nsfd::observables
         scene.dimension == 3 ? fmt::format(", {:.4g}", direction_[2]) : "");
   }
 
-  void CrackFront::remember(Archive &archive)
+  void CrackFront::serialize(Archive &archive)
   {
     std::vector<double> numbers;
     for (const Event &event : events_)

@@ -36,7 +36,7 @@ namespace nsfd::observables
     const std::vector<char> &faces() const { return faces_; }
     bool is_broken(const RunView &view, std::size_t point) const;
     std::string text(const SceneInput &scene) const;
-    void remember(Archive &archive);
+    void serialize(Archive &archive);
 
   private:
     void measure(const RunView &view);

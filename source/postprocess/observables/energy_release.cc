@@ -143,7 +143,7 @@ namespace nsfd
              ", radii " + list + " m";
     }
 
-    void remember(Archive &archive) override { front_->remember(archive); }
+    void serialize(Archive &archive) override { front_->serialize(archive); }
 
   private:
     static void check(SectionReader &reader, const SceneInput &scene);

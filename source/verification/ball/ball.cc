@@ -67,7 +67,7 @@ namespace nsfd
       errors["penetration"] = deepest_ / bound;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", difference_, reference_, velocity_, deepest_,
                       step_);

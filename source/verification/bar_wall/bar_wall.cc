@@ -97,7 +97,7 @@ namespace nsfd
       }
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", time_, mean_velocity_, energy_, initial_energy_,
                       initial_opening_, front_displacement_error_,

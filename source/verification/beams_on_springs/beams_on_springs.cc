@@ -110,7 +110,7 @@ namespace nsfd
         finish_rest(errors);
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", opening_, jump_, release_, n_broken_, load_,
                       peak_, late_, before_, loss_, damage_, kinetic_);

@@ -79,7 +79,7 @@ namespace nsfd
       errors["damage"] = broken_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", broken_);
       archive.common("times", times_);

@@ -64,7 +64,7 @@ namespace nsfd
       errors["contours"] = contours_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", found_release_, found_compliance_, contours_);
     }

@@ -85,7 +85,7 @@ namespace nsfd
       errors["crack_normal_z"] = sign * normal[2];
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", start_);
     }

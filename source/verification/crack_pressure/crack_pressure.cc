@@ -74,7 +74,7 @@ namespace nsfd
       errors["work"] = relative_error(work_, exact_work_);
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", momentum_, work_, exact_work_);
     }

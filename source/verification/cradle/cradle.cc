@@ -74,9 +74,9 @@ namespace nsfd
       errors["momentum"] = momentum_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
-      cases::remember(archive, "start", start_);
+      cases::serialize(archive, "start", start_);
       archive.numbers("found", velocity_, squares_, exact_squares_, momentum_);
     }
 

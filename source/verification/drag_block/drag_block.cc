@@ -66,7 +66,7 @@ namespace nsfd
       errors["longest_stick_in_steps"] = longest_stick_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", measured_start_, velocity_, after_cycle_, old_,
                       stick_, longest_stick_);

@@ -73,7 +73,7 @@ namespace nsfd
       errors["velocity_after_stop"] = creep_ / fastest_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", position_, friction_, fastest_, direction_,
                       last_direction_, turns_, moving_until_, creep_);

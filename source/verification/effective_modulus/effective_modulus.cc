@@ -97,7 +97,7 @@ namespace nsfd
       }
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", measured_, kinetic_, stress_);
     }

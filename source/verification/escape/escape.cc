@@ -63,7 +63,7 @@ namespace nsfd
             velocity_, std::copysign(std::sqrt(square_), start_));
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", block_, axis_, start_, square_, velocity_,
                       broken_);

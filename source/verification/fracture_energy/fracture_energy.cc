@@ -58,7 +58,7 @@ namespace nsfd
       errors["peak_stress"] = force_ / section_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", damage_, friction_, work_, force_);
     }

@@ -71,7 +71,7 @@ namespace nsfd
       errors["size_over_grady"] = size / unit_size_ / std::cbrt(24. / (x * x));
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", measured_start_, fragments_);
     }

@@ -78,13 +78,13 @@ namespace nsfd
       }
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
-      cases::remember(archive, "L", L_);
-      cases::remember(archive, "W", W_);
-      cases::remember(archive, "side", side_);
-      in_space_.remember(archive, "in_space");
-      in_body_.remember(archive, "in_body");
+      cases::serialize(archive, "L", L_);
+      cases::serialize(archive, "W", W_);
+      cases::serialize(archive, "side", side_);
+      in_space_.serialize(archive, "in_space");
+      in_body_.serialize(archive, "in_body");
       archive.numbers("flips", flips_, measured_.count, measured_.first,
                       measured_.last, old_);
       archive.numbers("found", kinetic_, start_tilt_, time_, energy_, momentum_,

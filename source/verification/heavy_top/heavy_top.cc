@@ -70,9 +70,9 @@ namespace nsfd
       errors["exact_rate"] = exact_rate_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
-      azimuth_.remember(archive, "azimuth");
+      azimuth_.serialize(archive, "azimuth");
       archive.numbers("start", length_, exact_rate_, start_rate_, start_tilt_,
                       start_spin_, kinetic_, energy_start_);
       archive.numbers("found", time_, tilt_, energy_, spin_, drift_);

@@ -74,7 +74,7 @@ namespace nsfd
       errors["normal_reaction"] = reaction_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", velocity_, position_, reaction_, old_normal_);
     }

@@ -139,7 +139,7 @@ namespace nsfd
       errors["power"] = std::abs(t * t + r * r - 1.);
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", time_);
       constexpr std::size_t n = sizeof(CellState) / sizeof(double);

@@ -140,7 +140,7 @@ namespace nsfd
       errors["exact_break_time"] = to_end_.time / unit;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", old_, speed_, largest_, peak_time_, break_time_,
                       damage_, impulse_);

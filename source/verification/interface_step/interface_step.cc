@@ -96,7 +96,7 @@ namespace nsfd
       errors["transmitted_end"] = last_difference_ / last_exact_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", difference_, reference_, last_difference_,
                       last_exact_);

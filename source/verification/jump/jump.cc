@@ -24,7 +24,7 @@ namespace nsfd
    *
    * Measured when the interface is broken: the displacement of the grip, over
    * U_a, and the mechanical energy, over the toughness. With quasi-static steps
-   * that energy is what the last step books as numerical, and before it every
+   * that energy is what the last step counts as numerical, and before it every
    * force of the grip is T(u) with U(u) = U.
    */
   class Jump final : public VerificationCase
@@ -82,7 +82,7 @@ namespace nsfd
       errors["exact_excess_over_G"] = excess_ / toughness_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", grip_at_break_, left_over_, numerical_, force_);
     }

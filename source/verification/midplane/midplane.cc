@@ -94,7 +94,7 @@ namespace nsfd
           errors[fmt::format("force_{}", i + 1)] = forces_[i];
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", damage_, separation_time_, peak_force_,
                       old_force_, old_middle_);

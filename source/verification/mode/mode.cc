@@ -97,7 +97,7 @@ namespace nsfd
       errors["frequency"] = relative_error(phase, exact);
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", time_, energy_, initial_energy_, kinetic_,
                       drift_);

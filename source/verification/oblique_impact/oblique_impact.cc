@@ -64,10 +64,10 @@ namespace nsfd
       errors["exact_tangential"] = exact;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
-      cases::remember(archive, "start", start_);
-      cases::remember(archive, "velocity", velocity_);
+      cases::serialize(archive, "start", start_);
+      cases::serialize(archive, "velocity", velocity_);
       archive.numbers("found", kinetic_, kinetic_start_);
     }
 

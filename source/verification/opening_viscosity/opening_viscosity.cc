@@ -64,7 +64,7 @@ namespace nsfd
       errors["exact_peak_over_R"] = 1. + drag_ / law_->strength();
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", step_, work_, damage_, viscous_, pull_);
     }

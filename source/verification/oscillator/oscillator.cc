@@ -73,7 +73,7 @@ namespace nsfd
           std::abs(place_ / std::abs(place_) - std::polar(1., angle_)) / angle_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       double start[2] = {start_.real(), start_.imag()},
              place[2] = {place_.real(), place_.imag()};

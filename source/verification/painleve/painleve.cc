@@ -76,7 +76,7 @@ namespace nsfd
       errors["exact_impulse_ratio"] = impulse_ratio_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("start", p_, b_, kinetic_, speed_, length_, sigma_,
                       arm_angle_, start_spin_, caught_spin_, impulse_ratio_);

@@ -86,11 +86,11 @@ namespace nsfd
       }
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", growth_, damage_, kinetic_, initial_energy_,
                       time_, path_error_, path_);
-      fit_.remember(archive);
+      fit_.serialize(archive);
     }
 
   private:

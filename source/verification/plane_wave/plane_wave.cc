@@ -111,7 +111,7 @@ namespace nsfd
       errors["exact_speed"] = natural_ / wave_number_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", time_, energy_, initial_energy_);
     }

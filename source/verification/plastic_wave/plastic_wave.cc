@@ -101,7 +101,7 @@ namespace nsfd
       errors["plastic_work"] = relative_error(
           plastic_, yield_ * flow(strain) * slow_ * time_ * section_);
     }
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", plastic_, time_);
     }

@@ -127,7 +127,7 @@ namespace nsfd
       }
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", pulse_stress_, pulse_time_, tension_time_,
                       tension_place_, difference_, reference_, flyer_velocity_,

@@ -80,7 +80,7 @@ namespace nsfd
       errors["exact_slip_length"] = F / friction_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", largest_, reaction_, exact_, force_,
                       friction_work_, all_friction_work_, cells_.displacement,

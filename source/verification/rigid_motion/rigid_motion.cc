@@ -100,7 +100,7 @@ namespace nsfd
             std::sqrt(2. * stored_ * size / (stiffness_ * volume_)) / largest_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", volume_, largest_, initial_kinetic_, kinetic_,
                       momentum_, stress_, stored_, initial_momentum_[0],

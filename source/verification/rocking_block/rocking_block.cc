@@ -75,7 +75,7 @@ namespace nsfd
       errors["exact_spin_after"] = ratio * before;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", side_, start_, measured_time_, before_, after_,
                       old_angle_, old_spin_);

@@ -72,9 +72,9 @@ namespace nsfd
       errors["exact_roll_time"] = roll_time_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
-      cases::remember(archive, "start", start_);
+      cases::serialize(archive, "start", start_);
       archive.numbers("found", radius_, roll_time_, sliding_, measured_time_,
                       slip_, velocity_, friction_, old_, old_slip_);
     }

@@ -67,7 +67,7 @@ namespace nsfd
       errors["exact_peak_shear"] = stiffness_ * end_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", work_, shear_, cells_.displacement,
                       cells_.stress);

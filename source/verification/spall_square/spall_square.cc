@@ -87,7 +87,7 @@ namespace nsfd
       errors["fragments"] = n_fragments_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", damage_, spall_time_, place_, piece_velocity_,
                       trapped_, n_fragments_);

@@ -75,7 +75,7 @@ namespace nsfd
       errors["exact_K_3"] = exact(3. * distance_ / speed_);
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", sum_, exact_sum_, early_, largest_, spread_);
     }

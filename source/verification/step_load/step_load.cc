@@ -61,7 +61,7 @@ namespace nsfd
       errors["load_over_threshold"] = threshold_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", broken_, opening_);
     }

@@ -92,7 +92,7 @@ namespace nsfd
       errors["velocity_after_stop"] = creep_ / speed_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", lift_, distance_, work_, kinetic_,
                       measured_stop_, creep_, old_);

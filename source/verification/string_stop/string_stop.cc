@@ -130,7 +130,7 @@ namespace nsfd
       errors["energy"] = std::abs(1. - energy_ / initial_energy_);
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       archive.numbers("found", time_, momentum_, impulse_, duration_, energy_,
                       initial_energy_);

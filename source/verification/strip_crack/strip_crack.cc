@@ -76,9 +76,9 @@ namespace nsfd
       errors["contours"] = spread_ / time_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
-      fit_.remember(archive);
+      fit_.serialize(archive);
       archive.numbers("means", time_, release_, zone_, spread_, spent_);
     }
 

@@ -68,13 +68,13 @@ namespace nsfd
       errors["momentum"] = momentum_;
     }
 
-    void remember(Archive &archive) override
+    void serialize(Archive &archive) override
     {
       for (unsigned int k = 0; k < 2; ++k) {
-        cases::remember(archive, "old_" + std::to_string(k), old_[k]);
-        cases::remember(archive, "new_" + std::to_string(k), velocity_[k]);
+        cases::serialize(archive, "old_" + std::to_string(k), old_[k]);
+        cases::serialize(archive, "new_" + std::to_string(k), velocity_[k]);
       }
-      cases::remember(archive, "total", total_);
+      cases::serialize(archive, "total", total_);
       archive.numbers("found", momentum_, lost_);
     }
 

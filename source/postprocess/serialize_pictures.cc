@@ -1,4 +1,4 @@
-#include "remember_pictures.h"
+#include "serialize_pictures.h"
 
 #include "core/archive.h"
 
@@ -76,7 +76,7 @@ namespace nsfd
     };
   } // namespace
 
-  void remember(std::vector<Snapshot> &snapshots, Archive &archive)
+  void serialize(std::vector<Snapshot> &snapshots, Archive &archive)
   {
     const Archive::Part part(archive, "pictures");
     std::size_t n = snapshots.size();

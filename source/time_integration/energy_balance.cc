@@ -1,6 +1,6 @@
-#include "ledger.h"
+#include "energy_balance.h"
 
-#include "common_books.h"
+#include "common_balance.h"
 #include "point_balance.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -12,10 +12,10 @@
 namespace nsfd
 {
   template <int dim>
-  Ledger<dim>::Ledger(const SceneInput &input,
-                      const Discretization<dim> &discretization,
-                      const Dynamics<dim> &dynamics,
-                      const UniquenessBound<dim> &uniqueness)
+  EnergyBalance<dim>::EnergyBalance(const SceneInput &input,
+                                    const Discretization<dim> &discretization,
+                                    const Dynamics<dim> &dynamics,
+                                    const UniquenessBound<dim> &uniqueness)
       : discretization_(discretization), dynamics_(dynamics),
         uniqueness_(uniqueness), theta_(input.time.work_theta()),
         reactions_(discretization.driven_boundaries().size() * dim, 0.)
@@ -26,10 +26,9 @@ namespace nsfd
    * Energies, what theta > 1/2 and viscosity take, and the work of the loads.
    */
   template <int dim>
-  BodyEnergies Ledger<dim>::book_bodies(const std::vector<double> &forces,
-                                        const double h, const State &old,
-                                        const State &next,
-                                        const ElasticForces<dim> *elastic) const
+  BodyEnergies EnergyBalance<dim>::book_bodies(
+      const std::vector<double> &forces, const double h, const State &old,
+      const State &next, const ElasticForces<dim> *elastic) const
   {
     using Operator = typename Dynamics<dim>::Operator;
     const auto &communicator = dynamics_.communicator();
@@ -91,10 +90,10 @@ namespace nsfd
    * / 2. It comes and goes.
    */
   template <int dim>
-  double Ledger<dim>::symplectic_share(const double kick,
-                                       const ElasticForces<dim> &elastic,
-                                       const State &old,
-                                       const State &next) const
+  double EnergyBalance<dim>::symplectic_share(const double kick,
+                                              const ElasticForces<dim> &elastic,
+                                              const State &old,
+                                              const State &next) const
   {
     const std::size_t n = next.velocity.size();
     std::vector<double> terms(n);
@@ -110,8 +109,9 @@ namespace nsfd
 
   /** w h p U_theta,N of the pressure in cracks. */
   template <int dim>
-  double Ledger<dim>::pressure_work(const OneStepProblem<dim> &problem,
-                                    const State &old, const State &next) const
+  double EnergyBalance<dim>::pressure_work(const OneStepProblem<dim> &problem,
+                                           const State &old,
+                                           const State &next) const
   {
     std::vector<double> terms(problem.n_owned);
     for (std::size_t i = 0; i < problem.n_owned; ++i)
@@ -122,11 +122,11 @@ namespace nsfd
   }
 
   template <int dim>
-  void Ledger<dim>::book(const OneStepProblem<dim> &problem,
-                         const LawEvaluation<dim> &evaluation,
-                         const std::vector<PointOrigin> &origins,
-                         const BodyEnergies &bodies, const State &old,
-                         State &next, StepReport &report)
+  void EnergyBalance<dim>::account(const OneStepProblem<dim> &problem,
+                                   const LawEvaluation<dim> &evaluation,
+                                   const std::vector<PointOrigin> &origins,
+                                   const BodyEnergies &bodies, const State &old,
+                                   State &next, StepReport &report)
   {
     const auto &communicator = dynamics_.communicator();
     using Points = PointBalance<dim>;
@@ -200,9 +200,9 @@ namespace nsfd
     set(WatchedLine::scheme, energy.numerical - old.energy.numerical,
         points.worst(Points::numerical));
 
-    close_books(old, next, report);
+    close_balance(old, next, report);
   }
 
-  template class Ledger<2>;
-  template class Ledger<3>;
+  template class EnergyBalance<2>;
+  template class EnergyBalance<3>;
 } // namespace nsfd

@@ -1,4 +1,4 @@
-#include "loose_motion.h"
+#include "rigid_body_modes.h"
 
 #include "bodies/fragments.h"
 #include "state/state.h"
@@ -49,9 +49,10 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::string loose_motion(const Discretization<dim> &discretization,
-                           const Communicator &communicator, const State &state,
-                           const std::vector<double> &residual)
+  std::string rigid_body_modes(const Discretization<dim> &discretization,
+                               const Communicator &communicator,
+                               const State &state,
+                               const std::vector<double> &residual)
   {
     Fragments<dim> fragments(discretization, communicator);
     fragments.update(state);
@@ -109,10 +110,10 @@ namespace nsfd
     return name;
   }
 
-  template std::string loose_motion(const Discretization<2> &,
-                                    const Communicator &, const State &,
-                                    const std::vector<double> &);
-  template std::string loose_motion(const Discretization<3> &,
-                                    const Communicator &, const State &,
-                                    const std::vector<double> &);
+  template std::string rigid_body_modes(const Discretization<2> &,
+                                        const Communicator &, const State &,
+                                        const std::vector<double> &);
+  template std::string rigid_body_modes(const Discretization<3> &,
+                                        const Communicator &, const State &,
+                                        const std::vector<double> &);
 } // namespace nsfd

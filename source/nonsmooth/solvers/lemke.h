@@ -19,8 +19,8 @@ namespace nsfd
    * contacts^2 per pivot. @p seed chooses the ray the method comes from.
    * False if it ends on a ray or after too many pivots; r is then not touched.
    */
-  bool solve_by_pivots(const std::vector<double> &W,
-                       const std::vector<double> &q,
-                       const std::vector<double> &friction, unsigned int seed,
-                       std::vector<double> &r);
+  bool solve_by_lemke(const std::vector<double> &W,
+                      const std::vector<double> &q,
+                      const std::vector<double> &friction, unsigned int seed,
+                      std::vector<double> &r);
 } // namespace nsfd

@@ -6,5 +6,5 @@ namespace nsfd
   struct State;
 
   /** All of a state, to or from an archive. Collective. */
-  void remember(State &state, Archive &archive);
+  void serialize(State &state, Archive &archive);
 } // namespace nsfd

@@ -16,28 +16,30 @@ namespace nsfd
   struct StepReport;
 
   /**
-   * The books of a step that has been solved: every energy line on its own
-   * (report, 5.3), what the points remember (d_m, beta, kind, slip, bound of
+   * The energy balance of a step that has been solved: every energy line on its
+   * own
+   * ([AM06], 5.3), the history of the points (d_m, beta, kind, slip, bound of
    * the penetration), and the forces on driven boundaries.
    */
   template <int dim>
-  class Ledger
+  class EnergyBalance
   {
   public:
-    Ledger(const SceneInput &input, const Discretization<dim> &discretization,
-           const Dynamics<dim> &dynamics,
-           const UniquenessBound<dim> &uniqueness);
+    EnergyBalance(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const Dynamics<dim> &dynamics,
+                  const UniquenessBound<dim> &uniqueness);
 
     /**
      * From @p old to @p next, whose motion and impulses are known: everything
      * else of @p next, and all of @p report but the solver's. @p origins are
      * those of the points of @p problem. Collective.
      */
-    void book(const OneStepProblem<dim> &problem,
-              const LawEvaluation<dim> &evaluation,
-              const std::vector<PointOrigin> &origins,
-              const BodyEnergies &bodies, const State &old, State &next,
-              StepReport &report);
+    void account(const OneStepProblem<dim> &problem,
+                 const LawEvaluation<dim> &evaluation,
+                 const std::vector<PointOrigin> &origins,
+                 const BodyEnergies &bodies, const State &old, State &next,
+                 StepReport &report);
 
     /** Of small motions; @p forces are the loads of the step, @p elastic K q of
         an explicit one, else null. Collective. */

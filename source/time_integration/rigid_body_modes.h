@@ -15,7 +15,8 @@ namespace nsfd
    * are mostly balanced by themselves. Collective.
    */
   template <int dim>
-  std::string loose_motion(const Discretization<dim> &discretization,
-                           const Communicator &communicator, const State &state,
-                           const std::vector<double> &residual);
+  std::string rigid_body_modes(const Discretization<dim> &discretization,
+                               const Communicator &communicator,
+                               const State &state,
+                               const std::vector<double> &residual);
 } // namespace nsfd

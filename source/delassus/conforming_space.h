@@ -17,7 +17,7 @@ namespace nsfd
     std::vector<int> own;              ///< on this rank
     std::vector<long long> other;      ///< global number, of any rank
     /// per face: every node on either side has its partner, so that there is
-    /// no jump once it is glued
+    /// no jump once it is joined
     std::vector<char> complete;
   };
 
@@ -30,26 +30,27 @@ namespace nsfd
 
   /**
    * The space in which nodes are one wherever the faces between them are
-   * glued: continuous across glued faces, free to jump elsewhere.
+   * joined: continuous across joined faces, free to jump elsewhere.
    */
-  class GluedSpace
+  class ConformingSpace
   {
   public:
-    GluedSpace(const Communicator &communicator, unsigned int dim,
-               Unknowns unknowns, NodePairs pairs);
+    ConformingSpace(const Communicator &communicator, unsigned int dim,
+                    Unknowns unknowns, NodePairs pairs);
 
     /**
-     * Glue the faces that are marked, alike on both ranks of a shared face.
-     * The space is numbered again if one differs from last time.
+     * Functions of the space no longer jump across the marked faces, alike on
+     * both ranks of a shared face. The space is numbered again if one differs
+     * from last time.
      */
-    void glue(const std::vector<char> &faces);
+    void conform(const std::vector<char> &faces);
 
     /** Something else than the faces made its matrix outdated. */
     void touch() { ++space_.version; }
 
     const CoarseSpace &space() const { return space_; }
 
-    /** Glued faces across which functions of the space do not jump. */
+    /** Joined faces across which functions of the space do not jump. */
     std::vector<char> without_jump() const;
 
   private:
@@ -62,9 +63,9 @@ namespace nsfd
     const unsigned int dim_;
     const Unknowns unknowns_;
     const NodePairs pairs_;
-    std::vector<char> glued_;
+    std::vector<char> conforming_;
     std::vector<int> parent_;
-    /// own roots and the ghosts they are glued to
+    /// own roots and the ghosts they are joined to
     std::vector<std::pair<int, int>> across_;
     std::vector<long long> ghosts_;
     GhostValues exchange_;

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-/** What the books of a dynamic and of a quasi-static step have in common. */
+/** What the energy balances of a dynamic and of a quasi-static step share. */
 namespace nsfd
 {
-  /** What points remember, before a step has changed any of it. */
+  /** What points keep, before a step has changed any of it. */
   inline void carry_history(const State &old, State &next)
   {
     for_point_fields(
@@ -27,8 +27,8 @@ namespace nsfd
    * broken once they carry a thousandth.
    */
   template <int dim>
-  bool remember_damage(const PointEnergies<dim> &energies, const std::size_t i,
-                       const bool lets_go, const State &old, State &next)
+  bool record_damage(const PointEnergies<dim> &energies, const std::size_t i,
+                     const bool lets_go, const State &old, State &next)
   {
     next.opening_max[i] = energies.history.opening;
     if (!next.slip_max.empty())
@@ -49,7 +49,7 @@ namespace nsfd
    * The largest energy so far, and how far the sum of the lines is off: not a
    * number if one of them is none.
    */
-  inline void close_books(const State &old, State &next, StepReport &report)
+  inline void close_balance(const State &old, State &next, StepReport &report)
   {
     const EnergyLines &energy = next.energy;
     next.largest_energy = std::max(
@@ -60,9 +60,9 @@ namespace nsfd
                           energy.damage + energy.friction + energy.viscous +
                           energy.plastic + energy.impact + energy.numerical -
                           energy.work - next.initial_energy;
-    report.ledger_defect = next.largest_energy > 0. || !std::isfinite(defect)
-                               ? std::abs(defect) / next.largest_energy
-                               : 0.;
+    report.balance_residual = next.largest_energy > 0. || !std::isfinite(defect)
+                                  ? std::abs(defect) / next.largest_energy
+                                  : 0.;
   }
 
   /**
@@ -75,6 +75,6 @@ namespace nsfd
   {
     const double moved = energy_scale / 4.;
     if (moved > next.largest_energy)
-      report.ledger_defect *= next.largest_energy / moved;
+      report.balance_residual *= next.largest_energy / moved;
   }
 } // namespace nsfd

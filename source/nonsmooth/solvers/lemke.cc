@@ -1,4 +1,4 @@
-#include "pivots.h"
+#include "lemke.h"
 
 #include "core/stop_request.h"
 
@@ -142,10 +142,10 @@ namespace nsfd
    *
    *     (u_N, u+, b) = M (r_N, a, u-) + (q_N, q_T, 0),   r_T = a - mu r_N.
    */
-  bool solve_by_pivots(const std::vector<double> &W,
-                       const std::vector<double> &q,
-                       const std::vector<double> &friction,
-                       const unsigned int seed, std::vector<double> &r)
+  bool solve_by_lemke(const std::vector<double> &W,
+                      const std::vector<double> &q,
+                      const std::vector<double> &friction,
+                      const unsigned int seed, std::vector<double> &r)
   {
     const std::size_t m = friction.size(), n = 3 * m;
     // units: the mean diagonal of W and the largest velocity

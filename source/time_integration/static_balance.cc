@@ -1,6 +1,6 @@
-#include "static_ledger.h"
+#include "static_balance.h"
 
-#include "common_books.h"
+#include "common_balance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,10 +25,10 @@ namespace nsfd
     };
 
     template <int dim>
-    class StaticBook
+    class PointTerms
     {
     public:
-      StaticBook(const OneStepProblem<dim> &problem,
+      PointTerms(const OneStepProblem<dim> &problem,
                  const std::vector<LocalSolution<dim>> &solutions,
                  const State &old, State &next)
           : terms(n_rows * problem.n_owned, 0.), problem_(problem),
@@ -37,10 +37,10 @@ namespace nsfd
         carry_history(old, next);
       }
 
-      void book_motion(std::size_t i);
-      void book_joint(std::size_t i);
-      void book_law(std::size_t i);
-      void book_pressure(std::size_t i);
+      void add_motion(std::size_t i);
+      void add_joint(std::size_t i);
+      void add_law(std::size_t i);
+      void add_pressure(std::size_t i);
 
       std::vector<double> terms; ///< n_rows of n_owned
       double penetration = 0., drift = 0.;
@@ -77,13 +77,13 @@ namespace nsfd
     };
 
     template <int dim>
-    void StaticBook<dim>::book_motion(const std::size_t i)
+    void PointTerms<dim>::add_motion(const std::size_t i)
     {
       put(motion, i, mean_work(i));
     }
 
     template <int dim>
-    void StaticBook<dim>::book_joint(const std::size_t i)
+    void PointTerms<dim>::add_joint(const std::size_t i)
     {
       put(rest, i, -mean_work(i));
       double square = 0.;
@@ -94,7 +94,7 @@ namespace nsfd
 
     /** Traction of the law at the last equilibrium, Pa. */
     template <int dim>
-    auto StaticBook<dim>::old_cohesion(const std::size_t i) const -> Vector
+    auto PointTerms<dim>::old_cohesion(const std::size_t i) const -> Vector
     {
       Vector traction{};
       const PointKind kind = old_.kind[i];
@@ -118,7 +118,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void StaticBook<dim>::book_law(const std::size_t i)
+    void PointTerms<dim>::add_law(const std::size_t i)
     {
       const double w = problem_.weight[i], h = problem_.time_step;
       const auto &solution = solutions_[i];
@@ -173,10 +173,10 @@ namespace nsfd
         left.worst = std::abs(over);
         left.worst_point = i;
       }
-      if (remember_damage<dim>(energies, i,
-                               problem_.kind[i] == PointKind::rigid &&
-                                   energies.history.opening > 0.,
-                               old_, next_))
+      if (record_damage<dim>(energies, i,
+                             problem_.kind[i] == PointKind::rigid &&
+                                 energies.history.opening > 0.,
+                             old_, next_))
         put(broken, i, w);
       if (!next_.two_sided[i]) {
         const double depth = -next_.jump[i * dim];
@@ -188,7 +188,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void StaticBook<dim>::book_pressure(const std::size_t i)
+    void PointTerms<dim>::add_pressure(const std::size_t i)
     {
       const double before = old_.pressure.empty() ? 0. : old_.pressure[i];
       put(pressure_work, i,
@@ -198,7 +198,7 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  bool StaticLedger<dim>::has_pressure(const SceneInput &input)
+  bool StaticBalance<dim>::has_pressure(const SceneInput &input)
   {
     return std::any_of(
         input.interfaces.begin(), input.interfaces.end(),
@@ -206,26 +206,26 @@ namespace nsfd
   }
 
   template <int dim>
-  EnergyLeft StaticLedger<dim>::book(Relaxation<dim> &relaxation,
-                                     const std::vector<double> &forces_old,
-                                     const State &old, State &next,
-                                     StepReport &report)
+  EnergyLeft StaticBalance<dim>::account(Relaxation<dim> &relaxation,
+                                         const std::vector<double> &forces_old,
+                                         const State &old, State &next,
+                                         StepReport &report)
   {
     const auto &communicator = dynamics_.communicator();
     const auto &problem = relaxation.load_step();
-    StaticBook<dim> book(problem, relaxation.solutions(), old, next);
+    PointTerms<dim> points(problem, relaxation.solutions(), old, next);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       if (has_pressure_)
-        book.book_pressure(i);
+        points.add_pressure(i);
       if (problem.kind[i] != PointKind::prescribed)
-        book.book_law(i);
+        points.add_law(i);
       else if (discretization_.origins()[i].kind == PointOrigin::Kind::motion)
-        book.book_motion(i);
+        points.add_motion(i);
       else
-        book.book_joint(i);
+        points.add_joint(i);
     }
     const auto sums =
-        communicator.sums(book.terms.data(), n_rows, problem.n_owned);
+        communicator.sums(points.terms.data(), n_rows, problem.n_owned);
 
     const std::size_t n = next.displacement.size();
     std::vector<double> terms(3 * n);
@@ -259,10 +259,11 @@ namespace nsfd
         old.positive_friction_work + sums[positive_friction];
     next.initial_energy = old.initial_energy;
     next.penetration =
-        std::max(old.penetration, communicator.max(book.penetration));
+        std::max(old.penetration, communicator.max(points.penetration));
     next.penetration_excess = old.penetration_excess;
-    next.rigid_drift = std::max(old.rigid_drift, communicator.max(book.drift));
-    report.active = unsigned(communicator.sum_integer(book.active));
+    next.rigid_drift =
+        std::max(old.rigid_drift, communicator.max(points.drift));
+    report.active = unsigned(communicator.sum_integer(points.active));
 
     const auto &driven = discretization_.driven_boundaries();
     if (!driven.empty()) {
@@ -282,15 +283,15 @@ namespace nsfd
           communicator.sums(rows.data(), reactions_.size(), problem.n_owned);
     }
 
-    close_books(old, next, report);
+    close_balance(old, next, report);
 
-    EnergyLeft left = book.left;
+    EnergyLeft left = points.left;
     left.energy = sums[left_over];
     left.turnover = std::max({std::abs(work), sums[moved], sums[damage],
                               std::abs(energy.elastic - old.energy.elastic)});
     return left;
   }
 
-  template class StaticLedger<2>;
-  template class StaticLedger<3>;
+  template class StaticBalance<2>;
+  template class StaticBalance<3>;
 } // namespace nsfd

@@ -14,12 +14,12 @@ namespace nsfd
 {
   namespace
   {
-    class GluedCg final : public SpdSolver
+    class TwoLevelCg final : public SpdSolver
     {
     public:
-      GluedCg(const Communicator &communicator,
-              const std::vector<std::size_t> &first_dof,
-              const long long largest_factor)
+      TwoLevelCg(const Communicator &communicator,
+                 const std::vector<std::size_t> &first_dof,
+                 const long long largest_factor)
           : communicator_(communicator), largest_factor_(largest_factor),
             bodies_(first_dof)
       {
@@ -61,7 +61,7 @@ namespace nsfd
 
       /** What krylov::conjugate_gradients() asks for, of both parts. */
       struct Iteration {
-        GluedCg &cg;
+        TwoLevelCg &cg;
         double *rest; ///< the solution but for that of the coarse space
 
         bool is_solved() { return false; }
@@ -72,8 +72,8 @@ namespace nsfd
       };
     };
 
-    void GluedCg::prepare(const SparseRows &matrix, const CoarseSpace &coarse,
-                          const bool new_pattern)
+    void TwoLevelCg::prepare(const SparseRows &matrix,
+                             const CoarseSpace &coarse, const bool new_pattern)
     {
       if (new_pattern || !matrix_)
         exchange_ = GhostValues(communicator_, matrix.first_row,
@@ -85,9 +85,9 @@ namespace nsfd
         build_coarse(matrix, coarse);
     }
 
-    void GluedCg::prepare_coarse(const SparseRows &matrix,
-                                 const CoarseSpace &coarse,
-                                 const Product &add_product)
+    void TwoLevelCg::prepare_coarse(const SparseRows &matrix,
+                                    const CoarseSpace &coarse,
+                                    const Product &add_product)
     {
       add_product_ = add_product;
       if (version_ == coarse.version)
@@ -98,8 +98,8 @@ namespace nsfd
       build_coarse(matrix, coarse);
     }
 
-    void GluedCg::build_coarse(const SparseRows &matrix,
-                               const CoarseSpace &coarse)
+    void TwoLevelCg::build_coarse(const SparseRows &matrix,
+                                  const CoarseSpace &coarse)
     {
       version_ = coarse.version;
       const std::size_t n = std::size_t(matrix.n_rows());
@@ -112,7 +112,7 @@ namespace nsfd
           coarse_rows(communicator_, matrix, coarse, numbers);
       ++counters_.coarse_spaces;
 
-      // coarse unknowns of other ranks that own nodes are glued to
+      // coarse unknowns of other ranks that own nodes are joined to
       std::vector<long long> remote;
       const long long first = coarse.first, end = first + coarse.n_own;
       for (const long long k : coarse.number)
@@ -149,7 +149,7 @@ namespace nsfd
     }
 
     /** z = B r, the part of the bodies and that of the coarse space. */
-    void GluedCg::precondition()
+    void TwoLevelCg::precondition()
     {
       std::fill(coarse_.r.begin(), coarse_.r.end(), 0.);
       for (std::size_t i = 0; i < place_.size(); ++i)
@@ -165,8 +165,8 @@ namespace nsfd
     }
 
     /** a.b + coarse_a.coarse_b over own unknowns. */
-    double GluedCg::dot(const Vector &a, const Vector &b,
-                        const Vector &coarse_a, const Vector &coarse_b) const
+    double TwoLevelCg::dot(const Vector &a, const Vector &b,
+                           const Vector &coarse_a, const Vector &coarse_b) const
     {
       // the second one: how many ranks are asked to stop
       double sums[2] = {0.,
@@ -184,7 +184,7 @@ namespace nsfd
     }
 
     /** q = A (p + P p_c), and P^T q of it. */
-    void GluedCg::multiply_direction()
+    void TwoLevelCg::multiply_direction()
     {
       const std::size_t n = place_.size();
       for (std::size_t i = 0; i < n; ++i)
@@ -207,13 +207,13 @@ namespace nsfd
       coarse_exchange_.finish_add_back(coarse_.q.data());
     }
 
-    double GluedCg::Iteration::precondition()
+    double TwoLevelCg::Iteration::precondition()
     {
       cg.precondition();
       return cg.dot(cg.fine_.r, cg.fine_.z, cg.coarse_.r, cg.coarse_.z);
     }
 
-    void GluedCg::Iteration::turn(const double beta)
+    void TwoLevelCg::Iteration::turn(const double beta)
     {
       for (std::size_t i = 0; i < cg.fine_.z.size(); ++i)
         cg.fine_.p[i] = cg.fine_.z[i] + beta * cg.fine_.p[i];
@@ -221,13 +221,13 @@ namespace nsfd
         cg.coarse_.p[i] = cg.coarse_.z[i] + beta * cg.coarse_.p[i];
     }
 
-    double GluedCg::Iteration::multiply()
+    double TwoLevelCg::Iteration::multiply()
     {
       cg.multiply_direction();
       return cg.dot(cg.fine_.q, cg.fine_.p, cg.coarse_.q, cg.coarse_.p);
     }
 
-    void GluedCg::Iteration::advance(const double alpha)
+    void TwoLevelCg::Iteration::advance(const double alpha)
     {
       for (std::size_t i = 0; i < cg.fine_.z.size(); ++i) {
         rest[i] += alpha * cg.fine_.p[i];
@@ -242,7 +242,7 @@ namespace nsfd
      * are kept in these two parts as well: springs that vanish on the coarse
      * space are larger than what A is there by more than the digits of a sum.
      */
-    unsigned int GluedCg::iterate(double *rest, const double tolerance)
+    unsigned int TwoLevelCg::iterate(double *rest, const double tolerance)
     {
       const std::size_t n = place_.size(), n_coarse = coarse_.z.size();
       ++counters_.solves;
@@ -262,9 +262,9 @@ namespace nsfd
       return outcome.iterations;
     }
 
-    unsigned int GluedCg::solve_parts(const double *b, const std::size_t rows,
-                                      double *rest, double *coarse,
-                                      const double tolerance)
+    unsigned int TwoLevelCg::solve_parts(const double *b,
+                                         const std::size_t rows, double *rest,
+                                         double *coarse, const double tolerance)
     {
       fine_.r.assign(b, b + rows);
       const unsigned int k = iterate(rest, tolerance);
@@ -273,8 +273,8 @@ namespace nsfd
       return k;
     }
 
-    unsigned int GluedCg::solve(const double *b, double *x,
-                                const double tolerance)
+    unsigned int TwoLevelCg::solve(const double *b, double *x,
+                                   const double tolerance)
     {
       const std::size_t n = place_.size();
       fine_.r.assign(b, b + n);
@@ -302,10 +302,11 @@ namespace nsfd
   } // namespace
 
   std::unique_ptr<SpdSolver>
-  make_glued_cg_solver(const Communicator &communicator,
-                       const std::vector<std::size_t> &first_dof,
-                       const long long largest_factor)
+  make_two_level_cg(const Communicator &communicator,
+                    const std::vector<std::size_t> &first_dof,
+                    const long long largest_factor)
   {
-    return std::make_unique<GluedCg>(communicator, first_dof, largest_factor);
+    return std::make_unique<TwoLevelCg>(communicator, first_dof,
+                                        largest_factor);
   }
 } // namespace nsfd

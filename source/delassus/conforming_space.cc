@@ -1,12 +1,12 @@
-#include "glued_space.h"
+#include "conforming_space.h"
 
 #include <algorithm>
 
 namespace nsfd
 {
-  GluedSpace::GluedSpace(const Communicator &communicator,
-                         const unsigned int dim, Unknowns unknowns,
-                         NodePairs pairs)
+  ConformingSpace::ConformingSpace(const Communicator &communicator,
+                                   const unsigned int dim, Unknowns unknowns,
+                                   NodePairs pairs)
       : communicator_(communicator), dim_(dim), unknowns_(std::move(unknowns)),
         pairs_(std::move(pairs))
   {
@@ -25,14 +25,14 @@ namespace nsfd
         GhostValues(communicator, unknowns_.first, std::size_t(n), ghosts_);
   }
 
-  int GluedSpace::root(int unknown)
+  int ConformingSpace::root(int unknown)
   {
     while (parent_[unknown] != unknown)
       unknown = parent_[unknown] = parent_[parent_[unknown]];
     return unknown;
   }
 
-  void GluedSpace::join(const std::vector<char> &faces)
+  void ConformingSpace::join(const std::vector<char> &faces)
   {
     const long long n = static_cast<long long>(unknowns_.component.size());
     parent_.resize(n);
@@ -59,10 +59,10 @@ namespace nsfd
 
   /**
    * Make @p value, one per unknown and valid at the roots, the smallest
-   * (largest) one over all that is glued together on any rank. As many
+   * (largest) one over all that is joined together on any rank. As many
    * exchanges as ranks lie around a node.
    */
-  void GluedSpace::agree(std::vector<double> &value, const bool smallest)
+  void ConformingSpace::agree(std::vector<double> &value, const bool smallest)
   {
     std::vector<double> ghosts(ghosts_.size());
     bool changed = true;
@@ -81,11 +81,11 @@ namespace nsfd
     }
   }
 
-  void GluedSpace::glue(const std::vector<char> &faces)
+  void ConformingSpace::conform(const std::vector<char> &faces)
   {
-    if (!communicator_.any(space_.version == 0 || faces != glued_))
+    if (!communicator_.any(space_.version == 0 || faces != conforming_))
       return;
-    glued_ = faces;
+    conforming_ = faces;
     ++space_.version;
     join(faces);
     const std::size_t n = unknowns_.component.size();
@@ -113,16 +113,16 @@ namespace nsfd
     set_modes();
   }
 
-  std::vector<char> GluedSpace::without_jump() const
+  std::vector<char> ConformingSpace::without_jump() const
   {
-    std::vector<char> result(glued_);
+    std::vector<char> result(conforming_);
     for (std::size_t f = 0; f < result.size(); ++f)
       result[f] = result[f] && pairs_.complete[f];
     return result;
   }
 
   /** Translations and rotations of the deformable bodies. */
-  void GluedSpace::set_modes()
+  void ConformingSpace::set_modes()
   {
     const unsigned int n_modes = dim_ == 2 ? 3 : 6;
     space_.modes.assign(n_modes, std::vector<double>(space_.n_own, 0.));

@@ -1,4 +1,4 @@
-#include "remember_state.h"
+#include "serialize_state.h"
 
 #include "core/archive.h"
 #include "state/point_fields.h"
@@ -9,22 +9,22 @@ namespace nsfd
   {
     /** Whole numbers below 2^53. */
     template <typename Number>
-    void remember_numbers(const std::string &name, std::vector<Number> &numbers,
-                          Archive &archive)
+    void serialize_numbers(const std::string &name,
+                           std::vector<Number> &numbers, Archive &archive)
     {
       std::vector<double> values(numbers.begin(), numbers.end());
       archive.common(name, values);
       numbers.assign(values.begin(), values.end());
     }
     template <typename Number>
-    void remember_points(const std::string &name, std::vector<Number> &values,
-                         Archive &archive)
+    void serialize_points(const std::string &name, std::vector<Number> &values,
+                          Archive &archive)
     {
       archive.points(name, values);
     }
 
-    void remember_points(const std::string &name, std::vector<PointKind> &kinds,
-                         Archive &archive)
+    void serialize_points(const std::string &name,
+                          std::vector<PointKind> &kinds, Archive &archive)
     {
       std::vector<std::uint8_t> values(kinds.size());
       for (std::size_t i = 0; i < values.size(); ++i)
@@ -36,7 +36,7 @@ namespace nsfd
     }
   } // namespace
 
-  void remember(State &s, Archive &archive)
+  void serialize(State &s, Archive &archive)
   {
     const Archive::Part part(archive, "state");
     archive.numbers("step", s.step);
@@ -45,7 +45,7 @@ namespace nsfd
     archive.bodies("velocity", s.velocity);
     for_point_fields(
         [&](const PointField &field, const auto member, const auto &...) {
-          remember_points(field.name, s.*member, archive);
+          serialize_points(field.name, s.*member, archive);
         });
     archive.common("rigid", s.rigid);
     archive.common("obstacle_shift", s.obstacle_shift);
@@ -56,8 +56,8 @@ namespace nsfd
     archive.common("surface_wear_speed", s.surface_wear_speed);
     archive.common("surface_overlap", s.surface_overlap);
     archive.common("surface_approach", s.surface_approach);
-    remember_numbers("surface_contact", s.surface_contact, archive);
-    remember_numbers("surface_facet", s.surface_facet, archive);
+    serialize_numbers("surface_contact", s.surface_contact, archive);
+    serialize_numbers("surface_facet", s.surface_facet, archive);
     archive.common("surface_gap", s.surface_gap);
     bool has_viscous = s.viscous_traction.has_value();
     double viscous = s.viscous_traction.value_or(0.);

@@ -9,5 +9,5 @@ namespace nsfd
   class Archive;
 
   /** The pictures of the report so far; on the first rank. Collective. */
-  void remember(std::vector<Snapshot> &snapshots, Archive &archive);
+  void serialize(std::vector<Snapshot> &snapshots, Archive &archive);
 } // namespace nsfd

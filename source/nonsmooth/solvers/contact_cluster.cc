@@ -1,5 +1,5 @@
 #include "contact_path.h"
-#include "pivots.h"
+#include "lemke.h"
 
 #include "nonsmooth/springs.h"
 
@@ -11,13 +11,14 @@ namespace nsfd
   template <int dim>
   bool ContactPath<dim>::newton(const unsigned int patience)
   {
-    nsfd::polish<dim>(problem_, system_, dynamics_, control_.tolerance,
-                      patience, softening_, impulse_, evaluation_, report_);
+    nsfd::newton_refinement<dim>(problem_, system_, dynamics_,
+                                 control_.tolerance, patience, softening_,
+                                 impulse_, evaluation_, report_);
     return judge();
   }
 
   template <int dim>
-  bool ContactPath<dim>::polish()
+  bool ContactPath<dim>::refine()
   {
     restore();
     if (newton(best_error_ < 1e-4 ? 6 : 2))
@@ -25,7 +26,7 @@ namespace nsfd
     for (unsigned int k = 0; k < 3 && best_error_ < 1e-5; ++k) {
       const double before = best_error_;
       bool moved;
-      if (mend(moved) || (moved && newton(3)))
+      if (solve_cluster(moved) || (moved && newton(3)))
         return true;
       if (!(best_error_ < 0.7 * before))
         break;
@@ -40,7 +41,7 @@ namespace nsfd
    * spread over too many of them.
    */
   template <int dim>
-  std::vector<std::size_t> ContactPath<dim>::find_knot() const
+  std::vector<std::size_t> ContactPath<dim>::find_cluster() const
   {
     constexpr std::size_t most_bad = 60, most = 160;
     const std::size_t n = problem_.n_points;
@@ -65,7 +66,7 @@ namespace nsfd
           faces_of[body].push_back(f);
 
     std::vector<char> taken(n, 0);
-    std::vector<std::size_t> knot;
+    std::vector<std::size_t> cluster;
     for (std::size_t k = 0; k < n && sum > rest; sum -= share[k++].first) {
       if (k == most_bad)
         return {};
@@ -83,16 +84,16 @@ namespace nsfd
                               [](const double x) { return x != 0.; }))
                 continue;
               taken[i] = 1;
-              knot.push_back(i);
+              cluster.push_back(i);
             }
-      if (knot.size() > most)
+      if (cluster.size() > most)
         break;
     }
-    return knot;
+    return cluster;
   }
 
   template <int dim>
-  bool ContactPath<dim>::mend(bool &moved)
+  bool ContactPath<dim>::solve_cluster(bool &moved)
   {
     moved = false;
     if (dim != 2 || !problem_.dilatancy.empty())
@@ -101,58 +102,58 @@ namespace nsfd
     const auto path = frozen_; // which goes on after this
     for (std::size_t i = 0; i < problem_.n_points; ++i)
       frozen_[i] = evaluation_.solutions[i].frozen;
-    const auto knot = find_knot();
+    const auto cluster = find_cluster();
     frozen_ = path;
-    if (knot.empty())
+    if (cluster.empty())
       return false;
-    const std::size_t n = problem_.n_points, m = knot.size();
+    const std::size_t n = problem_.n_points, m = cluster.size();
 
     laws_.softening = std::max(1e-4, softening_);
     laws_.update(problem_, evaluation_, impulse_);
     laws_.softening = 1e-7;
-    for (const std::size_t i : knot) {
+    for (const std::size_t i : cluster) {
       std::fill_n(&laws_.stiffness[i * dim * dim], dim * dim, 0.);
       std::fill_n(&laws_.change[i * dim], dim, 0.);
     }
     if (!system_.factorise(laws_.stiffness))
       return false;
     ++report_.newton;
-    // what the others do by themselves, and against an impulse in the knot
+    // what the others do by themselves, and against an impulse in the cluster
     equilibrate(laws_.change, true);
     std::vector<double> q(m * dim), W(m * dim * m * dim), mu(m), P(m * dim);
     for (std::size_t a = 0; a < m; ++a) {
-      mu[a] = frozen_state<dim>(problem_, knot[a],
-                                evaluation_.solutions[knot[a]].reach, 1.)
+      mu[a] = frozen_state<dim>(problem_, cluster[a],
+                                evaluation_.solutions[cluster[a]].reach, 1.)
                   .threshold;
       for (unsigned int c = 0; c < dim; ++c) {
-        const std::size_t j = knot[a] * dim + c;
-        q[a * dim + c] =
-            evaluation_.velocity[j] + dU_[j] -
-            (c == 0 ? problem_.target[knot[a]] : -problem_.sliding_offset[j]);
+        const std::size_t j = cluster[a] * dim + c;
+        q[a * dim + c] = evaluation_.velocity[j] + dU_[j] -
+                         (c == 0 ? problem_.target[cluster[a]]
+                                 : -problem_.sliding_offset[j]);
         P[a * dim + c] = impulse_[j];
       }
     }
     Vector unit(n * dim, 0.);
     for (std::size_t b = 0; b < m * dim; ++b) {
-      unit[knot[b / dim] * dim + b % dim] = 1.;
+      unit[cluster[b / dim] * dim + b % dim] = 1.;
       equilibrate(unit, true);
-      unit[knot[b / dim] * dim + b % dim] = 0.;
+      unit[cluster[b / dim] * dim + b % dim] = 0.;
       for (std::size_t a = 0; a < m * dim; ++a) {
-        W[a * m * dim + b] = dU_[knot[a / dim] * dim + a % dim];
+        W[a * m * dim + b] = dU_[cluster[a / dim] * dim + a % dim];
         q[a] -= W[a * m * dim + b] * P[b];
       }
     }
     std::vector<double> solution;
     bool found = false;
     for (unsigned int seed = 1; seed <= 4 && !found; ++seed)
-      found = solve_by_pivots(W, q, mu, seed, solution);
+      found = solve_by_lemke(W, q, mu, seed, solution);
     if (!found)
       return false;
 
     // all others follow
     Vector change(laws_.change);
     for (std::size_t b = 0; b < m * dim; ++b)
-      change[knot[b / dim] * dim + b % dim] = solution[b] - P[b];
+      change[cluster[b / dim] * dim + b % dim] = solution[b] - P[b];
     equilibrate(change, true);
     for (std::size_t j = 0; j < n * dim; ++j) {
       impulse_[j] += change[j];
@@ -164,10 +165,10 @@ namespace nsfd
     return judge();
   }
 
-  template bool ContactPath<2>::polish();
-  template bool ContactPath<3>::polish();
-  template std::vector<std::size_t> ContactPath<2>::find_knot() const;
-  template std::vector<std::size_t> ContactPath<3>::find_knot() const;
-  template bool ContactPath<2>::mend(bool &);
-  template bool ContactPath<3>::mend(bool &);
+  template bool ContactPath<2>::refine();
+  template bool ContactPath<3>::refine();
+  template std::vector<std::size_t> ContactPath<2>::find_cluster() const;
+  template std::vector<std::size_t> ContactPath<3>::find_cluster() const;
+  template bool ContactPath<2>::solve_cluster(bool &);
+  template bool ContactPath<3>::solve_cluster(bool &);
 } // namespace nsfd

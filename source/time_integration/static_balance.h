@@ -14,8 +14,8 @@ namespace nsfd
   };
 
   /**
-   * The books of a step from equilibrium to equilibrium. Forces balance at
-   * both ends, so that over a change dq of the displacements
+   * The energy balance of a step from equilibrium to equilibrium. Forces
+   * balance at both ends, so that over a change dq of the displacements
    *
    *     d(q.K q/2) = (F_k + F_{k+1})/2 . dq + sum (r_k + r_{k+1})/2 . du,
    *
@@ -31,12 +31,12 @@ namespace nsfd
    * least is their work.
    */
   template <int dim>
-  class StaticLedger
+  class StaticBalance
   {
   public:
-    StaticLedger(const SceneInput &input,
-                 const Discretization<dim> &discretization,
-                 const Dynamics<dim> &dynamics)
+    StaticBalance(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const Dynamics<dim> &dynamics)
         : discretization_(discretization), dynamics_(dynamics),
           reactions_(discretization.driven_boundaries().size() * dim, 0.),
           has_pressure_(has_pressure(input))
@@ -48,9 +48,9 @@ namespace nsfd
      * are known: everything else of it, and of @p report. @p forces_old are
      * the loads at @p old. Collective.
      */
-    EnergyLeft book(Relaxation<dim> &relaxation,
-                    const std::vector<double> &forces_old, const State &old,
-                    State &next, StepReport &report);
+    EnergyLeft account(Relaxation<dim> &relaxation,
+                       const std::vector<double> &forces_old, const State &old,
+                       State &next, StepReport &report);
 
     const std::vector<double> &reactions() const { return reactions_; }
     /** Those of another way to the same time. */
