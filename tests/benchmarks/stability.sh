@@ -39,7 +39,7 @@ try() { # try FILE [--set ...]
   depth=$(value penetration_max) bound=$(value penetration_bound)
   echo "| $scene | $(echo "$*" | sed 's/--set //g') | $(value steps) |" \
     "exit $code $(sed -n 's/.*not solved: \(residual [^ ]*\).*/\1/p' "$out/err")" \
-    "| $(awk "BEGIN { printf \"%.1e\", $(value balance_residual_max) }")" \
+    "| $(awk "BEGIN { printf \"%.1e\", $(value ledger_defect_max) }")" \
     "| $(awk "BEGIN { b = ${bound:-0}; printf \"%.2g\", (b > 0 ? ${depth:-0} / b : 0) }")" \
     "| $(awk "BEGIN { f = ${friction:-0}; w = ${work:-0}; if (w < 0) w = -w; \
               printf \"%.2g\", (f < 0 && w > 0 ? -f / w : 0) }") |"
