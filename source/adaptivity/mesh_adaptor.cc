@@ -1,5 +1,6 @@
 #include "mesh_adaptor.h"
 
+#include "discretization/cells.h"
 #include "family.h"
 #include "mesh/owned_cells.h"
 #include "spring_shift.h"
@@ -99,7 +100,7 @@ namespace nsfd
     constexpr double share = 1e-4;
     const auto &energy = mesh.state.energy;
     const double mean = (energy.kinetic + energy.elastic) /
-                        double(mesh.discretization.n_global_cells());
+                        double(mesh.discretization.cells().n_global);
     const auto body_of = bodies_of_cells(triangulation_);
     const SpringShift<dim> shift(input_, mesh);
     for (const auto &cell : owned_cells(triangulation_)) {
@@ -121,7 +122,7 @@ namespace nsfd
         family.add(mesh.discretization.bodies(), mesh.state, bodies[c],
                    &translations[c * dim], dim);
       const FamilyEnergy of_family =
-          energy_of_family<dim>(mesh.discretization.element(), family);
+          energy_of_family<dim>(*mesh.discretization.cells().element, family);
       if (of_family.change >
           share * std::max(of_family.now, double(family.classes.size()) * mean))
         for (unsigned int c = 0; c < cell->parent()->n_children(); ++c)

@@ -1,6 +1,7 @@
 #include "mesh_view.h"
 
 #include "core/gather.h"
+#include "discretization/cells.h"
 #include "materials/elasticity.h"
 
 #include "family.h"
@@ -28,7 +29,8 @@ namespace nsfd
       for (const int b : bodies) {
         if (b < 0)
           continue;
-        const auto &softest = discretization.extremes_of(unsigned(b)).softest;
+        const auto &softest =
+            discretization.cells().shape(unsigned(b)).extremes.softest;
         if (softest.young > 0.) // not rigid
           modulus = std::min(
               modulus,
@@ -54,8 +56,8 @@ namespace nsfd
     const auto &discretization = mesh.discretization;
     for (unsigned int b = 0; b < bodies_.size(); ++b) {
       Body &body = bodies_[b];
-      const auto corners = discretization.corners(b);
-      const auto centre = discretization.centre(b);
+      const auto corners = discretization.cells().corners[b];
+      const auto centre = discretization.cells().centre(b);
       for (unsigned int c = 0; c < dim; ++c)
         body.centre[c] = centre[c];
       for (unsigned int v = 0; v < corners.size(); ++v)
@@ -98,7 +100,8 @@ namespace nsfd
             const double JxW, const double *, const double *gradient) {
           const auto stress = discretization.stress(body, x, gradient);
           for (unsigned int c = 0; c < 6; ++c)
-            mean[body][c] += JxW / discretization.volume(body) * stress[c];
+            mean[body][c] +=
+                JxW / discretization.cells().shape(body).volume * stress[c];
         });
     return mean;
   }

@@ -1,5 +1,6 @@
 #include "spring_shift.h"
 
+#include "discretization/cells.h"
 #include "materials/elasticity.h"
 
 #include "discretization/point_places.h"
@@ -62,35 +63,38 @@ namespace nsfd
     stress_ = mean_stresses(mesh.discretization, mesh.state.displacement);
     held_.assign(bodies.size(), 0);
     broken_.assign(bodies.size(), 0);
-    for_all_places(
-        bodies, mesh.discretization.points().n_points,
-        [&](const std::size_t body, const unsigned int slot,
-            const std::size_t i, unsigned int) {
-          const PointOrigin origin = mesh.discretization.origins()[i];
-          const auto face = std::uint8_t(
-              1u << mesh.discretization.face_of_slot(unsigned(body), slot));
-          const bool same =
-              origin.kind == PointOrigin::Kind::interface &&
-              int(origin.block) ==
-                  mesh.discretization.springs_inside(unsigned(body));
-          switch (mesh.state.kind[i]) {
-          case PointKind::free:
-            broken_[body] |= face;
-            break;
-          case PointKind::elastic:
-          case PointKind::cohesive:
-            held_[body] |= same ? 0u : face;
-            // damaged and closed: contact, which a spring does not follow
-            broken_[body] |= mesh.state.beta[i] < 1. &&
-                                     !mesh.state.two_sided[i] &&
-                                     mesh.state.jump[i * dim] < 0.
-                                 ? face
-                                 : 0u;
-            break;
-          default:
-            held_[body] |= face;
-          }
-        });
+    for_all_places(bodies, mesh.discretization.points().n_points,
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t i, unsigned int) {
+                     const PointOrigin origin =
+                         mesh.discretization.origins()[i];
+                     const auto face =
+                         std::uint8_t(1u << mesh.discretization.cells()
+                                                .shape(unsigned(body))
+                                                .slot_faces[slot]);
+                     const bool same =
+                         origin.kind == PointOrigin::Kind::interface &&
+                         int(origin.block) ==
+                             mesh.discretization.springs_inside(unsigned(body));
+                     switch (mesh.state.kind[i]) {
+                     case PointKind::free:
+                       broken_[body] |= face;
+                       break;
+                     case PointKind::elastic:
+                     case PointKind::cohesive:
+                       held_[body] |= same ? 0u : face;
+                       // damaged and closed: contact, which a spring does not
+                       // follow
+                       broken_[body] |= mesh.state.beta[i] < 1. &&
+                                                !mesh.state.two_sided[i] &&
+                                                mesh.state.jump[i * dim] < 0.
+                                            ? face
+                                            : 0u;
+                       break;
+                     default:
+                       held_[body] |= face;
+                     }
+                   });
   }
 
   template <int dim>
@@ -101,7 +105,8 @@ namespace nsfd
     const InterfaceInput &interface = input_.interfaces[unsigned(block)];
     const auto [C_N, C_T] = stiffness(interface);
     const double compliance = std::ldexp(1., -level);
-    const auto normals = middle_normals<dim>(discretization_.corners(body));
+    const auto normals =
+        middle_normals<dim>(discretization_.cells().corners[body]);
     Openings result{};
     for (unsigned int d = 0; d < dim; ++d) {
       const Tensor<1, dim> &n = normals[d];
@@ -165,9 +170,10 @@ namespace nsfd
     std::uint8_t held = 0, broken = 0; // of the parent: by any of its children
     for (unsigned int child = 0; child < bodies.size(); ++child) {
       const unsigned int body = bodies[child];
-      volume += discretization_.volume(body);
+      volume += discretization_.cells().shape(body).volume;
       for (unsigned int c = 0; c < mean.size(); ++c)
-        mean[c] += discretization_.volume(body) * stress_[body][c];
+        mean[c] +=
+            discretization_.cells().shape(body).volume * stress_[body][c];
       std::uint8_t outside = 0;
       for (unsigned int face = 0; face < 2 * dim; ++face)
         outside |= std::uint8_t(lies_on_face(child, face) << face);

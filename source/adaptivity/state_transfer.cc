@@ -3,6 +3,7 @@
 #include "family.h"
 
 #include "cohesive_laws/stiffened_law.h"
+#include "discretization/cells.h"
 #include "mesh/owned_cells.h"
 #include "time_integration/initial_state.h"
 
@@ -110,7 +111,8 @@ namespace nsfd
                                         const bool all_faces) const
   {
     for (const auto &[slot, point] : points_of_[body]) {
-      const unsigned int face_no = old_.discretization.face_of_slot(body, slot);
+      const unsigned int face_no =
+          old_.discretization.cells().shape(body).slot_faces[slot];
       if (!all_faces && !lies_on_face(child, face_no))
         continue;
       const std::size_t first = parcel.size();
@@ -156,7 +158,7 @@ namespace nsfd
       family.add(old_.discretization.bodies(), old_.state, bodies[c],
                  &translations[c * dim], dim);
     const ParentMotion motion =
-        motion_of_parent<dim>(old_.discretization.element(), family);
+        motion_of_parent<dim>(*old_.discretization.cells().element, family);
     Parcel parcel = {double(motion.momentum.size())};
     parcel.insert(parcel.end(), motion.displacement.begin(),
                   motion.displacement.end());
@@ -196,7 +198,7 @@ namespace nsfd
                                       State &state) const
   {
     const auto &bodies = fresh.discretization.bodies();
-    const auto &element = fresh.discretization.element();
+    const auto &element = *fresh.discretization.cells().element;
     state.displacement.resize(bodies.n_dofs());
     state.velocity.resize(bodies.n_dofs());
     std::vector<Block> inverse(bodies.classes.size());
@@ -359,10 +361,11 @@ namespace nsfd
             const std::size_t point, const unsigned int side) {
           bool inside = false;
           double *row = &rows[side][point * size];
-          const double *memory =
-              memory_of(received_[body],
-                        fresh.discretization.face_of_slot(unsigned(body), slot),
-                        point, fresh, inside);
+          const double *memory = memory_of(received_[body],
+                                           fresh.discretization.cells()
+                                               .shape(unsigned(body))
+                                               .slot_faces[slot],
+                                           point, fresh, inside);
           if (memory)
             std::copy_n(memory, size, row);
           row[Memory::face] = memory ? kept : inside ? inside_a_cell : none;

@@ -2,6 +2,7 @@
 
 #include "discretization/body_shape.h"
 #include "discretization/cell_geometry.h"
+#include "discretization/cells.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
@@ -23,11 +24,11 @@ namespace nsfd
   BodyLayout<dim>::BodyLayout(const SceneInput &input,
                               const Discretization<dim> &discretization)
       : input_(input), discretization_(discretization),
-        nodes_per_cell_(discretization.element().n_dofs_per_cell())
+        nodes_per_cell_(discretization.cells().element->n_dofs_per_cell())
   {
     for (unsigned int c = 0; c < discretization.bodies().size(); ++c) {
-      const auto &shape = discretization.shape(c);
-      const Place corner = discretization.corners(c)[0];
+      const auto &shape = discretization.cells().shape(c);
+      const Place corner = discretization.cells().corners[c][0];
       for (const Place &node : shape.nodes)
         for (unsigned int d = 0; d < dim; ++d)
           rest_.push_back(corner[d] + node[d]);
@@ -46,7 +47,7 @@ namespace nsfd
     int n_rigid_bodies = 0;
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
       const unsigned int cell =
-          table.cell_of_global[discretization_.global_cell(c)];
+          table.cell_of_global[discretization_.cells().global_cell[c]];
       const unsigned int b = table.body_of_cell[cell];
       own_cell_[cell] = c;
       if (own_body_[b] < 0) {
@@ -77,8 +78,8 @@ namespace nsfd
     Vec3 centre{};
     const auto for_points = [&](const auto &visit) {
       for (const unsigned int c : body.cells) {
-        const auto &shape = discretization_.shape(c);
-        const Place corner = discretization_.corners(c)[0];
+        const auto &shape = discretization_.cells().shape(c);
+        const Place corner = discretization_.cells().corners[c][0];
         for (std::size_t q = 0; q < shape.JxW.size(); ++q)
           visit(material.density * shape.JxW[q],
                 in_space(Vector(corner) + Vector(shape.positions[q])));
@@ -99,7 +100,7 @@ namespace nsfd
     const double of_cells = mass;
     if (given.ball) {
       for (const unsigned int c : body.cells)
-        for (const Place &corner : discretization_.corners(c))
+        for (const Place &corner : discretization_.cells().corners[c])
           body.radius =
               std::max(body.radius, norm(in_space(Vector(corner)) - centre));
       const double R = body.radius;
@@ -154,12 +155,12 @@ namespace nsfd
   template <int dim>
   void BodyLayout<dim>::set_slot_gradients()
   {
-    const auto &element = discretization_.element();
+    const auto &element = *discretization_.cells().element;
     for (const auto &body : discretization_.bodies().classes) {
       auto &gradients = slot_gradients_.emplace_back();
       if (body.bodies.empty())
         continue;
-      const auto &shape = discretization_.shape(body.bodies[0]);
+      const auto &shape = discretization_.cells().shape(body.bodies[0]);
       for (const Place &place : shape.slot_places) {
         const auto inverse =
             invert(jacobian(shape.reference, shape.corners, place));

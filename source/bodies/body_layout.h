@@ -1,5 +1,6 @@
 #pragma once
 
+#include "discretization/cells.h"
 #include "nsfd/bodies/rigid_step.h"
 #include "nsfd/discretization/discretization.h"
 #include "state/state.h"
@@ -94,7 +95,8 @@ namespace nsfd
     /** Of a node of SurfaceCells in a cell of this rank: that of the state. */
     std::size_t own_node(const std::size_t node) const
     {
-      return discretization_.first_node(own_cell_[node / nodes_per_cell_]) +
+      return discretization_.cells()
+                 .first_node[own_cell_[node / nodes_per_cell_]] +
              node % nodes_per_cell_;
     }
 

@@ -3,6 +3,7 @@
 #include "deformable_cells.h"
 #include "discretization/body_shape.h"
 #include "discretization/cell_sampler.h"
+#include "discretization/cells.h"
 
 #include "nsfd/scene/scene_input.h"
 
@@ -35,7 +36,8 @@ namespace nsfd
   bool CellStresses<dim>::is_history_dependent(const unsigned int body) const
   {
     return any_memory() &&
-           materials_[discretization_.material_of(body)] != nullptr;
+           materials_[discretization_.cells().body_class(body).material] !=
+               nullptr;
   }
 
   template <int dim>
@@ -43,7 +45,8 @@ namespace nsfd
                                            const unsigned int q) const
   {
     return state_.material_history.data() + first_[body] +
-           q * materials_[discretization_.material_of(body)]->n_history();
+           q * materials_[discretization_.cells().body_class(body).material]
+                   ->n_history();
   }
 
   template <int dim>
@@ -57,10 +60,10 @@ namespace nsfd
       point_ = 0;
     body_ = body;
     const unsigned int q = point_++;
-    if (point_ == discretization_.shape(body).JxW.size())
+    if (point_ == discretization_.cells().shape(body).JxW.size())
       point_ = 0; // the next visit of all may begin here
-    return materials_[discretization_.material_of(body)]->stress(
-        gradient, history(body, q));
+    return materials_[discretization_.cells().body_class(body).material]
+        ->stress(gradient, history(body, q));
   }
 
   template <int dim>
@@ -69,7 +72,7 @@ namespace nsfd
                                     const Visitor &visitor)
   {
     std::vector<Stress> viscous; // in the order of the visits
-    if (discretization_.is_viscous())
+    if (discretization_.input().has_viscous_bodies())
       discretization_.visit_quadrature(
           velocity, [&](const unsigned int body, const dealii::Point<dim> &,
                         double, const double *, const double *rate) {
@@ -95,10 +98,12 @@ namespace nsfd
                               const std::vector<double> &nodal) const
   {
     constexpr unsigned int width = 7;
-    const auto &shape = discretization_.shape(body);
-    const auto &material = *materials_[discretization_.material_of(body)];
+    const auto &shape = discretization_.cells().shape(body);
+    const auto &material =
+        *materials_[discretization_.cells().body_class(body).material];
     const unsigned int n = shape.n_nodes;
-    const double *u = nodal.data() + discretization_.first_node(body) * dim;
+    const double *u =
+        nodal.data() + discretization_.cells().first_node[body] * dim;
     Block mass(n, n), moments(n, width);
     for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
       double gradient[dim * dim] = {};
@@ -165,13 +170,13 @@ namespace nsfd
       sampled_ = body;
       return from_nodes(sampler, q);
     }
-    const auto corners = discretization_.corners(body);
-    const std::size_t node = discretization_.first_node(body) * dim;
+    const auto corners = discretization_.cells().corners[body];
+    const std::size_t node = discretization_.cells().first_node[body] * dim;
     const auto gradient = sampler.gradient(q, corners, &displacement[node]);
     Sample result;
     result.stress = discretization_.stress(body, sampler.position(q, corners),
                                            gradient.data());
-    if (discretization_.is_viscous()) {
+    if (discretization_.input().has_viscous_bodies()) {
       const auto viscous = discretization_.viscous_stress(
           body, sampler.gradient(q, corners, &velocity[node]).data());
       for (unsigned int c = 0; c < 6; ++c)

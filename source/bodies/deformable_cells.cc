@@ -1,6 +1,7 @@
 #include "deformable_cells.h"
 
 #include "discretization/body_shape.h"
+#include "discretization/cells.h"
 
 #include "finite_cell.h"
 #include "history_cell.h"
@@ -56,9 +57,10 @@ namespace nsfd
       of_material.push_back(n_history(input, m));
     std::vector<std::size_t> first = {0};
     for (unsigned int c = 0; c < discretization.bodies().size(); ++c)
-      first.push_back(first.back() +
-                      of_material[discretization.material_of(c)] *
-                          discretization.shape(c).JxW.size());
+      first.push_back(
+          first.back() +
+          of_material[discretization.cells().body_class(c).material] *
+              discretization.cells().shape(c).JxW.size());
     return first;
   }
 
@@ -73,7 +75,7 @@ namespace nsfd
           body.bodies.empty()
               ? nullptr
               : make_cell<dim>(discretization.input(), body.material,
-                               discretization.shape(body.bodies[0])));
+                               discretization.cells().shape(body.bodies[0])));
       auto &mass = masses_.emplace_back();
       if (cells_.back())
         for (unsigned int j = 0; j < body.n_dofs; ++j)

@@ -2,6 +2,7 @@
 
 #include "core/gather.h"
 #include "discretization/cell_sampler.h"
+#include "discretization/cells.h"
 
 #include "core/neighbor_messages.h"
 
@@ -200,8 +201,8 @@ namespace nsfd
       own[k] = {stands_for_[k], none, {}};
     for (unsigned int b = 0; b < piece_.size(); ++b) {
       const Piece body = {stands_for_[piece_[b]],
-                          discretization_.global_cell(b),
-                          in_space<dim>(discretization_.centre(b))};
+                          discretization_.cells().global_cell[b],
+                          in_space<dim>(discretization_.cells().centre(b))};
       Piece &piece = own[piece_[b]];
       if (piece.cell == none || body.key() < piece.key())
         piece = body;

@@ -3,6 +3,7 @@
 #include "core/neighbor_messages.h"
 #include "discretization/body_shape.h"
 #include "discretization/cell_geometry.h"
+#include "discretization/cells.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
@@ -179,9 +180,9 @@ namespace nsfd
                                                   const unsigned int n_nodes,
                                                   const Place &x) const
   {
-    const auto &element = discretization_.element();
+    const auto &element = *discretization_.cells().element;
     const std::size_t first =
-        discretization_.first_node(layout_.own_cell(cell));
+        discretization_.cells().first_node[layout_.own_cell(cell)];
     Place xi;
     for (unsigned int v = 0; v < n_nodes; ++v)
       xi += weights[v] * Vector(element.unit_support_point(
@@ -245,7 +246,7 @@ namespace nsfd
       else
         set_deformable_trace(
             b, slot,
-            discretization_.element().unit_support_point(
+            discretization_.cells().element->unit_support_point(
                 unsigned(row.node % layout_.nodes_per_cell())));
     }
   }
@@ -256,7 +257,7 @@ namespace nsfd
                                                const Place &place)
   {
     Block &trace = bodies_.classes[b].trace;
-    const auto &element = discretization_.element();
+    const auto &element = *discretization_.cells().element;
     for (unsigned int i = 0; i < element.n_dofs_per_cell(); ++i)
       for (unsigned int d = 0; d < dim; ++d)
         trace(slot * dim + d, i * dim + d) = element.shape_value(i, place);

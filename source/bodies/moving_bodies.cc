@@ -2,6 +2,7 @@
 
 #include "body_energies.h"
 #include "discretization/body_shape.h"
+#include "discretization/cells.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ namespace nsfd
   {
     make_bodies();
     State rest;
-    rest.displacement.assign(discretization.n_nodal(), 0.);
+    rest.displacement.assign(discretization.cells().n_nodal(), 0.);
     rest.velocity = rest.displacement;
     set_initial(rest);
     start(rest, 0., 0.5, rest.displacement, {}, {});
@@ -248,9 +249,9 @@ namespace nsfd
     const std::size_t b = layout_.body_of_cell(mover.cells[0]);
     const Vec3 centre = in_space<dim>(Vector(middle_.centre(b)));
     for (const unsigned int c : mover.cells) {
-      const std::size_t first = discretization_.first_node(c);
-      for (std::size_t i = first; i < first + discretization_.shape(c).n_nodes;
-           ++i) {
+      const std::size_t first = discretization_.cells().first_node[c];
+      for (std::size_t i = first;
+           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
         const Vec3 f = in_space<dim>(Vector(at_node<dim>(motion_.forces, i)));
         load.force = load.force + f;
         load.moment =

@@ -2,6 +2,7 @@
 
 #include "core/neighbor_messages.h"
 #include "discretization/body_shape.h"
+#include "discretization/cells.h"
 
 #include <algorithm>
 
@@ -80,10 +81,10 @@ namespace nsfd
       values.assign(rest.n_points * stride, 0.);
     for (std::size_t b = 0; b < layout_.size(); ++b)
       for (const BodySlot &slot : layout_.slots(b)) {
-        const unsigned int n = discretization_.shape(slot.cell).n_nodes;
+        const unsigned int n = discretization_.cells().shape(slot.cell).n_nodes;
         const Vector *g = layout_.slot_gradients(
             discretization_.bodies().class_of[slot.cell], slot.slot, n);
-        const std::size_t first = discretization_.first_node(slot.cell);
+        const std::size_t first = discretization_.cells().first_node[slot.cell];
         for (unsigned int a = 1; a < dim; ++a) {
           Vector T;
           for (unsigned int d = 0; d < dim; ++d)

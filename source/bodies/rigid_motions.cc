@@ -2,6 +2,7 @@
 
 #include "core/gather.h"
 #include "discretization/body_shape.h"
+#include "discretization/cells.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -45,9 +46,9 @@ namespace nsfd
   {
     const Mat3 R = rotation(rigid.orientation);
     for (const unsigned int c : body.cells) {
-      const std::size_t first = discretization_.first_node(c);
-      for (std::size_t i = first; i < first + discretization_.shape(c).n_nodes;
-           ++i) {
+      const std::size_t first = discretization_.cells().first_node[c];
+      for (std::size_t i = first;
+           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
         const Vec3 X = in_space<dim>(Vector(at_node<dim>(layout_.rest(), i)));
         const Vec3 u = rigid.centre + R * (X - body.centre) - X;
         for (unsigned int d = 0; d < dim; ++d)
@@ -68,9 +69,9 @@ namespace nsfd
     place(rigid, body, state.displacement);
     const Vec3 spin = rotation(rigid.orientation) * rigid.spin;
     for (const unsigned int c : body.cells) {
-      const std::size_t first = discretization_.first_node(c);
-      for (std::size_t i = first; i < first + discretization_.shape(c).n_nodes;
-           ++i) {
+      const std::size_t first = discretization_.cells().first_node[c];
+      for (std::size_t i = first;
+           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
         const Vec3 x_now =
             in_space<dim>(Vector(at_node<dim>(layout_.rest(), i)) +
                           Vector(at_node<dim>(state.displacement, i)));
@@ -112,9 +113,9 @@ namespace nsfd
     std::vector<Vec3> X, x, v;
     Vec3 mean_X{}, mean_x{}, mean_v{};
     for (const unsigned int c : body.cells) {
-      const std::size_t first = discretization_.first_node(c);
-      for (std::size_t i = first; i < first + discretization_.shape(c).n_nodes;
-           ++i) {
+      const std::size_t first = discretization_.cells().first_node[c];
+      for (std::size_t i = first;
+           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
         X.push_back(in_space<dim>(Vector(at_node<dim>(layout_.rest(), i))));
         x.push_back(X.back() +
                     in_space<dim>(Vector(at_node<dim>(state.displacement, i))));

@@ -1,6 +1,7 @@
 #include "surface_cells.h"
 
 #include "core/gather.h"
+#include "discretization/cells.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -27,7 +28,7 @@ namespace nsfd
                                   const Communicator &communicator)
       : discretization_(discretization), table_(discretization.body_table()),
         bodies_(bodies), all_(communicator),
-        nodes_per_cell_(discretization.element().n_dofs_per_cell())
+        nodes_per_cell_(discretization.cells().element->n_dofs_per_cell())
   {
     gather_faces();
     gather_balls();
@@ -39,7 +40,7 @@ namespace nsfd
   template <int dim>
   unsigned int SurfaceCells<dim>::cell_of(const unsigned int own_cell) const
   {
-    return table_.cell_of_global[discretization_.global_cell(own_cell)];
+    return table_.cell_of_global[discretization_.cells().global_cell[own_cell]];
   }
 
   /** Classes of the ranks one after the other. */
@@ -49,10 +50,11 @@ namespace nsfd
     const Bodies &cells = discretization_.bodies();
     std::vector<std::vector<FaceNodes<dim>>> own;
     for (const auto &body : cells.classes)
-      own.push_back(body.bodies.empty()
-                        ? std::vector<FaceNodes<dim>>()
-                        : face_nodes(discretization_.element(),
-                                     discretization_.shape(body.bodies[0])));
+      own.push_back(
+          body.bodies.empty()
+              ? std::vector<FaceNodes<dim>>()
+              : face_nodes(*discretization_.cells().element,
+                           discretization_.cells().shape(body.bodies[0])));
     std::size_t before = 0;
     const auto of_ranks = Utilities::MPI::all_gather(all_.mpi(), own);
     for (std::size_t r = 0; r < of_ranks.size(); ++r) {
@@ -105,8 +107,8 @@ namespace nsfd
       const unsigned int b = bodies_.body_of_cell(c);
       if (!bodies_[b].is_rigid())
         continue;
-      const auto &shape = discretization_.shape(c);
-      const Point<dim> corner = discretization_.corners(c)[0];
+      const auto &shape = discretization_.cells().shape(c);
+      const Point<dim> corner = discretization_.cells().corners[c][0];
       for (unsigned int i = 0; i < nodes_per_cell_; ++i) {
         std::array<long long, dim> at;
         for (unsigned int d = 0; d < dim; ++d)
@@ -137,8 +139,9 @@ namespace nsfd
         if (i < points.n_points &&
             discretization_.origins()[i].kind == PointOrigin::Kind::interface)
           between.push_back({points.faces[points.face_of[i]].key, cell_of(c),
-                             discretization_.face_of_slot(
-                                 c, unsigned(s - cells.first_slot[c]))});
+                             discretization_.cells()
+                                 .shape(c)
+                                 .slot_faces[s - cells.first_slot[c]]});
       }
     // several points of one face are next to each other
     const auto is_same = [](const CellFace &a, const CellFace &b) {

@@ -1,12 +1,9 @@
 #pragma once
 
-#include "moving_bodies.h"
-#include "surface_cells.h"
-
-#include "contact_detection/surface_search.h"
+#include "active_surfaces.h"
+#include "moving_row.h"
 
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 namespace nsfd
@@ -68,31 +65,7 @@ namespace nsfd
   private:
     using Row = MovingRow<dim>;
     using Vector = dealii::Tensor<1, dim>;
-    using Pair = std::uint64_t;
-    /// more than there are; keys of facets begin with the place of their face
-    static constexpr std::uint64_t pieces_per_face = 64;
 
-    static Pair pair_of(const unsigned int a, const unsigned int b)
-    {
-      return a < b ? (Pair(a) << 32 | b) : (Pair(b) << 32 | a);
-    }
-    std::size_t place_of(unsigned int cell, unsigned int face,
-                         unsigned int node) const;
-    std::size_t place_of_edge(unsigned int node_1, unsigned int node_2) const;
-    int block_of(unsigned int body_1, unsigned int body_2) const;
-    bool may_touch(unsigned int body) const;
-    void number_edges();
-    bool is_surface(unsigned int cell, unsigned int face) const;
-    bool follow(const State &state);
-    bool share_separated(const State &state);
-    void set_surfaces();
-    void set_sides();
-    void set_moving_nodes();
-    void share_motion(const State &old);
-    bool is_corner(unsigned int cell, unsigned int face,
-                   unsigned int node) const;
-    void add_face(unsigned int cell, unsigned int face);
-    void add_obstacle_faces();
     void add_surface_rows(const State &old, double reach,
                           std::vector<Row> &rows);
     std::vector<Row> own_obstacle_rows(const State &old, double reach) const;
@@ -110,7 +83,6 @@ namespace nsfd
     void take_over(const FacetPair<dim> &pair, const State &old,
                    Row &row) const;
     std::uint8_t mark_of(const State &old, unsigned int facet) const;
-    Vector velocity(std::size_t node) const;
     Vector centre_velocity(const State &old, unsigned int body) const;
 
     const SceneInput &input_;
@@ -119,30 +91,9 @@ namespace nsfd
     const MovingBodies<dim> &bodies_;
     const Communicator &all_;
     const SurfaceCells<dim> cells_;
-    std::vector<std::size_t> first_place_; ///< per cell, then of balls
-    std::vector<Pair> edges_; ///< in space: pairs of merged nodes, sorted
-    std::vector<int> block_by_materials_;
-
-    // of the surfaces at hand
-    struct Side {
-      unsigned int cell, face;
-      Vector normal;
-    };
-    std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
-    std::vector<char> separated_; ///< per mesh face
-    bool known_ = false;
-    std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
-    std::vector<double> x_, v_; ///< of them by node, and centres
-    std::unordered_set<Pair> joined_;
-    Surfaces<dim> surfaces_;
-    struct Origin {
-      unsigned int cell, face, node; ///< node of the face
-    };
-    std::vector<Origin> point_origins_;
-    std::vector<std::size_t> point_places_;
-    std::vector<std::pair<unsigned int, unsigned int>> points_by_vertex_;
-    std::vector<unsigned int> facet_cells_;
-    std::vector<ObstacleFace> obstacle_faces_;
+    const ContactPlaces<dim> places_;
+    const ContactBlocks blocks_;
+    ActiveSurfaces<dim> active_;
     SurfaceSearch<dim> search_;
     NearPairs<dim> pairs_;
     /// normals of contacts between two corners, by own node and other one
@@ -150,7 +101,7 @@ namespace nsfd
       Vector normal;
       std::size_t row;
     };
-    std::unordered_map<Pair, Seen> seen_;
+    std::unordered_map<UnorderedPair, Seen> seen_;
     Counters counters_;
   };
 } // namespace nsfd

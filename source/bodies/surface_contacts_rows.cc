@@ -30,8 +30,11 @@ namespace nsfd
   std::vector<MovingRow<dim>> SurfaceContacts<dim>::rows(const State &old,
                                                          const double h)
   {
-    if (follow(old))
+    if (active_.follow(old)) {
       search_.topology_changed();
+      counters_.facets = std::max<unsigned long long>(
+          counters_.facets, active_.set().surfaces.facets.size());
+    }
     // twice the speed of two bodies that meet, and what rests
     const double reach =
         2. * h * bodies_.largest_speed(old) + 1e-9 * discretization_.extent();
@@ -73,15 +76,6 @@ namespace nsfd
   }
 
   template <int dim>
-  Tensor<1, dim> SurfaceContacts<dim>::velocity(const std::size_t node) const
-  {
-    Vector v;
-    for (unsigned int d = 0; d < dim; ++d)
-      v[d] = v_[node * dim + d];
-    return v;
-  }
-
-  template <int dim>
   Tensor<1, dim>
   SurfaceContacts<dim>::centre_velocity(const State &old,
                                         const unsigned int body) const
@@ -98,18 +92,17 @@ namespace nsfd
   std::uint8_t SurfaceContacts<dim>::mark_of(const State &old,
                                              const unsigned int facet) const
   {
-    return old.surface_contact[surfaces_.facets[facet].key / pieces_per_face];
+    return old.surface_contact[active_.set().surfaces.facets[facet].key /
+                               ActiveSurfaces<dim>::pieces_per_face];
   }
 
   /** Of a facet with this key; none of Surfaces::no_key. */
   template <int dim>
   int SurfaceContacts<dim>::body_of_key(const std::uint64_t key) const
   {
-    const auto next = std::upper_bound(first_place_.begin(), first_place_.end(),
-                                       key / pieces_per_face);
-    return next == first_place_.end()
-               ? -1
-               : int(table_.body_of_cell[next - first_place_.begin() - 1]);
+    const int cell =
+        places_.cell_of(key / ActiveSurfaces<dim>::pieces_per_face);
+    return cell < 0 ? -1 : int(table_.body_of_cell[std::size_t(cell)]);
   }
 
   /** Those of the face that a facet belongs to: first and behind the last. */
@@ -117,10 +110,11 @@ namespace nsfd
   std::array<std::size_t, 2>
   SurfaceContacts<dim>::places_of_face(const unsigned int facet) const
   {
-    const unsigned int cell = facet_cells_[facet];
-    const std::size_t first = surfaces_.facets[facet].key / pieces_per_face;
+    const unsigned int cell = active_.set().facet_cells[facet];
+    const std::size_t first = active_.set().surfaces.facets[facet].key /
+                              ActiveSurfaces<dim>::pieces_per_face;
     unsigned int face = 0;
-    while (place_of(cell, face, 0) != first)
+    while (places_.of_node(cell, face, 0) != first)
       ++face;
     return {first, first + cells_.faces(cell)[face].nodes.size()};
   }
@@ -134,7 +128,7 @@ namespace nsfd
   void SurfaceContacts<dim>::take_over(const FacetPair<dim> &pair,
                                        const State &old, Row &row) const
   {
-    const auto &point = surfaces_.points[pair.index];
+    const auto &point = active_.set().surfaces.points[pair.index];
     const auto take = [&](const std::size_t place, const int over) {
       if (body_of_key(old.surface_facet[place]) != over)
         return;
@@ -146,12 +140,13 @@ namespace nsfd
       for (std::size_t k = places[0]; k < places[1]; ++k)
         take(k, own ? row.body_1 : int(row.body_2));
     }
-    const auto first =
-        std::lower_bound(points_by_vertex_.begin(), points_by_vertex_.end(),
-                         std::pair(point.vertex, 0u));
+    const auto first = std::lower_bound(active_.set().points_by_vertex.begin(),
+                                        active_.set().points_by_vertex.end(),
+                                        std::pair(point.vertex, 0u));
     for (auto p = first;
-         p != points_by_vertex_.end() && p->first == point.vertex; ++p)
-      take(point_places_[p->second], row.body_1);
+         p != active_.set().points_by_vertex.end() && p->first == point.vertex;
+         ++p)
+      take(active_.set().point_places[p->second], row.body_1);
   }
 
   /** Facet and gap, and its rate with the velocities at the start. */
@@ -159,19 +154,19 @@ namespace nsfd
   void SurfaceContacts<dim>::set_partner(const FacetPair<dim> &pair,
                                          const State &old, Row &row) const
   {
-    const auto &facet = surfaces_.facets[pair.facet];
+    const auto &facet = active_.set().surfaces.facets[pair.facet];
     row.partner = Row::Partner::facet;
     row.body_1 = int(facet.body);
-    row.facet_cell = facet_cells_[pair.facet];
+    row.facet_cell = active_.set().facet_cells[pair.facet];
     row.n_facet = facet.n_vertices;
     for (unsigned int v = 0; v < row.n_facet; ++v)
       row.facet[v] = facet.vertex[v];
     row.weights = pair.weights;
     row.gap = pair.gap;
     Vector away = row.node == Row::nowhere ? centre_velocity(old, row.body_2)
-                                           : velocity(row.node);
+                                           : active_.velocity(row.node);
     for (unsigned int v = 0; v < row.n_facet; ++v)
-      away -= row.weights[v] * velocity(row.facet[v]);
+      away -= row.weights[v] * active_.velocity(row.facet[v]);
     for (unsigned int d = 0; d < dim; ++d)
       row.rate += pair.normal[d] * away[d];
     if (row.gap < 0. && row.node != Row::nowhere) {
@@ -186,7 +181,7 @@ namespace nsfd
         take_over(pair, old, row);
       }
     }
-    row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+    row.block = unsigned(blocks_.of(unsigned(row.body_1), row.body_2));
     row.interaction = interaction_of_contact(input_, row.block);
     row.released =
         ((old.surface_contact[row.place] | mark_of(old, pair.facet)) &
@@ -198,14 +193,14 @@ namespace nsfd
   MovingRow<dim> SurfaceContacts<dim>::edge_row(const EdgePair<dim> &pair,
                                                 const State &old) const
   {
-    const auto &edge = surfaces_.edges[pair.edge],
-               &other = surfaces_.edges[pair.other];
+    const auto &edge = active_.set().surfaces.edges[pair.edge],
+               &other = active_.set().surfaces.edges[pair.other];
     Row row;
     row.partner = Row::Partner::edge;
-    row.body_1 = int(surfaces_.facets[other.facet[0]].body);
-    row.body_2 = surfaces_.facets[edge.facet[0]].body;
-    row.cell = facet_cells_[edge.facet[0]];
-    row.facet_cell = facet_cells_[other.facet[0]];
+    row.body_1 = int(active_.set().surfaces.facets[other.facet[0]].body);
+    row.body_2 = active_.set().surfaces.facets[edge.facet[0]].body;
+    row.cell = active_.set().facet_cells[edge.facet[0]];
+    row.facet_cell = active_.set().facet_cells[other.facet[0]];
     row.n_facet = 2;
     row.edge_weights = {1. - pair.place, pair.place};
     row.weights = {1. - pair.other_place, pair.other_place};
@@ -214,12 +209,12 @@ namespace nsfd
     for (unsigned int v = 0; v < 2; ++v) {
       row.edge[v] = edge.vertex[v];
       row.facet[v] = other.vertex[v];
-      away += row.edge_weights[v] * velocity(row.edge[v]) -
-              row.weights[v] * velocity(row.facet[v]);
+      away += row.edge_weights[v] * active_.velocity(row.edge[v]) -
+              row.weights[v] * active_.velocity(row.facet[v]);
       const double sign = v == 0 ? -1. : 1.;
       for (unsigned int d = 0; d < dim; ++d) {
-        way[0][d] += sign * x_[row.edge[v] * dim + d];
-        way[1][d] += sign * x_[row.facet[v] * dim + d];
+        way[0][d] += sign * active_.positions()[row.edge[v] * dim + d];
+        way[1][d] += sign * active_.positions()[row.facet[v] * dim + d];
       }
     }
     for (unsigned int d = 0; d < dim; ++d)
@@ -233,11 +228,11 @@ namespace nsfd
     row.rate = normal * away;
     // as of a corner of a facet with these sides
     row.weight = way[0].norm() * way[1].norm() / 4.;
-    row.place = place_of_edge(edge.vertex[0], edge.vertex[1]);
+    row.place = places_.of_edge(edge.vertex[0], edge.vertex[1]);
     row.released =
         ((mark_of(old, edge.facet[0]) | mark_of(old, other.facet[0])) &
          released) != 0;
-    row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+    row.block = unsigned(blocks_.of(unsigned(row.body_1), row.body_2));
     row.interaction = interaction_of_contact(input_, row.block);
     return row;
   }
@@ -262,10 +257,10 @@ namespace nsfd
         normal[d] = pair.normal[d];
       const unsigned int own = cells_.merged(row.node),
                          other = unsigned(row.facet[v]);
-      const auto known = seen_.find(Pair(other) << 32 | own);
+      const auto known = seen_.find(UnorderedPair(other) << 32 | own);
       if (known != seen_.end() && known->second.normal * normal < opposed)
         return known->second.row;
-      seen_.emplace(Pair(own) << 32 | other, Seen{normal, index});
+      seen_.emplace(UnorderedPair(own) << 32 | other, Seen{normal, index});
     }
     return unseen;
   }
@@ -275,24 +270,25 @@ namespace nsfd
                                               const double reach,
                                               std::vector<Row> &rows)
   {
-    for (std::size_t p = 0; p < surfaces_.points.size(); ++p)
-      surfaces_.points[p].last_key = old.surface_facet[point_places_[p]];
+    for (std::size_t p = 0; p < active_.set().surfaces.points.size(); ++p)
+      active_.set().surfaces.points[p].last_key =
+          old.surface_facet[active_.set().point_places[p]];
     search_.find(
-        surfaces_, x_.data(), reach,
+        active_.set().surfaces, active_.positions(), reach,
         [this](const unsigned int a, const unsigned int b) {
-          return block_of(a, b) < 0 || joined_.count(pair_of(a, b)) > 0;
+          return blocks_.of(a, b) < 0 || active_.are_joined(a, b);
         },
         pairs_);
     seen_.clear();
     for (const auto &pair : pairs_.points) {
-      const Origin &origin = point_origins_[pair.index];
+      const auto &origin = active_.set().point_origins[pair.index];
       const auto &face = cells_.faces(origin.cell)[origin.face];
       Row row;
       row.body_2 = table_.body_of_cell[origin.cell];
       row.cell = origin.cell;
       row.node = cells_.first_node(origin.cell) + face.nodes[origin.node];
       row.weight = face.weights[origin.node];
-      row.place = point_places_[pair.index];
+      row.place = active_.set().point_places[pair.index];
       set_partner(pair, old, row);
       const std::size_t other = seen_from_there(pair, row, rows.size());
       if (other == unseen) {
@@ -305,20 +301,20 @@ namespace nsfd
       rows[other].twin = row.place;
     }
     for (const auto &pair : pairs_.balls) {
-      Row row = ball_row(surfaces_.balls[pair.index].body);
+      Row row = ball_row(active_.set().surfaces.balls[pair.index].body);
       set_partner(pair, old, row);
       rows.push_back(row);
     }
     for (const auto &pair : pairs_.ball_balls) {
-      Row row = ball_row(surfaces_.balls[pair.ball].body);
+      Row row = ball_row(active_.set().surfaces.balls[pair.ball].body);
       row.partner = Row::Partner::ball;
-      row.body_1 = int(surfaces_.balls[pair.other].body);
+      row.body_1 = int(active_.set().surfaces.balls[pair.other].body);
       row.gap = pair.gap;
       const Vector away = centre_velocity(old, row.body_2) -
                           centre_velocity(old, unsigned(row.body_1));
       for (unsigned int d = 0; d < dim; ++d)
         row.rate += pair.normal[d] * away[d];
-      row.block = unsigned(block_of(unsigned(row.body_1), row.body_2));
+      row.block = unsigned(blocks_.of(unsigned(row.body_1), row.body_2));
       row.interaction = interaction_of_contact(input_, row.block);
       rows.push_back(row);
     }
@@ -330,11 +326,11 @@ namespace nsfd
   template <int dim>
   void SurfaceContacts<dim>::store_facets(State &next) const
   {
-    next.surface_facet.assign(first_place_.back(), Surfaces<dim>::no_key);
-    next.surface_gap.assign(first_place_.back(), 0.);
+    next.surface_facet.assign(places_.n_of_faces(), Surfaces<dim>::no_key);
+    next.surface_gap.assign(places_.n_of_faces(), 0.);
     for (const auto &pair : pairs_.points) {
-      const std::size_t place = point_places_[pair.index];
-      next.surface_facet[place] = surfaces_.facets[pair.facet].key;
+      const std::size_t place = active_.set().point_places[pair.index];
+      next.surface_facet[place] = active_.set().surfaces.facets[pair.facet].key;
       next.surface_gap[place] = pair.gap;
     }
   }
@@ -345,7 +341,7 @@ namespace nsfd
     Row row;
     row.body_2 = body;
     row.radius = cells_.ball_radius(body);
-    row.place = first_place_.back() + body;
+    row.place = places_.of_ball(body);
     row.weight = dim == 2 ? row.radius : row.radius * row.radius;
     return row;
   }
@@ -393,8 +389,8 @@ namespace nsfd
       row.interaction = unsigned(input_.interfaces.size()) + o;
       rows.push_back(row);
     };
-    for (std::size_t k = 0; k < obstacle_faces_.size(); ++k) {
-      const auto &[c, f, o] = obstacle_faces_[k];
+    for (std::size_t k = 0; k < active_.obstacle_faces().size(); ++k) {
+      const auto &[c, f, o] = active_.obstacle_faces()[k];
       const unsigned int b = table_.body_of_cell[c];
       if (!bodies_.layout().is_own(b))
         continue;
@@ -409,7 +405,7 @@ namespace nsfd
       }
       const FaceNodes<dim> &face = cells_.faces(c)[f];
       for (unsigned int j = 0; j < face.nodes.size(); ++j) {
-        if (!is_corner(c, f, face.nodes[j]))
+        if (!active_.is_corner(c, f, face.nodes[j]))
           continue;
         Row row;
         row.index = k * cells_.nodes_per_cell() + j;
@@ -419,7 +415,7 @@ namespace nsfd
           continue;
         row.body_2 = b;
         row.cell = c;
-        row.place = place_of(c, f, j);
+        row.place = places_.of_node(c, f, j);
         row.weight = face.weights[j];
         const auto [entry, is_new] = known.emplace(
             std::pair(std::size_t(cells_.merged(row.node)), o), rows.size());

@@ -3,6 +3,7 @@
 #include "bodies/deformable_cells.h"
 #include "core/gather.h"
 #include "core/mix_bits.h"
+#include "discretization/cells.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +35,7 @@ namespace nsfd
     std::vector<RankOrder::Key> keys;
     keys.reserve(first.back());
     for (unsigned int c = 0; c + 1 < first.size(); ++c) {
-      const auto &id = discretization_.cell_id(c);
+      const auto &id = discretization_.cells().cell_id[c];
       const auto word = [&](const unsigned int k) {
         return (std::uint64_t(id[k]) << 32) | id[k + 1];
       };
@@ -49,7 +50,7 @@ namespace nsfd
   {
     std::vector<std::array<unsigned int, 4>> own;
     for (std::size_t b = 0; b < discretization_.bodies().size(); ++b)
-      own.push_back(discretization_.cell_id(unsigned(b)));
+      own.push_back(discretization_.cells().cell_id[unsigned(b)]);
     auto all = gather(communicator_, own);
     std::sort(all.begin(), all.end());
     std::vector<std::uint32_t> flat;
@@ -89,10 +90,11 @@ namespace nsfd
     std::uint64_t sums[2] = {0, 0};
     for (std::size_t b = 0; b < discretization_.bodies().size(); ++b) {
       hash = 0;
-      for (const unsigned int part : discretization_.cell_id(unsigned(b)))
+      for (const unsigned int part :
+           discretization_.cells().cell_id[unsigned(b)])
         add(part);
-      add(discretization_.material_of(unsigned(b)));
-      for (const auto &corner : discretization_.corners(unsigned(b)))
+      add(discretization_.cells().body_class(unsigned(b)).material);
+      for (const auto &corner : discretization_.cells().corners[unsigned(b)])
         for (unsigned int c = 0; c < dim; ++c)
           add_place(corner[c]);
       sums[0] += hash;

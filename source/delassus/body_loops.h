@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics.h"
+#include "face_traces.h"
 
 #include <algorithm>
 #include <vector>
@@ -136,19 +136,19 @@ namespace nsfd
    * way.
    */
   template <int dim, typename Select, typename Gather>
-  void values_of_both_sides(const Dynamics<dim> &dynamics, const Select &select,
+  void values_of_both_sides(const FaceTraces<dim> &traces, const Select &select,
                             const Gather &gather, std::vector<double> &side_1,
                             std::vector<double> &side_2)
   {
-    const auto &classes = dynamics.order().classes;
-    const auto scatter = slot_scatter<dim>(dynamics.bodies(), side_1, side_2);
+    const auto &classes = traces.order().classes;
+    const auto scatter = slot_scatter<dim>(traces.bodies(), side_1, side_2);
     for (std::size_t k = 0; k < classes.size(); ++k)
       for_bodies(select(k), classes[k].bodies.data(), 0, classes[k].n_shared,
                  gather, scatter);
-    dynamics.start_exchange({{side_1.data(), side_2.data()}}, dim);
+    traces.start_exchange({{side_1.data(), side_2.data()}}, dim);
     for (std::size_t k = 0; k < classes.size(); ++k)
       for_bodies(select(k), classes[k].bodies.data(), classes[k].n_shared,
                  classes[k].bodies.size(), gather, scatter);
-    dynamics.finish_exchange({{side_1.data(), side_2.data()}}, dim);
+    traces.finish_exchange({{side_1.data(), side_2.data()}}, dim);
   }
 } // namespace nsfd

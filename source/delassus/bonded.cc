@@ -77,7 +77,9 @@ namespace nsfd
       /// applications after which a new factor is cheaper than going on
       static constexpr unsigned int patience = 12;
       mutable unsigned int n_applied_ = 0; ///< since the last system
-      mutable std::vector<double> rows_, columns_, point_work_;
+      mutable struct {
+        std::vector<double> rows, columns, points;
+      } work_; ///< by unknown of the bodies twice, and by component of points
     };
 
     template <int dim>
@@ -205,23 +207,23 @@ namespace nsfd
         condensed_.apply(impulse, velocity);
         return;
       }
-      rows_.resize(this->bodies_.n_dofs());
-      columns_.resize(rows_.size());
-      this->generalised_impulse(impulse, rows_.data());
-      solve(rows_.data(), columns_.data());
-      this->relative_velocity(columns_.data(), velocity);
+      work_.rows.resize(this->bodies_.n_dofs());
+      work_.columns.resize(work_.rows.size());
+      this->generalised_impulse(impulse, work_.rows.data());
+      solve(work_.rows.data(), work_.columns.data());
+      this->relative_velocity(work_.columns.data(), velocity);
     }
 
     template <int dim>
     void Bonded<dim>::add_velocity_change(const double *impulse,
                                           double *velocity) const
     {
-      rows_.resize(this->bodies_.n_dofs());
-      columns_.resize(rows_.size());
-      this->generalised_impulse(impulse, rows_.data());
-      solve(rows_.data(), columns_.data());
-      for (std::size_t k = 0; k < columns_.size(); ++k)
-        velocity[k] += columns_[k];
+      work_.rows.resize(this->bodies_.n_dofs());
+      work_.columns.resize(work_.rows.size());
+      this->generalised_impulse(impulse, work_.rows.data());
+      solve(work_.rows.data(), work_.columns.data());
+      for (std::size_t k = 0; k < work_.columns.size(); ++k)
+        velocity[k] += work_.columns[k];
     }
 
     /**
@@ -378,14 +380,14 @@ namespace nsfd
       }
       ++n_applied_;
       const std::size_t n = inverse_D_.size();
-      point_work_.resize(n);
-      rows_.resize(this->bodies_.n_dofs());
-      columns_.resize(rows_.size());
+      work_.points.resize(n);
+      work_.rows.resize(this->bodies_.n_dofs());
+      work_.columns.resize(work_.rows.size());
       for (std::size_t k = 0; k < n; ++k)
-        point_work_[k] = D_[k] >= 0. ? inverse_D_[k] * r[k] : 0.;
-      this->generalised_impulse(point_work_.data(), rows_.data());
-      solve(*joined_, rows_.data(), columns_.data());
-      this->relative_velocity(columns_.data(), z);
+        work_.points[k] = D_[k] >= 0. ? inverse_D_[k] * r[k] : 0.;
+      this->generalised_impulse(work_.points.data(), work_.rows.data());
+      solve(*joined_, work_.rows.data(), work_.columns.data());
+      this->relative_velocity(work_.columns.data(), z);
       // a principal part of the inverse where the factor knows the row, and the
       // bound of the diagonal where it does not: positive definite together
       for (std::size_t k = 0; k < n; ++k)

@@ -15,30 +15,14 @@ namespace nsfd
   Dynamics<dim>::Dynamics(const Communicator &communicator,
                           const Bodies &bodies,
                           const InterfacePoints<dim> &points)
-      : communicator_(communicator), bodies_(bodies), points_(points)
+      : FaceTraces<dim>(communicator, bodies, points)
   {
-    set_layout();
-  }
-
-  template <int dim>
-  void Dynamics<dim>::set_layout()
-  {
-    order_ = shared_first(bodies_, points_);
-    for (auto *vector : {&cartesian_, &side_1_, &side_2_})
-      vector->assign((points_.n_points + 1) * dim, 0.);
-    blocks_.clear();
-    for (const BodyClass &body : bodies_.classes)
-      blocks_.emplace_back().trace_transposed = body.trace.transposed();
-    face_offset_.assign(1, 0);
-    for (const auto &face : points_.faces)
-      face_offset_.push_back(face_offset_.back() +
-                             std::size_t(face.count) * dim * face.count * dim);
   }
 
   template <int dim>
   void Dynamics<dim>::renew(const double time_step, const double theta)
   {
-    set_layout();
+    this->reset_traces();
     time_step_ = theta_ = 0.;
     reinit(time_step, theta);
   }
@@ -51,6 +35,7 @@ namespace nsfd
     const Charge charge(Cost::blocks);
     time_step_ = time_step;
     theta_ = theta;
+    blocks_.resize(bodies_.classes.size());
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const BodyClass &body = bodies_.classes[k];
       const BlockInverse inverse(
@@ -61,9 +46,9 @@ namespace nsfd
       for (unsigned int i = 0; i < body.n_dofs; ++i)
         identity(i, i) = 1.;
       blocks_[k].inverse = inverse.form(identity);
-      blocks_[k].delassus = inverse.form(blocks_[k].trace_transposed);
+      blocks_[k].delassus = inverse.form(this->trace_transposed(k));
       blocks_[k].velocity_change =
-          product(blocks_[k].inverse, blocks_[k].trace_transposed);
+          product(blocks_[k].inverse, this->trace_transposed(k));
     }
     build_face_blocks();
   }
@@ -78,50 +63,19 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::to_cartesian(const double *local) const
-  {
-    for (std::size_t i = 0; i < points_.n_points; ++i) {
-      const double *Q = points_.frame.data() + i * dim * dim;
-      for (unsigned int c = 0; c < dim; ++c) {
-        double value = 0.;
-        for (unsigned int k = 0; k < dim; ++k)
-          value += Q[k * dim + c] * local[i * dim + k];
-        cartesian_[i * dim + c] = value;
-      }
-    }
-  }
-
-  template <int dim>
-  void Dynamics<dim>::add_sides(double *local) const
-  {
-    for (std::size_t i = 0; i < points_.n_points; ++i) {
-      const double *Q = points_.frame.data() + i * dim * dim;
-      double jump[dim];
-      for (unsigned int c = 0; c < dim; ++c)
-        jump[c] = side_2_[i * dim + c] + side_1_[i * dim + c];
-      for (unsigned int k = 0; k < dim; ++k) {
-        double value = 0.;
-        for (unsigned int c = 0; c < dim; ++c)
-          value += Q[k * dim + c] * jump[c];
-        local[i * dim + k] = value;
-      }
-    }
-  }
-
-  template <int dim>
   void Dynamics<dim>::apply_delassus(const double *impulse,
                                      double *velocity) const
   {
     const Charge charge(Cost::delassus);
     ++counters_.delassus;
-    to_cartesian(impulse);
+    this->to_cartesian(impulse);
     values_of_both_sides(
         *this,
         [this](const std::size_t k) -> const Block & {
           return blocks_[k].delassus;
         },
         slot_gather<dim>(bodies_, cartesian_), side_1_, side_2_);
-    add_sides(velocity);
+    this->add_sides(velocity);
   }
 
   template <int dim>
@@ -135,37 +89,10 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::relative_velocity(const double *velocity,
-                                        double *result) const
-  {
-    values_of_both_sides(
-        *this,
-        [this](const std::size_t k) -> const Block & {
-          return bodies_.classes[k].trace;
-        },
-        dof_gather(bodies_, velocity), side_1_, side_2_);
-    add_sides(result);
-  }
-
-  template <int dim>
-  void Dynamics<dim>::generalised_impulse(const double *impulse,
-                                          double *result) const
-  {
-    to_cartesian(impulse);
-    for_all_bodies(
-        bodies_,
-        [this](const std::size_t k) -> const Block & {
-          return blocks_[k].trace_transposed;
-        },
-        slot_gather<dim>(bodies_, cartesian_),
-        dof_scatter<false>(bodies_, result));
-  }
-
-  template <int dim>
   void Dynamics<dim>::add_velocity_change(const double *impulse,
                                           double *velocity) const
   {
-    to_cartesian(impulse);
+    this->to_cartesian(impulse);
     for_all_bodies(
         bodies_,
         [this](const std::size_t k) -> const Block & {
@@ -189,39 +116,6 @@ namespace nsfd
                                              : blocks_[k].inverse;
         },
         dof_gather(bodies_, x), dof_scatter<false>(bodies_, y));
-  }
-
-  template <int dim>
-  void Dynamics<dim>::start_exchange(const std::array<double *, 2> side,
-                                     const unsigned int stride) const
-  {
-    auto &messages = messages_.messages;
-    messages.resize(points_.neighbors.size());
-    for (std::size_t k = 0; k < messages.size(); ++k) {
-      const auto &neighbor = points_.neighbors[k];
-      messages[k].rank = neighbor.rank;
-      messages[k].in.resize(neighbor.points.size() * stride);
-      messages[k].out.resize(neighbor.points.size() * stride);
-      for (std::size_t j = 0; j < neighbor.points.size(); ++j)
-        std::copy_n(side[neighbor.side[j]] +
-                        std::size_t(neighbor.points[j]) * stride,
-                    stride, messages[k].out.data() + j * stride);
-    }
-    messages_.start(communicator_.mpi(), 7);
-  }
-
-  template <int dim>
-  void Dynamics<dim>::finish_exchange(const std::array<double *, 2> side,
-                                      const unsigned int stride) const
-  {
-    messages_.finish();
-    for (std::size_t k = 0; k < points_.neighbors.size(); ++k) {
-      const auto &neighbor = points_.neighbors[k];
-      for (std::size_t j = 0; j < neighbor.points.size(); ++j)
-        std::copy_n(messages_.messages[k].in.data() + j * stride, stride,
-                    side[1 - neighbor.side[j]] +
-                        std::size_t(neighbor.points[j]) * stride);
-    }
   }
 
   template <int dim>
@@ -255,8 +149,12 @@ namespace nsfd
                     W(mine.slot * dim + c, other.slot * dim + d);
           }
         }
-    exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
+    this->exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
 
+    face_offset_.assign(1, 0);
+    for (const auto &face : points_.faces)
+      face_offset_.push_back(face_offset_.back() +
+                             std::size_t(face.count) * dim * face.count * dim);
     face_blocks_.assign(face_offset_.back(), 0.);
     for (std::size_t f = 0; f < points_.faces.size(); ++f) {
       const auto &face = points_.faces[f];

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "core/neighbor_messages.h"
-#include "nsfd/core/communicator.h"
-#include "nsfd/discretization/bodies.h"
+#include "face_traces.h"
 
 #include <memory>
 #include <string>
@@ -23,7 +21,7 @@ namespace nsfd
    * sparse factor or multigrid of A = M_hat + H^T D^{-1} H (Woodbury).
    */
   template <int dim>
-  class Dynamics
+  class Dynamics : public FaceTraces<dim>
   {
   public:
     Dynamics(const Communicator &communicator, const Bodies &bodies,
@@ -49,12 +47,6 @@ namespace nsfd
      */
     void delassus_sides(const double *impulse,
                         std::array<std::vector<double>, 2> &side) const;
-
-    /** U = H v. */
-    void relative_velocity(const double *velocity, double *result) const;
-
-    /** r = H^T P. */
-    void generalised_impulse(const double *impulse, double *result) const;
 
     /** dv += M_hat^{-1} H^T P. */
     virtual void add_velocity_change(const double *impulse,
@@ -149,8 +141,9 @@ namespace nsfd
     double bulk_theta() const { return theta_; }
 
     /**
-     * Bodies are viscous, and h @p theta C is a part of M_hat from the next
-     * reinit() on: theta is that of the velocity whose power is dissipated.
+     * Bodies are viscous where @p theta is not 0, and h @p theta C is a part of
+     * M_hat from the next reinit() on: theta is that of the velocity whose
+     * power is dissipated.
      */
     void set_viscous_theta(const double theta)
     {
@@ -159,7 +152,6 @@ namespace nsfd
       viscous_theta_ = theta;
     }
     double viscous_theta() const { return viscous_theta_; }
-    bool is_viscous() const { return viscous_theta_ > 0.; }
 
     /** What M_hat of a step consists of. */
     StepShares shares(const double time_step, const double theta) const
@@ -167,10 +159,6 @@ namespace nsfd
       return {time_step * time_step * theta * theta,
               time_step * viscous_theta_};
     }
-
-    const InterfacePoints<dim> &points() const { return points_; }
-    const Bodies &bodies() const { return bodies_; }
-    const Communicator &communicator() const { return communicator_; }
 
     struct Counters {
       unsigned long long factorisations = 0; ///< of body blocks
@@ -196,37 +184,18 @@ namespace nsfd
     /** Contribution of each body to W P, used by Gauss-Seidel. */
     struct ClassBlocks {
       Block inverse, delassus, velocity_change; ///< M^-1, T M^-1 T^T, M^-1 T^T
-      Block trace_transposed;
     };
     const std::vector<ClassBlocks> &class_blocks() const { return blocks_; }
 
-    /**
-     * Complete contributions of both sides at shared points: @p side holds
-     * `stride` values per point for body 1 and body 2.
-     */
-    void exchange(std::array<double *, 2> side, unsigned int stride) const
-    {
-      start_exchange(side, stride);
-      finish_exchange(side, stride);
-    }
-
-    /** In two parts: what this rank computes is read by the first one only. */
-    void start_exchange(std::array<double *, 2> side,
-                        unsigned int stride) const;
-    void finish_exchange(std::array<double *, 2> side,
-                         unsigned int stride) const;
-
-    /** Per class, those whose points other ranks wait for first. */
-    const BodyOrder &order() const { return order_; }
-
   protected:
-    void set_layout();
     void build_face_blocks();
 
-    const Communicator &communicator_;
-    const Bodies &bodies_;
-    const InterfacePoints<dim> &points_;
-    BodyOrder order_;
+    using FaceTraces<dim>::communicator_;
+    using FaceTraces<dim>::bodies_;
+    using FaceTraces<dim>::points_;
+    using FaceTraces<dim>::cartesian_;
+    using FaceTraces<dim>::side_1_;
+    using FaceTraces<dim>::side_2_;
     double time_step_ = 0., theta_ = 0.;
     /// of stiffness and damping of the bodies that the blocks below are built
     /// with
@@ -236,17 +205,11 @@ namespace nsfd
     std::vector<std::size_t> face_offset_;
     mutable Counters counters_;
 
-    /** Into cartesian_. */
-    void to_cartesian(const double *local) const;
-    /** The sum of both sides, complete, in the local frames. */
-    void add_sides(double *local) const;
-    mutable std::vector<double> cartesian_, side_1_, side_2_;
     std::vector<double> least_compliance_;
     double inner_tolerance_ = 1e-11;
     const std::vector<double> *free_velocity_ = nullptr;
 
   private:
-    mutable NeighborMessages<double> messages_;
     double viscous_theta_ = 0.; ///< 0: nothing is viscous
   };
 

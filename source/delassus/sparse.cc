@@ -283,7 +283,7 @@ namespace nsfd
             });
       };
       add(&BodyClass::stiffness, shares.stiffness);
-      if (this->is_viscous())
+      if (this->viscous_theta() > 0.)
         add(&BodyClass::damping, shares.damping);
     }
 

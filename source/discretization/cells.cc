@@ -186,6 +186,22 @@ namespace nsfd
     }
   }
 
+  template <int dim>
+  std::vector<double>
+  Cells<dim>::at_corners(const std::size_t body,
+                         const std::vector<double> &nodal) const
+  {
+    const auto &of_class = shape(body);
+    const double *u = nodal.data() + first_node[body] * dim;
+    std::vector<double> result(of_class.corners.size() * dim, 0.);
+    for (std::size_t v = 0; v < of_class.corners.size(); ++v)
+      for (unsigned int i = 0; i < of_class.n_nodes; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          result[v * dim + c] +=
+              of_class.corner_values[v * of_class.n_nodes + i] * u[i * dim + c];
+    return result;
+  }
+
   template struct Cells<2>;
   template struct Cells<3>;
 } // namespace nsfd

@@ -29,12 +29,14 @@ namespace nsfd
           const std::vector<unsigned int> &materials, const SceneInput &input);
 
     std::unique_ptr<dealii::FiniteElement<dim, dim>> element;
-    Bodies bodies;                      ///< without points
-    std::vector<BodyShape<dim>> shapes; ///< per class
-    std::vector<std::vector<dealii::Point<dim>>> corners;
-    std::vector<std::size_t> first_node; ///< size n + 1
+    Bodies bodies;                                        ///< without points
+    std::vector<BodyShape<dim>> shapes;                   ///< per class
+    std::vector<std::vector<dealii::Point<dim>>> corners; ///< as in deal.II
+    std::vector<std::size_t> first_node;                  ///< size n + 1
     std::vector<unsigned long long> global_cell;
-    std::vector<std::array<unsigned int, 4>> cell_id; ///< CellId::to_binary()
+    unsigned long long n_global = 0;                  ///< cells of all ranks
+    std::vector<std::array<unsigned int, 4>> cell_id; ///< CellId::to_binary(),
+                                                      ///< alike on all ranks
 
     /// of every graded material, the smallest and the largest constants on
     /// this rank; -infinity: one is not a number somewhere
@@ -54,6 +56,14 @@ namespace nsfd
     {
       return corners[body][0] + dealii::Tensor<1, dim>(relative);
     }
+    dealii::Point<dim> centre(const std::size_t body) const
+    {
+      return place(body, shape(body).centre);
+    }
+    /** Values of a nodal vector at the corners, dim each. */
+    std::vector<double> at_corners(std::size_t body,
+                                   const std::vector<double> &nodal) const;
+    /** Entries of nodal vectors: node-major, dim components, all cells. */
     std::size_t n_nodal() const { return first_node.back() * dim; }
   };
 } // namespace nsfd

@@ -168,6 +168,7 @@ namespace nsfd
     obstacle_faces_ = std::move(faces.obstacle_faces);
     inner_faces_ = std::move(faces.inner_faces);
     fill_slots(points_, *cells);
+    cells->n_global = communicator.sum_integer(cells->bodies.size());
     cells_ = std::move(cells);
     check_graded(input, *cells_, communicator);
     extremes_ = material_extremes(input, *cells_, communicator);
@@ -185,7 +186,6 @@ namespace nsfd
     crossing_time_ = communicator.min(crossing);
     if (crossing_time_ == std::numeric_limits<double>::max())
       crossing_time_ = 0.;
-    n_global_cells_ = communicator.sum_integer(bodies().size());
     if (input.large_motion)
       body_table_ = std::make_unique<BodyTable>(
           make_body_table(input, triangulation, materials));
@@ -198,95 +198,11 @@ namespace nsfd
   }
 
   template <int dim>
-  const FiniteElement<dim, dim> &Discretization<dim>::element() const
-  {
-    return *cells_->element;
-  }
-
-  template <int dim>
-  bool Discretization<dim>::simplices() const
-  {
-    return element().reference_cell().is_simplex();
-  }
-
-  template <int dim>
-  unsigned int Discretization<dim>::material_of(const unsigned int body) const
-  {
-    return cells_->body_class(body).material;
-  }
-
-  template <int dim>
-  const BodyShape<dim> &
-  Discretization<dim>::shape(const unsigned int body) const
-  {
-    return cells_->shape(body);
-  }
-
-  template <int dim>
-  unsigned int Discretization<dim>::face_of_slot(const unsigned int body,
-                                                 const unsigned int slot) const
-  {
-    return cells_->shape(body).slot_faces[slot];
-  }
-
-  template <int dim>
-  std::size_t Discretization<dim>::n_nodal() const
-  {
-    return cells_->n_nodal();
-  }
-
-  template <int dim>
-  std::size_t Discretization<dim>::first_node(const unsigned int body) const
-  {
-    return cells_->first_node[body];
-  }
-
-  template <int dim>
-  const std::array<unsigned int, 4> &
-  Discretization<dim>::cell_id(const unsigned int body) const
-  {
-    return cells_->cell_id[body];
-  }
-
-  template <int dim>
-  unsigned long long
-  Discretization<dim>::global_cell(const unsigned int body) const
-  {
-    return cells_->global_cell[body];
-  }
-
-  template <int dim>
-  std::vector<Point<dim>>
-  Discretization<dim>::corners(const unsigned int body) const
-  {
-    return cells_->corners[body];
-  }
-
-  template <int dim>
-  double Discretization<dim>::volume(const unsigned int body) const
-  {
-    return cells_->shape(body).volume;
-  }
-
-  template <int dim>
-  Point<dim> Discretization<dim>::centre(const unsigned int body) const
-  {
-    return cells_->place(body, cells_->shape(body).centre);
-  }
-
-  template <int dim>
-  const MaterialExtremes &
-  Discretization<dim>::extremes_of(const unsigned int body) const
-  {
-    return cells_->shape(body).extremes;
-  }
-
-  template <int dim>
   std::array<double, 6>
   Discretization<dim>::stress(const unsigned int body, const Point<dim> &x,
                               const double *gradient) const
   {
-    const auto &material = input_->materials[material_of(body)];
+    const auto &material = input_->materials[cells_->body_class(body).material];
     if (material.rigid)
       return {};
     if (is_finite_strain(material.model))
@@ -296,7 +212,8 @@ namespace nsfd
       return of_cell[0].stress(gradient);
     return LinearElasticity<dim>(
                material,
-               local_moduli<dim>(material, a_little_inside(x, centre(body))),
+               local_moduli<dim>(material,
+                                 a_little_inside(x, cells_->centre(body))),
                input_->plane_stress)
         .stress(gradient);
   }
@@ -306,33 +223,16 @@ namespace nsfd
   Discretization<dim>::viscous_stress(const unsigned int body,
                                       const double *rate) const
   {
-    return LinearElasticity<dim>::viscous(input_->materials[material_of(body)])
+    return LinearElasticity<dim>::viscous(
+               input_->materials[cells_->body_class(body).material])
         .stress(rate);
-  }
-
-  template <int dim>
-  bool Discretization<dim>::is_viscous() const
-  {
-    return input_->has_viscous_bodies();
-  }
-
-  template <int dim>
-  bool Discretization<dim>::has_loads() const
-  {
-    return loads_->any();
-  }
-
-  template <int dim>
-  bool Discretization<dim>::loads_depend_on_time() const
-  {
-    return loads_->depend_on_time();
   }
 
   template <int dim>
   void Discretization<dim>::add_loads(const double t,
                                       std::vector<double> &forces) const
   {
-    std::vector<double> nodal(n_nodal(), 0.);
+    std::vector<double> nodal(cells_->n_nodal(), 0.);
     loads_->add(*cells_, t, nodal);
     for (std::size_t b = 0; b < bodies().size(); ++b)
       add_to_unknowns(cells_->body_class(b), cells_->shape(b).modes,
@@ -344,7 +244,7 @@ namespace nsfd
   std::vector<double>
   Discretization<dim>::to_nodal(const std::vector<double> &unknowns) const
   {
-    std::vector<double> nodal(n_nodal(), 0.);
+    std::vector<double> nodal(cells_->n_nodal(), 0.);
     for (std::size_t b = 0; b < bodies().size(); ++b) {
       const auto &body = cells_->body_class(b);
       const double *z = unknowns.data() + bodies().first_dof[b];
@@ -407,22 +307,6 @@ namespace nsfd
               value, gradient);
       }
     }
-  }
-
-  template <int dim>
-  std::vector<double>
-  Discretization<dim>::at_corners(const unsigned int body,
-                                  const std::vector<double> &nodal) const
-  {
-    const auto &shape = cells_->shape(body);
-    const double *u = nodal.data() + cells_->first_node[body] * dim;
-    std::vector<double> result(shape.corners.size() * dim, 0.);
-    for (std::size_t v = 0; v < shape.corners.size(); ++v)
-      for (unsigned int i = 0; i < shape.n_nodes; ++i)
-        for (unsigned int c = 0; c < dim; ++c)
-          result[v * dim + c] +=
-              shape.corner_values[v * shape.n_nodes + i] * u[i * dim + c];
-    return result;
   }
 
   template class Discretization<2>;

@@ -52,7 +52,8 @@ namespace nsfd
           const PointOrigin origin = discretization.origins()[i];
           if (origin.kind != PointOrigin::Kind::interface || origin.block != b)
             continue;
-          const double value = expression->at(discretization.position(i));
+          const double value =
+              expression->at(position_of(discretization.points(), i));
           smallest =
               std::min(smallest, std::isfinite(value) ? value : -infinity);
         }

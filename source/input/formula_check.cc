@@ -1,5 +1,6 @@
 #include "formula_check.h"
 
+#include "discretization/cells.h"
 #include "nsfd/discretization/discretization.h"
 #include "nsfd/scene/scene_input.h"
 #include "parameters/bad_values.h"
@@ -38,12 +39,13 @@ namespace nsfd
   {
     // what is not finite takes note of itself
     for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
-      const auto &material = input.materials[discretization.material_of(b)];
+      const auto &material =
+          input.materials[discretization.cells().body_class(b).material];
       for (unsigned int c = 0; c < dim; ++c)
         for (const Expression *initial :
              {&material.initial_displacement[c], &material.initial_velocity[c]})
           if (!initial->is_constant())
-            initial->at(discretization.centre(b), 0.);
+            initial->at(discretization.cells().centre(b), 0.);
     }
     const auto &points = discretization.points();
     for (const double t : {0., input.time.end}) {

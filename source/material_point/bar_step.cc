@@ -9,7 +9,7 @@ namespace nsfd
   BarStep::BarStep(const Interaction &interaction, const Bar &bar) : bar_(bar)
   {
     const CohesiveLaw &law = *interaction.law;
-    problem_.resize(1);
+    resize(problem_, 1);
     problem_.n_owned = 1;
     problem_.theta = bar.theta;
     problem_.rule = bar.rule;

@@ -25,7 +25,7 @@ namespace nsfd
       Driver(const Interaction &interaction, const CohesionRule rule)
           : law_(*interaction.law)
       {
-        problem_.resize(1);
+        resize(problem_, 1);
         problem_.n_owned = 1;
         problem_.time_step = 1.;
         problem_.theta = 1.;

@@ -3,25 +3,28 @@
 namespace nsfd
 {
   template <int dim>
-  void OneStepProblem<dim>::resize(const std::size_t n)
+  void resize(OneStepProblem<dim> &problem, const std::size_t n)
   {
-    n_points = n;
-    kind.assign(n, PointKind::free);
-    mask.assign(n, 0);
-    contact.assign(n, 0);
-    interaction.assign(n, 0);
-    for (auto *array : {&weight, &opening_max, &compression_stiffness, &target,
-                        &majorant_normal, &majorant_tangential})
+    problem.n_points = n;
+    problem.kind.assign(n, PointKind::free);
+    problem.mask.assign(n, 0);
+    problem.contact.assign(n, 0);
+    problem.interaction.assign(n, 0);
+    for (auto *array : {&problem.weight, &problem.opening_max,
+                        &problem.compression_stiffness, &problem.target,
+                        &problem.majorant_normal, &problem.majorant_tangential})
       array->assign(n, 0.);
-    for (auto *array : {&slip_max, &viscosity, &dilatancy, &lift_left})
+    for (auto *array : {&problem.slip_max, &problem.viscosity,
+                        &problem.dilatancy, &problem.lift_left})
       array->clear();
-    for (auto *array : {&strength_factor, &opening_factor})
+    for (auto *array : {&problem.strength_factor, &problem.opening_factor})
       array->assign(n, 1.);
-    for (auto *array : {&free_velocity, &given_velocity, &jump_old, &jump_free,
-                        &sliding_offset})
+    for (auto *array :
+         {&problem.free_velocity, &problem.given_velocity, &problem.jump_old,
+          &problem.jump_free, &problem.sliding_offset})
       array->assign(n * dim, 0.);
   }
 
-  template struct OneStepProblem<2>;
-  template struct OneStepProblem<3>;
+  template void resize(OneStepProblem<2> &, std::size_t);
+  template void resize(OneStepProblem<3> &, std::size_t);
 } // namespace nsfd

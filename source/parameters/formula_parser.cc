@@ -9,30 +9,6 @@
 
 namespace nsfd::formula
 {
-  void Parser::fail_unexpected() const
-  {
-    if (at_ >= text_.size())
-      fail(text_.size(), text_.size() + 1, "the formula ends too early",
-           "something is missing at its end");
-    const char c = text_[at_];
-    const std::size_t name_end = end_of_name(at_);
-    const std::string token =
-        text_.substr(at_, std::max<std::size_t>(1, name_end - at_));
-    std::string advice = "an operator is missing before it, or it is one "
-                         "too many";
-    if (c == '=')
-      advice = "write == to compare";
-    else if (c == '&' || token == "and")
-      advice = "write && for `and`";
-    else if (c == '|' || token == "or")
-      advice = "write || for `or`";
-    else if (c == ',')
-      advice = "one value is expected here; decimals are written with a "
-               "point";
-    fail(at_, at_ + token.size(),
-         fmt::format("`{}` is not expected here", token), advice);
-  }
-
   Part Parser::condition()
   {
     if (++depth_ > deepest)

@@ -1,6 +1,7 @@
 #include "field_grids.h"
 
 #include "bodies/cell_stresses.h"
+#include "discretization/cells.h"
 
 #include "discretization/cell_sampler.h"
 
@@ -103,7 +104,7 @@ namespace nsfd
                       const State &state, const double time_step)
           : discretization_(discretization), state_(state),
             time_step_(time_step),
-            cell_(discretization.element().reference_cell())
+            cell_(discretization.cells().element->reference_cell())
       {
         grid.time = state.time;
         grid.cell_data = {
@@ -117,7 +118,8 @@ namespace nsfd
                const std::array<unsigned int, 2> &face_no)
       {
         const auto corners = face_corners(
-            cell_, discretization_.corners(face.bodies[side]), face_no[side]);
+            cell_, discretization_.cells().corners[face.bodies[side]],
+            face_no[side]);
         if (corners.size() == 3)
           add_piece(VtuCell::triangle, corners, mean_values(face));
         else
@@ -239,14 +241,14 @@ namespace nsfd
   FaceNumbers face_numbers(const Discretization<dim> &discretization)
   {
     FaceNumbers result;
-    const ReferenceCell cell = discretization.element().reference_cell();
+    const ReferenceCell cell = discretization.cells().element->reference_cell();
     for (const auto &face : discretization.points().faces) {
       auto &numbers = result.emplace_back();
       for (unsigned int side = 0; side < 2; ++side) {
         numbers[side] = 0;
         if (face.bodies[side] < 0)
           continue;
-        const auto corners = discretization.corners(face.bodies[side]);
+        const auto corners = discretization.cells().corners[face.bodies[side]];
         double nearest = std::numeric_limits<double>::max();
         for (const unsigned int f : cell.face_indices()) {
           const auto centre = mean(face_corners(cell, corners, f));
@@ -269,8 +271,8 @@ namespace nsfd
   {
     const auto displacement = discretization.to_nodal(state.displacement);
     const auto velocity = discretization.to_nodal(state.velocity);
-    const Lattice<dim> lattice(discretization.element());
-    const Sampler<dim> sampler(discretization.element(), lattice.points);
+    const Lattice<dim> lattice(*discretization.cells().element);
+    const Sampler<dim> sampler(*discretization.cells().element, lattice.points);
 
     VtuGrid grid;
     grid.time = state.time;
@@ -287,8 +289,8 @@ namespace nsfd
       grid.point_data.push_back({"equivalent_plastic_strain", 1, {}});
     const std::vector<unsigned int> fragment = fragments.number_bodies();
     for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
-      const auto corners = discretization.corners(b);
-      const std::size_t node = discretization.first_node(b) * dim;
+      const auto corners = discretization.cells().corners[b];
+      const std::size_t node = discretization.cells().first_node[b] * dim;
       const auto first = std::int64_t(grid.points.size());
       for (unsigned int q = 0; q < lattice.points.size(); ++q) {
         const double *u = displacement.data() + node;
@@ -310,7 +312,8 @@ namespace nsfd
           corner += first;
         grid.add_cell(lattice.shape, cell);
         grid.cell_data[0].values.push_back(fragment[b]);
-        grid.cell_data[1].values.push_back(discretization.material_of(b));
+        grid.cell_data[1].values.push_back(
+            discretization.cells().body_class(b).material);
       }
     }
     return grid;

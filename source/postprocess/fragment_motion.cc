@@ -3,6 +3,7 @@
 #include "bodies/moving_bodies.h"
 #include "core/gather.h"
 #include "discretization/body_shape.h"
+#include "discretization/cells.h"
 
 #include "core/order_free_sum.h"
 
@@ -187,7 +188,7 @@ namespace nsfd
       auto &mass = masses_.emplace_back();
       if (body.bodies.empty())
         continue;
-      const auto &shape = discretization_.shape(body.bodies[0]);
+      const auto &shape = discretization_.cells().shape(body.bodies[0]);
       const Block &nodal = body.rigid ? shape.nodal_mass : body.mass;
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         for (unsigned int j = 0; j < shape.n_nodes; ++j)
@@ -201,11 +202,11 @@ namespace nsfd
                                       const std::vector<double> &velocity) const
       -> Body
   {
-    const auto &shape = discretization_.shape(cell);
+    const auto &shape = discretization_.cells().shape(cell);
     const auto &mass = masses_[discretization_.bodies().class_of[cell]];
     const unsigned int n = shape.n_nodes;
-    const auto corner = discretization_.corners(cell)[0];
-    const std::size_t first = discretization_.first_node(cell) * dim;
+    const auto corner = discretization_.cells().corners[cell][0];
+    const std::size_t first = discretization_.cells().first_node[cell] * dim;
     thread_local std::vector<Vec3> x, v;
     x.assign(n, Vec3{});
     v.assign(n, Vec3{});
@@ -305,7 +306,7 @@ namespace nsfd
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
       Amounts &sum = sums[pieces.of_cell(c)];
       ++sum.cells;
-      sum.volume.add(discretization_.volume(c));
+      sum.volume.add(discretization_.cells().shape(c).volume);
     }
     for (const Body &body : bodies) {
       Amounts &sum = sums[pieces.of_cell(body.cell)];

@@ -95,7 +95,7 @@ namespace nsfd
   void Observers<dim>::observe(const State &state, const State *previous,
                                const HistoryRow &row)
   {
-    view_->show(state, previous, row);
+    view_->motion().show(state, previous, row);
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const ObservableInput &block = input_.observables[k];
       block.observable->follow(*view_);
@@ -109,7 +109,7 @@ namespace nsfd
       line.insert(line.end(), values.begin(), values.end());
       files_[k].rows->write(line);
     }
-    view_->forget();
+    view_->motion().forget();
   }
 
   /** Sorted by their places: the same for any number of ranks. */
@@ -121,7 +121,7 @@ namespace nsfd
     row.step = state.step;
     row.time = state.time;
     row.time_step = time_step;
-    view_->show(state, nullptr, row);
+    view_->motion().show(state, nullptr, row);
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const Observable &observable = *input_.observables[k].observable;
       const std::size_t n = observable.profile_columns().size();
@@ -141,7 +141,7 @@ namespace nsfd
       for (const auto &line : lines)
         files_[k].profile->write(line);
     }
-    view_->forget();
+    view_->motion().forget();
   }
 
   template <int dim>

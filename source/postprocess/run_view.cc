@@ -1,6 +1,7 @@
 #include "run_view.h"
 
 #include "core/gather.h"
+#include "discretization/cells.h"
 #include "face_pieces.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -215,12 +216,13 @@ namespace nsfd
     for (std::size_t k = 0; k < n; ++k) {
       const unsigned int b = slots[k].body, s = slots[k].slot;
       const Sampler<dim> &sampler = mesh_.slots_of(b);
-      const double weight = discretization_.shape(b).slot_normals[s].norm();
+      const double weight =
+          discretization_.cells().shape(b).slot_normals[s].norm();
       if (!motion_.state()) {
         terms[k] = weight;
         continue;
       }
-      const std::size_t node = discretization_.first_node(b) * dim;
+      const std::size_t node = discretization_.cells().first_node[b] * dim;
       const double *u = motion_.displacement().data() + node;
       add_terms<dim>(
           terms, n, k, weight, sampler.value(s, u),
@@ -244,9 +246,9 @@ namespace nsfd
         terms[k] = 1.;
         continue;
       }
-      const Sampler<dim> sampler(discretization_.element(),
+      const Sampler<dim> sampler(*discretization_.cells().element,
                                  {cells[k].reference});
-      const std::size_t node = discretization_.first_node(b) * dim;
+      const std::size_t node = discretization_.cells().first_node[b] * dim;
       const double *u = motion_.displacement().data() + node;
       add_terms<dim>(
           terms, n, k, 1., sampler.value(0, u),
@@ -265,10 +267,11 @@ namespace nsfd
   {
     const auto &now = motion_.middle();
     for (const unsigned int b : mesh_.cells_in(centre, radius)) {
-      const BodyShape<dim> &shape = discretization_.shape(b);
-      const auto &material = input_.materials[discretization_.material_of(b)];
-      const std::size_t node = discretization_.first_node(b) * dim;
-      const auto corner = discretization_.corners(b)[0];
+      const BodyShape<dim> &shape = discretization_.cells().shape(b);
+      const auto &material =
+          input_.materials[discretization_.cells().body_class(b).material];
+      const std::size_t node = discretization_.cells().first_node[b] * dim;
+      const auto corner = discretization_.cells().corners[b][0];
       for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
         CellPoint point;
         const dealii::Point<dim> x =
@@ -314,8 +317,8 @@ namespace nsfd
     const Bodies &bodies = discretization_.bodies();
     const auto &points = discretization_.points();
     for (const unsigned int b : mesh_.cells_in(centre, radius)) {
-      const auto corners = discretization_.corners(b);
-      const std::size_t node = discretization_.first_node(b) * dim;
+      const auto corners = discretization_.cells().corners[b];
+      const std::size_t node = discretization_.cells().first_node[b] * dim;
       for (std::size_t s = bodies.first_slot[b]; s < bodies.first_slot[b + 1];
            ++s) {
         const unsigned int i = bodies.slot_point[s];
@@ -332,7 +335,9 @@ namespace nsfd
         }
         side.sign = bodies.slot_sign[s];
         side.area = points.weight[i];
-        side.density = input_.materials[discretization_.material_of(b)].density;
+        side.density =
+            input_.materials[discretization_.cells().body_class(b).material]
+                .density;
         side.gradient = wide<dim>(gradient.data());
         side.velocity =
             in_space<dim>(sampler.value(slot, now.velocity.data() + node));

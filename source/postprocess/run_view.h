@@ -20,13 +20,8 @@ namespace nsfd
     void find(const dealii::Triangulation<dim> &triangulation,
               const MeshGroups<dim> &groups);
 
-    /** @p previous: before the step that ends in @p state, or null. */
-    void show(const State &state, const State *previous, const HistoryRow &row)
-    {
-      motion_.show(state, previous, row);
-    }
-    /** What was shown is gone. */
-    void forget() { motion_.forget(); }
+    /** The states that are looked at. */
+    ViewedMotion<dim> &motion() { return motion_; }
 
     const SceneInput &input() const override { return input_; }
     unsigned int dimension() const override { return dim; }

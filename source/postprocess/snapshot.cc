@@ -3,6 +3,7 @@
 #include "bodies/cell_stresses.h"
 #include "core/gather.h"
 #include "discretization/cell_sampler.h"
+#include "discretization/cells.h"
 
 #include "discretization/cell_geometry.h"
 
@@ -69,11 +70,11 @@ namespace nsfd
                               const State &state,
                               const Fragments<dim> &fragments)
         : discretization_(discretization), fragment_(fragments.number_bodies()),
-          cell_(discretization.element().reference_cell()),
+          cell_(discretization.cells().element->reference_cell()),
           n_bodies_(discretization.bodies().size()),
           displacement_(discretization.to_nodal(state.displacement)),
           velocity_(discretization.to_nodal(state.velocity)),
-          middle_(discretization.element(),
+          middle_(*discretization.cells().element,
                   {mean(reference_corners<dim>(cell_))}),
           stress_(n_bodies_, 0.)
     {
@@ -94,18 +95,19 @@ namespace nsfd
     Part PartMaker<dim>::make(const unsigned int b, const unsigned int face,
                               const std::vector<unsigned int> &vertices) const
     {
-      const auto corners = discretization_.corners(b);
-      const auto u = discretization_.at_corners(b, displacement_);
-      const double *v = velocity_.data() + discretization_.first_node(b) * dim;
+      const auto corners = discretization_.cells().corners[b];
+      const auto u = discretization_.cells().at_corners(b, displacement_);
+      const double *v =
+          velocity_.data() + discretization_.cells().first_node[b] * dim;
       Part part;
-      part.cell = discretization_.global_cell(b);
+      part.cell = discretization_.cells().global_cell[b];
       part.face = face;
       part.n_corners = unsigned(vertices.size());
       part.fragment = fragment_[b];
-      part.material = discretization_.material_of(b);
+      part.material = discretization_.cells().body_class(b).material;
       part.value = stress_[b];
       part.speed = middle_.value(0, v).norm();
-      part.centre = in_space<dim>(discretization_.centre(b));
+      part.centre = in_space<dim>(discretization_.cells().centre(b));
       const auto order = cyclic(part.n_corners);
       for (unsigned int i = 0; i < part.n_corners; ++i) {
         const unsigned int corner = vertices[order[i]];
@@ -191,14 +193,16 @@ namespace nsfd
                                    const State &state)
     {
       const auto &points = discretization.points();
-      const ReferenceCell cell = discretization.element().reference_cell();
+      const ReferenceCell cell =
+          discretization.cells().element->reference_cell();
       std::vector<Joint> joints;
       for (std::size_t f = 0; f < points.faces.size(); ++f) {
         const auto &face = points.faces[f];
         if (face.boundary || face.first >= points.n_owned)
           continue;
-        const auto corners = face_corners(
-            cell, discretization.corners(face.bodies[0]), face_numbers[f][0]);
+        const auto corners =
+            face_corners(cell, discretization.cells().corners[face.bodies[0]],
+                         face_numbers[f][0]);
         Joint joint;
         joint.cells = face.cells;
         joint.ends = {{in_space<2>(corners[0]), in_space<2>(corners[1])}};

@@ -1,5 +1,6 @@
 #include "viewed_mesh.h"
 
+#include "discretization/cells.h"
 #include "mesh/owned_cells.h"
 
 #include "discretization/cell_geometry.h"
@@ -30,8 +31,9 @@ namespace nsfd
     reach_.clear();
     for (unsigned int b = 0; b < discretization_.bodies().size(); ++b) {
       double reach = 0.;
-      for (const auto &corner : discretization_.corners(b))
-        reach = std::max(reach, corner.distance(discretization_.centre(b)));
+      for (const auto &corner : discretization_.cells().corners[b])
+        reach =
+            std::max(reach, corner.distance(discretization_.cells().centre(b)));
       reach_.push_back(reach);
     }
   }
@@ -55,13 +57,13 @@ namespace nsfd
   template <int dim>
   const Sampler<dim> &ViewedMesh<dim>::slots_of(const unsigned int body) const
   {
-    const BodyShape<dim> &shape = discretization_.shape(body);
+    const BodyShape<dim> &shape = discretization_.cells().shape(body);
     const auto known = samplers_.find(&shape);
     if (known != samplers_.end())
       return known->second;
     return samplers_
-        .emplace(&shape,
-                 Sampler<dim>(discretization_.element(), shape.slot_places))
+        .emplace(&shape, Sampler<dim>(*discretization_.cells().element,
+                                      shape.slot_places))
         .first->second;
   }
 
@@ -73,7 +75,7 @@ namespace nsfd
     std::vector<Slot> slots;
     const auto add_face = [&](const unsigned int body,
                               const unsigned int face) {
-      const auto &faces = discretization_.shape(body).slot_faces;
+      const auto &faces = discretization_.cells().shape(body).slot_faces;
       for (unsigned int s = 0; s < faces.size(); ++s)
         if (faces[s] == face)
           slots.push_back({body, s});
@@ -112,10 +114,12 @@ namespace nsfd
                                    const dealii::Point<dim> &x) const
   {
     constexpr double slack = 1e-9;
-    if (x.distance(discretization_.centre(body)) > reach_[body] * (1. + slack))
+    if (x.distance(discretization_.cells().centre(body)) >
+        reach_[body] * (1. + slack))
       return {};
-    const ReferenceCell cell = discretization_.element().reference_cell();
-    const auto corners = discretization_.corners(body);
+    const ReferenceCell cell =
+        discretization_.cells().element->reference_cell();
+    const auto corners = discretization_.cells().corners[body];
     dealii::Point<dim> xi = cell.template barycenter<dim>();
     for (unsigned int k = 0; k < 20; ++k)
       xi += invert(jacobian(cell, corners, xi)) *
@@ -152,7 +156,7 @@ namespace nsfd
   {
     std::vector<unsigned int> cells;
     for (unsigned int b = 0; b < reach_.size(); ++b) {
-      const auto x = discretization_.centre(b);
+      const auto x = discretization_.cells().centre(b);
       double square = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         square += (x[c] - centre[c]) * (x[c] - centre[c]);

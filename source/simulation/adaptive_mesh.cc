@@ -91,7 +91,7 @@ namespace nsfd
   void AdaptiveMesh<dim>::count_cells()
   {
     largest_cells_ =
-        std::max(largest_cells_, model_.discretization->n_global_cells());
+        std::max(largest_cells_, model_.discretization->cells().n_global);
   }
 
   template <int dim>
@@ -150,7 +150,7 @@ namespace nsfd
   {
     if (rounds_ == 0) {
       ++steps_;
-      cells_sum_ += double(model_.discretization->n_global_cells());
+      cells_sum_ += double(model_.discretization->cells().n_global);
     }
     if (!is_due(next))
       return false;

@@ -1,5 +1,6 @@
 #include "advice.h"
 
+#include "discretization/cells.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
@@ -78,7 +79,8 @@ namespace nsfd
       for (const int body : face.bodies)
         if (body >= 0)
           touches[origin.block * input.materials.size() +
-                  discretization.material_of(unsigned(body))] = 1;
+                  discretization.cells().body_class(unsigned(body)).material] =
+              1;
       double size = 0.;
       for (unsigned int i = face.first; i < face.first + face.count; ++i)
         size += points.weight[i];

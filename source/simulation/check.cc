@@ -5,6 +5,7 @@
 
 #include "advice.h"
 #include "core/exit_code.h"
+#include "discretization/cells.h"
 #include "mesh/mesh_builder.h"
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/scene/scene_input.h"
@@ -357,7 +358,7 @@ namespace nsfd
       out << fmt::format("  bodies     {} of {} different shapes, {} unknowns, "
                          "{} face points, {}\n",
                          mesh.n_cells, counts[0], counts[1], counts[2],
-                         discretization.element().get_name());
+                         discretization.cells().element->get_name());
       for (unsigned int m = 0; m < input.materials.size(); ++m) {
         const auto &material = input.materials[m];
         if (material.rigid)

@@ -2,6 +2,7 @@
 
 #include "core/gather.h"
 #include "discretization/body_shape.h"
+#include "discretization/cells.h"
 #include "sharp_front.h"
 
 #include "core/archive.h"
@@ -155,20 +156,23 @@ namespace nsfd
     measure_bodies(const Discretization<dim> &discretization)
     {
       const BodyTable &table = discretization.body_table();
-      const ReferenceCell reference = discretization.element().reference_cell();
+      const ReferenceCell reference =
+          discretization.cells().element->reference_cell();
       std::map<unsigned int, BodyMeasures> result;
       const auto number = [&](const unsigned int cell) {
-        return table.body_of_global(discretization.global_cell(cell));
+        return table.body_of_global(discretization.cells().global_cell[cell]);
       };
       const auto measure = [&](const unsigned int cell, const unsigned int f) {
-        return FaceGeometry<dim>(reference, discretization.corners(cell), f)
+        return FaceGeometry<dim>(reference,
+                                 discretization.cells().corners[cell], f)
             .measure();
       };
       for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
         BodyMeasures &body = result[number(b)];
-        body.volume += discretization.volume(b);
-        body.width = std::min(body.width,
-                              width<dim>(reference, discretization.corners(b)));
+        body.volume += discretization.cells().shape(b).volume;
+        body.width =
+            std::min(body.width,
+                     width<dim>(reference, discretization.cells().corners[b]));
         for (unsigned int f = 0; f < reference.n_faces(); ++f)
           body.surface += measure(b, f);
       }
@@ -206,10 +210,11 @@ namespace nsfd
         gradients_.push_back(
             body.bodies.empty()
                 ? std::vector<double>()
-                : gradient_rows(discretization_.shape(body.bodies[0]), body));
+                : gradient_rows(discretization_.cells().shape(body.bodies[0]),
+                                body));
     double largest = 0.;
     for (unsigned int b = 0; b < bodies.size(); ++b)
-      for (const auto &corner : discretization_.corners(b))
+      for (const auto &corner : discretization_.cells().corners[b])
         for (unsigned int d = 0; d < dim; ++d)
           largest = std::max(largest, std::abs(corner[d]));
     extent_ = std::max(extent_, communicator_.max(largest));
@@ -260,11 +265,11 @@ namespace nsfd
           const double turned = angle(G);
           if (!(turned <= rotation_.value))
             raise(rotation_, turned, state.time,
-                  in_space(discretization_.centre(b)));
+                  in_space(discretization_.cells().centre(b)));
           const auto strain = symmetrize(G);
           if (!body.rigid && !(strain * strain <= square)) {
             raise(strain_, largest_principal(G), state.time,
-                  in_space(discretization_.centre(b)));
+                  in_space(discretization_.cells().centre(b)));
             square = strain_.value * strain_.value;
           }
         }

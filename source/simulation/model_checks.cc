@@ -1,5 +1,7 @@
 #include "model_checks.h"
 
+#include "discretization/cells.h"
+
 #include "print_problems.h"
 
 #include <deal.II/grid/tria.h>
@@ -33,7 +35,8 @@ namespace nsfd
         has_faces[origins[i].block] = 1;
         if (block.has_broken && !has_broken[origins[i].block])
           has_broken[origins[i].block] =
-              block.broken.at(model.discretization->position(i)) != 0.;
+              block.broken.at(position_of(model.discretization->points(), i)) !=
+              0.;
       }
       // a mesh of single cells has no faces for anyone
       const bool any_faces = communicator.any(
@@ -90,9 +93,11 @@ namespace nsfd
   {
     const auto &points = model.discretization->points();
     const auto is_rigid = [&](const int body) {
-      return body >= 0 &&
-             input.materials[model.discretization->material_of(unsigned(body))]
-                 .rigid;
+      return body >= 0 && input
+                              .materials[model.discretization->cells()
+                                             .body_class(unsigned(body))
+                                             .material]
+                              .rigid;
     };
     std::vector<char> found(input.interfaces.size(), 0);
     for (const auto &face : points.faces) {

@@ -1,6 +1,8 @@
 #include "run_info.h"
 
 #include "core/version.h"
+#include "discretization/cells.h"
+#include "discretization/loads.h"
 #include "group_report.h"
 #include "motion_report.h"
 #include "simulation.h"
@@ -54,7 +56,8 @@ namespace nsfd
 
     auto &parts = info.parts;
     parts.emplace_back("mesh", input.mesh.type);
-    parts.emplace_back("element", model.discretization->element().get_name());
+    parts.emplace_back("element",
+                       model.discretization->cells().element->get_name());
     for (const auto &material : input.materials)
       parts.emplace_back("material " + material.name,
                          model_name(material.model));
@@ -77,7 +80,7 @@ namespace nsfd
                              ? obstacle.name + ": " +
                                    describe_obstacle(obstacle, input.dimension)
                              : obstacle.name);
-    if (model.discretization->has_loads())
+    if (model.discretization->loads().any())
       parts.emplace_back("loads", "body forces and tractions");
     parts.emplace_back("dynamics", model.path);
     parts.emplace_back("solver", model.method);

@@ -6,6 +6,7 @@
 
 #include "core/archive.h"
 #include "core/cost.h"
+#include "discretization/cells.h"
 #include "postprocess/fragment_output.h"
 #include "records/run_options.h"
 
@@ -66,7 +67,7 @@ namespace nsfd
   {
     const auto &mesh = *model_.discretization;
     summary_.dimension = dim;
-    summary_.cells = mesh.n_global_cells();
+    summary_.cells = mesh.cells().n_global;
     summary_.dofs = communicator_.sum_integer(mesh.bodies().n_dofs());
     summary_.interface_points =
         communicator_.sum_integer(mesh.points().n_owned);

@@ -1,6 +1,7 @@
 #include "sharp_front.h"
 
 #include "discretization/body_shape.h"
+#include "discretization/cells.h"
 
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
@@ -80,9 +81,10 @@ namespace nsfd
       const auto &bodies = discretization.bodies();
       for (const BodyClass &body : bodies.classes)
         for (const unsigned int b : body.bodies) {
-          const double speed = discretization.extremes_of(b).fastest;
+          const double speed = discretization.cells().shape(b).extremes.fastest;
           if (!body.rigid && speed > 0.)
-            longest = std::max(longest, discretization.shape(b).height / speed);
+            longest = std::max(longest,
+                               discretization.cells().shape(b).height / speed);
         }
       return communicator.max(longest);
     }
@@ -97,7 +99,7 @@ namespace nsfd
       for (unsigned int d = 0; d < dim; ++d) {
         double least = std::numeric_limits<double>::infinity(), most = -least;
         for (unsigned int b = 0; b < discretization.bodies().size(); ++b)
-          for (const auto &corner : discretization.corners(b)) {
+          for (const auto &corner : discretization.cells().corners[b]) {
             least = std::min(least, corner[d]);
             most = std::max(most, corner[d]);
           }
@@ -271,8 +273,9 @@ namespace nsfd
         if (body < 0)
           continue;
         const auto &material =
-            input_.materials[discretization_.material_of(unsigned(body))];
-        const Point<dim> x = discretization_.position(i);
+            input_.materials
+                [discretization_.cells().body_class(unsigned(body)).material];
+        const Point<dim> x = position_of(discretization_.points(), i);
         for (unsigned int c = 0; c < dim; ++c) {
           const auto &v = boundary.velocity[c], &u = boundary.displacement[c];
           if (!v && !u)

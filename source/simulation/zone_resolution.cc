@@ -1,6 +1,7 @@
 #include "zone_resolution.h"
 
 #include "advice.h"
+#include "discretization/cells.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
@@ -27,7 +28,7 @@ namespace nsfd
         if (body < 0)
           continue;
         const unsigned int material =
-            discretization.material_of(unsigned(body));
+            discretization.cells().body_class(unsigned(body)).material;
         const auto &soft = discretization.extremes(material).softest;
         if (!input.materials[material].rigid)
           length =

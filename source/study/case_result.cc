@@ -123,15 +123,21 @@ namespace nsfd
     return 0.5 * (values[n / 2] + values[(n - 1) / 2]);
   }
 
-  double CaseResult::setup_median() const { return median(setup); }
-  double CaseResult::solve_median() const { return median(solve); }
-
-  double CaseResult::solve_spread() const
+  bool is_done(const CaseResult &result)
   {
-    if (solve.size() < 2 || solve_median() <= 0.)
+    return result.status == CaseResult::Status::done;
+  }
+
+  double setup_median(const CaseResult &result) { return median(result.setup); }
+  double solve_median(const CaseResult &result) { return median(result.solve); }
+
+  double solve_spread(const CaseResult &result)
+  {
+    const auto &solve = result.solve;
+    if (solve.size() < 2 || median(solve) <= 0.)
       return 0.;
     const auto [low, high] = std::minmax_element(solve.begin(), solve.end());
-    return (*high - *low) / solve_median();
+    return (*high - *low) / median(solve);
   }
 
   const char *name_of(const CaseResult::Status status)

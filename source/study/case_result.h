@@ -37,13 +37,14 @@ namespace nsfd
     /// CPU seconds of each repeat
     std::vector<double> setup, solve, wall;
     bool reproducible = true; ///< all repeats gave the same errors
-
-    bool done() const { return status == Status::done; }
-    double setup_median() const;
-    double solve_median() const;
-    /** (largest - smallest) / median of the solve times; 0 for one. */
-    double solve_spread() const;
   };
+
+  bool is_done(const CaseResult &result);
+  /** Of the CPU seconds of its repeats. */
+  double setup_median(const CaseResult &result);
+  double solve_median(const CaseResult &result);
+  /** (largest - smallest) / median of the solve times; 0 for one. */
+  double solve_spread(const CaseResult &result);
 
   /** "done", "failed", ... */
   const char *name_of(CaseResult::Status status);

@@ -52,13 +52,13 @@ namespace nsfd
     std::map<std::string, RankRow> fewest;
     for (std::size_t k = 0; k < study.cases.size(); ++k) {
       const CaseResult &r = study.results[k];
-      if (!r.done())
+      if (!is_done(r))
         continue;
       RankRow row;
       row.setting = setting_without_ranks(study, k);
       row.ranks = study.cases[k].ranks;
       row.unknowns = r.dofs;
-      row.seconds_per_step = r.solve_median() / std::max(1., r.steps);
+      row.seconds_per_step = solve_median(r) / std::max(1., r.steps);
       row.copy_gain = r.copy_gain;
       row.product_gain = r.product_gain;
       row.messages = r.messages;

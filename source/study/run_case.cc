@@ -254,16 +254,16 @@ namespace nsfd
           run_process(command(scene, output, one.ranks), one.ranks > 1, log);
       result.status = status_of(result.exit_code);
       const bool found = add_summary(output + "/summary.json", result);
-      if (result.done() && !found) {
+      if (is_done(result) && !found) {
         result.status = CaseResult::Status::broken;
         result.failure = "it left no summary.json";
       }
-      if (!result.done() && result.failure.empty())
+      if (!is_done(result) && result.failure.empty())
         result.failure = last_words(log);
       fs::remove_all(again, error);
-    } while (result.done() && wants_another(result, repeats) &&
+    } while (is_done(result) && wants_another(result, repeats) &&
              !stop_was_requested());
-    if (result.done() && result.solve.size() < repeats)
+    if (is_done(result) && result.solve.size() < repeats)
       result.status = CaseResult::Status::stopped;
     if (result.status != CaseResult::Status::stopped)
       write_case(record, stamp, result);

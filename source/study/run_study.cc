@@ -85,8 +85,8 @@ namespace nsfd
         out_ << fmt::format("[{:>{}}/{}] {}  {}", k + 1,
                             std::to_string(cases.size()).size(), cases.size(),
                             cases[k].combination.name, name_of(result.status));
-        if (result.done())
-          out_ << fmt::format("  {:.3g} s x {}{}", result.solve_median(),
+        if (is_done(result))
+          out_ << fmt::format("  {:.3g} s x {}{}", solve_median(result),
                               result.solve.size(),
                               result.taken_over ? ", taken over" : "");
         else
@@ -177,7 +177,7 @@ namespace nsfd
     {
       std::vector<std::size_t> best;
       for (std::size_t k = 0; k < study.results.size(); ++k)
-        if (study.results[k].done() && study.results[k].errors.count(error) &&
+        if (is_done(study.results[k]) && study.results[k].errors.count(error) &&
             study.results[k].errors.at(error) > 0.)
           best.push_back(k);
       std::sort(best.begin(), best.end(),
@@ -225,7 +225,7 @@ namespace nsfd
       for (std::size_t i = 0; i < results.size(); ++i) {
         const auto found = results[i].errors.find(errors[0]);
         study.checks[i].done =
-            results[i].done() && found != results[i].errors.end();
+            is_done(results[i]) && found != results[i].errors.end();
         if (study.checks[i].done)
           study.checks[i].after = found->second;
       }

@@ -43,7 +43,7 @@ namespace nsfd
           std::vector<double> values;
           for (const std::size_t k : members) {
             const auto found = study.results[k].errors.find(error);
-            if (study.results[k].done() &&
+            if (is_done(study.results[k]) &&
                 found != study.results[k].errors.end())
               values.push_back(found->second);
           }

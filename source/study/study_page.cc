@@ -93,7 +93,7 @@ namespace nsfd
         for (const CaseResult &result : study.results) {
           const auto x = result.errors.find(diagram.abscissa),
                      y = result.errors.find(name);
-          if (result.done() && x != result.errors.end() &&
+          if (is_done(result) && x != result.errors.end() &&
               y != result.errors.end() && x->second > 0.)
             places.emplace(x->second, y->second);
         }
@@ -158,8 +158,8 @@ namespace nsfd
            groups_of(study, errors.empty() ? "" : errors[0])) {
         std::vector<double> seconds, number;
         for (const std::size_t k : group.cases)
-          if (study.results[k].done()) {
-            seconds.push_back(study.results[k].solve_median());
+          if (is_done(study.results[k])) {
+            seconds.push_back(solve_median(study.results[k]));
             number.push_back(y(study.results[k]));
           }
         chart.add_line(group.name.empty() ? label : group.name,
@@ -271,16 +271,16 @@ namespace nsfd
         std::vector<std::string> row = {
             setting_of(study, k),
             std::string(name_of(r.status)) +
-                (r.done() || r.failure.empty() ? "" : ": " + r.failure),
+                (is_done(r) || r.failure.empty() ? "" : ": " + r.failure),
             fmt::format("{:.0f}", r.dofs),
             fmt::format("{:.0f}", r.steps),
             fmt::format("{:.1f}", r.newton),
             fmt::format("{:.1f}", r.krylov),
             fmt::format("{:.0f} + {:.0f}", r.block_factorisations,
                         r.global_factorisations),
-            fmt::format("{:.3g}", r.setup_median()),
-            fmt::format("{:.3g}", r.solve_median()),
-            percent(r.solve_spread()),
+            fmt::format("{:.3g}", setup_median(r)),
+            fmt::format("{:.3g}", solve_median(r)),
+            percent(solve_spread(r)),
             fmt::format("{}", r.solve.size()),
             fmt::format("{:.0f}", r.peak_memory_mb),
             fmt::format("{:.1e}", r.balance_residual),

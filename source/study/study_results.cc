@@ -189,12 +189,12 @@ namespace nsfd
       for (const std::size_t k : members) {
         const CaseResult &result = study.results[k];
         const auto found = result.errors.find(error);
-        if (!result.done() || found == result.errors.end() ||
+        if (!is_done(result) || found == result.errors.end() ||
             !std::isfinite(found->second))
           continue;
         ++n;
         point.error += found->second;
-        point.seconds += result.solve_median();
+        point.seconds += solve_median(result);
         point.unknowns += result.dofs;
       }
       if (n < members.size() || n == 0) // an average needs all of them

@@ -51,10 +51,10 @@ namespace nsfd
            [](const CaseResult &r) { return r.global_factorisations; }},
           {"repeats",
            [](const CaseResult &r) { return double(r.solve.size()); }},
-          {"cpu_setup", [](const CaseResult &r) { return r.setup_median(); }},
-          {"cpu_solve", [](const CaseResult &r) { return r.solve_median(); }},
+          {"cpu_setup", [](const CaseResult &r) { return setup_median(r); }},
+          {"cpu_solve", [](const CaseResult &r) { return solve_median(r); }},
           {"cpu_solve_spread",
-           [](const CaseResult &r) { return r.solve_spread(); }},
+           [](const CaseResult &r) { return solve_spread(r); }},
           {"wall", [](const CaseResult &r) { return median(r.wall); }},
           {"peak_memory_mb",
            [](const CaseResult &r) { return r.peak_memory_mb; }},
@@ -134,9 +134,9 @@ namespace nsfd
         text += fixed(setting_of(study, k), width) +
                 fmt::format("  {:<9} {:>9.0f} {:>7.0f} {:>10.3g} {:>5.0f}% "
                             "{:>8.0f} {:>9.1e}",
-                            name_of(r.status), r.dofs, r.steps,
-                            r.solve_median(), 50. * r.solve_spread(),
-                            r.peak_memory_mb, r.balance_residual);
+                            name_of(r.status), r.dofs, r.steps, solve_median(r),
+                            50. * solve_spread(r), r.peak_memory_mb,
+                            r.balance_residual);
         if (!errors.empty()) {
           const auto found = r.errors.find(errors[0]);
           text += found == r.errors.end()
@@ -144,7 +144,7 @@ namespace nsfd
                       : fmt::format(" {:>16.4e}", found->second);
         }
         text += "\n";
-        if (!r.done() && !r.failure.empty())
+        if (!is_done(r) && !r.failure.empty())
           text += "    " + r.failure + "\n";
       }
       return text;

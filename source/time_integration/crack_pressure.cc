@@ -35,8 +35,8 @@ namespace nsfd
         continue;
       const auto &block = input_.interfaces[origins[i].block];
       if (block.crack_pressure && old.beta[i] <= block.pressure_threshold)
-        pressure[i] =
-            block.crack_pressure->at(discretization_.position(i), time);
+        pressure[i] = block.crack_pressure->at(
+            position_of(discretization_.points(), i), time);
     }
   }
 

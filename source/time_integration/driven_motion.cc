@@ -1,5 +1,6 @@
 #include "driven_motion.h"
 
+#include "discretization/cells.h"
 #include "discretization/node_coordinates.h"
 #include "discretization/point_places.h"
 #include "nsfd/scene/scene_input.h"
@@ -41,7 +42,7 @@ namespace nsfd
             place.body >= 0 ? &bodies.classes[bodies.class_of[place.body]]
                             : nullptr;
         if (body == nullptr || body->rigid)
-          samples_.push_back({discretization.position(i), 1.});
+          samples_.push_back({position_of(discretization.points(), i), 1.});
         else {
           if (coordinates.empty())
             coordinates = node_coordinates(discretization);
@@ -57,7 +58,7 @@ namespace nsfd
               sample.place[c] = nodes[j + c];
             const auto inside =
                 sample.place +
-                1e-11 * (discretization.centre(unsigned(place.body)) -
+                1e-11 * (discretization.cells().centre(unsigned(place.body)) -
                          sample.place);
             if (jumps_at(i, sample.place, inside))
               sample.place = inside;

@@ -1,5 +1,7 @@
 #include "energy_balance.h"
 
+#include "discretization/loads.h"
+
 #include "common_balance.h"
 #include "point_balance.h"
 
@@ -68,13 +70,13 @@ namespace nsfd
           share * energy(Operator::stiffness,
                          change_of(next.displacement, old.displacement));
     }
-    if (dynamics_.is_viscous()) {
+    if (dynamics_.viscous_theta() > 0.) {
       change.resize(n);
       for (std::size_t i = 0; i < n; ++i)
         change[i] = theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i];
       result.viscous = h * energy(Operator::damping, change);
     }
-    if (discretization_.has_loads()) {
+    if (discretization_.loads().any()) {
       for (std::size_t i = 0; i < n; ++i)
         terms[i] =
             kick * forces[i] *

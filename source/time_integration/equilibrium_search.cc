@@ -8,6 +8,7 @@
 #include "core/accelerated_rounds.h"
 #include "core/archive.h"
 #include "core/stopwatch.h"
+#include "discretization/loads.h"
 
 #include <fmt/format.h>
 
@@ -37,7 +38,7 @@ namespace nsfd
       double speed = 0.;
       for (unsigned int m = 0; m < input.materials.size(); ++m)
         if (!input.materials[m].rigid)
-          speed = std::max(speed, discretization.pressure_wave_speed(m));
+          speed = std::max(speed, discretization.extremes(m).fastest);
       const double crossing = discretization.crossing_time();
       return std::clamp(10. * discretization.extent() / speed, 30. * crossing,
                         100. * crossing);
@@ -137,7 +138,7 @@ namespace nsfd
   {
     EquilibriumReport report;
     std::vector<double> forces_old(old.velocity.size(), 0.);
-    if (discretization_.has_loads())
+    if (discretization_.loads().any())
       discretization_.add_loads(old.time, forces_old);
     find(old, time, way, next, report.step);
     report.stable = relaxation_->softening() < 1.;
@@ -146,7 +147,7 @@ namespace nsfd
     report.left_over = left.energy;
     report.jumps =
         !report.stable || std::abs(left.energy) > jump_share * left.turnover;
-    const auto [seen, point] = relaxation_->least_passage(next, path);
+    const auto [seen, point] = relaxation_->laws().least_passage(next, path);
     report.peak_seen = -communicator_.max(-seen);
     report.skips_peak = report.peak_seen < Passage::least_share;
     if (report.skips_peak)
@@ -166,15 +167,15 @@ namespace nsfd
 
     // nothing damages: one equilibrium, and next to the last one
     relaxation_->begin(old, time, time - old.time);
-    relaxation_->hold_laws();
+    relaxation_->laws().hold();
     held_ = old.displacement;
     StepReport held;
-    typename Relaxation<dim>::Prediction ahead;
+    typename HeldLaws<dim>::Prediction ahead;
     ahead.damages = true;
     const bool predicted = settle(held_, most_held_rounds,
                                   input_.statics->tolerance, held, nullptr);
     if (predicted)
-      ahead = relaxation_->prediction();
+      ahead = relaxation_->laws().prediction();
     EquilibriumReport best;
     if (may_be_shortened && ahead.certain) {
       best.skips_peak = true;
@@ -343,11 +344,11 @@ namespace nsfd
     constexpr double near = 1e-4, faster = 4.,
                      let_go = std::numeric_limits<double>::max();
     double last = let_go, growth, stretch = 1.;
-    relaxation_->hold_laws();
+    relaxation_->laws().hold();
     for (unsigned int n = 0; n < most_bits; ++n) {
       settle(q, most_held_rounds, std::max(input_.statics->tolerance, 1e-6),
              report, nullptr);
-      if (!solved_ || !relaxation_->let_damage_grow(growth, stretch))
+      if (!solved_ || !relaxation_->laws().let_damage_grow(growth, stretch))
         break;
       if (last < let_go && growth < let_go) {
         // growth goes by 1 - stretch (1 - x); half way to where x leads
@@ -360,7 +361,7 @@ namespace nsfd
         stretch = 1.;
       last = growth;
     }
-    relaxation_->free_laws();
+    relaxation_->laws().release();
   }
 
   template <int dim>
@@ -371,7 +372,7 @@ namespace nsfd
     std::vector<double> q = old.displacement;
     if (way == Way::held) {
       q = held_;
-      relaxation_->free_laws();
+      relaxation_->laws().release();
     } else
       relaxation_->begin(old, time, time - old.time);
     if (way == Way::damped)

@@ -2,6 +2,7 @@
 
 #include "crack_pressure.h"
 
+#include "discretization/loads.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
@@ -25,10 +26,10 @@ namespace nsfd
   template <int dim>
   bool FreeMotion<dim>::set_loads(const double time)
   {
-    if (!discretization_.has_loads())
+    if (!discretization_.loads().any())
       return false;
     if (loads_known_ &&
-        (!discretization_.loads_depend_on_time() || loads_time_ == time))
+        (!discretization_.loads().depend_on_time() || loads_time_ == time))
       return false;
     std::fill(loads_.begin(), loads_.end(), 0.);
     discretization_.add_loads(time, loads_);
@@ -75,7 +76,7 @@ namespace nsfd
     }
     for (std::size_t i = 0; i < n_dofs; ++i)
       work_[i] = kick * (loads_[i] - work_[i]);
-    if (dynamics_.is_viscous()) {
+    if (dynamics_.viscous_theta() > 0.) {
       dynamics_.apply(Dynamics<dim>::Operator::damping, old.velocity.data(),
                       velocity_.data());
       for (std::size_t i = 0; i < n_dofs; ++i)

@@ -1,6 +1,7 @@
+#include "held_laws.h"
+
 #include "activation.h"
 #include "peak_rule.h"
-#include "relaxation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,41 +13,39 @@ namespace nsfd
   {
     /** Growth that is no round-off of the rounds. */
     constexpr double least_growth = 1e-9;
-    /** Of the opening G/R_max: where a point that lets go starts. */
+    /** Of the opening G/R_max: where a point that opens starts. */
     constexpr double first_opening = 1e-3;
     /** The same of what growth may be hurried by. */
     constexpr double largest_bit = 0.2;
   } // namespace
 
   template <int dim>
-  bool Relaxation<dim>::may_damage(const std::size_t i) const
+  bool HeldLaws<dim>::may_damage(const std::size_t i) const
   {
-    const PointKind kind = old_->kind[i];
+    const PointKind kind = iterate_.old->kind[i];
     return (kind == PointKind::cohesive || kind == PointKind::rigid) &&
            problem_.interactions[problem_.interaction[i]].law;
   }
 
   template <int dim>
-  bool Relaxation<dim>::has_laws() const
+  Reach HeldLaws<dim>::history(const std::size_t i) const
   {
-    bool any = false;
-    for (const auto &block : input_.interfaces)
-      any = any || block.law;
-    return any;
+    return {iterate_.old->opening_max[i],
+            iterate_.old->slip_max.empty() ? 0. : iterate_.old->slip_max[i]};
   }
 
   template <int dim>
-  Reach Relaxation<dim>::history(const std::size_t i) const
+  void HeldLaws<dim>::begin()
   {
-    return {old_->opening_max[i],
-            old_->slip_max.empty() ? 0. : old_->slip_max[i]};
+    release();
+    joint_loads_known_ = false;
   }
 
   template <int dim>
-  void Relaxation<dim>::hold_laws()
+  void HeldLaws<dim>::hold()
   {
     holds_ = true;
-    held_.resize(old_->kind.size());
+    held_.resize(iterate_.old->kind.size());
     for (std::size_t i = 0; i < held_.size(); ++i)
       held_[i] = history(i);
     interactions_ = problem_.interactions;
@@ -54,7 +53,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Relaxation<dim>::free_laws()
+  void HeldLaws<dim>::release()
   {
     if (!holds_)
       return;
@@ -63,9 +62,30 @@ namespace nsfd
     problem_.interaction = interaction_;
   }
 
-  /** Springs in place of the laws of a round; joints stay as they are. */
+  /** How much of its strength every rigid point carries; collective. */
   template <int dim>
-  void Relaxation<dim>::hold()
+  std::vector<double> HeldLaws<dim>::joint_shares() const
+  {
+    if (!has_extrinsic_)
+      return {};
+    std::vector<double> impulse = iterate_.force;
+    for (double &P : impulse)
+      P *= iterate_.h;
+    return strength_shares(dynamics_, discretization_.origins(), impulse,
+                           problem_);
+  }
+
+  template <int dim>
+  void HeldLaws<dim>::find_joint_loads()
+  {
+    if (joint_loads_known_ || !has_extrinsic_)
+      return;
+    joint_loads_ = joint_shares();
+    joint_loads_known_ = true;
+  }
+
+  template <int dim>
+  void HeldLaws<dim>::put_springs()
   {
     auto &problem = problem_;
     problem.interactions = interactions_;
@@ -99,28 +119,21 @@ namespace nsfd
 
   /** At the end of the last round, from where the law counts. */
   template <int dim>
-  Reach Relaxation<dim>::held_reach(const std::size_t i) const
+  Reach HeldLaws<dim>::held_reach(const std::size_t i) const
   {
     double jump[dim];
     for (unsigned int c = 0; c < dim; ++c)
-      jump[c] =
-          problem_.jump_free[i * dim + c] + h_ * solutions_[i].velocity[c];
+      jump[c] = problem_.jump_free[i * dim + c] +
+                iterate_.h * iterate_.solutions[i].velocity[c];
     return reach_of<dim>(interactions_[interaction_[i]], jump);
   }
 
   template <int dim>
-  auto Relaxation<dim>::prediction() -> Prediction
+  auto HeldLaws<dim>::prediction() -> Prediction
   {
     const auto &communicator = dynamics_.communicator();
     auto &problem = problem_;
-    std::vector<double> impulse = force_;
-    for (double &P : impulse)
-      P *= h_;
-    const auto joints =
-        step_problem_.has_extrinsic()
-            ? strength_shares(dynamics_, discretization_.origins(), impulse,
-                              problem)
-            : std::vector<double>();
+    const auto joints = joint_shares();
     std::vector<unsigned int> springs = interaction_;
     springs.swap(problem.interaction); // of the laws
     Prediction result;
@@ -130,7 +143,7 @@ namespace nsfd
         continue;
       double before, after;
       bool certain = true;
-      if (old_->kind[i] == PointKind::rigid) {
+      if (iterate_.old->kind[i] == PointKind::rigid) {
         before = joint_loads_.empty() ? 0. : joint_loads_[i];
         after = joints.empty() ? 0. : joints[i];
         damages = damages || after > 1.;
@@ -138,7 +151,8 @@ namespace nsfd
         const PointEnvelope envelope(problem, i);
         const Reach last = history(i), reach = held_reach(i);
         const Interaction &law = interactions_[interaction_[i]];
-        before = envelope.load(last, reach_of<dim>(law, &old_->jump[i * dim]));
+        before = envelope.load(
+            last, reach_of<dim>(law, &iterate_.old->jump[i * dim]));
         after = envelope.load(last, reach);
         const double harmless = std::max(
             last.opening, envelope.law.mixed()
@@ -166,36 +180,31 @@ namespace nsfd
   }
 
   template <int dim>
-  bool Relaxation<dim>::let_damage_grow(double &largest_growth,
-                                        const double stretch)
+  bool HeldLaws<dim>::let_damage_grow(double &largest_growth,
+                                      const double stretch)
   {
     const auto &communicator = dynamics_.communicator();
     auto &problem = problem_;
     largest_growth = 0.;
-    if (step_problem_.has_extrinsic()) {
-      std::vector<double> impulse = force_;
-      for (double &P : impulse)
-        P *= h_;
-      const auto joints = strength_shares(dynamics_, discretization_.origins(),
-                                          impulse, problem);
-      for (std::size_t i = 0; i < joints.size(); ++i)
-        if (joints[i] > 1. + least_growth) {
-          const CohesiveLaw &law = *interactions_[interaction_[i]].law;
-          held_[i] = {first_opening * law.toughness() /
-                          (law.strength() * problem.opening_factor[i]),
-                      0.};
-          let_go_[i] = 1;
-          at_.kind[i] = PointKind::cohesive;
-          at_.opening_max[i] = 1e-9 * held_[i].opening;
-          largest_growth = std::numeric_limits<double>::max();
-        }
-    }
+    const auto joints = joint_shares();
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      if (joints[i] > 1. + least_growth) {
+        const CohesiveLaw &law = *interactions_[interaction_[i]].law;
+        held_[i] = {first_opening * law.toughness() /
+                        (law.strength() * problem.opening_factor[i]),
+                    0.};
+        iterate_.activated[i] = 1;
+        iterate_.at.kind[i] = PointKind::cohesive;
+        iterate_.at.opening_max[i] = 1e-9 * held_[i].opening;
+        largest_growth = std::numeric_limits<double>::max();
+      }
     std::vector<unsigned int> springs = interaction_;
     springs.swap(problem.interaction);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
-      if (at_.kind[i] != PointKind::cohesive ||
-          (old_->kind[i] != PointKind::cohesive && !let_go_[i]) ||
-          (let_go_[i] && problem.kind[i] == PointKind::prescribed))
+      if (iterate_.at.kind[i] != PointKind::cohesive ||
+          (iterate_.old->kind[i] != PointKind::cohesive &&
+           !iterate_.activated[i]) ||
+          (iterate_.activated[i] && problem.kind[i] == PointKind::prescribed))
         continue; // the last round has held it rigid
       const CohesiveLaw &law = *interactions_[interaction_[i]].law;
       const double l = problem.opening_factor[i];
@@ -222,26 +231,26 @@ namespace nsfd
 
   template <int dim>
   std::pair<double, std::size_t>
-  Relaxation<dim>::least_passage(const State &next, const bool path) const
+  HeldLaws<dim>::least_passage(const State &next, const bool path) const
   {
     const auto &problem = problem_;
     std::pair<double, std::size_t> least(1., 0);
     for (std::size_t i = 0; i < problem.n_owned; ++i) {
-      if (!may_damage(i) ||
-          (old_->kind[i] == PointKind::rigid && next.kind[i] == old_->kind[i]))
+      if (!may_damage(i) || (iterate_.old->kind[i] == PointKind::rigid &&
+                             next.kind[i] == iterate_.old->kind[i]))
         continue;
       const Interaction &interaction =
           problem.interactions[problem.interaction[i]];
-      if (interaction.plateau && old_->kind[i] != PointKind::rigid)
+      if (interaction.plateau && iterate_.old->kind[i] != PointKind::rigid)
         continue; // carries its traction at any opening
       const Reach end = {next.opening_max[i],
                          next.slip_max.empty() ? 0. : next.slip_max[i]};
       const PointEnvelope envelope(problem, i);
       const Reach last = history(i);
-      Passage way =
-          passage(envelope, last,
-                  reach_of<dim>(interaction, &old_->jump[i * dim]), end);
-      if (old_->kind[i] == PointKind::rigid)
+      Passage way = passage(
+          envelope, last,
+          reach_of<dim>(interaction, &iterate_.old->jump[i * dim]), end);
+      if (iterate_.old->kind[i] == PointKind::rigid)
         way.start = joint_loads_.empty() ? 0. : joint_loads_[i];
       double share = std::min(1., std::max(way.start, way.end));
       if (path && share < 1. &&
@@ -256,17 +265,6 @@ namespace nsfd
     return least;
   }
 
-#define INSTANTIATE(dim)                                                       \
-  template bool Relaxation<dim>::has_laws() const;                             \
-  template void Relaxation<dim>::hold_laws();                                  \
-  template void Relaxation<dim>::free_laws();                                  \
-  template void Relaxation<dim>::hold();                                       \
-  template Relaxation<dim>::Prediction Relaxation<dim>::prediction();          \
-  template bool Relaxation<dim>::let_damage_grow(double &, double);            \
-  template std::pair<double, std::size_t> Relaxation<dim>::least_passage(      \
-      const State &, bool) const
-
-  INSTANTIATE(2);
-  INSTANTIATE(3);
-#undef INSTANTIATE
+  template class HeldLaws<2>;
+  template class HeldLaws<3>;
 } // namespace nsfd

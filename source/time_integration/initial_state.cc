@@ -1,5 +1,6 @@
 #include "initial_state.h"
 
+#include "discretization/cells.h"
 #include "state/point_fields.h"
 
 #include "bond_release.h"
@@ -26,7 +27,7 @@ namespace nsfd
                                             const unsigned int body,
                                             double *value) {
         const auto &material =
-            input.materials[discretization.material_of(body)];
+            input.materials[discretization.cells().body_class(body).material];
         for (unsigned int c = 0; c < dim; ++c)
           value[c] = (material.*field)[c].at(x, 0.);
       });
@@ -195,7 +196,8 @@ namespace nsfd
       switch (origin.kind) {
       case PointOrigin::Kind::interface:
         set_interface_point(input.interfaces[origin.block],
-                            discretization.position(i), problem, i, state);
+                            position_of(discretization.points(), i), problem, i,
+                            state);
         break;
       case PointOrigin::Kind::obstacle:
         state.jump[i * dim] += initial_gap(input, discretization, i);

@@ -180,7 +180,7 @@ namespace nsfd
     const std::size_t n = bodies_.points().n_points;
     old_ = *start_;
     insert_contacts(parts_.input, bodies_.contacts(), old_);
-    problem_.resize(n);
+    resize(problem_, n);
     problem_.n_owned = bodies_.points().n_owned;
     problem_.theta = parts_.problem.theta;
     problem_.rule = parts_.problem.rule;

@@ -5,7 +5,6 @@
 #include "point_name.h"
 #include "step_data.h"
 
-#include "core/archive.h"
 #include "core/cost.h"
 #include "core/stopwatch.h"
 
@@ -36,7 +35,10 @@ namespace nsfd
       : input_(input), discretization_(discretization), dynamics_(dynamics),
         solver_(solver), problem_(constant_data(input, discretization)),
         free_motion_(input, discretization, dynamics),
-        step_problem_(input, discretization, dynamics, counters_)
+        step_problem_(input, discretization, dynamics, counters_),
+        balance_(dynamics, free_motion_),
+        laws_(discretization, dynamics, problem_, iterate_,
+              step_problem_.has_extrinsic())
   {
   }
 
@@ -51,23 +53,23 @@ namespace nsfd
   void Relaxation<dim>::begin(const State &old, const double time,
                               const double duration)
   {
-    old_ = &old;
+    iterate_.old = &old;
     time_ = time;
-    at_ = old;
-    std::fill(at_.velocity.begin(), at_.velocity.end(), 0.);
-    std::fill(at_.relative_velocity.begin(), at_.relative_velocity.end(), 0.);
-    force_ = old.point_force;
-    force_.resize(old.jump.size(), 0.);
-    let_go_.assign(old.kind.size(), 0);
-    free_laws();
-    joint_loads_known_ = false;
+    iterate_.at = old;
+    std::fill(iterate_.at.velocity.begin(), iterate_.at.velocity.end(), 0.);
+    std::fill(iterate_.at.relative_velocity.begin(),
+              iterate_.at.relative_velocity.end(), 0.);
+    iterate_.force = old.point_force;
+    iterate_.force.resize(old.jump.size(), 0.);
+    iterate_.activated.assign(old.kind.size(), 0);
+    laws_.begin();
     target_ = old.jump;
     for (std::size_t i = 0; i < old.kind.size(); ++i) {
       const PointOrigin origin = discretization_.origins()[i];
       if (origin.kind != PointOrigin::Kind::motion)
         continue;
       const auto &boundary = input_.boundaries[origin.block];
-      const auto x = discretization_.position(i);
+      const auto x = position_of(discretization_.points(), i);
       for (unsigned int c = 0; c < dim; ++c)
         if (boundary.displacement[c])
           target_[i * dim + c] = boundary.displacement[c]->at(x, time);
@@ -77,52 +79,32 @@ namespace nsfd
     }
     if (support_.empty())
       set_support();
-    set_scales();
+    balance_.begin(old.displacement, iterate_.force, support_, problem_.n_owned,
+                   largest_motion(), input_.statics->tolerance);
     if (free_motion_.set_loads(time))
       ++counters_.load_assemblies;
     free_motion_.set_pressure(old, time, pressure_);
   }
 
   template <int dim>
-  void Relaxation<dim>::serialize(Archive &archive)
+  bool Relaxation<dim>::has_laws() const
   {
-    archive.numbers("largest_forces", point_scale_, present_);
+    bool any = false;
+    for (const auto &block : input_.interfaces)
+      any = any || block.law;
+    return any;
   }
 
-  /** Forces at the last equilibrium, and what the motion makes round-off of. */
+  /** The largest prescribed jump of this rank, m. */
   template <int dim>
-  void Relaxation<dim>::set_scales()
+  double Relaxation<dim>::largest_motion() const
   {
-    const auto &communicator = dynamics_.communicator();
-    const auto &bodies = dynamics_.bodies();
     double largest = 0.;
-    for (const double value : old_->displacement)
-      largest = std::max(largest, std::abs(value));
-    for (std::size_t i = 0; i < old_->kind.size(); ++i)
+    for (std::size_t i = 0; i < iterate_.old->kind.size(); ++i)
       if (discretization_.origins()[i].kind == PointOrigin::Kind::motion)
         for (unsigned int c = 0; c < dim; ++c)
           largest = std::max(largest, std::abs(target_[i * dim + c]));
-    // some bits of K q, seen from the goal
-    const double share =
-        1e-14 / input_.statics->tolerance * communicator.max(largest);
-    std::vector<double> diagonal(bodies.n_dofs(), 0.);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const BodyClass &body = bodies.classes[bodies.class_of[b]];
-      for (unsigned int k = 0; k < body.n_dofs && !body.rigid; ++k)
-        diagonal[bodies.first_dof[b] + k] = body.stiffness(k, k);
-    }
-    round_off_ =
-        share * std::sqrt(communicator.dot(diagonal.data(), diagonal.data(),
-                                           bodies.n_dofs()));
-    std::vector<double> terms(problem_.n_owned, 0.), supports = terms;
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-      supports[i] = support_[i];
-      for (unsigned int c = 0; c < dim; ++c)
-        terms[i] += force_[i * dim + c] * force_[i * dim + c] / support_[i];
-    }
-    point_round_off_ = share * share * communicator.sum(supports);
-    point_scale_ = std::max(point_scale_, communicator.sum(terms));
-    present_ = std::max(present_, forces_present(old_->displacement));
+    return largest;
   }
 
   /** What counts from the last equilibrium instead of from the iterate. */
@@ -130,9 +112,9 @@ namespace nsfd
   void Relaxation<dim>::constrain(const double h)
   {
     auto &problem = problem_;
-    const State &old = *old_;
+    const State &old = *iterate_.old;
     for (std::size_t i = 0; i < problem.n_points; ++i) {
-      const double *u = &at_.jump[i * dim], *start = &old.jump[i * dim];
+      const double *u = &iterate_.at.jump[i * dim], *start = &old.jump[i * dim];
       if (old.kind[i] == PointKind::prescribed) {
         for (unsigned int c = 0; c < dim; ++c)
           if (problem.mask[i] & (1u << c))
@@ -146,7 +128,7 @@ namespace nsfd
       if (old.kind[i] == PointKind::rigid) {
         // the law counts from the joint, not from its drift
         closed = start[0];
-        if (let_go_[i])
+        if (iterate_.activated[i])
           for (unsigned int c = 0; c < dim; ++c)
             problem.jump_free[i * dim + c] = problem.jump_old[i * dim + c] =
                 u[c] - start[c];
@@ -202,9 +184,9 @@ namespace nsfd
     const auto &problem = problem_;
     start = reach_of<dim>(problem.interactions[problem.interaction[i]],
                           &problem.jump_old[i * dim]);
-    start.opening = std::max(start.opening, at_.opening_max[i]);
-    if (!at_.slip_max.empty())
-      start.slip = std::max(start.slip, at_.slip_max[i]);
+    start.opening = std::max(start.opening, iterate_.at.opening_max[i]);
+    if (!iterate_.at.slip_max.empty())
+      start.slip = std::max(start.slip, iterate_.at.slip_max[i]);
   }
 
   template <int dim>
@@ -213,43 +195,35 @@ namespace nsfd
   {
     auto &dynamics = dynamics_;
     const std::size_t n = q.size();
-    h_ = h;
+    iterate_.h = h;
     {
       const Stopwatch watch(timings_.assembly);
       const Charge charge(Cost::free_motion);
       std::vector<double> change(n);
       for (std::size_t k = 0; k < n; ++k)
-        change[k] = q[k] - old_->displacement[k];
-      dynamics.relative_velocity(change.data(), at_.jump.data());
-      for (std::size_t k = 0; k < at_.jump.size(); ++k)
-        at_.jump[k] += old_->jump[k];
-      at_.displacement = q;
-      at_.time = time_ - h;
+        change[k] = q[k] - iterate_.old->displacement[k];
+      dynamics.relative_velocity(change.data(), iterate_.at.jump.data());
+      for (std::size_t k = 0; k < iterate_.at.jump.size(); ++k)
+        iterate_.at.jump[k] += iterate_.old->jump[k];
+      iterate_.at.displacement = q;
+      iterate_.at.time = time_ - h;
       dynamics.reinit(h, 1.);
       set_step(input_, discretization_, discretization_.origins(), dynamics,
-               step_problem_.motion(), at_, h, problem_);
+               step_problem_.motion(), iterate_.at, h, problem_);
       constrain(h);
-      if (step_problem_.has_extrinsic() && !joint_loads_known_) {
-        std::vector<double> impulse = force_;
-        for (double &P : impulse)
-          P *= h;
-        joint_loads_ = strength_shares(dynamics, discretization_.origins(),
-                                       impulse, problem_);
-        joint_loads_known_ = true;
-      }
-      if (holds_)
-        hold();
+      laws_.find_joint_loads();
+      if (laws_.holds())
+        laws_.put_springs();
       soften(h);
-      free_motion_.move(at_, pressure_, problem_);
+      free_motion_.move(iterate_.at, pressure_, problem_);
     }
     // the floor of the natural map: the largest forces so far
     const double share = std::max(1e-6, 1e-14 / tolerance);
-    const double energy_scale =
-        std::max(point_scale_, point_round_off_) / (share * share);
+    const double energy_scale = balance_.point_scale() / (share * share);
     LawEvaluation<dim> evaluation(problem_, dynamics, energy_scale, tolerance);
-    for (std::size_t i = 0; i < let_go_.size(); ++i)
+    for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
       set_start(i, evaluation.solutions[i].reach);
-    std::vector<double> impulse = force_;
+    std::vector<double> impulse = iterate_.force;
     for (double &P : impulse)
       P *= h;
     SolverControl control = step_problem_.control(1);
@@ -259,8 +233,8 @@ namespace nsfd
       const Stopwatch watch(timings_.solve);
       const Charge charge(Cost::solver);
       report = step_problem_.solve(solver_, problem_, discretization_.origins(),
-                                   control, energy_scale, at_, impulse,
-                                   evaluation, holds_);
+                                   control, energy_scale, iterate_.at, impulse,
+                                   evaluation, laws_.holds());
     }
     const Stopwatch watch(timings_.update);
     const Charge charge(Cost::update);
@@ -274,67 +248,32 @@ namespace nsfd
     for (std::size_t k = 0; k < n; ++k)
       q[k] += h * velocity[k];
     for (std::size_t k = 0; k < impulse.size(); ++k)
-      force_[k] = impulse[k] / h;
-    solutions_ = evaluation.solutions;
-    for (std::size_t i = 0; i < let_go_.size(); ++i)
-      if (problem_.kind[i] == PointKind::rigid && solutions_[i].damages &&
-          !let_go_[i]) {
-        let_go_[i] = 1;
+      iterate_.force[k] = impulse[k] / h;
+    iterate_.solutions = evaluation.solutions;
+    for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
+      if (problem_.kind[i] == PointKind::rigid &&
+          iterate_.solutions[i].damages && !iterate_.activated[i]) {
+        iterate_.activated[i] = 1;
         // on its envelope from now on; far below any opening it is held
-        at_.kind[i] = PointKind::cohesive;
-        at_.opening_max[i] = 1e-9 * solutions_[i].reach.opening;
+        iterate_.at.kind[i] = PointKind::cohesive;
+        iterate_.at.opening_max[i] = 1e-9 * iterate_.solutions[i].reach.opening;
       }
-    measure(q, h, velocity);
+    balance_.measure(q, h, velocity, iterate_.force);
     return report;
-  }
-
-  /** The largest of |K q|, |F| and |H^T r|, N. */
-  template <int dim>
-  double Relaxation<dim>::forces_present(const std::vector<double> &q) const
-  {
-    const auto &dynamics = dynamics_;
-    const std::size_t n = q.size();
-    const auto norm = [&](const std::vector<double> &x) {
-      return std::sqrt(dynamics.communicator().dot(x.data(), x.data(), n));
-    };
-    std::vector<double> forces(n);
-    dynamics.apply(Dynamics<dim>::Operator::stiffness, q.data(), forces.data());
-    double present = std::max(norm(forces), norm(free_motion_.loads()));
-    dynamics.generalised_impulse(force_.data(), forces.data());
-    return std::max(present, norm(forces));
-  }
-
-  /** M v/h is what the forces leave over. */
-  template <int dim>
-  void Relaxation<dim>::measure(const std::vector<double> &q, const double h,
-                                const std::vector<double> &velocity)
-  {
-    using Operator = typename Dynamics<dim>::Operator;
-    const auto &dynamics = dynamics_;
-    const auto &communicator = dynamics.communicator();
-    const std::size_t n = q.size();
-    residual_.resize(n);
-    dynamics.apply(Operator::mass, velocity.data(), residual_.data());
-    for (double &value : residual_)
-      value /= h;
-    const double left =
-        std::sqrt(communicator.dot(residual_.data(), residual_.data(), n));
-    const double present = std::max({present_, round_off_, forces_present(q)});
-    imbalance_ = left == 0. ? 0. : left / present;
   }
 
   template <int dim>
   const OneStepProblem<dim> &Relaxation<dim>::load_step()
   {
     auto &problem = problem_;
-    State start = *old_;
-    start.time = time_ - h_;
+    State start = *iterate_.old;
+    start.time = time_ - iterate_.h;
     std::fill(start.relative_velocity.begin(), start.relative_velocity.end(),
               0.);
     set_step(input_, discretization_, discretization_.origins(), dynamics_,
-             step_problem_.motion(), start, h_, problem);
-    for (std::size_t i = 0; i < let_go_.size(); ++i)
-      if (let_go_[i]) {
+             step_problem_.motion(), start, iterate_.h, problem);
+    for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
+      if (iterate_.activated[i]) {
         problem.kind[i] = PointKind::rigid;
         problem.mask[i] = 0;
       }

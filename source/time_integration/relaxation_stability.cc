@@ -44,9 +44,9 @@ namespace nsfd
     std::vector<double> direction(n, 0.), D(n, -1.);
     bool any = false;
     for (std::size_t i = 0; i < problem.n_points; ++i) {
-      const auto &solution = solutions_[i];
+      const auto &solution = iterate_.solutions[i];
       const auto &interaction = problem.interactions[problem.interaction[i]];
-      const double w_h2 = problem.weight[i] * h_ * h_;
+      const double w_h2 = problem.weight[i] * iterate_.h * iterate_.h;
       if (problem.kind[i] == PointKind::prescribed) {
         for (unsigned int c = 0; c < dim; ++c)
           if (problem.mask[i] & (1u << c))
@@ -59,7 +59,7 @@ namespace nsfd
                    : c > 0 ? solution.frozen.secant.tangential
                            : solution.frozen.secant.normal;
         if (c == 0 &&
-            problem.jump_free[i * dim] + h_ * solution.velocity[0] < 0.)
+            problem.jump_free[i * dim] + iterate_.h * solution.velocity[0] < 0.)
           b = problem.compression_stiffness[i];
         const bool rests =
             held || (c == 0 ? solution.contact_impulse > 0.
@@ -82,7 +82,8 @@ namespace nsfd
                                                   interaction.shear_weight);
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
-        const double u = problem.jump_free[k] + h_ * solution.velocity[c];
+        const double u =
+            problem.jump_free[k] + iterate_.h * solution.velocity[c];
         if (D[k] > 0.)
           direction[k] = size / d * (c == 0 ? std::max(0., u) : tangential * u);
       }
@@ -93,7 +94,7 @@ namespace nsfd
     // joints and contacts as stiff as the solver of the matrix can stand
     std::vector<double> least(n);
     for (std::size_t k = 0; k < n; ++k)
-      least[k] = 1e-6 / (h_ * h_ * support_[k / dim]);
+      least[k] = 1e-6 / (iterate_.h * iterate_.h * support_[k / dim]);
     dynamics.set_least_compliance(std::move(least));
     dynamics.prepare_preconditioner(D);
     std::vector<double> share(problem.n_points, 1.), f(n), z(n);

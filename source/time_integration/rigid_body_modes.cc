@@ -1,6 +1,7 @@
 #include "rigid_body_modes.h"
 
 #include "bodies/fragments.h"
+#include "discretization/cells.h"
 #include "state/state.h"
 
 #include <fmt/format.h>
@@ -72,10 +73,11 @@ namespace nsfd
       std::vector<double> moments((dim + 1) * n_bodies, 0.);
       for (unsigned int b = 0; b < n_bodies; ++b)
         if (ours(b)) {
-          moments[b] = discretization.volume(b);
+          moments[b] = discretization.cells().shape(b).volume;
           for (unsigned int c = 0; c < dim; ++c)
             moments[(c + 1) * n_bodies + b] =
-                discretization.volume(b) * discretization.centre(b)[c];
+                discretization.cells().shape(b).volume *
+                discretization.cells().centre(b)[c];
         }
       const auto sums = communicator.sums(moments.data(), dim + 1, n_bodies);
       if (sums[0] == 0.)

@@ -3,6 +3,8 @@
 #include "step_data.h"
 
 #include "core/archive.h"
+#include "discretization/cells.h"
+#include "discretization/loads.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -28,9 +30,10 @@ namespace nsfd
     free_->reinit(0., 1.);
     if (input.has_bonded_faces())
       bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
-    for (auto *vector : {&given_, &mu_, &lambda_, &rows_})
+    for (auto *vector : {&work_.given, &work_.mu, &work_.lambda, &work_.rows})
       vector->assign(n_rows_, 0.);
-    for (auto *vector : {&loads_, &force_, &rate_, &v_, &body_})
+    for (auto *vector :
+         {&loads_.force, &work_.force, &work_.rate, &work_.v, &work_.body})
       vector->assign(n_, 0.);
     set_rows();
     find_scales(start);
@@ -63,9 +66,9 @@ namespace nsfd
   void SmoothEquations<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "smooth_motion");
-    archive.numbers("scales", velocity_scale_, displacement_scale_,
-                    energy_scale_, inner_step_);
-    archive.points("row_forces", lambda_); // where their iterations start
+    archive.numbers("scales", scales_.velocity, scales_.displacement,
+                    scales_.energy, scales_.inner_step);
+    archive.points("row_forces", work_.lambda); // where their iterations start
   }
 
   template <int dim>
@@ -115,15 +118,15 @@ namespace nsfd
   template <int dim>
   auto SmoothEquations<dim>::loads(const double t) -> const Values &
   {
-    if (!discretization_.has_loads() ||
-        (loads_known_ &&
-         (loads_time_ == t || !discretization_.loads_depend_on_time())))
-      return loads_;
-    std::fill(loads_.begin(), loads_.end(), 0.);
-    discretization_.add_loads(t, loads_);
-    loads_known_ = true;
-    loads_time_ = t;
-    return loads_;
+    if (!discretization_.loads().any() ||
+        (loads_.known &&
+         (loads_.time == t || !discretization_.loads().depend_on_time())))
+      return loads_.force;
+    std::fill(loads_.force.begin(), loads_.force.end(), 0.);
+    discretization_.add_loads(t, loads_.force);
+    loads_.known = true;
+    loads_.time = t;
+    return loads_.force;
   }
 
   /**
@@ -136,11 +139,12 @@ namespace nsfd
     double speed = 0., mass = 0., largest = 0.;
     const auto &bodies = discretization_.bodies();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const unsigned int m = discretization_.material_of(unsigned(b));
-      mass += discretization_.extremes_of(unsigned(b)).densest *
-              discretization_.volume(unsigned(b));
+      const unsigned int m =
+          discretization_.cells().body_class(unsigned(b)).material;
+      mass += discretization_.cells().shape(unsigned(b)).extremes.densest *
+              discretization_.cells().shape(unsigned(b)).volume;
       if (!input_.materials[m].rigid)
-        speed = std::max(speed, discretization_.pressure_wave_speed(m));
+        speed = std::max(speed, discretization_.extremes(m).fastest);
     }
     mass = communicator_.sum(Values{mass});
     speed = communicator_.max(speed);
@@ -149,23 +153,24 @@ namespace nsfd
     const double crossing = speed > 0. ? std::min(end, length / speed) : end;
     for (const double u : start.displacement)
       largest = std::max(largest, std::abs(u));
-    velocity_scale_ = largest / crossing;
+    scales_.velocity = largest / crossing;
     for (const double v : start.velocity)
-      velocity_scale_ = std::max(velocity_scale_, std::abs(v));
+      scales_.velocity = std::max(scales_.velocity, std::abs(v));
     constexpr unsigned int samples = 32;
     for (unsigned int k = 0; k <= samples; ++k) {
       const double t = k * end / samples;
-      set_motion(t, given_);
-      for (const double g : given_)
-        velocity_scale_ = std::max(velocity_scale_, std::abs(g));
-      free_->apply(Operator::inverse, loads(t).data(), rate_.data());
-      for (const double a : rate_)
-        velocity_scale_ = std::max(velocity_scale_, std::abs(a) * crossing);
+      set_motion(t, work_.given);
+      for (const double g : work_.given)
+        scales_.velocity = std::max(scales_.velocity, std::abs(g));
+      free_->apply(Operator::inverse, loads(t).data(), work_.rate.data());
+      for (const double a : work_.rate)
+        scales_.velocity = std::max(scales_.velocity, std::abs(a) * crossing);
     }
-    velocity_scale_ = communicator_.max(velocity_scale_);
-    displacement_scale_ = velocity_scale_ * crossing;
-    energy_scale_ = mass * velocity_scale_ * velocity_scale_;
-    inner_step_ = 1e-2 * (speed > 0. ? discretization_.crossing_time() : end);
+    scales_.velocity = communicator_.max(scales_.velocity);
+    scales_.displacement = scales_.velocity * crossing;
+    scales_.energy = mass * scales_.velocity * scales_.velocity;
+    scales_.inner_step =
+        1e-2 * (speed > 0. ? discretization_.crossing_time() : end);
   }
 
   /** @p result: v with the impulses that joints and driven boundaries need. */
@@ -176,13 +181,14 @@ namespace nsfd
     result.assign(v, v + n_);
     if (joined_.empty())
       return;
-    set_motion(t, given_);
-    free_->relative_velocity(v, rows_.data());
+    set_motion(t, work_.given);
+    free_->relative_velocity(v, work_.rows.data());
     for (std::size_t k = 0; k < n_rows_; ++k)
-      rows_[k] = given_[k] - rows_[k];
+      work_.rows[k] = work_.given[k] - work_.rows[k];
     counters.iterations += joined_.solve(
-        rows_, 1e-14 * velocity_scale_ * std::sqrt(double(n_rows_)), mu_);
-    free_->add_velocity_change(mu_.data(), result.data());
+        work_.rows, 1e-14 * scales_.velocity * std::sqrt(double(n_rows_)),
+        work_.mu);
+    free_->add_velocity_change(work_.mu.data(), result.data());
   }
 
   /** force -= H^T w C H q. */
@@ -214,13 +220,13 @@ namespace nsfd
   auto SmoothEquations<dim>::acceleration(const double t, const double *q)
       -> const Values &
   {
-    dynamics_.apply(Operator::stiffness, q, force_.data());
+    dynamics_.apply(Operator::stiffness, q, work_.force.data());
     const Values &external = loads(t);
     for (std::size_t k = 0; k < n_; ++k)
-      force_[k] = external[k] - force_[k];
-    add_springs(q, force_);
-    free_->apply(Operator::inverse, force_.data(), rate_.data());
-    return rate_;
+      work_.force[k] = external[k] - work_.force[k];
+    add_springs(q, work_.force);
+    free_->apply(Operator::inverse, work_.force.data(), work_.rate.data());
+    return work_.rate;
   }
 
   /** lambda: forces of the rows, W lambda = g' - H a. */
@@ -232,15 +238,16 @@ namespace nsfd
       return;
     Values rate(n_rows_);
     set_motion_rate(t, rate);
-    free_->relative_velocity(a, rows_.data());
+    free_->relative_velocity(a, work_.rows.data());
     double scale = 0.;
     for (std::size_t k = 0; k < n_rows_; ++k) {
-      scale = std::max(scale, std::abs(rows_[k]));
-      rows_[k] = rate[k] - rows_[k];
+      scale = std::max(scale, std::abs(work_.rows[k]));
+      work_.rows[k] = rate[k] - work_.rows[k];
     }
-    counters.iterations += joined_.solve(
-        rows_, 1e-13 * communicator_.max(scale) * std::sqrt(double(n_rows_)),
-        lambda_);
+    counters.iterations += joined_.solve(work_.rows,
+                                         1e-13 * communicator_.max(scale) *
+                                             std::sqrt(double(n_rows_)),
+                                         work_.lambda);
   }
 
   template <int dim>
@@ -248,19 +255,19 @@ namespace nsfd
                                       Vector &rate)
   {
     ++counters.evaluations;
-    project(t, velocity(y), v_);
-    std::copy(v_.begin(), v_.end(), displacement(rate));
+    project(t, velocity(y), work_.v);
+    std::copy(work_.v.begin(), work_.v.end(), displacement(rate));
     const Values &a = acceleration(t, displacement(y));
     std::copy(a.begin(), a.end(), velocity(rate));
     Values power(n_ + n_rows_, 0.);
     const Values &external = loads(t);
     for (std::size_t k = 0; k < n_; ++k)
-      power[k] = external[k] * v_[k];
+      power[k] = external[k] * work_.v[k];
     if (moves_) {
       set_reaction_forces(t, velocity(rate));
       const std::size_t n_owned = discretization_.points().n_owned * dim;
       for (std::size_t k = 0; k < n_owned; ++k)
-        power[n_ + k] = lambda_[k] * given_[k];
+        power[n_ + k] = work_.lambda[k] * work_.given[k];
     }
     const double sum = communicator_.sum(power);
     if (communicator_.is_root())

@@ -73,10 +73,18 @@ namespace nsfd
     RowSystem<dim> joined_, shifted_;
     Values D_joined_;
     double gamma_ = -1.;
-    double velocity_scale_ = 0., displacement_scale_ = 0., energy_scale_ = 0.;
-    double inner_step_ = 0.;
-    double loads_time_ = 0.;
-    bool loads_known_ = false;
-    Values loads_, given_, mu_, lambda_, rows_, force_, rate_, v_, body_;
+    struct Scales {
+      double velocity = 0., displacement = 0., energy = 0.;
+      double inner_step = 0.;
+    } scales_; ///< of the tolerances, and the step of the pairs, s
+    struct LoadsAt {
+      double time = 0.;
+      bool known = false;
+      Values force;
+    } loads_;
+    /// by row (lambda: forces of the rows), and by unknown
+    struct Work {
+      Values given, mu, lambda, rows, force, rate, v, body;
+    } work_;
   };
 } // namespace nsfd

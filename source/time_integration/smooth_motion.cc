@@ -53,7 +53,7 @@ namespace nsfd
     const double tolerance = this->input_.time.tolerance;
     using Solver = dealii::SUNDIALS::ARKode<Vector>;
     const typename Solver::AdditionalData data(
-        t, t + h, std::min(this->inner_step_, h), 2. * h, 1e-12 * h,
+        t, t + h, std::min(this->scales_.inner_step, h), 2. * h, 1e-12 * h,
         this->input_.time.order, 10, false, false, true, 0, tolerance,
         tolerance);
     Solver solver(data, this->communicator_.mpi());
@@ -94,11 +94,11 @@ namespace nsfd
       solver.explicit_function = rate;
     Vector tolerances(y);
     std::fill(this->displacement(tolerances), this->velocity(tolerances),
-              tolerance * this->displacement_scale_);
+              tolerance * this->scales_.displacement);
     std::fill(this->velocity(tolerances), this->velocity(tolerances) + this->n_,
-              tolerance * this->velocity_scale_);
+              tolerance * this->scales_.velocity);
     if (this->communicator_.is_root())
-      tolerances.local_element(2 * this->n_) = tolerance * this->energy_scale_;
+      tolerances.local_element(2 * this->n_) = tolerance * this->scales_.energy;
     solver.get_local_tolerances = [&]() -> Vector & { return tolerances; };
     solver.custom_setup = [&](void *arkode) {
       memory = arkode;
@@ -116,7 +116,7 @@ namespace nsfd
     long int steps = 0;
     ARKStepGetNumSteps(memory, &steps);
     counters.steps += static_cast<unsigned long long>(steps);
-    ARKStepGetCurrentStep(memory, &this->inner_step_);
+    ARKStepGetCurrentStep(memory, &this->scales_.inner_step);
   }
 
   template <int dim>
@@ -138,7 +138,7 @@ namespace nsfd
     std::copy(old.displacement.begin(), old.displacement.end(),
               this->displacement(y));
     std::copy(old.velocity.begin(), old.velocity.end(), this->velocity(y));
-    std::fill(this->mu_.begin(), this->mu_.end(), 0.);
+    std::fill(this->work_.mu.begin(), this->work_.mu.end(), 0.);
     const Counters before = counters;
     integrate(old.time, h, y);
     read_off(old, h, y, next);
@@ -192,7 +192,7 @@ namespace nsfd
           if (i < this->problem_.n_owned)
             stored[i] += pull * u / 2.;
         } else if (this->D_joined_[k] == 0.) {
-          next.impulse[k] = h * this->lambda_[k];
+          next.impulse[k] = h * this->work_.lambda[k];
           square += u * u;
         }
       }
@@ -204,8 +204,9 @@ namespace nsfd
         std::max(old.rigid_drift, this->communicator_.max(drift));
 
     const auto half = [&](const Operator op, const Values &x) {
-      this->dynamics_.apply(op, x.data(), this->body_.data());
-      return this->communicator_.dot(x.data(), this->body_.data(), this->n_) /
+      this->dynamics_.apply(op, x.data(), this->work_.body.data());
+      return this->communicator_.dot(x.data(), this->work_.body.data(),
+                                     this->n_) /
              2.;
     };
     next.energy = old.energy;

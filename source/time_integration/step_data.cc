@@ -262,7 +262,7 @@ namespace nsfd
   {
     const auto &points = discretization.points();
     OneStepProblem<dim> problem;
-    problem.resize(points.n_points);
+    resize(problem, points.n_points);
     problem.n_owned = points.n_owned;
     problem.weight = points.weight;
     problem.theta = input.time.theta;

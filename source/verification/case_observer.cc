@@ -2,6 +2,7 @@
 
 #include "bodies/cell_stresses.h"
 #include "core/gather.h"
+#include "discretization/cells.h"
 #include "postprocess/face_pieces.h"
 
 #include "core/archive.h"
@@ -122,8 +123,8 @@ namespace nsfd
     std::vector<double> mine(n * width, 0.);
     for (std::size_t b = 0; b < n; ++b) {
       for (unsigned int c = 0; c < dim; ++c)
-        mine[b * width + c] = discretization_.centre(unsigned(b))[c];
-      mine[b * width + 15] = discretization_.volume(unsigned(b));
+        mine[b * width + c] = discretization_.cells().centre(unsigned(b))[c];
+      mine[b * width + 15] = discretization_.cells().shape(unsigned(b)).volume;
     }
     const auto add = [&](const unsigned int body, const unsigned int at,
                          const double share, const double *values,
@@ -136,16 +137,16 @@ namespace nsfd
         discretization_.to_nodal(state.displacement),
         [&](const unsigned int b, const dealii::Point<dim> &x, const double JxW,
             const double *value, const double *gradient) {
-          const double share = JxW / discretization_.volume(b);
+          const double share = JxW / discretization_.cells().shape(b).volume;
           add(b, 3, share, value, dim);
           add(b, 9, share, stresses.visit(b, x, gradient).data(), 6);
         });
-    const bool is_viscous = discretization_.is_viscous();
+    const bool is_viscous = discretization_.input().has_viscous_bodies();
     discretization_.visit_quadrature(
         discretization_.to_nodal(state.velocity),
         [&](const unsigned int b, const dealii::Point<dim> &, const double JxW,
             const double *value, const double *rate) {
-          const double share = JxW / discretization_.volume(b);
+          const double share = JxW / discretization_.cells().shape(b).volume;
           add(b, 6, share, value, dim);
           if (is_viscous)
             add(b, 9, share, discretization_.viscous_stress(b, rate).data(), 6);

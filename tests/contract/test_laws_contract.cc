@@ -174,7 +174,7 @@ namespace every_law::test_laws_contract
                                 const double opening)
   {
     OneStepProblem<2> problem;
-    problem.resize(1);
+    resize(problem, 1);
     problem.n_owned = 1;
     problem.time_step = 0.02;
     problem.theta = 1.;

@@ -18,7 +18,7 @@ namespace every_law::test_laws_random_paths
                 std::mt19937 &random)
         : law_(law), random_(random)
     {
-      problem.resize(1);
+      resize(problem, 1);
       problem.n_owned = 1;
       problem.time_step = 0.02;
       problem.theta = number(0.5, 1.);

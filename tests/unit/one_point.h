@@ -73,7 +73,7 @@ namespace point_law_test
              const double strength_factor = 1.,
              const double toughness_factor = 1.)
     {
-      problem.resize(1);
+      resize(problem, 1);
       problem.n_owned = 1;
       problem.time_step = 0.02;
       problem.theta = theta;

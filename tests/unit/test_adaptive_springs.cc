@@ -1,5 +1,7 @@
 #include "changing_mesh.h"
 
+#include "discretization/cells.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -103,7 +105,7 @@ subsection Indicator: any
       const auto &discretization = *mesh.model.discretization;
       mesh.state.displacement = discretization.interpolate(
           [&](const dealii::Point<dim> &x, const unsigned int b, double *u) {
-            const auto centre = discretization.centre(b);
+            const auto centre = discretization.cells().centre(b);
             for (unsigned int i = 0; i < dim; ++i) {
               u[i] = 0.;
               for (unsigned int j = 0; j < dim; ++j)
@@ -278,7 +280,7 @@ subsection Indicator: any
         sum += points.weight[i] * discretization.origins()[i].compliance;
       double halves = 0.; // cells are squares of the size 2^-level
       for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
-        const auto corners = discretization.corners(b);
+        const auto corners = discretization.cells().corners[b];
         const double size = corners[1][0] - corners[0][0];
         for (unsigned int d = 0; d < 2; ++d) {
           halves += size * size;

@@ -1,4 +1,6 @@
 #include "make_scene.h"
+
+#include "discretization/cells.h"
 #include "rigid_in_rubber.h"
 
 #include "nsfd/mesh/body_table.h"
@@ -35,8 +37,11 @@ namespace test_body_table
         last = b + 1;
       }
       // one rank alone numbers its cells as the table does
-      EXPECT_EQ(table.cell_of_global[scene.discretization->global_cell(c)], c);
-      EXPECT_EQ(table.bodies[b].material, scene.discretization->material_of(c));
+      EXPECT_EQ(
+          table.cell_of_global[scene.discretization->cells().global_cell[c]],
+          c);
+      EXPECT_EQ(table.bodies[b].material,
+                scene.discretization->cells().body_class(c).material);
     }
     for (unsigned int b = 0; b < table.bodies.size(); ++b) {
       EXPECT_EQ(n_cells[b], table.is_rigid(b) ? 24u : 1u);

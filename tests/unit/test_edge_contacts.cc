@@ -1,3 +1,4 @@
+#include "discretization/cells.h"
 #include "make_scene.h"
 #include "momenta.h"
 #include "separating_axes.h"
@@ -143,8 +144,8 @@ end
   {
     test::Convex result;
     const auto &d = *scene.discretization;
-    const auto at_rest = d.corners(b);
-    const auto u = d.at_corners(b, nodal);
+    const auto at_rest = d.cells().corners[b];
+    const auto u = d.cells().at_corners(b, nodal);
     for (unsigned int k = 0; k < 8; ++k) {
       result.corners.emplace_back();
       for (unsigned int c = 0; c < 3; ++c)

@@ -2,6 +2,7 @@
 #include "make_scene.h"
 
 #include "core/order_free_sum.h"
+#include "discretization/cells.h"
 #include "postprocess/fragment_output.h"
 #include "records/fragment_sizes.h"
 
@@ -54,7 +55,7 @@ namespace nsfd::test_fragment_motion
     {
       const auto &mesh = *scene.discretization;
       const auto flight = [&](const unsigned int body) -> const Flight & {
-        return flights[mesh.centre(body)[0] < 1. ? 0 : 1];
+        return flights[mesh.cells().centre(body)[0] < 1. ? 0 : 1];
       };
       scene.state.displacement = mesh.interpolate(
           [&](const dealii::Point<dim> &x, const unsigned int body, double *u) {

@@ -1,4 +1,6 @@
 #include "make_scene.h"
+
+#include "discretization/cells.h"
 #include "momenta.h"
 #include "separating_axes.h"
 
@@ -353,8 +355,8 @@ end
     const auto &d = *scene.discretization;
     const auto nodal = d.to_nodal(scene.state.displacement);
     for (unsigned int b = 0; b < d.bodies().size(); ++b) {
-      const auto at_rest = d.corners(b);
-      const auto u = d.at_corners(b, nodal);
+      const auto at_rest = d.cells().corners[b];
+      const auto u = d.cells().at_corners(b, nodal);
       Corners now;
       const unsigned int circle[4] = {0, 1, 3, 2};
       for (unsigned int k = 0; k < 4; ++k)

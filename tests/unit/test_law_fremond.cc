@@ -118,7 +118,7 @@ namespace test_law_fremond
             const CohesionRule rule)
   {
     OneStepProblem<2> problem;
-    problem.resize(1);
+    resize(problem, 1);
     problem.n_owned = 1;
     problem.time_step = 1. / n;
     problem.theta = 1.;

@@ -197,7 +197,7 @@ namespace test_laws_two_scalars
 
     Driven(const CohesiveLaw &law, const CohesionRule rule)
     {
-      problem.resize(1);
+      resize(problem, 1);
       problem.n_owned = 1;
       problem.time_step = 1.;
       problem.theta = 1.;

@@ -1,6 +1,7 @@
 #include "make_scene.h"
 #include "postprocess/run_view.h"
 
+#include "discretization/cells.h"
 #include "nsfd/postprocess/running_crack.h"
 #include "postprocess/table_file.h"
 
@@ -136,8 +137,8 @@ end
     const auto at = [&](const double t, const bool rate) {
       return mesh.interpolate([&](const dealii::Point<2> &x,
                                   const unsigned int body, double *values) {
-        const double side = mesh.centre(body)[1];
-        const bool inner = mesh.centre(body).norm() < 0.15;
+        const double side = mesh.cells().centre(body)[1];
+        const bool inner = mesh.cells().centre(body).norm() < 0.15;
         const auto now = field.displacement(x[0], x[1], side, t),
                    later = field.displacement(x[0], x[1], side, t + dt),
                    before = field.displacement(x[0], x[1], side, t - dt);
@@ -159,7 +160,7 @@ end
     HistoryRow row;
     row.step = 1;
     row.time = row.time_step = h;
-    view.show(after, &before, row);
+    view.motion().show(after, &before, row);
     tip.follow(view);
     const auto values = tip.values(view);
     return {values.begin() + 1, values.begin() + 4};

@@ -1,4 +1,5 @@
 #include "breaking_plate.h"
+#include "discretization/cells.h"
 #include "make_scene.h"
 #include "time_integration/stable_step.h"
 
@@ -100,7 +101,7 @@ end
       const auto nodal = d.to_nodal(scene.state.displacement);
       const double fall = -(t * t + first * t);
       for (unsigned int b = 0; b < d.bodies().size(); ++b) {
-        const auto u = d.at_corners(b, nodal);
+        const auto u = d.cells().at_corners(b, nodal);
         for (std::size_t k = 0; k < u.size(); k += 2) {
           EXPECT_NEAR(u[k], 0., 1e-12 * std::abs(fall));
           EXPECT_NEAR(u[k + 1], fall, 1e-12 * std::abs(fall));

@@ -46,7 +46,7 @@ namespace solver_checks::test_solvers_one_point
       dynamics = make_elementwise_dynamics<2>(communicator, bodies, points);
       dynamics->reinit(h, 1.);
 
-      problem.resize(1);
+      resize(problem, 1);
       problem.n_owned = 1;
       problem.time_step = h;
       problem.theta = 1.;

@@ -1,6 +1,7 @@
 #include "make_scene.h"
 
 #include "delassus/sparse_assembly.h"
+#include "discretization/cells.h"
 #include "discretization/node_coordinates.h"
 
 #include <gtest/gtest.h>
@@ -157,7 +158,7 @@ end
     const auto &bodies = parts.scene.discretization->bodies();
     std::set<std::vector<long long>> places;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const bool right = parts.scene.discretization->centre(b)[0] > 2.;
+      const bool right = parts.scene.discretization->cells().centre(b)[0] > 2.;
       for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
            i += dim) {
         std::vector<long long> place{broken && right};

@@ -242,7 +242,7 @@ namespace nsfd::test_study
     EXPECT_EQ(median({4., 1., 2., 3.}), 2.5);
     CaseResult result;
     result.solve = {2., 1., 3.};
-    EXPECT_EQ(result.solve_spread(), 1.);
+    EXPECT_EQ(solve_spread(result), 1.);
   }
 
   TEST(StudyFormula, NamesAndProblems)

@@ -110,7 +110,7 @@ end
       for (const double theta : {0.5, 1.})
         for (const double speed : {1e-3, 0.1, 1., 1e3, 1e6}) {
           OneStepProblem<2> problem;
-          problem.resize(1);
+          resize(problem, 1);
           problem.n_owned = 1;
           problem.time_step = 1e-8;
           problem.theta = theta;
@@ -192,7 +192,7 @@ end
     };
     for (unsigned int k = 0; k < 4000; ++k) {
       OneStepProblem<dim> problem;
-      problem.resize(1);
+      resize(problem, 1);
       problem.n_owned = 1;
       problem.time_step = 0.02;
       problem.theta = number(0.5, 1.);

@@ -12,12 +12,6 @@
 #include <string>
 #include <vector>
 
-namespace dealii
-{
-  template <int dim, int spacedim>
-  class FiniteElement;
-} // namespace dealii
-
 namespace nsfd
 {
   struct SceneInput;
@@ -25,8 +19,6 @@ namespace nsfd
   class MeshGroups;
   template <int dim>
   struct Cells;
-  template <int dim>
-  struct BodyShape;
   template <int dim>
   class Loads;
 
@@ -45,6 +37,17 @@ namespace nsfd
     /// faces of refined cells where springs keep the modulus of the body
     double compliance = 1.;
   };
+
+  /** Place of a face point. */
+  template <int dim>
+  dealii::Point<dim> position_of(const InterfacePoints<dim> &points,
+                                 const std::size_t point)
+  {
+    dealii::Point<dim> x;
+    for (unsigned int c = 0; c < dim; ++c)
+      x[c] = points.position[point * dim + c];
+    return x;
+  }
 
   /** Where an obstacle may be touched, in scenes with large motions. */
   struct ObstacleFace {
@@ -80,21 +83,11 @@ namespace nsfd
     Discretization &operator=(Discretization &&) noexcept;
 
     const SceneInput &input() const { return *input_; }
+    /** The cells of this rank: shapes, materials, places, nodes. */
+    const Cells<dim> &cells() const { return *cells_; }
     const Bodies &bodies() const;
     const InterfacePoints<dim> &points() const { return points_; }
     const std::vector<PointOrigin> &origins() const { return origins_; }
-    /** Place of a face point. */
-    dealii::Point<dim> position(const std::size_t point) const
-    {
-      dealii::Point<dim> x;
-      for (unsigned int c = 0; c < dim; ++c)
-        x[c] = points_.position[point * dim + c];
-      return x;
-    }
-    const dealii::FiniteElement<dim, dim> &element() const;
-
-    unsigned int material_of(unsigned int body) const;
-
     /**
      * The interface block with springs that new faces inside a cell would have
      * and that are to keep the modulus of the body; -1: none.
@@ -103,9 +96,6 @@ namespace nsfd
     {
       return springs_inside_.empty() ? -1 : springs_inside_[body];
     }
-
-    /** Tables of the cell of a body, relative to its corner 0. */
-    const BodyShape<dim> &shape(unsigned int body) const;
 
     /** Empty but in scenes with large motions. */
     const std::vector<ObstacleFace> &obstacle_faces() const
@@ -119,13 +109,10 @@ namespace nsfd
     /** Of all ranks; of scenes with large motions only. */
     const BodyTable &body_table() const { return *body_table_; }
 
-    /** Which face of its cell a slot of a body is on. */
-    unsigned int face_of_slot(unsigned int body, unsigned int slot) const;
-
-    /** Nodal vectors: node-major, dim components, all cells of this rank. */
-    std::size_t n_nodal() const;
-    std::size_t first_node(unsigned int body) const;
-    /** Unknowns of the bodies to nodal values (rigid modes are expanded). */
+    /**
+     * Unknowns of the bodies to nodal values (rigid modes are expanded):
+     * node-major, dim components, Cells::n_nodal() in all.
+     */
     std::vector<double> to_nodal(const std::vector<double> &unknowns) const;
 
     using Field = std::function<void(const dealii::Point<dim> &,
@@ -142,8 +129,7 @@ namespace nsfd
      * pressures, in N (N per metre of depth in two dimensions).
      */
     void add_loads(double t, std::vector<double> &forces) const;
-    bool loads_depend_on_time() const;
-    bool has_loads() const;
+    const Loads<dim> &loads() const { return *loads_; }
 
     /**
      * Call @p visit at every quadrature point of every cell of this rank:
@@ -165,35 +151,11 @@ namespace nsfd
     /** What a velocity gradient adds to it in a viscous material. */
     std::array<double, 6> viscous_stress(unsigned int body,
                                          const double *rate) const;
-    bool is_viscous() const;
 
-    /** Corners of a cell in deal.II's order, and values of a nodal vector. */
-    std::vector<dealii::Point<dim>> corners(unsigned int body) const;
-    std::vector<double> at_corners(unsigned int body,
-                                   const std::vector<double> &nodal) const;
-    double volume(unsigned int body) const;
-    dealii::Point<dim> centre(unsigned int body) const;
-    unsigned long long global_cell(unsigned int body) const;
-    /** CellId::to_binary(): the same on every number of ranks. */
-    const std::array<unsigned int, 4> &cell_id(unsigned int body) const;
-    unsigned long long n_global_cells() const { return n_global_cells_; }
-    bool simplices() const;
-
-    /** Of a material, and of the cell of a body alone. */
+    /** Of a material; BodyShape has those of the cell of a body alone. */
     const MaterialExtremes &extremes(const unsigned int material) const
     {
       return extremes_[material];
-    }
-    const MaterialExtremes &extremes_of(unsigned int body) const;
-
-    /** Speeds of the fastest and the slowest plane waves in a material. */
-    double pressure_wave_speed(const unsigned int material) const
-    {
-      return extremes_[material].fastest;
-    }
-    double shear_wave_speed(const unsigned int material) const
-    {
-      return extremes_[material].slowest;
     }
     /** The shortest crossing time of the fastest wave over all cells. */
     double crossing_time() const { return crossing_time_; }
@@ -217,7 +179,6 @@ namespace nsfd
     std::vector<InnerFace> inner_faces_;
     std::unique_ptr<const BodyTable> body_table_; ///< of large motions
     std::unique_ptr<const Loads<dim>> loads_;
-    unsigned long long n_global_cells_ = 0;
     double crossing_time_ = 0., cell_size_ = 0., extent_ = 0.;
     std::vector<unsigned int> driven_;
     std::vector<MaterialExtremes> extremes_; ///< by material

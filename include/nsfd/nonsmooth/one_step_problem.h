@@ -80,9 +80,11 @@ namespace nsfd
 
     // scaled identity above the diagonal block of W
     std::vector<double> majorant_normal, majorant_tangential;
-
-    void resize(std::size_t n);
   };
+
+  /** @p n points with what points have by default. */
+  template <int dim>
+  void resize(OneStepProblem<dim> &problem, std::size_t n);
 
   /**
    * Where point @p i of a discretization is among the points of a step: the

@@ -348,7 +348,7 @@ namespace nsfd
     dynamics_.apply(Dynamics<dim>::Operator::stiffness, x.data(), work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)
       y[k] += shares_.stiffness * work_[k];
-    if (!dynamics_.is_viscous())
+    if (dynamics_.viscous_theta() == 0.)
       return;
     dynamics_.apply(Dynamics<dim>::Operator::damping, x.data(), work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)

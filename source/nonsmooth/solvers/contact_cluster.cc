@@ -21,14 +21,14 @@ namespace nsfd
   bool ContactPath<dim>::refine()
   {
     restore();
-    if (newton(best_error_ < 1e-4 ? 6 : 2))
+    if (newton(best_.error < 1e-4 ? 6 : 2))
       return true;
-    for (unsigned int k = 0; k < 3 && best_error_ < 1e-5; ++k) {
-      const double before = best_error_;
+    for (unsigned int k = 0; k < 3 && best_.error < 1e-5; ++k) {
+      const double before = best_.error;
       bool moved;
       if (solve_cluster(moved) || (moved && newton(3)))
         return true;
-      if (!(best_error_ < 0.7 * before))
+      if (!(best_.error < 0.7 * before))
         break;
     }
     return false;
@@ -127,7 +127,7 @@ namespace nsfd
                   .threshold;
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t j = cluster[a] * dim + c;
-        q[a * dim + c] = evaluation_.velocity[j] + dU_[j] -
+        q[a * dim + c] = evaluation_.velocity[j] + direction_.U[j] -
                          (c == 0 ? problem_.target[cluster[a]]
                                  : -problem_.sliding_offset[j]);
         P[a * dim + c] = impulse_[j];
@@ -139,7 +139,7 @@ namespace nsfd
       equilibrate(unit, true);
       unit[cluster[b / dim] * dim + b % dim] = 0.;
       for (std::size_t a = 0; a < m * dim; ++a) {
-        W[a * m * dim + b] = dU_[cluster[a / dim] * dim + a % dim];
+        W[a * m * dim + b] = direction_.U[cluster[a / dim] * dim + a % dim];
         q[a] -= W[a * m * dim + b] * P[b];
       }
     }
@@ -158,7 +158,8 @@ namespace nsfd
     for (std::size_t j = 0; j < n * dim; ++j) {
       impulse_[j] += change[j];
       for (unsigned int d = 0; d < dim; ++d)
-        impulse_[j] -= laws_.stiffness[j * dim + d] * dU_[j / dim * dim + d];
+        impulse_[j] -=
+            laws_.stiffness[j * dim + d] * direction_.U[j / dim * dim + d];
     }
     evaluation_.update(impulse_);
     moved = true;

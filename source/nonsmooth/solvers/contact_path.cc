@@ -20,9 +20,7 @@ namespace nsfd
       : problem_(problem), dynamics_(dynamics), system_(system),
         control_(control), impulse_(impulse), evaluation_(evaluation),
         report_(report), frozen_(problem.n_points),
-        is_candidate_(problem.n_points, 0), others_(problem.n_points, 1),
-        best_error_(std::numeric_limits<double>::infinity()),
-        refined_(best_error_)
+        is_candidate_(problem.n_points, 0), others_(problem.n_points, 1)
   {
     for (std::size_t i = 0; i < problem.n_points; ++i)
       if (problem.contact[i] && has_frozen_law<dim>(problem, i) &&
@@ -30,10 +28,10 @@ namespace nsfd
         is_candidate_[i] = 1;
         others_[i] = 0;
       }
-    y_.assign(dynamics.bodies().n_dofs(), 0.);
-    b_ = residual_ = dy_ = y_;
-    U_.assign(problem.n_points * dim, 0.);
-    dU_ = U_;
+    at_.y.assign(dynamics.bodies().n_dofs(), 0.);
+    b_ = residual_ = direction_.y = at_.y;
+    at_.U.assign(problem.n_points * dim, 0.);
+    direction_.U = at_.U;
     begin();
   }
 
@@ -43,18 +41,18 @@ namespace nsfd
   {
     evaluation_.update(impulse_);
     judge();
-    std::fill(y_.begin(), y_.end(), 0.);
-    dynamics_.add_velocity_change(impulse_.data(), y_.data());
-    U_ = evaluation_.velocity;
-    P_ = impulse_;
+    std::fill(at_.y.begin(), at_.y.end(), 0.);
+    dynamics_.add_velocity_change(impulse_.data(), at_.y.data());
+    at_.U = evaluation_.velocity;
+    at_.P = impulse_;
   }
 
   /** The laws at the state of the path, which need not be in equilibrium. */
   template <int dim>
   void ContactPath<dim>::look()
   {
-    impulse_ = P_;
-    evaluation_.velocity = U_;
+    impulse_ = at_.P;
+    evaluation_.velocity = at_.U;
     evaluation_.update_laws(impulse_);
   }
 
@@ -62,9 +60,9 @@ namespace nsfd
   template <int dim>
   bool ContactPath<dim>::judge()
   {
-    if (evaluation_.error < best_error_) {
-      best_error_ = evaluation_.error;
-      best_ = impulse_;
+    if (evaluation_.error < best_.error) {
+      best_.error = evaluation_.error;
+      best_.P = impulse_;
     }
     return evaluation_.error <= control_.tolerance;
   }
@@ -72,9 +70,9 @@ namespace nsfd
   template <int dim>
   void ContactPath<dim>::restore()
   {
-    if (best_.empty())
+    if (best_.P.empty())
       return;
-    impulse_ = best_;
+    impulse_ = best_.P;
     evaluation_.update(impulse_);
   }
 
@@ -83,7 +81,7 @@ namespace nsfd
   void ContactPath<dim>::set_imbalance(const Vector &P)
   {
     dynamics_.generalised_impulse(P.data(), b_.data());
-    system_.apply(y_, residual_);
+    system_.apply(at_.y, residual_);
     for (std::size_t j = 0; j < b_.size(); ++j)
       b_[j] -= residual_[j];
   }
@@ -99,8 +97,8 @@ namespace nsfd
       dynamics_.generalised_impulse(P.data(), b_.data());
     else
       set_imbalance(P);
-    report_.krylov += system_.solve(b_, dy_);
-    dynamics_.relative_velocity(dy_.data(), dU_.data());
+    report_.krylov += system_.solve(b_, direction_.y);
+    dynamics_.relative_velocity(direction_.y.data(), direction_.U.data());
   }
 
   /** Springs that stay as they are, and joints: the same in every step. */
@@ -134,18 +132,19 @@ namespace nsfd
     for (std::size_t i = 0; i < n; ++i)
       linear[i] = is_linear(i);
     laws_.update(problem_, evaluation_, impulse_, linear);
-    S_ = laws_.stiffness;
+    at_.S = laws_.stiffness;
     Vector rho(n * dim, 0.), target(n * dim);
     for (std::size_t i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t j = i * dim + c;
         if (is_held(i))
-          rho[j] = S_[j * dim + c];
+          rho[j] = at_.S[j * dim + c];
         else if (!linear[i]) // alike along the face
-          rho[j] = S_[j * dim + c] = stiffness_at(i, std::min(c, 1u), balance);
+          rho[j] = at_.S[j * dim + c] =
+              stiffness_at(i, std::min(c, 1u), balance);
         target[j] = problem_.given_velocity[j]; // of points that are held
       }
-    if (!system_.factorise(S_))
+    if (!system_.factorise(at_.S))
       return false;
     ++report_.newton;
 
@@ -154,10 +153,10 @@ namespace nsfd
     for (std::size_t i = 0; i < n; ++i)
       if (linear[i] && !is_held(i))
         for (unsigned int c = 0; c < dim; ++c) {
-          offset[i * dim + c] = P_[i * dim + c] + laws_.change[i * dim + c];
+          offset[i * dim + c] = at_.P[i * dim + c] + laws_.change[i * dim + c];
           for (unsigned int d = 0; d < dim; ++d)
             offset[i * dim + c] +=
-                laws_.stiffness[(i * dim + c) * dim + d] * U_[i * dim + d];
+                laws_.stiffness[(i * dim + c) * dim + d] * at_.U[i * dim + d];
         }
     std::vector<Reach> reach(n);
     for (std::size_t i = 0; i < n; ++i)
@@ -165,13 +164,13 @@ namespace nsfd
     const auto solve_law = [&](const std::size_t i) {
       std::array<double, dim> local;
       for (unsigned int c = 0; c < dim; ++c)
-        local[c] = U_[i * dim + c] - P_[i * dim + c] / rho[i * dim + c];
+        local[c] = at_.U[i * dim + c] - at_.P[i * dim + c] / rho[i * dim + c];
       const auto solution =
           solve_point<dim>(problem_, i, local, 1. / rho[i * dim],
                            1. / rho[i * dim + 1], reach[i]);
       reach[i] = solution.reach;
       for (unsigned int c = 0; c < dim; ++c) {
-        P_[i * dim + c] = solution.impulse[c];
+        at_.P[i * dim + c] = solution.impulse[c];
         target[i * dim + c] = solution.velocity[c];
       }
     };
@@ -185,34 +184,34 @@ namespace nsfd
       for (std::size_t j = 0; j < n * dim; ++j) {
         const std::size_t i = j / dim;
         if (!linear[i] || is_held(i))
-          trial[j] = P_[j] + rho[j] * (target[j] - U_[j]);
+          trial[j] = at_.P[j] + rho[j] * (target[j] - at_.U[j]);
         else {
           trial[j] = offset[j];
           for (unsigned int d = 0; d < dim; ++d)
-            trial[j] -= laws_.stiffness[j * dim + d] * U_[i * dim + d];
+            trial[j] -= laws_.stiffness[j * dim + d] * at_.U[i * dim + d];
         }
       }
       equilibrate(trial, false);
-      for (std::size_t j = 0; j < y_.size(); ++j)
-        y_[j] += dy_[j];
+      for (std::size_t j = 0; j < at_.y.size(); ++j)
+        at_.y[j] += direction_.y[j];
       for (std::size_t j = 0; j < n * dim; ++j)
-        U_[j] += dU_[j];
+        at_.U[j] += direction_.U[j];
       for (std::size_t i = 0; i < n; ++i) {
         if (linear[i]) {
           for (std::size_t j = i * dim; j < (i + 1) * dim; ++j)
             if (is_held(i))
-              P_[j] += rho[j] * (target[j] - U_[j]);
+              at_.P[j] += rho[j] * (target[j] - at_.U[j]);
             else {
-              P_[j] = offset[j];
+              at_.P[j] = offset[j];
               for (unsigned int d = 0; d < dim; ++d)
-                P_[j] -= laws_.stiffness[j * dim + d] * U_[i * dim + d];
+                at_.P[j] -= laws_.stiffness[j * dim + d] * at_.U[i * dim + d];
             }
           continue;
         }
         solve_law(i);
       }
       if (k % 10 == 9 || k + 1 == count) {
-        impulse_ = P_;
+        impulse_ = at_.P;
         evaluation_.update(impulse_);
         solved = judge();
       }
@@ -228,15 +227,15 @@ namespace nsfd
     const auto &secant = frozen_[i].secant;
     const double wh = problem_.weight[i] * problem_.time_step;
     const auto normal = springs::normal_law<dim>(problem_, i, secant.normal);
-    impulse[0] = wh * normal.at(U_[i * dim]);
-    slope[0] = wh * normal.derivative(U_[i * dim]);
+    impulse[0] = wh * normal.at(at_.U[i * dim]);
+    slope[0] = wh * normal.derivative(at_.U[i * dim]);
     const auto tangential =
         springs::tangential_spring<dim>(problem_, secant.tangential);
     for (unsigned int c = 1; c < dim; ++c) {
       slope[c] = wh * tangential.stiffness * tangential.slope;
       impulse[c] = wh * tangential.stiffness *
                    (springs::tangential_offset<dim>(problem_, i, c) +
-                    tangential.slope * U_[i * dim + c]);
+                    tangential.slope * at_.U[i * dim + c]);
     }
   }
 
@@ -268,19 +267,19 @@ namespace nsfd
       double pull[dim], slope[dim];
       spring(i, pull, slope);
       for (unsigned int c = 0; c < dim; ++c)
-        x.r[c] = (P_[i * dim + c] + pull[c]) / problem_.weight[i];
+        x.r[c] = (at_.P[i * dim + c] + pull[c]) / problem_.weight[i];
       sum += std::abs(x.r[0]);
     }
     mean_impulse_ = candidates_.empty() ? 0. : sum / double(candidates_.size());
     for (auto &x : candidates_) {
       const std::size_t i = x.point;
       const double R_N = impedance(i, 0), R_T = impedance(i, 1);
-      const double u_N = U_[i * dim] - problem_.target[i];
+      const double u_N = at_.U[i * dim] - problem_.target[i];
       double largest = std::max(std::abs(x.r[0]), R_N * std::abs(u_N));
       for (unsigned int c = 1; c < dim; ++c)
         largest =
             std::max({largest, std::abs(x.r[c]),
-                      R_T * std::abs(U_[i * dim + c] +
+                      R_T * std::abs(at_.U[i * dim + c] +
                                      problem_.sliding_offset[i * dim + c])});
       x.scale = floor == 1. || mean_impulse_ == 0.
                     ? 1.
@@ -315,7 +314,7 @@ namespace nsfd
   {
     const std::size_t i = x.point;
     const double s2 = springs::square(x.scale), mu = x.friction;
-    const double u_N = U_[i * dim] - problem_.target[i];
+    const double u_N = at_.U[i * dim] - problem_.target[i];
     const double stiff = x.r[0] / x.z;
     std::fill(x.S, x.S + dim * dim, 0.);
     std::fill(x.k, x.k + dim, 0.);
@@ -328,7 +327,7 @@ namespace nsfd
     }
     double u[dim] = {}, eta = springs::square(smoothing) * s2;
     for (unsigned int c = 1; c < dim; ++c) {
-      u[c] = U_[i * dim + c] + problem_.sliding_offset[i * dim + c];
+      u[c] = at_.U[i * dim + c] + problem_.sliding_offset[i * dim + c];
       eta += u[c] * u[c];
     }
     eta = std::sqrt(eta);
@@ -366,8 +365,8 @@ namespace nsfd
     const double smoothing = gap / mean;
 
     look();
-    laws_.update(problem_, evaluation_, P_, others_);
-    S_ = laws_.stiffness;
+    laws_.update(problem_, evaluation_, at_.P, others_);
+    at_.S = laws_.stiffness;
     Vector wanted(laws_.change);
     for (auto &x : candidates_) {
       const std::size_t i = x.point;
@@ -376,18 +375,19 @@ namespace nsfd
       double pull[dim], slope[dim];
       spring(i, pull, slope);
       for (unsigned int c = 0; c < dim; ++c) {
-        P_[i * dim + c] = w * x.r[c] - pull[c];
+        at_.P[i * dim + c] = w * x.r[c] - pull[c];
         wanted[i * dim + c] = w * x.k[c];
         for (unsigned int d = 0; d < dim; ++d)
-          S_[(i * dim + c) * dim + d] =
+          at_.S[(i * dim + c) * dim + d] =
               w * x.S[c * dim + d] + (c == d ? slope[c] : 0.);
       }
     }
-    if (!system_.factorise(S_))
+    if (!system_.factorise(at_.S))
       return false;
     ++report_.newton;
-    set_imbalance(P_);
-    report_.krylov += system_.respond(b_, wanted, dy_, dU_, dP_);
+    set_imbalance(at_.P);
+    report_.krylov +=
+        system_.respond(b_, wanted, direction_.y, direction_.U, direction_.P);
 
     alpha = 1.;
     // a stiff contact takes its slack from its impulse, which is the one of the
@@ -397,11 +397,12 @@ namespace nsfd
       double pull[dim], slope[dim];
       spring(x.point, pull, slope);
       for (unsigned int c = 0; c < dim; ++c)
-        dr[c] = (dP_[j + c] + slope[c] * dU_[j + c]) / problem_.weight[x.point];
+        dr[c] = (direction_.P[j + c] + slope[c] * direction_.U[j + c]) /
+                problem_.weight[x.point];
       if (x.r[0] > x.z * impedance(x.point, 0))
         return (sigma * gap * springs::square(x.scale) - x.z * dr[0]) / x.r[0] -
                x.z;
-      return dU_[j] - (x.z - (U_[j] - problem_.target[x.point]));
+      return direction_.U[j] - (x.z - (at_.U[j] - problem_.target[x.point]));
     };
     double dr[dim];
     for (const auto &x : candidates_) {
@@ -428,11 +429,11 @@ namespace nsfd
     for (std::size_t i = 0; i < n; ++i)
       if (others_[i])
         for (unsigned int c = 0; c < dim; ++c)
-          P_[i * dim + c] += alpha * dP_[i * dim + c];
-    for (std::size_t j = 0; j < y_.size(); ++j)
-      y_[j] += alpha * dy_[j];
+          at_.P[i * dim + c] += alpha * direction_.P[i * dim + c];
+    for (std::size_t j = 0; j < at_.y.size(); ++j)
+      at_.y[j] += alpha * direction_.y[j];
     for (std::size_t j = 0; j < n * dim; ++j)
-      U_[j] += alpha * dU_[j];
+      at_.U[j] += alpha * direction_.U[j];
     collect();
     return true;
   }
@@ -445,9 +446,9 @@ namespace nsfd
       double pull[dim], slope[dim];
       spring(x.point, pull, slope);
       for (unsigned int c = 0; c < dim; ++c)
-        P_[x.point * dim + c] = problem_.weight[x.point] * x.r[c] - pull[c];
+        at_.P[x.point * dim + c] = problem_.weight[x.point] * x.r[c] - pull[c];
     }
-    impulse_ = P_;
+    impulse_ = at_.P;
     evaluation_.update(impulse_);
   }
 
@@ -472,8 +473,8 @@ namespace nsfd
       if (judge())
         return true;
       short_steps = alpha < 0.1 ? short_steps + 1 : 0;
-      if (best_error_ < 1e-5 && best_error_ < 0.1 * refined_) {
-        refined_ = best_error_;
+      if (best_.error < 1e-5 && best_.error < 0.1 * refined_) {
+        refined_ = best_.error;
         if (refine())
           return true;
       }

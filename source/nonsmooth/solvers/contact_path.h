@@ -2,6 +2,7 @@
 
 #include "linearised_laws.h"
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -114,8 +115,19 @@ namespace nsfd
     std::vector<FrozenPoint> frozen_; // of candidates
     std::vector<char> is_candidate_, others_;
     LinearisedLaws<dim> laws_;
-    Vector y_, U_, S_, P_, best_, b_, residual_, dy_, dU_, dP_;
-    double best_error_;
-    double mean_impulse_ = 0., refined_ = 0., softening_ = 1e-7;
+    struct {
+      Vector y, U, S, P;
+    } at_; ///< the iterate; S: slopes of the linearised points
+    struct {
+      Vector y, U, P;
+    } direction_; ///< the Newton step
+    struct {
+      Vector P;
+      double error = std::numeric_limits<double>::infinity();
+    } best_; ///< impulses so far
+    Vector b_, residual_;
+    double mean_impulse_ = 0., softening_ = 1e-7;
+    /// best error when refine() was last called
+    double refined_ = std::numeric_limits<double>::infinity();
   };
 } // namespace nsfd

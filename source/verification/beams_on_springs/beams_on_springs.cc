@@ -112,8 +112,10 @@ namespace nsfd
 
     void serialize(Archive &archive) override
     {
-      archive.numbers("found", opening_, jump_, release_, n_broken_, load_,
-                      peak_, late_, before_, loss_, damage_, kinetic_);
+      archive.numbers("found", found_.opening, found_.jump, found_.release,
+                      found_.n_broken, found_.load, found_.peak, found_.late,
+                      found_.before, found_.loss, found_.damage,
+                      found_.kinetic);
     }
 
   private:
@@ -123,11 +125,12 @@ namespace nsfd
     bool grows_ = false;             // springs break
     double limit_ = 0., piece_ = 0.; // d_0, s
     Expression upper_, lower_;       // motion of the ends
-    // found
-    double opening_ = 0., jump_ = 0., release_ = 0.;
-    unsigned int n_broken_ = 0;
-    double load_ = 0., peak_ = 0., late_ = 0., before_ = 0., loss_ = 0.,
-           damage_ = 0., kinetic_ = 0.;
+    struct {
+      double opening = 0., jump = 0., release = 0.;
+      unsigned int n_broken = 0;
+      double load = 0., peak = 0., late = 0., before = 0., loss = 0.,
+             damage = 0., kinetic = 0.;
+    } found_;
 
     void read_foundation(const SceneInput &input)
     {
@@ -175,25 +178,26 @@ namespace nsfd
                                   const std::string &column) {
         return view.observed(upper, column) - view.observed(lower, column);
       };
-      opening_ = opening(view.time);
-      load_ = view.row->reactions[1];
-      jump_ = difference("upper_tip", "lower_tip", "displacement_y");
+      found_.opening = opening(view.time);
+      found_.load = view.row->reactions[1];
+      found_.jump = difference("upper_tip", "lower_tip", "displacement_y");
       // the outer edges move inwards by theta H/2
       const double turns =
           (difference("upper_edge", "upper", "displacement_x") +
            difference("lower_edge", "lower", "displacement_x")) /
           (height_ / 2.);
-      release_ = load_ * turns;
+      found_.release = found_.load * turns;
     }
 
     void finish_rest(std::map<std::string, double> &errors) const
     {
       const double compliance = beams_.compliance(length_),
-                   G = beams_.release(length_, load_);
-      errors["compliance"] = relative_error(opening_ / load_, compliance);
+                   G = beams_.release(length_, found_.load);
+      errors["compliance"] =
+          relative_error(found_.opening / found_.load, compliance);
       errors["tip_jump"] =
-          relative_error(jump_, load_ * beams_.jump(length_, 0.));
-      errors["G"] = relative_error(release_, G);
+          relative_error(found_.jump, found_.load * beams_.jump(length_, 0.));
+      errors["G"] = relative_error(found_.release, G);
       errors["exact_compliance"] = compliance;
     }
 
@@ -211,29 +215,30 @@ namespace nsfd
 
     void follow_growth(const HistoryRow &row, const double t)
     {
-      opening_ = opening(t);
+      found_.opening = opening(t);
       const auto broken = unsigned(std::lround(row.broken_area / piece_));
-      for (; n_broken_ < broken; ++n_broken_) {
-        if (n_broken_ == 0) {
-          peak_ = load_;
-          before_ = loss_;
+      for (; found_.n_broken < broken; ++found_.n_broken) {
+        if (found_.n_broken == 0) {
+          found_.peak = found_.load;
+          found_.before = found_.loss;
         }
-        late_ = std::max(late_,
-                         relative_error(opening_, breaking_opening(n_broken_)));
+        found_.late = std::max(
+            found_.late,
+            relative_error(found_.opening, breaking_opening(found_.n_broken)));
       }
-      load_ = row.reactions[1];
-      loss_ = row.energy.work - mechanical_energy(row);
-      damage_ = row.energy.damage;
-      if (n_broken_ > 0)
-        kinetic_ =
-            std::max(kinetic_, row.energy.kinetic / mechanical_energy(row));
+      found_.load = row.reactions[1];
+      found_.loss = row.energy.work - mechanical_energy(row);
+      found_.damage = row.energy.damage;
+      if (found_.n_broken > 0)
+        found_.kinetic = std::max(found_.kinetic,
+                                  row.energy.kinetic / mechanical_energy(row));
     }
 
     /** Of the snaps at which the first pieces have broken. */
     double exact_loss() const
     {
       double loss = 0.;
-      for (unsigned int i = 0; i < n_broken_; ++i)
+      for (unsigned int i = 0; i < found_.n_broken; ++i)
         loss += std::pow(breaking_opening(i), 2) / 2. *
                 (1. / beams_.compliance(front(i)) -
                  1. / beams_.compliance(front(i + 1)));
@@ -243,21 +248,23 @@ namespace nsfd
     void finish_growth(std::map<std::string, double> &errors) const
     {
       const double toughness = slope_ * limit_ * limit_ / 2.,
-                   growth = n_broken_ * piece_,
+                   growth = found_.n_broken * piece_,
                    load = limit_ / beams_.jump(length_, 0.);
       unsigned int n = 0;
-      while (breaking_opening(n) <= opening_)
+      while (breaking_opening(n) <= found_.opening)
         ++n;
-      errors["started"] = n_broken_ > 0 ? 0. : 1.;
-      errors["first_load"] = relative_error(peak_, breaking_load(0));
-      errors["openings"] = late_;
-      errors["crack_length"] = relative_error(front(n_broken_), front(n));
-      errors["last_load"] =
-          relative_error(load_, opening_ / beams_.compliance(front(n_broken_)));
-      errors["kinetic"] = kinetic_;
-      if (n_broken_ > 0) {
-        errors["damage"] = relative_error(damage_, toughness * growth);
-        errors["loss"] = relative_error(loss_ - before_, exact_loss());
+      errors["started"] = found_.n_broken > 0 ? 0. : 1.;
+      errors["first_load"] = relative_error(found_.peak, breaking_load(0));
+      errors["openings"] = found_.late;
+      errors["crack_length"] = relative_error(front(found_.n_broken), front(n));
+      errors["last_load"] = relative_error(
+          found_.load,
+          found_.opening / beams_.compliance(front(found_.n_broken)));
+      errors["kinetic"] = found_.kinetic;
+      if (found_.n_broken > 0) {
+        errors["damage"] = relative_error(found_.damage, toughness * growth);
+        errors["loss"] =
+            relative_error(found_.loss - found_.before, exact_loss());
         errors["exact_loss_over_G"] = exact_loss() / (toughness * growth);
       }
       errors["exact_load"] = load;

@@ -1,4 +1,4 @@
-#include "formula_parser.h"
+#include "formula_scanner.h"
 
 #include "input_errors.h"
 
@@ -9,7 +9,31 @@
 
 namespace nsfd::formula
 {
-  Part Parser::number()
+  void Scanner::fail_unexpected() const
+  {
+    if (at_ >= text_.size())
+      fail(text_.size(), text_.size() + 1, "the formula ends too early",
+           "something is missing at its end");
+    const char c = text_[at_];
+    const std::size_t name_end = end_of_name(at_);
+    const std::string token =
+        text_.substr(at_, std::max<std::size_t>(1, name_end - at_));
+    std::string advice = "an operator is missing before it, or it is one "
+                         "too many";
+    if (c == '=')
+      advice = "write == to compare";
+    else if (c == '&' || token == "and")
+      advice = "write && for `and`";
+    else if (c == '|' || token == "or")
+      advice = "write || for `or`";
+    else if (c == ',')
+      advice = "one value is expected here; decimals are written with a "
+               "point";
+    fail(at_, at_ + token.size(),
+         fmt::format("`{}` is not expected here", token), advice);
+  }
+
+  Part Scanner::number()
   {
     const std::size_t begin = at_;
     const auto skip_digits = [this] {
@@ -50,8 +74,8 @@ namespace nsfd::formula
     return {fmt::format("{:.17g}", *value), dimension, begin, end};
   }
 
-  void Parser::fail_no_unit(const std::size_t begin,
-                            const std::string &word) const
+  void Scanner::fail_no_unit(const std::size_t begin,
+                             const std::string &word) const
   {
     const std::size_t end = begin + word.size();
     if (constants_.count(word) != 0 || is_formula_word(word))
@@ -64,7 +88,7 @@ namespace nsfd::formula
   }
 
   /** What follows a number: `J/m^2`, `m/s`, `1/s`, or nothing. */
-  UnitScale Parser::unit_suffix()
+  UnitScale Scanner::unit_suffix()
   {
     peek();
     // the unit `1/s` after its number
@@ -110,7 +134,7 @@ namespace nsfd::formula
   }
 
   /** `um^2`; nothing is consumed if no unit stands here. */
-  std::optional<UnitScale> Parser::unit_factor()
+  std::optional<UnitScale> Scanner::unit_factor()
   {
     const std::size_t before = at_;
     peek();
@@ -133,7 +157,7 @@ namespace nsfd::formula
   }
 
   /** `^-2` after a unit; 1 if there is none. */
-  int Parser::unit_exponent()
+  int Scanner::unit_exponent()
   {
     const std::size_t before = at_;
     if (peek() != '^') {

@@ -1,0 +1,265 @@
+#include "active_surfaces.h"
+
+#include "core/gather.h"
+
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  template <int dim>
+  ActiveSurfaces<dim>::ActiveSurfaces(const SceneInput &input,
+                                      const Discretization<dim> &discretization,
+                                      const MovingBodies<dim> &bodies,
+                                      const Communicator &communicator,
+                                      const SurfaceCells<dim> &cells,
+                                      const ContactPlaces<dim> &places,
+                                      const ContactBlocks &blocks)
+      : input_(input), discretization_(discretization),
+        table_(discretization.body_table()), bodies_(bodies),
+        all_(communicator), cells_(cells), places_(places), blocks_(blocks)
+  {
+  }
+
+  template <int dim>
+  bool ActiveSurfaces<dim>::is_surface(const unsigned int cell,
+                                       const unsigned int face) const
+  {
+    const int f = cells_.kind_of(cell, face);
+    return f < 0 ? f == SurfaceCells<dim>::boundary
+                 : separated_[std::size_t(f)] != 0;
+  }
+
+  /** Normals at rest of the surfaces that meet at the nodes of rigid bodies. */
+  template <int dim>
+  void ActiveSurfaces<dim>::set_sides()
+  {
+    sides_at_.clear();
+    for (unsigned int c = 0; c < cells_.size(); ++c)
+      for (unsigned int f = 0; f < cells_.faces(c).size(); ++f) {
+        if (!table_.is_rigid(table_.body_of_cell[c]) || !is_surface(c, f))
+          continue;
+        const FaceNodes<dim> &face = cells_.faces(c)[f];
+        for (const unsigned int node : face.nodes)
+          sides_at_[cells_.merged(cells_.first_node(c) + node)].push_back(
+              {c, f, face.normal});
+      }
+  }
+
+  template <int dim>
+  bool ActiveSurfaces<dim>::follow(const State &state)
+  {
+    if (!share_separated(state) && known_) {
+      if (!input_.contacts.empty())
+        share_motion(state);
+      return false;
+    }
+    known_ = true;
+    joined_.clear();
+    for (std::size_t f = 0; f < separated_.size(); ++f)
+      if (!separated_[f]) {
+        const auto &face = cells_.mesh_faces()[f];
+        joined_.insert(pair_of(face.body_1, face.body_2));
+      }
+    set_sides();
+    add_obstacle_faces();
+    if (input_.contacts.empty())
+      return true;
+    set_surfaces();
+    set_moving_nodes();
+    share_motion(state);
+    set_edges<dim>(set_.surfaces, x_.data(),
+                   [this](const unsigned int b) { return table_.is_rigid(b); });
+    return true;
+  }
+
+  /** Which faces of all ranks are separated; true if others than before. */
+  template <int dim>
+  bool ActiveSurfaces<dim>::share_separated(const State &state)
+  {
+    const auto &points = discretization_.points();
+    separated_.resize(cells_.mesh_faces().size(), 0);
+    std::vector<int> changed;
+    for (std::size_t f = 0; f < points.faces.size(); ++f) {
+      const int face = cells_.mesh_face(f);
+      if (face < 0 || points.faces[f].first >= points.n_owned)
+        continue;
+      const char now =
+          state.kind[points.faces[f].first] == PointKind::separated;
+      if (now != separated_[std::size_t(face)])
+        changed.push_back(face);
+    }
+    if (!all_.any(!changed.empty()))
+      return false;
+    for (const int face : gather_all(all_, changed))
+      separated_[std::size_t(face)] ^= 1;
+    return true;
+  }
+
+  template <int dim>
+  void ActiveSurfaces<dim>::set_surfaces()
+  {
+    set_.surfaces = Surfaces<dim>();
+    set_.point_origins.clear();
+    set_.point_places.clear();
+    set_.facet_cells.clear();
+    for (unsigned int c = 0; c < cells_.size(); ++c) {
+      const unsigned int b = table_.body_of_cell[c];
+      if (cells_.ball_radius(b) > 0. || !blocks_.may_touch(b))
+        continue;
+      for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
+        if (is_surface(c, f))
+          add_face(c, f);
+    }
+    for (unsigned int b = 0; b < table_.bodies.size(); ++b)
+      if (cells_.ball_radius(b) > 0.)
+        set_.surfaces.balls.push_back({b, cells_.ball_radius(b),
+                                       std::uint64_t(b),
+                                       unsigned(cells_.centre_node(b))});
+    set_.surfaces.n_vertices = cells_.n_nodes() + table_.n_rigid;
+    set_.points_by_vertex.clear();
+    for (unsigned int p = 0; p < set_.surfaces.points.size(); ++p)
+      set_.points_by_vertex.emplace_back(set_.surfaces.points[p].vertex, p);
+    std::sort(set_.points_by_vertex.begin(), set_.points_by_vertex.end());
+  }
+
+  /** Nodes whose motion all ranks need: vertices, and where contacts are. */
+  template <int dim>
+  void ActiveSurfaces<dim>::set_moving_nodes()
+  {
+    moving_nodes_.clear();
+    for (const auto &facet : set_.surfaces.facets)
+      moving_nodes_.insert(moving_nodes_.end(), facet.vertex.begin(),
+                           facet.vertex.begin() + facet.n_vertices);
+    for (const Origin &origin : set_.point_origins)
+      moving_nodes_.push_back(
+          cells_.first_node(origin.cell) +
+          cells_.faces(origin.cell)[origin.face].nodes[origin.node]);
+    std::sort(moving_nodes_.begin(), moving_nodes_.end());
+    moving_nodes_.erase(std::unique(moving_nodes_.begin(), moving_nodes_.end()),
+                        moving_nodes_.end());
+    own_moving_nodes_.clear();
+    const auto rank_of = [this](const std::size_t node) {
+      return table_.bodies[table_.body_of_cell[node / cells_.nodes_per_cell()]]
+          .rank;
+    };
+    for (const std::size_t node : moving_nodes_)
+      if (rank_of(node) == all_.rank())
+        own_moving_nodes_.push_back(node);
+    // as the ranks send them
+    std::stable_sort(moving_nodes_.begin(), moving_nodes_.end(),
+                     [&](const std::size_t a, const std::size_t b) {
+                       return rank_of(a) < rank_of(b);
+                     });
+    x_.assign(set_.surfaces.n_vertices * dim, 0.);
+    v_.assign(cells_.n_nodes() * dim, 0.);
+  }
+
+  /** Where the surfaces of all ranks are, and how fast. */
+  template <int dim>
+  void ActiveSurfaces<dim>::share_motion(const State &old)
+  {
+    std::vector<double> own;
+    own.reserve(own_moving_nodes_.size() * 2 * dim);
+    for (const std::size_t node : own_moving_nodes_) {
+      const std::size_t k = bodies_.layout().own_node(node);
+      const Point<dim> x = bodies_.layout().place(old, k);
+      own.insert(own.end(), x.begin_raw(), x.end_raw());
+      own.insert(own.end(), old.velocity.begin() + long(k * dim),
+                 old.velocity.begin() + long((k + 1) * dim));
+    }
+    const auto motion = gather_all(all_, own);
+    const double *from = motion.data();
+    for (const std::size_t node : moving_nodes_) {
+      std::copy_n(from, dim, x_.data() + node * dim);
+      std::copy_n(from + dim, dim, v_.data() + node * dim);
+      from += 2 * dim;
+    }
+    for (std::size_t r = 0; r < table_.n_rigid; ++r)
+      std::copy_n(old.rigid.data() + 13 * r, dim,
+                  x_.data() + (cells_.n_nodes() + r) * dim);
+  }
+
+  template <int dim>
+  bool ActiveSurfaces<dim>::is_corner(const unsigned int c,
+                                      const unsigned int f,
+                                      const unsigned int node) const
+  {
+    if (!table_.is_rigid(table_.body_of_cell[c]))
+      return true;
+    const auto &sides =
+        sides_at_.at(cells_.merged(cells_.first_node(c) + node));
+    const auto own = std::find_if(sides.begin(), sides.end(), [&](auto &side) {
+      return side.cell == c && side.face == f;
+    });
+    bool all_flat = true;
+    for (auto side = sides.begin(); side != sides.end(); ++side) {
+      const bool parallel = side->normal * own->normal > 1. - 1e-9;
+      if (parallel && side < own)
+        return false;
+      all_flat = all_flat && parallel;
+    }
+    return !all_flat;
+  }
+
+  template <int dim>
+  void ActiveSurfaces<dim>::add_face(const unsigned int c, const unsigned int f)
+  {
+    const FaceNodes<dim> &face = cells_.faces(c)[f];
+    const std::size_t first = cells_.first_node(c);
+    std::vector<char> has_point(cells_.nodes_per_cell(), 0);
+    for (std::size_t p = 0; p < face.pieces.size(); ++p) {
+      typename Surfaces<dim>::Facet facet;
+      facet.n_vertices = unsigned(face.pieces[p].size());
+      for (unsigned int v = 0; v < facet.n_vertices; ++v)
+        facet.vertex[v] = cells_.merged(first + face.pieces[p][v]);
+      facet.body = table_.body_of_cell[c];
+      facet.key = std::uint64_t(places_.of_node(c, f, 0)) * pieces_per_face + p;
+      for (unsigned int v = 0; v < facet.n_vertices; ++v) {
+        const unsigned int node = face.pieces[p][v];
+        if (has_point[node])
+          continue;
+        has_point[node] = 1;
+        if (!is_corner(c, f, node))
+          continue;
+        set_.surfaces.points.push_back(
+            {facet.vertex[v], unsigned(set_.surfaces.facets.size())});
+        const auto j =
+            unsigned(std::find(face.nodes.begin(), face.nodes.end(), node) -
+                     face.nodes.begin());
+        set_.point_origins.push_back({c, f, j});
+        set_.point_places.push_back(places_.of_node(c, f, j));
+      }
+      set_.surfaces.facets.push_back(facet);
+      set_.facet_cells.push_back(c);
+    }
+  }
+
+  /** Named faces, and new surfaces where the obstacle is for all. */
+  template <int dim>
+  void ActiveSurfaces<dim>::add_obstacle_faces()
+  {
+    obstacle_faces_ = cells_.obstacle_faces();
+    for (unsigned int o = 0; o < input_.obstacles.size(); ++o)
+      if (input_.obstacles[o].where.kind == Where::Kind::all)
+        for (unsigned int c = 0; c < cells_.size(); ++c)
+          for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
+            if (cells_.kind_of(c, f) >= 0 && is_surface(c, f))
+              obstacle_faces_.push_back({c, f, o});
+  }
+
+  template <int dim>
+  Tensor<1, dim> ActiveSurfaces<dim>::velocity(const std::size_t node) const
+  {
+    Vector v;
+    for (unsigned int d = 0; d < dim; ++d)
+      v[d] = v_[node * dim + d];
+    return v;
+  }
+
+  template class ActiveSurfaces<2>;
+  template class ActiveSurfaces<3>;
+} // namespace nsfd

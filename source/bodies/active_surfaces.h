@@ -1,0 +1,105 @@
+#pragma once
+
+#include "contact_places.h"
+#include "moving_bodies.h"
+
+#include "contact_detection/surface_search.h"
+
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The surfaces that there are in a step, of all ranks: sides of the mesh and
+   * crack faces that have separated, and where they are.
+   */
+  template <int dim>
+  class ActiveSurfaces
+  {
+  public:
+    using Vector = dealii::Tensor<1, dim>;
+    /// more than there are; keys of facets begin with the place of their face
+    static constexpr std::uint64_t pieces_per_face = 64;
+
+    ActiveSurfaces(const SceneInput &input,
+                   const Discretization<dim> &discretization,
+                   const MovingBodies<dim> &bodies,
+                   const Communicator &communicator,
+                   const SurfaceCells<dim> &cells,
+                   const ContactPlaces<dim> &places,
+                   const ContactBlocks &blocks);
+
+    /** Surfaces and their motion in @p state; true if they are others than in
+        the last step. Collective. */
+    bool follow(const State &state);
+
+    struct Origin {
+      unsigned int cell, face, node; ///< node of the face
+    };
+    /** What is searched, and where its parts come from. */
+    struct Set {
+      Surfaces<dim> surfaces;
+      std::vector<Origin> point_origins;
+      std::vector<std::size_t> point_places;
+      std::vector<std::pair<unsigned int, unsigned int>> points_by_vertex;
+      std::vector<unsigned int> facet_cells;
+    };
+    Set &set() { return set_; }
+    const Set &set() const { return set_; }
+    /** Faces that obstacles may touch. */
+    const std::vector<ObstacleFace> &obstacle_faces() const
+    {
+      return obstacle_faces_;
+    }
+    /** Faces between these bodies still hold. */
+    bool are_joined(const unsigned int body_1, const unsigned int body_2) const
+    {
+      return joined_.count(pair_of(body_1, body_2)) > 0;
+    }
+    /**
+     * Flat sides of a rigid body touch with their corners: not with nodes
+     * inside of them and, where several of its faces meet, with one of each
+     * direction.
+     */
+    bool is_corner(unsigned int cell, unsigned int face,
+                   unsigned int node) const;
+    /** Of vertices, dim each. */
+    const double *positions() const { return x_.data(); }
+    Vector velocity(std::size_t node) const;
+
+  private:
+    bool is_surface(unsigned int cell, unsigned int face) const;
+    bool share_separated(const State &state);
+    void set_surfaces();
+    void set_sides();
+    void set_moving_nodes();
+    void share_motion(const State &old);
+    void add_face(unsigned int cell, unsigned int face);
+    void add_obstacle_faces();
+
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    const BodyTable &table_;
+    const MovingBodies<dim> &bodies_;
+    const Communicator &all_;
+    const SurfaceCells<dim> &cells_;
+    const ContactPlaces<dim> &places_;
+    const ContactBlocks &blocks_;
+
+    struct Side {
+      unsigned int cell, face;
+      Vector normal;
+    };
+    std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
+    std::vector<char> separated_; ///< per mesh face
+    bool known_ = false;
+    std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
+    std::vector<double> x_, v_; ///< of them by node, and centres
+    std::unordered_set<UnorderedPair> joined_;
+    Set set_;
+    std::vector<ObstacleFace> obstacle_faces_;
+  };
+} // namespace nsfd

@@ -1,0 +1,106 @@
+#pragma once
+
+#include "delassus/dynamics.h"
+#include "nonsmooth/solver.h"
+#include "nsfd/discretization/discretization.h"
+#include "state/state.h"
+
+#include <utility>
+#include <vector>
+
+namespace nsfd
+{
+  /** Where the rounds from one equilibrium to the next one stand. */
+  template <int dim>
+  struct LoadStepIterate {
+    const State *old = nullptr;  ///< the equilibrium at the start
+    State at;                    ///< the iterate as the start of a round
+    double h = 0.;               ///< of the last round, s
+    std::vector<double> force;   ///< r of the last round in N
+    std::vector<char> activated; ///< extrinsic points that opened in this step
+    std::vector<LocalSolution<dim>> solutions; ///< of the last round
+  };
+
+  /**
+   * The laws of a load step held as what they are as long as nothing is damaged
+   * beyond its history: springs, and joints that do not open. The equilibrium
+   * of that is unique but for contact, no round goes astray, and it is the one
+   * sought where no point is damaged in it.
+   */
+  template <int dim>
+  class HeldLaws
+  {
+  public:
+    /** All are those of the rounds and outlive this. */
+    HeldLaws(const Discretization<dim> &discretization,
+             const Dynamics<dim> &dynamics, OneStepProblem<dim> &problem,
+             LoadStepIterate<dim> &iterate, const bool has_extrinsic)
+        : discretization_(discretization), dynamics_(dynamics),
+          problem_(problem), iterate_(iterate), has_extrinsic_(has_extrinsic)
+    {
+    }
+
+    /** A load step starts, with laws. */
+    void begin();
+
+    /** From now on the rounds see springs; until release() or begin(). */
+    void hold();
+    /** Laws again, next to where the held rounds have ended. */
+    void release();
+    bool holds() const { return holds_; }
+
+    /** Springs in place of the laws of a round; joints stay as they are. */
+    void put_springs();
+
+    /**
+     * The loads of rigid points over their strength at the start of the step,
+     * from the forces at hand, once per step. Collective.
+     */
+    void find_joint_loads();
+
+    /** Where the held rounds have come to. */
+    struct Prediction {
+      bool damages = false; ///< some point does not stay what it was held to be
+      /// of the step until the first point comes to its peak that is not there
+      /// yet, by straight lines; 1: none does
+      double share = 1.;
+      bool certain = false;  ///< lines are right: it is elastic to its peak
+      std::size_t point = 0; ///< local, where this rank has the first one
+    };
+    /** Collective, after held rounds that have settled. */
+    Prediction prediction();
+
+    /**
+     * The same springs, of points that are damaged as far as the last held
+     * rounds have opened them, and @p stretch times the growth: the next ones
+     * along the path of an overdamped motion. False if nothing grows.
+     */
+    bool let_damage_grow(double &largest_growth, double stretch);
+
+    /**
+     * The point that has skipped the peak of its law furthest in the step from
+     * the last equilibrium to @p next, see Passage; 1 where none has. What was
+     * damaged on an overdamped @p path has seen what it carried on it.
+     */
+    std::pair<double, std::size_t> least_passage(const State &next,
+                                                 bool path) const;
+
+  private:
+    bool may_damage(std::size_t point) const;
+    std::vector<double> joint_shares() const;
+    Reach history(std::size_t point) const;
+    Reach held_reach(std::size_t point) const;
+
+    const Discretization<dim> &discretization_;
+    const Dynamics<dim> &dynamics_;
+    OneStepProblem<dim> &problem_;
+    LoadStepIterate<dim> &iterate_;
+    const bool has_extrinsic_; ///< points that are rigid until they activate
+    bool holds_ = false;
+    std::vector<Reach> held_;               ///< histories of the springs
+    std::vector<Interaction> interactions_; ///< of the laws
+    std::vector<unsigned int> interaction_; ///< of the points in these
+    std::vector<double> joint_loads_;       ///< over the strength, at the start
+    bool joint_loads_known_ = false;
+  };
+} // namespace nsfd
