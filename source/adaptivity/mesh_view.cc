@@ -8,7 +8,6 @@
 
 #include "discretization/point_places.h"
 #include "nonsmooth/point_law.h"
-#include "nonsmooth/pull_and_shear.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -153,7 +152,6 @@ namespace nsfd
     const auto &problem = mesh_.problem;
     if (state.beta[i] < 1. && state.beta[i] > 0.)
       return 1.;
-    const auto &interaction = problem.interactions[problem.interaction[i]];
     std::array<double, dim> traction{};
     for (unsigned int c = 0; c < dim; ++c)
       if (state.kind[i] == PointKind::bonded)
@@ -161,8 +159,8 @@ namespace nsfd
       else if (problem.time_step > 0.)
         traction[c] = -state.impulse[i * dim + c] /
                       (problem.weight[i] * problem.time_step);
-    return pull_and_shear<dim>(traction[0], traction.data() + 1,
-                               interaction.shear_weight) /
+    return effective_traction<dim>(problem, i, traction[0],
+                                   traction.data() + 1) /
            point_strength<dim>(problem, i);
   }
 

@@ -3,6 +3,7 @@
 #include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/cohesive_laws/law_input.h"
 #include "parameters/parameter_file.h"
+#include "power_series.h"
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -19,117 +20,198 @@ namespace nsfd
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
     /**
-     * A smooth function on [0, 1] as a Chebyshev series, hence with its
-     * derivative. Coefficients at round-off are dropped: polynomials stay
-     * polynomials.
+     * What rests on the functions f and g of the law Fremond: where damage goes
+     * on, and the traction there.
      */
-    class Series
+    class AdhesionCurve
     {
     public:
-      Series() = default;
-
-      /** @throws std::runtime_error if the function is not smooth. */
-      template <typename Function>
-      static Series of(const Function &f)
+      AdhesionCurve() = default;
+      AdhesionCurve(const double stiffness, const double energy,
+                    const PowerSeries &f, const PowerSeries &g)
+          : stiffness_(stiffness), energy_(energy), f_(f), g_(g)
       {
-        const unsigned int n = 64;
-        std::vector<double> value(n), c(n, 0.);
-        double size = 0.;
-        for (unsigned int j = 0; j < n; ++j) {
-          value[j] = f(0.5 * (1. + std::cos(M_PI * (j + 0.5) / n)));
-          if (!std::isfinite(value[j]))
-            throw std::runtime_error("is not finite between 0 and 1");
-          size = std::max(size, std::abs(value[j]));
-        }
-        for (unsigned int k = 0; k < n; ++k)
-          for (unsigned int j = 0; j < n; ++j)
-            c[k] += (k == 0 ? 1. : 2.) / n * value[j] *
-                    std::cos(M_PI * k * (j + 0.5) / n);
-        for (unsigned int k = n - n / 4; k < n; ++k)
-          if (std::abs(c[k]) > 1e-10 * size)
-            throw std::runtime_error("is not smooth between 0 and 1");
-        while (c.size() > 1 && std::abs(c.back()) <= 1e-13 * size)
-          c.pop_back();
-        return Series(c);
+        tabulate();
       }
 
-      double operator()(const double x) const
+      /** The intensity jumps somewhere. */
+      bool jumps() const { return jumps_; }
+
+      double elastic_limit() const { return std::sqrt(squares_[0]); }
+      /** The first number without any traction. */
+      double final_opening() const
       {
-        const double s = 2. * x - 1.;
-        double b1 = 0., b2 = 0.;
-        for (std::size_t k = c_.size(); k-- > 1;) {
-          const double b = c_[k] + 2. * s * b1 - b2;
-          b2 = b1;
-          b1 = b;
-        }
-        return c_[0] + s * b1 - b2;
+        const double end = std::sqrt(squares_.back());
+        return end > elastic_limit() ? end : std::nextafter(end, infinity);
       }
 
-      Series derivative() const
+      double stiffness_at(const double b) const
       {
-        const std::size_t n = c_.size();
-        std::vector<double> d(n + 1, 0.);
-        for (std::size_t k = n - 1; k > 0; --k)
-          d[k - 1] = (k + 1 < n ? d[k + 1] : 0.) + 4. * double(k) * c_[k];
-        d[0] /= 2.;
-        d.resize(std::max<std::size_t>(1, n - 1));
-        return Series(d);
+        return b > 0. ? std::min(1., std::max(0., f_.value(b))) : 0.;
+      }
+
+      double traction_at(const double b) const
+      {
+        return stiffness_at(b) * stiffness_ * opening_at(b);
+      }
+
+      /** The largest opening of a point of this intensity. */
+      double opening_at(const double b) const
+      {
+        return std::sqrt(std::max(squares_[0], square_at(b)));
+      }
+
+      /** Energy w g(b) that is spent. */
+      double spent(const double b) const { return energy_ * g_.value(1. - b); }
+
+      /** The driving force chi = d psi / d b at the opening @p d. */
+      double driving_force(const double b, const double d) const
+      {
+        return f_.first(b) * stiffness_ * d * d / 2. -
+               energy_ * g_.first(1. - b);
+      }
+
+      /** The intensity of the largest traction. */
+      double peak_intensity() const
+      {
+        return place_of_largest(
+            [this](const double b) { return traction_at(b); });
+      }
+
+      /** dT/dd = f C + 2 C d^2 f' / (d^2)', where damage is gradual. */
+      double steepest_softening() const
+      {
+        if (jumps_)
+          return infinity;
+        const auto softening = [&](const double b) {
+          const double slope = f_.first(b), square = square_at(b);
+          const double change = // d(d^2)/db < 0
+              -square *
+              (g_.second(1. - b) / g_.first(1. - b) + f_.second(b) / slope);
+          return -(stiffness_at(b) + 2. * square * slope / change) * stiffness_;
+        };
+        return softening(place_of_largest(softening));
+      }
+
+      /** Where damage stops at the opening @p d. */
+      double intensity(const double d) const
+      {
+        const double square = d * d;
+        if (d >= final_opening() || square >= squares_.back())
+          return 0.;
+        const std::size_t k =
+            std::upper_bound(squares_.begin(), squares_.end(), square) -
+            squares_.begin();
+        if (k == 0)
+          return 1.;
+        const double low = node(k), width = node(k - 1) - low;
+        const auto excess = [&](const double x) {
+          return std::min(square_at(low + x), 1e300) - square;
+        };
+        const double f_low = excess(0.), f_high = excess(width);
+        if (f_high >= 0.)
+          return node(k - 1);
+        return low + bracketed_root(excess, 0., width, f_low, f_high);
+      }
+
+      /** -2 w g'(b) / (C f'(b)). */
+      double square_at(const double b) const
+      {
+        const double slope = f_.first(b), driving = g_.first(1. - b);
+        if (driving <= 0.)
+          return 0.;
+        return slope > 0. ? 2. * energy_ * driving / (stiffness_ * slope)
+                          : infinity;
       }
 
     private:
-      explicit Series(std::vector<double> c) : c_(std::move(c)) {}
-      std::vector<double> c_{0.};
-    };
+      double stiffness_ = 1., energy_ = 1.;
+      PowerSeries f_, g_; ///< g of 1 - b
+      /** d^2 at b = 1 - k / n, its largest value so far: damage goes on there.
+       */
+      std::vector<double> squares_;
+      bool jumps_ = false;
 
-    /**
-     * A function of x on [0, 1] that begins at 0 like a power of x, x^k s(x)
-     * with a smooth s: accurate relative to itself next to 0.
-     */
-    class PowerSeries
-    {
-    public:
-      PowerSeries() = default;
+      double node(const std::size_t k) const
+      {
+        return 1. - double(k) / double(squares_.size() - 1);
+      }
 
+      void tabulate()
+      {
+        const unsigned int n = 1000;
+        std::vector<double> squares(n + 1);
+        for (unsigned int k = 0; k <= n; ++k)
+          squares[k] = square_at(1. - double(k) / n);
+        for (unsigned int k = 1; k <= n; ++k) {
+          if (!(squares[k] > squares[k - 1] * (1. + 1e-9)))
+            jumps_ = true;
+          squares[k] = std::max(squares[k], squares[k - 1]);
+        }
+        squares_ = squares;
+      }
+
+      /** Largest value of @p f over intensities, refined between nodes. */
       template <typename Function>
-      static PowerSeries of(const Function &f)
+      double place_of_largest(const Function &f) const
       {
-        PowerSeries result;
-        const double ratio = f(1e-7) / f(1e-8);
-        if (!(ratio > 0.) || !std::isfinite(ratio))
-          throw std::runtime_error("does not begin like a power");
-        const double power = std::log10(ratio);
-        result.power_ = std::abs(power - std::round(power)) < 1e-5
-                            ? std::round(power)
-                            : std::round(power * 1e4) / 1e4;
-        result.s_ = Series::of(
-            [&](const double x) { return f(x) / std::pow(x, result.power_); });
-        result.ds_ = result.s_.derivative();
-        result.dds_ = result.ds_.derivative();
-        return result;
-      }
-
-      double value(const double x) const { return std::pow(x, power_) * s_(x); }
-      double first(const double x) const
-      {
-        return term(x, 1.) * s_(x) + std::pow(x, power_) * ds_(x);
-      }
-      double second(const double x) const
-      {
-        return term(x, 2.) * s_(x) + 2. * term(x, 1.) * ds_(x) +
-               std::pow(x, power_) * dds_(x);
-      }
-
-    private:
-      double power_ = 1.;
-      Series s_, ds_, dds_;
-
-      /** d^n (x^k) / dx^n, n = 1 or 2; 0 where a factor vanishes. */
-      double term(const double x, const double n) const
-      {
-        const double factor = n == 1. ? power_ : power_ * (power_ - 1.);
-        return factor == 0. ? 0. : factor * std::pow(x, power_ - n);
+        std::size_t best = 0;
+        double largest = f(1.);
+        for (std::size_t k = 1; k + 1 < squares_.size(); ++k)
+          if (const double value = f(node(k)); value > largest * (1. + 1e-12)) {
+            largest = value;
+            best = k;
+          }
+        if (best == 0)
+          return 1.;
+        double low = node(best + 1), high = node(best - 1);
+        for (unsigned int k = 0; k < 80; ++k) {
+          const double a = low + (high - low) / 3.,
+                       b = high - (high - low) / 3.;
+          (f(a) < f(b) ? low : high) = f(a) < f(b) ? a : b;
+        }
+        return 0.5 * (low + high);
       }
     };
+
+    /** Of beta, or of 1 - beta: rising from 0 to 1. */
+    PowerSeries read_function(SectionReader &reader, const std::string &name,
+                              const std::string &default_text,
+                              const std::string &text, const bool mirrored)
+    {
+      const auto value = reader.raw(name, default_text, text, default_text);
+      const std::string formula = value ? value->text() : default_text;
+      try {
+        double beta = 0.5;
+        mu::Parser parser;
+        parser.DefineVar("beta", &beta);
+        parser.SetExpr(formula);
+        const auto f = [&](const double x) {
+          beta = mirrored ? 1. - x : x;
+          return parser.Eval();
+        };
+        if (std::abs(f(0.)) > 1e-12 || std::abs(f(1.) - 1.) > 1e-12)
+          throw std::runtime_error(fmt::format(
+              "is {:g} at beta = 0 and {:g} at beta = 1, not {} and {}",
+              f(mirrored ? 1. : 0.), f(mirrored ? 0. : 1.), mirrored ? 1 : 0,
+              mirrored ? 0 : 1));
+        const PowerSeries series = PowerSeries::of(f);
+        for (unsigned int k = 1; k <= 200; ++k)
+          if (series.first(k / 200.) < -1e-9)
+            throw std::runtime_error(mirrored ? "rises somewhere"
+                                              : "falls somewhere");
+        return series;
+      } catch (const mu::Parser::exception_type &error) {
+        reader.error(name,
+                     fmt::format("{} = {}: {}", name, formula, error.GetMsg()),
+                     "write a formula of `beta`, for example: " + default_text);
+      } catch (const std::runtime_error &error) {
+        reader.error(name,
+                     fmt::format("{} = {} {}", name, formula, error.what()),
+                     "write for example: " + default_text);
+      }
+      return PowerSeries::of([](const double x) { return x; });
+    }
   } // namespace
 
   /**
@@ -165,14 +247,17 @@ namespace nsfd
       viscosity_ = reader.number("damage viscosity", "0",
                                  units::damage_viscosity, Range::non_negative(),
                                  "Of the intensity, J s/m^2; 0: none");
-      f_ =
+      const PowerSeries f =
           read_function(reader, "stiffness function", "beta^2",
                         "Of the intensity beta: 0 at 0, 1 at 1, rising", false);
-      g_ =
+      const PowerSeries g =
           read_function(reader, "surface energy function", "1 - beta",
                         "Of the intensity beta: 1 at 0, 0 at 1, falling", true);
-      tabulate();
-      if (viscosity_ > 0. && jumps_)
+      curve_ = {stiffness_, energy_, f, g};
+      peak_intensity_ = curve_.peak_intensity();
+      peak_ = curve_.opening_at(peak_intensity_);
+      steepest_ = curve_.steepest_softening();
+      if (viscosity_ > 0. && curve_.jumps())
         reader.error("damage viscosity",
                      "the intensity of these functions jumps at a constant "
                      "opening, which a viscosity cannot follow here",
@@ -186,7 +271,8 @@ namespace nsfd
 
     double beta(const double d) const override
     {
-      return d <= elastic_limit() ? 1. : stiffness_at(intensity(d));
+      return d <= elastic_limit() ? 1.
+                                  : curve_.stiffness_at(curve_.intensity(d));
     }
     double traction(const double d) const override
     {
@@ -196,22 +282,20 @@ namespace nsfd
     {
       if (d <= elastic_limit())
         return 0.5 * stiffness_ * d * d;
-      const double b = intensity(d);
+      const double b = curve_.intensity(d);
       // 0 x infinity far out in a tail
       const double stored =
-          b > 0. ? 0.5 * stiffness_at(b) * stiffness_ * d * d : 0.;
-      return stored + energy_ * g_.value(1. - b);
+          b > 0. ? 0.5 * curve_.stiffness_at(b) * stiffness_ * d * d : 0.;
+      return stored + curve_.spent(b);
     }
 
-    double elastic_limit() const override { return std::sqrt(squares_[0]); }
+    double elastic_limit() const override { return curve_.elastic_limit(); }
     double peak_opening() const override { return peak_; }
-    /** The first number without any traction. */
-    double final_opening() const override
+    double final_opening() const override { return curve_.final_opening(); }
+    double strength() const override
     {
-      const double end = std::sqrt(squares_.back());
-      return end > elastic_limit() ? end : std::nextafter(end, infinity);
+      return curve_.traction_at(peak_intensity_);
     }
-    double strength() const override { return traction_at(peak_intensity_); }
     double toughness() const override { return energy_; }
     double steepest_softening() const override { return steepest_; }
 
@@ -226,12 +310,11 @@ namespace nsfd
     {
       if (!rate_dependent() || d <= d_m)
         return std::max(d_m, d);
-      const double end = intensity(d), start = intensity(d_m) - end;
+      const double end = curve_.intensity(d),
+                   start = curve_.intensity(d_m) - end;
       const auto slowness = [&](const double y) {
         const double b = end + std::exp(y);
-        const double chi =
-            f_.first(b) * stiffness_ * d * d / 2. - energy_ * g_.first(1. - b);
-        return viscosity_ * std::exp(y) / chi;
+        return viscosity_ * std::exp(y) / curve_.driving_force(b, d);
       };
       if (!(start > 0.))
         return d;
@@ -244,7 +327,8 @@ namespace nsfd
             return left - integrate(slowness, y - x, y);
           };
           y -= bracketed_root(excess, 0., step, left, left - needed);
-          return std::clamp(std::sqrt(square_at(end + std::exp(y))), d_m, d);
+          return std::clamp(std::sqrt(curve_.square_at(end + std::exp(y))), d_m,
+                            d);
         }
         left -= needed;
       }
@@ -253,159 +337,8 @@ namespace nsfd
 
   private:
     double stiffness_, energy_, stiffness_ratio_, viscosity_;
-    PowerSeries f_, g_; ///< g of 1 - b
-    /** d^2 at b = 1 - k / n, its largest value so far: damage goes on there. */
-    std::vector<double> squares_;
-    bool jumps_ = false;
+    AdhesionCurve curve_;
     double peak_ = 0., peak_intensity_ = 1., steepest_ = 0.;
-
-    double stiffness_at(const double b) const
-    {
-      return b > 0. ? std::min(1., std::max(0., f_.value(b))) : 0.;
-    }
-    double traction_at(const double b) const
-    {
-      return stiffness_at(b) * stiffness_ *
-             std::sqrt(std::max(squares_[0], square_at(b)));
-    }
-
-    /** -2 w g'(b) / (C f'(b)). */
-    double square_at(const double b) const
-    {
-      const double slope = f_.first(b), driving = g_.first(1. - b);
-      if (driving <= 0.)
-        return 0.;
-      return slope > 0. ? 2. * energy_ * driving / (stiffness_ * slope)
-                        : infinity;
-    }
-
-    double node(const std::size_t k) const
-    {
-      return 1. - double(k) / double(squares_.size() - 1);
-    }
-
-    void tabulate()
-    {
-      const unsigned int n = 1000;
-      std::vector<double> squares(n + 1);
-      for (unsigned int k = 0; k <= n; ++k)
-        squares[k] = square_at(1. - double(k) / n);
-      jumps_ = false;
-      for (unsigned int k = 1; k <= n; ++k) {
-        if (!(squares[k] > squares[k - 1] * (1. + 1e-9)))
-          jumps_ = true;
-        squares[k] = std::max(squares[k], squares[k - 1]);
-      }
-      squares_ = squares;
-      find_peak();
-      find_steepest();
-    }
-
-    /** Largest value of @p f over intensities, refined between nodes. */
-    template <typename Function>
-    double place_of_largest(const Function &f) const
-    {
-      std::size_t best = 0;
-      double largest = f(1.);
-      for (std::size_t k = 1; k + 1 < squares_.size(); ++k)
-        if (const double value = f(node(k)); value > largest * (1. + 1e-12)) {
-          largest = value;
-          best = k;
-        }
-      if (best == 0)
-        return 1.;
-      double low = node(best + 1), high = node(best - 1);
-      for (unsigned int k = 0; k < 80; ++k) {
-        const double a = low + (high - low) / 3., b = high - (high - low) / 3.;
-        (f(a) < f(b) ? low : high) = f(a) < f(b) ? a : b;
-      }
-      return 0.5 * (low + high);
-    }
-
-    void find_peak()
-    {
-      peak_intensity_ =
-          place_of_largest([this](const double b) { return traction_at(b); });
-      peak_ = std::sqrt(std::max(squares_[0], square_at(peak_intensity_)));
-    }
-
-    /** dT/dd = f C + 2 C d^2 f' / (d^2)', where damage is gradual. */
-    void find_steepest()
-    {
-      if (jumps_) {
-        steepest_ = infinity;
-        return;
-      }
-      const auto softening = [&](const double b) {
-        const double slope = f_.first(b), square = square_at(b);
-        const double change = // d(d^2)/db < 0
-            -square *
-            (g_.second(1. - b) / g_.first(1. - b) + f_.second(b) / slope);
-        return -(stiffness_at(b) + 2. * square * slope / change) * stiffness_;
-      };
-      steepest_ = softening(place_of_largest(softening));
-    }
-
-    /** Where damage stops at the opening @p d. */
-    double intensity(const double d) const
-    {
-      const double square = d * d;
-      if (d >= final_opening() || square >= squares_.back())
-        return 0.;
-      const std::size_t k =
-          std::upper_bound(squares_.begin(), squares_.end(), square) -
-          squares_.begin();
-      if (k == 0)
-        return 1.;
-      const double low = node(k), width = node(k - 1) - low;
-      const auto excess = [&](const double x) {
-        return std::min(square_at(low + x), 1e300) - square;
-      };
-      const double f_low = excess(0.), f_high = excess(width);
-      if (f_high >= 0.)
-        return node(k - 1);
-      return low + bracketed_root(excess, 0., width, f_low, f_high);
-    }
-
-    /** Of beta, or of 1 - beta: rising from 0 to 1. */
-    PowerSeries read_function(SectionReader &reader, const std::string &name,
-                              const std::string &default_text,
-                              const std::string &text,
-                              const bool mirrored) const
-    {
-      const auto value = reader.raw(name, default_text, text, default_text);
-      const std::string formula = value ? value->text() : default_text;
-      try {
-        double beta = 0.5;
-        mu::Parser parser;
-        parser.DefineVar("beta", &beta);
-        parser.SetExpr(formula);
-        const auto f = [&](const double x) {
-          beta = mirrored ? 1. - x : x;
-          return parser.Eval();
-        };
-        if (std::abs(f(0.)) > 1e-12 || std::abs(f(1.) - 1.) > 1e-12)
-          throw std::runtime_error(fmt::format(
-              "is {:g} at beta = 0 and {:g} at beta = 1, not {} and {}",
-              f(mirrored ? 1. : 0.), f(mirrored ? 0. : 1.), mirrored ? 1 : 0,
-              mirrored ? 0 : 1));
-        const PowerSeries series = PowerSeries::of(f);
-        for (unsigned int k = 1; k <= 200; ++k)
-          if (series.first(k / 200.) < -1e-9)
-            throw std::runtime_error(mirrored ? "rises somewhere"
-                                              : "falls somewhere");
-        return series;
-      } catch (const mu::Parser::exception_type &error) {
-        reader.error(name,
-                     fmt::format("{} = {}: {}", name, formula, error.GetMsg()),
-                     "write a formula of `beta`, for example: " + default_text);
-      } catch (const std::runtime_error &error) {
-        reader.error(name,
-                     fmt::format("{} = {} {}", name, formula, error.what()),
-                     "write for example: " + default_text);
-      }
-      return PowerSeries::of([](const double x) { return x; });
-    }
   };
 
   NSFD_REGISTER(CohesiveLawRegistry, Fremond, "fremond",

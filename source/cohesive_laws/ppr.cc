@@ -85,138 +85,90 @@ namespace nsfd
         return std::max(best, slope(0.5 * (low + high)));
       }
     };
-  } // namespace
 
-  /**
-   * The intrinsic law of Park, Paulino and Roesler (2009), two damage scalars.
-   * With g_N(x), g_T(y) of x = <u_N>_+ / delta_N and y = |u_T| / delta_T, and
-   * toughnesses phi_N and phi_T in opening and in shear,
-   *
-   *   T_N = -g_N'(x) <phi_T g_T(y) - <phi_T - phi_N>_+>_+ / delta_N  (phi_N <
-   * phi_T) T_T = -g_T'(y) <phi_N g_N(x) - <phi_N - phi_T>_+>_+ / delta_T
-   *
-   * and phi g of the other direction where its toughness is the larger one: the
-   * gradient of their potential. Each strength fixes its final opening. Secants
-   * are those of the largest x and y so far; unloading goes to the origin.
-   */
-  class Ppr final : public CohesiveLaw, public MixedLaw
-  {
-  public:
-    explicit Ppr(SectionReader &reader)
+    /**
+     * Both directions of the law Ppr: toughness phi, shape and final opening of
+     * each.
+     */
+    class PprModes final : public MixedLaw
     {
-      strength_ = reader.number("strength", "", units::pressure,
-                                Range::positive(), "Largest traction R_max");
-      toughness_ =
-          reader.number("toughness", "", units::energy_per_area,
-                        Range::positive(), "Fracture energy in opening");
-      shear_strength_ = laws::given(reader, "shear strength", units::pressure,
-                                    "Largest traction in shear; default R_max")
-                            .value_or(strength_);
-      shear_toughness_ =
-          laws::given(reader, "shear toughness", units::energy_per_area,
-                      "Fracture energy in shear; default that in opening")
-              .value_or(toughness_);
-      normal_ = read_shape(reader, "", "3", "0.1");
-      shear_ = read_shape(reader, "shear ", "", "");
-      opening_ = final_value(normal_, toughness_, strength_);
-      slip_ = final_value(shear_, shear_toughness_, shear_strength_);
-    }
+    public:
+      struct Mode {
+        double toughness = 1.;
+        Shape shape;
+        double end = 1.; ///< delta
 
-    bool extrinsic() const override { return false; }
-    double normal_stiffness() const override { return normal_secant(0., 0.); }
-    double stiffness_ratio() const override
-    {
-      return tangential_secant(0., 0.) / normal_secant(0., 0.);
-    }
-    double shear_weight() const override
-    {
-      return (opening_ / slip_) * (opening_ / slip_);
-    }
+        Mode() = default;
+        /** delta has the peak of -phi g'(z) / delta at @p strength. */
+        Mode(const double phi, const Shape &g, const double strength)
+            : toughness(phi), shape(g),
+              end(phi * g.l * g.secant(g.l) / strength)
+        {
+        }
+      };
 
-    double beta(const double d) const override
-    {
-      return normal_.secant(d / opening_) / normal_.secant(0.);
-    }
-    double traction(const double d) const override
-    {
-      return normal_secant(d, 0.) * d;
-    }
-    double energy(const double d) const override
-    {
-      return normal_energy(0., d, 0.);
-    }
-    double energy_increment(const double d0, const double d1) const override
-    {
-      return normal_energy(d0, d1, 0.);
-    }
+      PprModes() = default;
+      PprModes(const Mode &opening, const Mode &shear)
+          : opening_(opening), shear_(shear)
+      {
+      }
 
-    double elastic_limit() const override { return 0.; }
-    double peak_opening() const override { return normal_.l * opening_; }
-    double final_opening() const override { return opening_; }
-    double strength() const override { return strength_; }
-    double toughness() const override { return toughness_; }
-    double steepest_softening() const override
-    {
-      return toughness_ / (opening_ * opening_) * normal_.steepest();
-    }
+      const Mode &opening() const { return opening_; }
+      const Mode &shear() const { return shear_; }
 
-    const MixedLaw *mixed() const override { return this; }
+      double normal_secant(const double x, const double y) const override
+      {
+        return opening_.shape.secant(x / opening_.end) * left_by_slip(y) /
+               (opening_.end * opening_.end);
+      }
+      double tangential_secant(const double x, const double y) const override
+      {
+        return shear_.shape.secant(y / shear_.end) * left_by_opening(x) /
+               (shear_.end * shear_.end);
+      }
+      double normal_energy(const double x0, const double x1,
+                           const double y) const override
+      {
+        return opening_.shape.fall(x0 / opening_.end, x1 / opening_.end) *
+               left_by_slip(y);
+      }
+      double tangential_energy(const double y0, const double y1,
+                               const double x) const override
+      {
+        return shear_.shape.fall(y0 / shear_.end, y1 / shear_.end) *
+               left_by_opening(x);
+      }
+      double peak_slip() const override { return shear_.shape.l * shear_.end; }
+      double steepest_shear_softening() const override
+      {
+        return shear_.toughness / (shear_.end * shear_.end) *
+               shear_.shape.steepest();
+      }
 
-    double normal_secant(const double x, const double y) const override
-    {
-      return normal_.secant(x / opening_) * left_by_slip(y) /
-             (opening_ * opening_);
-    }
-    double tangential_secant(const double x, const double y) const override
-    {
-      return shear_.secant(y / slip_) * left_by_opening(x) / (slip_ * slip_);
-    }
-    double normal_energy(const double x0, const double x1,
-                         const double y) const override
-    {
-      return normal_.fall(x0 / opening_, x1 / opening_) * left_by_slip(y);
-    }
-    double tangential_energy(const double y0, const double y1,
-                             const double x) const override
-    {
-      return shear_.fall(y0 / slip_, y1 / slip_) * left_by_opening(x);
-    }
-    double peak_slip() const override { return shear_.l * slip_; }
-    double steepest_shear_softening() const override
-    {
-      return shear_toughness_ / (slip_ * slip_) * shear_.steepest();
-    }
+    private:
+      Mode opening_, shear_;
 
-  private:
-    double strength_, toughness_, shear_strength_, shear_toughness_;
-    Shape normal_, shear_;
-    double opening_, slip_;
+      /** Energy that a slip leaves to opening. */
+      double left_by_slip(const double y) const
+      {
+        return left(opening_.toughness, shear_.toughness,
+                    shear_.shape.g(y / shear_.end));
+      }
+      double left_by_opening(const double x) const
+      {
+        return left(shear_.toughness, opening_.toughness,
+                    opening_.shape.g(x / opening_.end));
+      }
+      static double left(const double mine, const double other, const double g)
+      {
+        return mine < other ? std::max(0., mine - other * (1. - g)) : mine * g;
+      }
+    };
 
-    /** Energy that a slip leaves to opening. */
-    double left_by_slip(const double y) const
-    {
-      return left(toughness_, shear_toughness_, shear_.g(y / slip_));
-    }
-    double left_by_opening(const double x) const
-    {
-      return left(shear_toughness_, toughness_, normal_.g(x / opening_));
-    }
-    static double left(const double mine, const double other, const double g)
-    {
-      return mine < other ? std::max(0., mine - other * (1. - g)) : mine * g;
-    }
-
-    /** delta with the peak of -phi g'(z) / delta at the strength. */
-    static double final_value(const Shape &shape, const double phi,
-                              const double strength)
-    {
-      return phi * shape.l * shape.secant(shape.l) / strength;
-    }
-
-    /** In shear the default is what holds in opening. */
+    /** In shear the default is what holds in opening, @p other. */
     Shape read_shape(SectionReader &reader, const std::string &mode,
                      const std::string &alpha_default,
-                     const std::string &peak_default) const
+                     const std::string &peak_default, const Shape &other)
     {
       const bool is_normal = mode.empty();
       const std::string alpha_name = mode + "alpha",
@@ -227,7 +179,7 @@ namespace nsfd
       const Range above_one{1., std::numeric_limits<double>::infinity(), true,
                             true};
       const Range share{0., 1., true, true};
-      double alpha = normal_.alpha, peak = normal_.l;
+      double alpha = other.alpha, peak = other.l;
       if (is_normal ||
           reader.optional(alpha_name, alpha_text + "; default alpha"))
         alpha = reader.number(alpha_name, alpha_default, units::none, above_one,
@@ -247,6 +199,96 @@ namespace nsfd
       }
       return {alpha, peak};
     }
+  } // namespace
+
+  /**
+   * The intrinsic law of Park, Paulino and Roesler (2009), two damage scalars.
+   * With g_N(x), g_T(y) of x = <u_N>_+ / delta_N and y = |u_T| / delta_T, and
+   * toughnesses phi_N and phi_T in opening and in shear,
+   *
+   *   T_N = -g_N'(x) <phi_T g_T(y) - <phi_T - phi_N>_+>_+ / delta_N  (phi_N <
+   * phi_T) T_T = -g_T'(y) <phi_N g_N(x) - <phi_N - phi_T>_+>_+ / delta_T
+   *
+   * and phi g of the other direction where its toughness is the larger one: the
+   * gradient of their potential. Each strength fixes its final opening. Secants
+   * are those of the largest x and y so far; unloading goes to the origin.
+   */
+  class Ppr final : public CohesiveLaw
+  {
+  public:
+    explicit Ppr(SectionReader &reader)
+    {
+      strength_ = reader.number("strength", "", units::pressure,
+                                Range::positive(), "Largest traction R_max");
+      const double toughness =
+          reader.number("toughness", "", units::energy_per_area,
+                        Range::positive(), "Fracture energy in opening");
+      const double shear_strength =
+          laws::given(reader, "shear strength", units::pressure,
+                      "Largest traction in shear; default R_max")
+              .value_or(strength_);
+      const double shear_toughness =
+          laws::given(reader, "shear toughness", units::energy_per_area,
+                      "Fracture energy in shear; default that in opening")
+              .value_or(toughness);
+      const Shape normal = read_shape(reader, "", "3", "0.1", {});
+      const Shape shear = read_shape(reader, "shear ", "", "", normal);
+      modes_ = {{toughness, normal, strength_},
+                {shear_toughness, shear, shear_strength}};
+    }
+
+    bool extrinsic() const override { return false; }
+    double normal_stiffness() const override
+    {
+      return modes_.normal_secant(0., 0.);
+    }
+    double stiffness_ratio() const override
+    {
+      return modes_.tangential_secant(0., 0.) / modes_.normal_secant(0., 0.);
+    }
+    double shear_weight() const override
+    {
+      const double ratio = modes_.opening().end / modes_.shear().end;
+      return ratio * ratio;
+    }
+
+    double beta(const double d) const override
+    {
+      const PprModes::Mode &mode = modes_.opening();
+      return mode.shape.secant(d / mode.end) / mode.shape.secant(0.);
+    }
+    double traction(const double d) const override
+    {
+      return modes_.normal_secant(d, 0.) * d;
+    }
+    double energy(const double d) const override
+    {
+      return modes_.normal_energy(0., d, 0.);
+    }
+    double energy_increment(const double d0, const double d1) const override
+    {
+      return modes_.normal_energy(d0, d1, 0.);
+    }
+
+    double elastic_limit() const override { return 0.; }
+    double peak_opening() const override
+    {
+      return modes_.opening().shape.l * modes_.opening().end;
+    }
+    double final_opening() const override { return modes_.opening().end; }
+    double strength() const override { return strength_; }
+    double toughness() const override { return modes_.opening().toughness; }
+    double steepest_softening() const override
+    {
+      const PprModes::Mode &mode = modes_.opening();
+      return mode.toughness / (mode.end * mode.end) * mode.shape.steepest();
+    }
+
+    const MixedLaw *mixed() const override { return &modes_; }
+
+  private:
+    double strength_;
+    PprModes modes_;
   };
 
   NSFD_REGISTER(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/cohesive_laws/law_point.h"
 #include "point_law.h"
 
 namespace nsfd
@@ -7,13 +8,8 @@ namespace nsfd
   /**
    * The cohesive law of a point during one step: what its history, the jump at
    * the start and the rule of the cohesive force make of a jump at the end.
-   * Lengths in m, secants in Pa/m, energies in J/m^2.
-   *
-   * The `exact` rule takes from the motion what is stored and dissipated along
-   * a way between both jumps. One scalar: the squares of opening and slip go
-   * straight, and with a potential the way does not matter. On a plateau the
-   * stored energy is T(d_m) d instead of b d^2/2. Two scalars: the mean of the
-   * two ways that go along one opening after the other.
+   * Lengths in m, secants in Pa/m, energies in J/m^2. The `exact` rule takes
+   * from the motion what LawPoint stores and dissipates.
    */
   template <int dim>
   class PointDamage
@@ -36,7 +32,7 @@ namespace nsfd
      */
     bool grows(const Reach &end) const
     {
-      return !(end.opening <= history_.opening && end.slip <= history_.slip);
+      return LawPoint::grows(history_, end);
     }
 
     /** The traction does not fall to zero with the opening: form (5). */
@@ -46,64 +42,49 @@ namespace nsfd
     Secant secant(const Reach &end) const;
 
     /** R_max of a point that was never open, T(d_m) on a plateau. */
-    double strength() const;
+    double strength() const { return law_.strength(history_); }
 
-    double beta(const Reach &history) const;
+    /** What is compared with it: LawPoint::effective_traction(). */
+    double effective_traction(const double normal, const double *shear) const
+    {
+      return law_.effective_traction<dim>(normal, shear);
+    }
+
+    double beta(const Reach &history) const { return law_.beta(history); }
 
     /** Openings at the elastic limit, the peak and the end of the law. */
     std::array<double, 3> kinks() const
     {
-      return {{law_.elastic_limit() / l_, law_.peak_opening() / l_,
-               law_.final_opening() / l_}};
+      const CohesiveLaw &law = law_.law();
+      const double l = law_.opening_factor();
+      return {{law.elastic_limit() / l, law.peak_opening() / l,
+               law.final_opening() / l}};
     }
 
     /** The traction drops to 0 at the end. */
     bool drops() const
     {
-      return std::isinf(law_.steepest_softening()) &&
-             law_.traction(law_.final_opening() * (1. - 1e-9)) >
-                 1e-3 * law_.strength();
+      const CohesiveLaw &law = law_.law();
+      return std::isinf(law.steepest_softening()) &&
+             law.traction(law.final_opening() * (1. - 1e-9)) >
+                 1e-3 * law.strength();
     }
 
     /** Elastic energy of cohesion at the jump @p u, no overlap. */
-    double stored(const Reach &history, const double *u) const;
+    double stored(const Reach &history, const double *u) const
+    {
+      return law_.stored({JumpSize::of<dim>(u), history});
+    }
 
-    struct Dissipation {
-      double damage = 0., viscous = 0.;
-    };
     /** Of a step to the jump @p u. */
     Dissipation dissipation(const double *u) const;
 
   private:
-    const OneStepProblem<dim> &problem_;
     const Interaction &interaction_;
-    const CohesiveLaw &law_;
-    const MixedLaw *mixed_;
-    std::size_t point_;
-    double a_, l_; // T(d) = a T_0(l d)
+    LawPoint law_;
     Reach history_;
     const double *old_;
-
-    struct Growth {
-      double opening;  ///< d where damage begins to grow
-      double from, to; ///< d_m before and after
-    };
-    Growth growth(double opening) const;
-
-    Secant isotropic(const double b) const
-    {
-      return {b, b * interaction_.stiffness_ratio};
-    }
-    double secant_at(const double opening) const
-    {
-      return a_ * l_ * law_.secant(l_ * opening);
-    }
-    double released(double from, double to) const;
-    Secant secants_at(const Reach &history) const;
-    double scalar_secant(double opening) const;
-    double lost_energy(const double *u, double damage) const;
-    double plateau_secant(double opening) const;
-    Secant mixed_secant(const Reach &end) const;
-    double mixed_dissipation(const Reach &start, const Reach &end) const;
+    CohesionRule rule_;
+    double time_step_;
   };
 } // namespace nsfd

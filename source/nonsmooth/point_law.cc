@@ -1,7 +1,6 @@
 #include "point_law.h"
 
 #include "local_problem.h"
-#include "pull_and_shear.h"
 
 namespace nsfd
 {
@@ -52,9 +51,8 @@ namespace nsfd
                      const std::array<double, dim> &impulse)
     {
       const double wh = problem.weight[i] * problem.time_step;
-      const auto &interaction = problem.interactions[problem.interaction[i]];
-      return pull_and_shear<dim>(-impulse[0], impulse.data() + 1,
-                                 interaction.shear_weight) <=
+      return effective_traction<dim>(problem, i, -impulse[0],
+                                     impulse.data() + 1) <=
              wh * point_strength<dim>(problem, i);
     }
   } // namespace

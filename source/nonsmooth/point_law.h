@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/cohesive_laws/law_point.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
 
 #include <cmath>
@@ -12,25 +13,6 @@ namespace nsfd
     open, ///< no contact impulse
     stick,
     slide
-  };
-
-  /**
-   * How far a point is open, in m: its effective opening, or, for laws with
-   * two damage scalars, <u_N>_+ and |u_T|.
-   */
-  struct Reach {
-    double opening = 0., slip = 0.;
-  };
-
-  /** R_coh = normal <u*_N>_+ n + tangential u*_T, in Pa/m. */
-  struct Secant {
-    double normal = 0., tangential = 0.;
-
-    static constexpr Secant rigid()
-    {
-      return {std::numeric_limits<double>::infinity(),
-              std::numeric_limits<double>::infinity()};
-    }
   };
 
   /** The secant state of a point: fixes its law to a monotone one. */
@@ -172,6 +154,15 @@ namespace nsfd
    */
   template <int dim>
   double point_strength(const OneStepProblem<dim> &problem, std::size_t point);
+
+  /**
+   * A traction or impulse as point_strength() is compared with it, of a point
+   * with a law: LawPoint::effective_traction().
+   */
+  template <int dim>
+  double effective_traction(const OneStepProblem<dim> &problem,
+                            std::size_t point, double normal,
+                            const double *shear);
 
   /** Cohesive traction densities and energies of a point over a step. */
   template <int dim>

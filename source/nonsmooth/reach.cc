@@ -68,9 +68,19 @@ namespace nsfd
     return PointDamage<dim>(problem, i).strength();
   }
 
+  template <int dim>
+  double effective_traction(const OneStepProblem<dim> &problem,
+                            const std::size_t i, const double normal,
+                            const double *shear)
+  {
+    return PointDamage<dim>(problem, i).effective_traction(normal, shear);
+  }
+
 #define INSTANTIATE(dim)                                                       \
   template double point_strength<dim>(const OneStepProblem<dim> &,             \
                                       std::size_t);                            \
+  template double effective_traction<dim>(                                     \
+      const OneStepProblem<dim> &, std::size_t, double, const double *);       \
   template double sliding_speed<dim>(const OneStepProblem<dim> &, std::size_t, \
                                      const std::array<double, dim> &);         \
   template Reach reach_of<dim>(const Interaction &, const double *);           \

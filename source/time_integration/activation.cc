@@ -2,7 +2,6 @@
 
 #include "linear_algebra/krylov.h"
 #include "nonsmooth/point_law.h"
-#include "nonsmooth/pull_and_shear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,9 +86,8 @@ namespace nsfd
     const auto least = least_impulse(dynamics, problem, joined);
     std::vector<double> shares(problem.n_points, 0.);
     for (const std::size_t i : candidates) {
-      const auto &interaction = problem.interactions[problem.interaction[i]];
       const double *P = &least[i * dim];
-      shares[i] = pull_and_shear<dim>(-P[0], P + 1, interaction.shear_weight) /
+      shares[i] = effective_traction<dim>(problem, i, -P[0], P + 1) /
                   (problem.weight[i] * problem.time_step *
                    point_strength<dim>(problem, i));
     }

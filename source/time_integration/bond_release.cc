@@ -1,7 +1,6 @@
 #include "bond_release.h"
 
 #include "nonsmooth/point_law.h"
-#include "nonsmooth/pull_and_shear.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +14,7 @@ namespace nsfd
     double utilisation(const OneStepProblem<dim> &problem, const std::size_t i,
                        const double *traction)
     {
-      const auto &interaction = problem.interactions[problem.interaction[i]];
-      return pull_and_shear<dim>(traction[0], traction + 1,
-                                 interaction.shear_weight) /
+      return effective_traction<dim>(problem, i, traction[0], traction + 1) /
              point_strength<dim>(problem, i);
     }
 
