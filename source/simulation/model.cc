@@ -84,16 +84,17 @@ namespace nsfd
   template <int dim>
   void Model<dim>::build_stepper(const SceneInput &input)
   {
-    solver = make_solver<dim>(input, "chain");
     if (moving)
       stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
                                                         *moving, *dynamics);
     else if (inelastic)
       stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
                                                         *inelastic, *dynamics);
-    else
+    else {
+      solver = make_solver<dim>(input, "chain");
       stepper = std::make_unique<LinearMoreauJean<dim>>(
           input, *discretization, *dynamics, *solver, bonded);
+    }
   }
 
   template <int dim>

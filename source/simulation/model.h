@@ -33,6 +33,7 @@ namespace nsfd
     /// of small motions with history-dependent materials, or null
     std::unique_ptr<InelasticBodies<dim>> inelastic;
     std::string method; ///< name of the nonsmooth solver
+    /// of a linear stepper; others make one for every problem
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
     std::unique_ptr<SmoothMotion<dim>> smooth_motion; ///< in its place, or null

@@ -76,8 +76,9 @@ namespace nsfd
   template <int dim>
   void TimeStepping<dim>::fill_counters(std::map<std::string, double> &c) const
   {
-    model_.stepper->fill_counters(c);
     controller_.fill_counters(c);
+    if (model_.smooth_motion) // summaries have the same keys
+      model_.stepper->fill_counters(c);
     for (const TimeIntegrator<dim> *one : model_.integrators())
       one->fill_counters(c);
   }
@@ -103,7 +104,8 @@ namespace nsfd
   {
     const Archive::Part part(archive, "solver");
     model_.dynamics->serialize(archive);
-    model_.solver->serialize(archive);
+    if (model_.solver)
+      model_.solver->serialize(archive);
     for (TimeIntegrator<dim> *one : model_.integrators())
       one->serialize_solver(archive);
   }
