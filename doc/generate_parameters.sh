@@ -372,7 +372,7 @@ thickness, and the inertia is one number, about z. `Boundary/pressure` is a dead
 load: along the normal and per area of the face at t = 0.
 
 There is no mesh that changes, no bonded face (intact faces of extrinsic laws
-are `rigid`), no equilibrium, no scheme but `moreau-jean` and no `path = global`.
+are `rigid`), no equilibrium, no scheme but `moreau-jean` and no `path = assembled`.
 
 END
   sections "$scratch/large.prm" \

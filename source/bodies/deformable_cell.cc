@@ -346,13 +346,13 @@ namespace nsfd
   bool DeformableCell<dim>::improve(const FiniteStep &step, double *v,
                                     FiniteScratch &scratch, Balance &now) const
   {
-    constexpr unsigned int most_halvings = 20;
+    constexpr unsigned int most_bisections = 20;
     const unsigned int n = n_dofs();
     std::copy_n(scratch.residual.begin(), n, scratch.step.begin());
     solve_factorized(n, scratch.matrix.data(), scratch.pivots.data(),
                      scratch.step.data());
     double share = 1.;
-    for (unsigned int i = 0; i < most_halvings; ++i, share /= 2.) {
+    for (unsigned int i = 0; i < most_bisections; ++i, share /= 2.) {
       for (unsigned int k = 0; k < n; ++k)
         scratch.trial[k] = v[k] - share * scratch.step[k];
       Balance next;

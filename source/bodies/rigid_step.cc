@@ -94,7 +94,7 @@ namespace nsfd
 
   bool RigidStep::newton(const Vec3 &target, Vec3 &W) const
   {
-    constexpr unsigned int most_steps = 60, most_halvings = 30;
+    constexpr unsigned int most_steps = 60, most_bisections = 30;
     Residual r = residual(target, W);
     for (unsigned int step = 0; step < most_steps; ++step) {
       if (!std::isfinite(r.scale))
@@ -105,7 +105,7 @@ namespace nsfd
       Residual next = r;
       Vec3 trial = W;
       double share = 1.;
-      for (unsigned int i = 0; i < most_halvings; ++i, share /= 2.) {
+      for (unsigned int i = 0; i < most_bisections; ++i, share /= 2.) {
         trial = W - share * full;
         next = residual(target, trial);
         // at round-off shorter steps do not help either

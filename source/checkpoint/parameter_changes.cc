@@ -1,5 +1,7 @@
 #include "parameter_changes.h"
 
+#include "parameters/former_words.h"
+
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -19,7 +21,10 @@ namespace nsfd
       return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
     }
 
-    /** Names with their sections, and values without comments. */
+    /**
+     * Names with their sections, and values without comments, in today's
+     * words: an older program may have written them.
+     */
     Entries entries(const std::string &echo)
     {
       Entries result;
@@ -34,13 +39,13 @@ namespace nsfd
           sections.pop_back();
         else if (line.compare(0, 4, "set ") == 0) {
           const auto equals = line.find('=');
-          std::string name;
+          std::string name = trimmed(line.substr(4, equals - 4)), value, path;
+          if (equals != std::string::npos)
+            value = trimmed(line.substr(equals + 1));
           for (const std::string &section : sections)
-            name += section + '/';
-          name += trimmed(line.substr(4, equals - 4));
-          result.emplace_back(name, equals == std::string::npos
-                                        ? ""
-                                        : trimmed(line.substr(equals + 1)));
+            path += section + '/';
+          renew_words(path.substr(0, path.find_first_of(":/")), name, value);
+          result.emplace_back(path + name, value);
         }
       }
       return result;
@@ -58,7 +63,7 @@ namespace nsfd
     static const std::vector<std::string> free = {"Time/end",
                                                   "Time/step",
                                                   "Time/dynamic step",
-                                                  "Time/maximum halvings",
+                                                  "Time/maximum bisections",
                                                   "Time/largest overshoot",
                                                   "Time/integration tolerance",
                                                   "Time/equilibrium tolerance",

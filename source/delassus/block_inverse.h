@@ -10,8 +10,8 @@ namespace nsfd
    *
    * A rigid motion strains nothing, so A acts on it by the mass alone, which
    * the entries of f K swallow when a wave crosses the body many times in a
-   * step: beyond 1e8 crossings A has no Cholesky factor in double precision.
-   * With the rigid motions R, R^T M R = 1, and K R = 0,
+   * step: beyond a Courant number of 1e8 A has no Cholesky factor in double
+   * precision. With the rigid motions R, R^T M R = 1, and K R = 0,
    *
    *   A^{-1} = (A + s M R R^T M)^{-1} + s / (1 + s) R R^T,
    *

@@ -69,7 +69,7 @@ namespace nsfd
 
   /**
    * For explicit bodies, theta = 0, where bonds are forces of the last
-   * displacement and M_hat = M: the element-wise path.
+   * displacement and M_hat = M: the local path.
    */
   template <int dim>
   std::unique_ptr<BondedDynamics<dim>>

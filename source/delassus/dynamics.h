@@ -17,8 +17,9 @@ namespace nsfd
    * Bodies::n_dofs() entries.
    *
    * Both paths share this operator. They differ in how a Newton system
-   * (W + D) x = r is preconditioned: element-wise by face blocks, globally by a
-   * sparse factor or multigrid of A = M_hat + H^T D^{-1} H (Woodbury).
+   * (W + D) x = r is preconditioned: on the local path by face blocks, on the
+   * assembled one by a sparse factor or multigrid of A = M_hat + H^T D^{-1} H
+   * (Woodbury).
    */
   template <int dim>
   class Dynamics : public FaceTraces<dim>
@@ -128,9 +129,9 @@ namespace nsfd
     }
 
     /**
-     * What stands for D = 0 in the preconditioner of the global path, one per
-     * component; empty: a share of the diagonal of W, which at long steps is
-     * far more than the bodies' own compliance.
+     * What stands for D = 0 in the preconditioner of the assembled path, one
+     * per component; empty: a share of the diagonal of W, which at long steps
+     * is far more than the bodies' own compliance.
      */
     void set_least_compliance(std::vector<double> compliance)
     {
@@ -222,7 +223,7 @@ namespace nsfd
   make_moving_dynamics(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points);
 
-  /** Preconditioned by the face blocks of W: for steps up to some crossings. */
+  /** Preconditioned by the face blocks of W: for Courant numbers up to some. */
   template <int dim>
   std::unique_ptr<Dynamics<dim>>
   make_elementwise_dynamics(const Communicator &communicator,

@@ -10,7 +10,7 @@
 namespace nsfd
 {
   /**
-   * Newton systems of the element-wise path in single precision, body by body
+   * Newton systems of the local path in single precision, body by body
    * and face by face in batches, one per lane of a SIMD vector. Answers do not
    * depend on the number of ranks.
    */

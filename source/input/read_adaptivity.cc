@@ -30,7 +30,7 @@ namespace nsfd
                       "elastic");
       refuse(has_simplices(scene),
              "only meshes of quads and hexes can change: triangles and "
-             "tetrahedra have no hanging faces",
+             "tetrahedra have no non-conforming faces",
              "take such a mesh, or `split simplices = true`");
       refuse(std::any_of(scene.materials.begin(), scene.materials.end(),
                          [](const auto &material) { return material.rigid; }),
@@ -41,14 +41,14 @@ namespace nsfd
              "remove the section Adaptivity, or start from rest");
       refuse(scene.time.scheme == Scheme::arkode,
              "the mesh does not change with scheme = arkode",
-             "write scheme = moreau-jean or symplectic");
-      // one per level, and two for the penalty of bonds at hanging faces
-      refuse(scene.time.scheme == Scheme::symplectic &&
-                 scene.adaptivity->levels + 2 > scene.time.maximum_halvings,
-             fmt::format("the stable step of the symplectic scheme halves with "
-                         "every level, and {} halvings are allowed",
-                         scene.time.maximum_halvings),
-             fmt::format("write in section Time: set maximum halvings = {}",
+             "write scheme = moreau-jean or explicit");
+      // one per level, and two for the penalty of bonds at non-conforming faces
+      refuse(scene.time.scheme == Scheme::explicit_moreau_jean &&
+                 scene.adaptivity->levels + 2 > scene.time.maximum_bisections,
+             fmt::format("the stable step of the explicit scheme halves with "
+                         "every level, and {} bisections are allowed",
+                         scene.time.maximum_bisections),
+             fmt::format("write in section Time: set maximum bisections = {}",
                          scene.adaptivity->levels + 2));
     }
 
@@ -109,7 +109,7 @@ namespace nsfd
                        "of the mesh; 0: the mesh stays as it is");
     adaptivity.coarsen_every =
         reader.integer("coarsen every steps", "10", 0, 1000000,
-                       "cells without history may grow; 0: never");
+                       "cells without damage may be coarsened; 0: never");
     adaptivity.constant_modulus =
         reader.choice("springs", "constant modulus",
                       {"constant modulus", "constant stiffness"},

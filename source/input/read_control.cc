@@ -47,7 +47,7 @@ namespace nsfd
   std::vector<NamedText> known_solvers()
   {
     std::vector<NamedText> solvers = {
-        {"auto", "dual newton; what it cannot solve goes to the others"}};
+        {"auto", "dual newton, then the others where it fails"}};
     for (const auto &[name, entry] : SolverRegistry<2>::instance().entries())
       if (name != "auto") // of stored problems
         solvers.push_back({name, entry.text});
@@ -64,24 +64,26 @@ namespace nsfd
     solver.method = reader.choice("method", "auto", methods,
                                   fmt::format("{}", fmt::join(methods, ", ")));
     solver.path =
-        reader.choice("path", "auto", {"auto", "element-wise", "global"},
-                      "auto, element-wise or global");
-    if (solver.path == "element-wise" && scene.has_bonded_faces())
+        reader.choice("path", "auto", {"auto", "local", "assembled"},
+                      "of the linear algebra: auto, local (blocks of single "
+                      "bodies) or assembled (one sparse matrix)");
+    if (solver.path == "local" && scene.has_bonded_faces())
       reader.error("path",
-                   "path = element-wise contradicts bonded faces, which couple "
+                   "path = local contradicts bonded faces, which couple "
                    "the bodies",
                    "write auto, or take rigid faces");
-    if (solver.path == "global" && scene.large_motion)
+    if (solver.path == "assembled" && scene.large_motion)
+      reader.error(
+          "path",
+          "path = assembled has one matrix for all steps, and bodies of "
+          "motion = large turn",
+          "write auto or local");
+    else if (solver.path == "assembled" && scene.has_history())
       reader.error("path",
-                   "path = global has one matrix for all steps, and bodies of "
-                   "motion = large turn",
-                   "write auto or element-wise");
-    else if (solver.path == "global" && scene.has_history())
-      reader.error("path",
-                   fmt::format("path = global has one matrix for all steps, "
+                   fmt::format("path = assembled has one matrix for all steps, "
                                "and bodies of {} get softer",
                                history_dependent_model(scene)),
-                   "write auto or element-wise");
+                   "write auto or local");
     if (solver.method == "gauss seidel" && scene.has_bonded_faces())
       reader.error("method",
                    "method = gauss seidel works body by body, and bonded faces "
@@ -89,7 +91,7 @@ namespace nsfd
                    "write auto, or take rigid faces");
     solver.linear_solver =
         reader.choice("linear solver", "auto", {"auto", "direct", "cg"},
-                      "of the global path: auto, direct or cg");
+                      "of the assembled path: auto, direct or cg");
     solver.tolerance =
         reader.number("tolerance", "1e-8", units::none, {0., 0.1, true, false},
                       "relative error of a step");

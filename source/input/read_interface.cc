@@ -113,7 +113,7 @@ namespace nsfd
           fmt::format("{} = bonded joins bodies {}, and the scene has {}", name,
                       scene.large_motion ? "that turn and strain little"
                       : all_rigid(scene) ? "that deform"
-                                         : "without memory",
+                                         : "without history",
                       scene.large_motion ? "motion = large"
                       : all_rigid(scene) ? "rigid ones only"
                                          : history_dependent_model(scene)),

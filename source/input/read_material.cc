@@ -80,15 +80,16 @@ namespace nsfd
       if (scene.plane_stress && model == BulkModel::neo_hookean)
         reader.error(
             "model",
-            fmt::format("model = {} is not there for plane = stress", name),
+            fmt::format("model = {} is not available for plane = stress", name),
             "write plane = strain, or model = saint-venant "
             "kirchhoff");
       if (scene.plane_stress && scene.large_motion && flows(model))
-        reader.error("model",
-                     fmt::format("model = {} is not there for plane = stress "
-                                 "with motion = large",
-                                 name),
-                     "write plane = strain, or motion = small");
+        reader.error(
+            "model",
+            fmt::format("model = {} is not available for plane = stress "
+                        "with motion = large",
+                        name),
+            "write plane = strain, or motion = small");
     }
 
     /** False if it is none: what the other entries mean is unknown. */
@@ -306,7 +307,7 @@ namespace nsfd
                         "Pa s, zeta of it");
       if (material.is_viscous() && scene.dimension == 2 && scene.plane_stress)
         reader.error(material.shear_viscosity > 0. ? names[0] : names[1],
-                     "viscosity is not there for plane = stress, where the "
+                     "viscosity is not available for plane = stress, where the "
                      "strain normal to the plane has a history of its own",
                      "write plane = strain, or leave it out");
     }

@@ -1,5 +1,7 @@
 #include "read_sections.h"
 
+#include "parameters/former_words.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +12,7 @@ namespace nsfd
 {
   namespace
   {
-    /** Splits "0.6 crossings" into "0.6" and "crossings". */
+    /** Splits "0.6 courant" into "0.6" and "courant". */
     std::pair<SourceText, std::string> split_last_word(const SourceText &value)
     {
       const std::string &text = value.text();
@@ -25,30 +27,31 @@ namespace nsfd
                    TimeInput &time)
     {
       const auto value = reader.raw(
-          name, "0.5 crossings", "a time, crossings of a cell L/c_p, or auto");
+          name, "0.5 courant",
+          "a time, a Courant number h c_p / L of the smallest cell, or auto");
       if (!value || value->text() == "auto") {
         time.step_kind = StepKind::automatic;
         return;
       }
       const auto [number, word] = split_last_word(*value);
-      const bool is_misspelt =
-          !find_unit(word) && nearest_name(word, {"crossings"}) == "crossings";
-      if (word == "crossings" || word == "crossing") {
-        time.step_kind = StepKind::crossings;
-        time.step = reader.number_in(number, name, "0.5 crossings", units::none,
+      const std::string meant = did_you_mean_today(
+          word, {"courant"}, FormerWord::Place::unit, "Time", name);
+      if (word == "courant") {
+        time.step_kind = StepKind::courant;
+        time.step = reader.number_in(number, name, "0.5 courant", units::none,
                                      Range::positive());
-      } else if (is_misspelt)
+      } else if (!find_unit(word) && !meant.empty())
         reader.error(name,
                      fmt::format("{} = {}: `{}` is not a unit", name,
                                  value->text(), word),
-                     "did you mean `crossings`?");
+                     meant);
       else if (nearest_name(value->text(), {"auto"}) == "auto")
         reader.error(name,
                      fmt::format("{} = {} is not a step", name, value->text()),
                      "did you mean `auto`?");
       else {
         time.step_kind = StepKind::time;
-        time.step = reader.number_in(*value, name, "0.5 crossings", units::time,
+        time.step = reader.number_in(*value, name, "0.5 courant", units::time,
                                      Range::positive());
       }
     }
@@ -76,7 +79,7 @@ namespace nsfd
         if (block.sliding.lifts())
           reader.error("start",
                        fmt::format("equilibria with dilatancy or wear (`{}`) "
-                                   "are not there yet",
+                                   "are not available",
                                    block.name),
                        "remove them, or start as given");
       };
@@ -84,13 +87,13 @@ namespace nsfd
         if (interface.intact == IntactFaces::bonded)
           reader.error("start",
                        fmt::format("equilibria with bonded faces (`{}`) are "
-                                   "not there yet",
+                                   "not available",
                                    interface.name),
                        "write rigid, or start as given");
         if (interface.law && interface.law->rate_dependent())
           reader.error("start",
                        fmt::format("an equilibrium has no rates, and the law "
-                                   "of `{}` lets its damage lag",
+                                   "of `{}` has a damage viscosity",
                                    interface.name),
                        "remove its damage viscosity");
         refuse_lift(interface);
@@ -111,16 +114,16 @@ namespace nsfd
         reader.refuse({name}, "there are no bonded faces that may break");
         return;
       }
-      if (scene.time.scheme == Scheme::symplectic) {
+      if (scene.time.scheme == Scheme::explicit_moreau_jean) {
         // the fastest modes take energy from every change of an explicit step
         scene.time.largest_overshoot = std::numeric_limits<double>::infinity();
-        reader.refuse({name}, "explicit steps stay as long as they are");
+        reader.refuse({name}, "explicit steps are not bisected for it");
         return;
       }
       scene.time.largest_overshoot = reader.number(
           name, "0.05", units::none, Range::positive(),
           "of a bonded point over its strength; beyond it the step is "
-          "taken again, shorter");
+          "rejected and bisected");
     }
 
     /** An equilibrium at the start, and what it cannot go with. */
@@ -182,7 +185,7 @@ namespace nsfd
       const auto step = reader.raw("step", "", "a time: of the load", "1 ms");
       if (step) {
         const std::string word = split_last_word(*step).second;
-        if (word == "auto" || word == "crossings" || word == "crossing")
+        if (word == "auto" || word == "courant")
           reader.error("step",
                        fmt::format("step = {}: a quasi-static step is a time "
                                    "of the load, no wave counts in it",
@@ -291,7 +294,7 @@ namespace nsfd
       check_smooth(reader, scene);
       reader.refuse({"theta", "forecast gamma1", "forecast gamma2",
                      "cohesion rule", "contact target", "sliding",
-                     "maximum halvings", "largest overshoot"},
+                     "maximum bisections", "largest overshoot"},
                     "scheme = arkode has none");
       time.implicit_pairs =
           reader.choice("pairs", "explicit", {"explicit", "implicit"},
@@ -315,7 +318,7 @@ namespace nsfd
       if (!scene.iterates() || scheme == "moreau-jean")
         return false;
       reader.error("scheme",
-                   fmt::format("scheme = {} is not there for {}", scheme,
+                   fmt::format("scheme = {} is not available for {}", scheme,
                                scene.large_motion
                                    ? "motion = large"
                                    : history_dependent_model(scene)),
@@ -335,9 +338,9 @@ namespace nsfd
                      "scheme = arkode knows no viscosity, and a material has "
                      "one",
                      "write scheme = moreau-jean");
-      if (scheme == "symplectic" && scene.has_bonded_faces())
+      if (scheme == "explicit" && scene.has_bonded_faces())
         reader.error("scheme",
-                     "scheme = symplectic takes bonded faces by explicit "
+                     "scheme = explicit takes bonded faces by explicit "
                      "forces, and viscous materials need implicit ones",
                      "write scheme = moreau-jean, or join the faces by the law "
                      "`rigid`");
@@ -367,8 +370,8 @@ namespace nsfd
     time.end = reader.number("end", "", units::time, Range::positive(), "s");
     const std::string scheme =
         reader.choice("scheme", "moreau-jean",
-                      {"moreau-jean", "symplectic", "arkode", "quasi-static"},
-                      "moreau-jean, symplectic, arkode or quasi-static");
+                      {"moreau-jean", "explicit", "arkode", "quasi-static"},
+                      "moreau-jean, explicit, arkode or quasi-static");
     if (refuse_scheme(reader, scene, scheme))
       return;
     check_viscosity(reader, scene, scheme);
@@ -378,10 +381,10 @@ namespace nsfd
       scene.statics->tolerance =
           reader.number("equilibrium tolerance", "1e-11", units::none,
                         {0., 1e-3, true, false},
-                        "force left over, relative to the forces present");
+                        "unbalanced force, relative to the forces present");
     } else
       reader.refuse({"equilibrium tolerance"},
-                    "the scene asks for no equilibrium");
+                    "no equilibrium is computed in this scene");
     if (quasi_static && scene.statics)
       read_quasi_static(reader, scene);
     else {
@@ -394,10 +397,10 @@ namespace nsfd
       return read_smooth(reader, scene);
     reader.refuse({"pairs", "order", "integration tolerance"},
                   "it belongs to scheme = arkode");
-    if (scheme == "symplectic") {
-      time.scheme = Scheme::symplectic;
+    if (scheme == "explicit") {
+      time.scheme = Scheme::explicit_moreau_jean;
       time.theta = 1.;
-      reader.refuse({"theta"}, "scheme = symplectic has none");
+      reader.refuse({"theta"}, "scheme = explicit has none");
     } else
       read_theta(reader, scene, time);
     time.forecast_gamma1 = reader.number(
@@ -430,8 +433,8 @@ namespace nsfd
         "the velocity that friction opposes: that of the end of the step "
         "(velocity), the mean (increment), or that of the end but for points "
         "where friction would then give energy (energy safe)");
-    time.maximum_halvings = reader.integer("maximum halvings", "10", 0, 60,
-                                           "of a step that cannot be solved");
+    time.maximum_bisections = reader.integer("maximum bisections", "10", 0, 60,
+                                             "of a step that is rejected");
     read_overshoot(reader, scene);
   }
 } // namespace nsfd

@@ -113,8 +113,8 @@ namespace nsfd
                         word),
             mesh.notes.empty()
                 ? "write a group inside the mesh"
-                : "write a group inside the mesh; vertices that are there "
-                  "twice part it: merge vertices = true joins them");
+                : "write a group inside the mesh; duplicate vertices "
+                  "separate its faces: merge vertices = true joins them");
       else if (has_faces && use == WhereUse::boundary_faces && n_boundary == 0)
         reader.error("where",
                      fmt::format("where = {}: this group is inside the mesh, "

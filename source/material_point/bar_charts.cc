@@ -251,7 +251,7 @@ namespace nsfd
          bar.mode != BarMode::quasi_static &&
              (bar.theta > 0.5 || bar.rule != CohesionRule::exact),
          true},
-        {"left over", [](auto &row) { return row.excess; }, Colour::orange,
+        {"released", [](auto &row) { return row.excess; }, Colour::orange,
          bar.mode == BarMode::quasi_static, true}};
     for (std::size_t i = 0; i < runs.size(); ++i)
       for (const Part &part : parts)
@@ -311,7 +311,7 @@ namespace nsfd
       floor += jump.excess;
     chart.add_line("imposed on the grip of the bar", over(sweep.speeds, unit),
                    over(sweep.viscous, G), Colour::red);
-    chart.add_line("floor: left over by the jump",
+    chart.add_line("floor: released by the jump",
                    over(straight(0., last), unit),
                    over(straight(floor, floor), G), Colour::grey, true);
     return chart.svg(SvgUse::file);

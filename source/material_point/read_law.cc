@@ -241,8 +241,7 @@ namespace nsfd
         break;
       }
       for (const Diagnostic &d : best_errors.diagnostics())
-        d.is_error ? errors.error(d.location, d.message, d.advice)
-                   : errors.warning(d.location, d.message, d.advice);
+        errors.add(d);
       return best;
     }
   } // namespace

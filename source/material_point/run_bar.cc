@@ -110,7 +110,7 @@ namespace nsfd
                                      engineering(jump.traction_from, "Pa", 4));
         table_line("  to u_b", engineering(jump.opening_to, "m", 5) + "  at " +
                                    engineering(jump.traction_to, "Pa", 4));
-        table_line("  left over", share_of(jump.excess, law.toughness()));
+        table_line("  released", share_of(jump.excess, law.toughness()));
       }
     }
 

@@ -86,7 +86,10 @@ namespace nsfd
       std::string result = at.source;
       if (at.line > 0)
         result += ":" + std::to_string(at.line);
-      result += diagnostic.is_error ? ": error: " : ": warning: ";
+      using Kind = Diagnostic::Kind;
+      result += diagnostic.kind == Kind::error     ? ": error: "
+                : diagnostic.kind == Kind::warning ? ": warning: "
+                                                   : ": note: ";
       result += printable(shortened(diagnostic.message)) + "\n";
       if (!at.text.empty())
         result += excerpt(at);
@@ -143,14 +146,34 @@ namespace nsfd
   void InputErrors::error(const SourceLocation &location,
                           const std::string &message, const std::string &advice)
   {
-    diagnostics_.push_back({location, message, advice, true});
+    diagnostics_.push_back(
+        {location, message, advice, Diagnostic::Kind::error});
   }
 
   void InputErrors::warning(const SourceLocation &location,
                             const std::string &message,
                             const std::string &advice)
   {
-    diagnostics_.push_back({location, message, advice, false});
+    diagnostics_.push_back(
+        {location, message, advice, Diagnostic::Kind::warning});
+  }
+
+  void InputErrors::note(const SourceLocation &location,
+                         const std::string &message)
+  {
+    const auto is_same = [&message](const Diagnostic &d) {
+      return d.kind == Diagnostic::Kind::note && d.message == message;
+    };
+    if (std::none_of(diagnostics_.begin(), diagnostics_.end(), is_same))
+      diagnostics_.push_back({location, message, "", Diagnostic::Kind::note});
+  }
+
+  void InputErrors::add(const Diagnostic &diagnostic)
+  {
+    if (diagnostic.kind == Diagnostic::Kind::note)
+      note(diagnostic.location, diagnostic.message);
+    else
+      diagnostics_.push_back(diagnostic);
   }
 
   void InputErrors::withdraw(const SourceLocation &location,
@@ -168,7 +191,7 @@ namespace nsfd
   unsigned int InputErrors::n_errors() const
   {
     return std::count_if(diagnostics_.begin(), diagnostics_.end(),
-                         [](const Diagnostic &d) { return d.is_error; });
+                         [](const Diagnostic &d) { return d.is_error(); });
   }
 
   std::string InputErrors::report(const unsigned int n_shown) const

@@ -14,12 +14,15 @@ namespace nsfd
     std::string text;        ///< the line
   };
 
-  /** One error or warning. */
+  /** One error, warning or note. */
   struct Diagnostic {
+    enum class Kind { error, warning, note };
     SourceLocation location;
     std::string message; ///< names parameter and value
     std::string advice;  ///< what to write instead, may be empty
-    bool is_error = true;
+    Kind kind = Kind::error;
+
+    bool is_error() const { return kind == Kind::error; }
   };
 
   /**
@@ -39,6 +42,12 @@ namespace nsfd
     void warning(const SourceLocation &location, const std::string &message,
                  const std::string &advice = "");
 
+    /** Something to know, once however often it is said. */
+    void note(const SourceLocation &location, const std::string &message);
+
+    /** As it stands, from another collection. */
+    void add(const Diagnostic &diagnostic);
+
     /** Take back an error that turned out to follow from another one. */
     void withdraw(const SourceLocation &location, const std::string &message);
 
@@ -49,9 +58,9 @@ namespace nsfd
     const std::vector<Diagnostic> &diagnostics() const { return diagnostics_; }
 
     /**
-     * Errors and warnings in the order of the lines, as text for a terminal,
-     * with a closing line if there are errors. Empty if there is nothing. At
-     * most @p n_shown of them are printed.
+     * Errors, warnings and notes in the order of the lines, as text for a
+     * terminal, with a closing line if there are errors. Empty if there is
+     * nothing. At most @p n_shown of them are printed.
      */
     std::string report(unsigned int n_shown = 40) const;
 

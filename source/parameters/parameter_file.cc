@@ -1,5 +1,6 @@
 #include "parameter_file.h"
 
+#include "former_words.h"
 #include "text_file.h"
 
 #include <fmt/format.h>
@@ -121,6 +122,24 @@ namespace nsfd
     text_ += next.text_;
   }
 
+  ParameterEntry in_todays_words(const std::string &section_kind,
+                                 ParameterEntry entry, InputErrors &errors)
+  {
+    std::string value = collapse_blanks(entry.value.text());
+    for (const FormerWord *word :
+         renew_words(section_kind, entry.name, value)) {
+      SourceLocation place = entry.name_location;
+      place.text.clear(); // one line says it
+      if (!word->stays)
+        errors.note(place,
+                    fmt::format("`{}` is called `{}` today; both words work",
+                                word->former, word->now));
+      if (word->place != FormerWord::Place::entry)
+        entry.value = SourceText(value, entry.value.location());
+    }
+    return entry;
+  }
+
   ParameterSection::ParameterSection(std::string name, SourceLocation location,
                                      const Constants &constants)
       : name_(std::move(name)), location_(std::move(location)),
@@ -226,11 +245,11 @@ namespace nsfd
       errors.error(entry.name_location,
                    fmt::format("`{}` is not an entry of {} in this scene",
                                entry.name, description()),
-                   did_you_mean(entry.name, names,
-                                valid.empty()
-                                    ? "it has no entries"
-                                    : fmt::format("it knows: {}",
-                                                  fmt::join(valid, ", "))));
+                   did_you_mean_today(
+                       entry.name, names, FormerWord::Place::entry, kind(), "",
+                       valid.empty() ? "it has no entries"
+                                     : fmt::format("it knows: {}",
+                                                   fmt::join(valid, ", "))));
     }
   }
 
@@ -399,8 +418,11 @@ namespace nsfd
     }
 
     const SourceText name = source.part(begin, equals - begin);
-    ParameterEntry entry{collapse_blanks(name.text()), source.part(equals + 1),
-                         name.location()};
+    ParameterEntry entry =
+        in_todays_words(section->kind(),
+                        {collapse_blanks(name.text()), source.part(equals + 1),
+                         name.location()},
+                        errors);
     if (!overridden_.insert(section_name + "/" + entry.name).second)
       return errors.error(
           name.location(),

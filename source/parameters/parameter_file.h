@@ -58,6 +58,10 @@ namespace nsfd
     SourceLocation name_location;
   };
 
+  /** The entry in today's words, with a note where that changed it. */
+  ParameterEntry in_todays_words(const std::string &section_kind,
+                                 ParameterEntry entry, InputErrors &errors);
+
   /** What a reader made known about an entry, for the echo. */
   struct DeclaredParameter {
     std::string name, value, text;

@@ -207,8 +207,11 @@ namespace nsfd
         return errors_.error(line.location(), "there is no name before `=`",
                              "write: set NAME = VALUE");
 
-      ParameterEntry entry{collapse_blanks(name.text()), rest.part(equals + 1),
-                           name.location()};
+      ParameterEntry entry =
+          in_todays_words(section_->kind(),
+                          {collapse_blanks(name.text()), rest.part(equals + 1),
+                           name.location()},
+                          errors_);
       if (const ParameterEntry *first = section_->find(entry.name))
         return errors_.error(
             entry.name_location,

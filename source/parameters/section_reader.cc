@@ -1,5 +1,6 @@
 #include "nsfd/parameters/section_reader.h"
 
+#include "former_words.h"
 #include "formula.h"
 #include "parameter_file.h"
 
@@ -229,8 +230,8 @@ namespace nsfd
     else if (const std::string why = strangeness(*formula.constant, unit);
              !why.empty())
       errors_.error(value.location(),
-                    fmt::format("{} = {} {}, where the numbers of a machine "
-                                "come to their end",
+                    fmt::format("{} = {} {}, outside the range of numbers "
+                                "that are computed with",
                                 name, value.text(), why),
                     advice);
     else
@@ -373,7 +374,8 @@ namespace nsfd
     errors_.error(value->location(),
                   fmt::format("{} = {} is not one of: {}", name, word,
                               fmt::join(choices, ", ")),
-                  did_you_mean(word, choices));
+                  did_you_mean_today(word, choices, FormerWord::Place::value,
+                                     section_.kind(), name));
     return default_text.empty() ? choices.front() : default_text;
   }
 
@@ -388,8 +390,8 @@ namespace nsfd
           formula.constant ? strangeness(*formula.constant, unit) : "";
       if (!why.empty()) {
         errors_.error(value.location(),
-                      fmt::format("{} = {} {}, where the numbers of a machine "
-                                  "come to their end",
+                      fmt::format("{} = {} {}, outside the range of numbers "
+                                  "that are computed with",
                                   name, value.text(), why),
                       for_example(example_value(name, "", unit)));
         return {};

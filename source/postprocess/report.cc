@@ -251,7 +251,7 @@ namespace nsfd
         trust.add("positive friction work", energy(s.positive_friction_work),
                   "energy that friction created");
       if (s.rigid_drift_max != 0.)
-        trust.add("drift of rigid rows", engineering(s.rigid_drift_max, "m"));
+        trust.add("drift of rigid joints", engineering(s.rigid_drift_max, "m"));
       trust.add("steps", count(s.steps),
                 s.steps > 0
                     ? "mean step " + engineering(s.final_time / s.steps, "s")
@@ -310,7 +310,7 @@ namespace nsfd
         account.add_sum("difference", energy(sum - initial_energy - e.work));
       account.add("worst defect", relative(report.summary.balance_residual_max),
                   "relative, all steps");
-      return account.card("Energy ledger at t = " +
+      return account.card("Energy balance at t = " +
                           engineering(report.summary.final_time, "s", 4));
     }
 

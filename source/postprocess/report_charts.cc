@@ -199,12 +199,12 @@ namespace nsfd
 
   NamedChart Charts::accuracy() const
   {
-    LineChart chart("Residual and ledger defect", step_axis,
+    LineChart chart("Residual and energy balance", step_axis,
                     {"relative", "", true});
     chart.add_line("residual of the contact problem", step_,
                    column([](const auto &row) { return row.residual; }),
                    Colour::blue);
-    chart.add_line("ledger defect", step_, column([](const auto &row) {
+    chart.add_line("balance residual", step_, column([](const auto &row) {
                      return std::abs(row.balance_residual);
                    }),
                    Colour::orange);

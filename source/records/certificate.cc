@@ -124,13 +124,14 @@ namespace nsfd
     Line defect_of(const RunFacts &facts)
     {
       if (accepted(facts) == 0)
-        return unmeasured_line("ledger defect", "no step was accepted");
+        return unmeasured_line("balance residual", "no step was accepted");
       const double defect = std::abs(facts.balance_residual);
-      Line line = line_of("ledger defect", defect, largest_defect,
+      Line line = line_of("balance residual", defect, largest_defect,
                           within(defect <= largest_defect));
       if (line.verdict == Verdict::bad)
-        line.remark = "energies do not add up: rows may ask for the same; "
-                      "energies.svg shows when";
+        line.remark =
+            "the energy balance is violated: joints may be redundant; "
+            "energies.svg shows when";
       return line;
     }
 
@@ -146,7 +147,7 @@ namespace nsfd
         Line line = line_of("given by " + given.line, given.share, given.bound,
                             within(given.share <= given.bound));
         if (line.verdict == Verdict::bad)
-          line.remark = "energy out of nothing, over the largest of the run" +
+          line.remark = "energy created, over the largest of the run" +
                         (given.advice.empty() ? "" : ": " + given.advice);
         lines.push_back(line);
       }
@@ -167,8 +168,8 @@ namespace nsfd
               facts.brittle
                   ? std::string("its traction jumps, no step is short enough")
               : facts.automatic_steps
-                  ? fmt::format("raise Time/maximum halvings above {}",
-                                facts.maximum_halvings)
+                  ? fmt::format("raise Time/maximum bisections above {}",
+                                facts.maximum_bisections)
                   : std::string(
                         "set step = auto, or a shorter one (--check names "
                         "it)"));
@@ -224,15 +225,15 @@ namespace nsfd
     Line attempts_of(const RunFacts &facts)
     {
       if (accepted(facts) == 0)
-        return unmeasured_line("taken again",
+        return unmeasured_line("rejected steps",
                                fmt::format("{} attempts, no step was accepted",
                                            facts.rejected + facts.overshoots));
       const double again = double(facts.rejected + facts.overshoots);
       const double kept = double(accepted(facts));
-      Line line = line_of("taken again", again, kept, within(again < kept),
+      Line line = line_of("rejected steps", again, kept, within(again < kept),
                           "{:.0f} steps", "less than ");
       if (line.verdict == Verdict::bad)
-        line.remark = std::string("most attempts are lost: ") +
+        line.remark = std::string("most attempted steps are rejected: ") +
                       (facts.automatic_steps ? "set Time/step to a shorter time"
                                              : "shorten Time/step");
       else if (again > 0.)

@@ -44,7 +44,7 @@ namespace nsfd
     bool automatic_steps = false; ///< step = auto
     bool follows_jumps = false;   ///< at solution jump = dynamic
     bool takes_jumps = false;     ///< at solution jump = relax
-    unsigned int maximum_halvings = 10;
+    unsigned int maximum_bisections = 10;
     unsigned long long beyond_unique = 0, solution_jumps = 0;
     /// nothing: no point has softened; length 0: between rigid bodies
     std::optional<ZoneResolution> zone;
@@ -61,7 +61,7 @@ namespace nsfd
       not_measured
     };
 
-    std::string name;         ///< "ledger defect"
+    std::string name;         ///< "balance residual"
     std::string value, bound; ///< as text, with units
     Verdict verdict = Verdict::not_measured;
     std::string remark; ///< what is wrong and what to change, or why it is ok
@@ -95,7 +95,7 @@ namespace nsfd
    *     uniqueness    no step in which a softening face may have had several
    *                   solutions
    *     cohesive zone points_per_cohesive_length points
-   *     attempts      fewer steps taken again than accepted ones
+   *     attempts      fewer rejected steps than accepted ones
    *     rotation, strain, step length, joints, front
    *                   what the method assumes of a motion, see MotionLimits
    */

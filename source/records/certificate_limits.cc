@@ -69,7 +69,7 @@ namespace nsfd
       line.bound = fmt::format("at most {:.3g} %", 100. * largest_joint_speed);
       if (line.verdict == Verdict::bad)
         line.remark = fmt::format(
-            "what rigid joints join has different velocities at t = 0: the "
+            "rigidly joined points differ in velocity at t = 0: the "
             "difference changes its sign in every step{}; give both sides the "
             "same initial velocity, or the faces a law",
             theta > 0.5 ? fmt::format(" and is {:.2g} times as large after it",
@@ -89,7 +89,8 @@ namespace nsfd
                   within(!(is_sharp && has_softened)), "{:.2g} strengths");
       if (line.verdict == Verdict::bad) {
         line.remark = fmt::format(
-            "{} brings {} into the bodies within {}, one crossing of a cell, "
+            "{} brings {} into the bodies within {}, the transit time of a "
+            "cell, "
             "at t = {}: the oscillation behind such a front may have broken "
             "faces; ",
             front.name, engineering(front.stress, "Pa"),

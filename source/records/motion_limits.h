@@ -14,18 +14,19 @@ namespace nsfd
 
   /**
    * What comes into bodies faster than their cells can carry: a front leaves an
-   * oscillation behind it, up to 0.4 of what rises within one crossing of a
+   * oscillation behind it, up to 0.4 of what rises within the transit time of a
    * cell (mean of two cells; 0.56 in single ones) and in proportion to it if it
    * rises more slowly. Damping leaves 0.016 / viscosity of that, measured for
-   * 0.06 to 0.8, at steps of 0.1 crossings; longer steps leave less.
+   * 0.06 to 0.8, at a Courant number of 0.1; longer steps leave less.
    */
   struct SharpFront {
-    double stress = 0., time = 0.; ///< within one crossing, Pa; since when, s
-    double strength = 0.;          ///< the smallest one, Pa
-    double crossing = 0.;          ///< of the largest cell, s
-    std::string name;              ///< "Boundary: left"
-    bool can_rise = true;          ///< a formula in time, not an impact
-    double modulus = 0.;           ///< density c^2 of the stiffest body, Pa
+    /// Pa, within the transit time; since when, s
+    double stress = 0., time = 0.;
+    double strength = 0.; ///< the smallest one, Pa
+    double crossing = 0.; ///< of the largest cell, s
+    std::string name;     ///< "Boundary: left"
+    bool can_rise = true; ///< a formula in time, not an impact
+    double modulus = 0.;  ///< density c^2 of the stiffest body, Pa
     /// of the bodies and of the scheme, over modulus x crossing
     double viscosity = 0.;
 
@@ -51,7 +52,8 @@ namespace nsfd
     /// way of bodies past each other in a step over the smallest thickness
     std::optional<Peak> stride;
     double thickness = 0.; ///< m
-    /// velocity of what rigid joints join at t = 0, over the largest speed
+    /// difference in velocity of rigidly joined points at t = 0, over the
+    /// largest speed
     std::optional<double> joints;
     double joint_theta = 0.;         ///< of the run: 1 takes it out at once
     std::optional<SharpFront> front; ///< the sharpest one, of faces that break
@@ -63,8 +65,8 @@ namespace nsfd
   constexpr double largest_strain = 0.05;
   /// of the thickness: what is farther in has left on the other side
   constexpr double largest_stride = 1.;
-  /// of the strength, within one crossing of a cell: it leaves 0.1 to 0.15 of
-  /// the strength behind
+  /// of the strength, within the transit time of a cell: it leaves 0.1 to 0.15
+  /// of the strength behind
   constexpr double largest_front = 0.25;
   /// of the largest speed: a hundredth of it is 1e-4 of the energy
   constexpr double largest_joint_speed = 1e-2;

@@ -43,7 +43,7 @@ namespace nsfd
      * Whether the mesh is good enough for a step from @p state to @p next, as
      * far as it is looked at: no wave gets further than a quarter of the
      * smallest cell in between. If it is not, it changes, with @p state on it,
-     * and the step is to be taken again. Collective.
+     * and the step is to be repeated. Collective.
      */
     bool follow(State &state, const State &next);
 

@@ -91,7 +91,7 @@ namespace nsfd
       void print_step(const CohesiveLaw &law, double unique) const;
       void print_stiffness() const;
       void print_contraction() const;
-      std::string in_crossings(double h) const;
+      std::string courant_text(double h) const;
     };
 
     template <int dim>
@@ -109,9 +109,9 @@ namespace nsfd
     }
 
     template <int dim>
-    std::string Advisor<dim>::in_crossings(const double h) const
+    std::string Advisor<dim>::courant_text(const double h) const
     {
-      return crossing > 0. ? fmt::format("{} = {:.3g} crossings",
+      return crossing > 0. ? fmt::format("{} (Courant number {:.3g})",
                                          engineering(h, "s"), h / crossing)
                            : engineering(h, "s");
     }
@@ -212,8 +212,9 @@ namespace nsfd
             engineering(law.strength() * std::sqrt(needed / C_N), "Pa", 4)));
       if (!bounds.conflict())
         return;
-      line("", "conflict on any mesh: faces stiff enough to be invisible are "
-               "too strong to be resolved");
+      line("",
+           "conflict on any mesh: faces stiff enough to add no compliance are "
+           "too strong to be resolved");
       const double enough = std::ceil(points * bounds.lower / bounds.upper);
       if (enough <= most_points)
         change(fmt::format("`set interface points = {:g}` ends it", enough));
@@ -262,23 +263,23 @@ namespace nsfd
         return;
       line("step", fmt::format("one solution is sure below {} while a point "
                                "softens: this step is {}",
-                               in_crossings(unique),
+                               courant_text(unique),
                                step <= unique ? "below" : "above;"));
       if (step <= unique)
         return;
       const double safe = MoreauJean<dim>::bound_share * unique;
       if (input.time.step_kind == StepKind::automatic) {
         line("", "`step = auto` shortens it where a point softens");
-        const double halvings = std::ceil(std::log2(step / safe));
-        if (halvings > input.time.maximum_halvings)
-          change(fmt::format("`set maximum halvings = {:g}`, which it takes",
-                             halvings));
+        const double bisections = std::ceil(std::log2(step / safe));
+        if (bisections > input.time.maximum_bisections)
+          change(fmt::format("`set maximum bisections = {:g}`, which it takes",
+                             bisections));
       } else {
         line("", "such steps are counted (steps_beyond_uniqueness)");
         change(
             fmt::format("`set step = auto`, or `set step = {}`",
                         crossing > 0. && input.time.step_kind != StepKind::time
-                            ? fmt::format("{:.2g} crossings", safe / crossing)
+                            ? fmt::format("{:.2g} courant", safe / crossing)
                             : fmt::format("{:.2g} s", safe)));
       }
     }
@@ -323,7 +324,7 @@ namespace nsfd
       std::cout << (contraction < 1.
                         ? ", a contraction\n"
                         : fmt::format(",\n             1 at {}\n",
-                                      in_crossings(contraction_step)));
+                                      courant_text(contraction_step)));
     }
 
     /** The step with contraction number 1; W grows where the step shrinks. */
@@ -384,17 +385,18 @@ namespace nsfd
       const auto n_steps =
           std::llround((input.time.end - statics.until) / step);
       if (crossing > 0.)
-        out << fmt::format("  step       {} = {:.3g} crossings of the "
-                           "smallest cell (one is {}), {} steps\n",
-                           engineering(step, "s", 4), step / crossing,
-                           engineering(crossing, "s", 4), n_steps);
+        out << fmt::format(
+            "  step       {}, Courant number {:.3g} (1 is {}), {} "
+            "steps\n",
+            engineering(step, "s", 4), step / crossing,
+            engineering(crossing, "s", 4), n_steps);
       else
         out << fmt::format("  step       {}, {} steps\n",
                            engineering(step, "s", 4), n_steps);
       if (step > 1.01 * crossing && crossing > 0.)
         out << "             waves cross more than a cell per step: they are "
                "damped or late\n"
-               "             change: `set step = 0.5 crossings`, unless the "
+               "             change: `set step = 0.5 courant`, unless the "
                "motion is slow\n";
     }
   } // namespace

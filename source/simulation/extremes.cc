@@ -361,7 +361,7 @@ namespace nsfd
     std::vector<std::string> result;
     if (joints_ > largest_joint_speed && input_.time.theta < 1.)
       result.push_back(fmt::format(
-          "note: at t = 0 what rigid joints join differs in velocity by {}, "
+          "note: at t = 0 rigidly joined points differ in velocity by {}, "
           "which changes its sign in every step",
           engineering(largest, "m/s")));
     if (front_)

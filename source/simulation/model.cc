@@ -21,11 +21,11 @@ namespace nsfd
     template <int dim>
     std::unique_ptr<Dynamics<dim>> make_linear_dynamics(
         const SceneInput &input, const Communicator &communicator,
-        const Discretization<dim> &discretization, const bool global)
+        const Discretization<dim> &discretization, const bool assembled)
     {
       const auto &bodies = discretization.bodies();
       const auto &points = discretization.points();
-      if (global)
+      if (assembled)
         return make_sparse_dynamics<dim>(communicator, bodies, points,
                                          input.solver.linear_solver,
                                          node_coordinates(discretization));
@@ -60,14 +60,14 @@ namespace nsfd
     charge_memory("bodies and points");
     choose_path(input);
     build_dynamics(input, communicator);
-    if (input.time.scheme == Scheme::symplectic)
+    if (input.time.scheme == Scheme::explicit_moreau_jean)
       check_stability(input, communicator, problems);
     if (!problems.empty())
       return problems;
     charge_memory("blocks of the bodies");
     method = input.time.scheme == Scheme::arkode
                  ? "arkode"
-                 : solver_name(input.solver.method, "chain");
+                 : solver_name(input.solver.method, "cascade");
     build_stepper(input);
     if (input.time.scheme == Scheme::arkode)
       smooth_motion = std::make_unique<SmoothMotion<dim>>(
@@ -76,7 +76,7 @@ namespace nsfd
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
           make_linear_dynamics(input, communicator, *discretization,
-                               input.solver.path != "element-wise"),
+                               input.solver.path != "local"),
           make_solver<dim>(input, "dual newton"));
     return problems;
   }
@@ -91,7 +91,7 @@ namespace nsfd
       stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
                                                         *inelastic, *dynamics);
     else {
-      solver = make_solver<dim>(input, "chain");
+      solver = make_solver<dim>(input, "cascade");
       stepper = std::make_unique<LinearMoreauJean<dim>>(
           input, *discretization, *dynamics, *solver, bonded);
     }
@@ -127,7 +127,7 @@ namespace nsfd
                                           materials, input);
     build_dynamics(input, communicator);
     dynamics->continue_counters(dynamics_counters);
-    if (input.time.scheme == Scheme::symplectic) {
+    if (input.time.scheme == Scheme::explicit_moreau_jean) {
       const double limit = stable_limit(input, communicator,
                                         step_of_smallest_cells(communicator));
       control->limit(limit);
@@ -162,22 +162,21 @@ namespace nsfd
     }
   }
 
-  /** Short steps: face blocks; long ones: a global matrix. */
+  /** Short steps: face blocks; long ones: an assembled matrix. */
   template <int dim>
   void Model<dim>::choose_path(const SceneInput &input)
   {
     const double crossing = discretization->crossing_time();
     if (input.iterates())
-      path = "element-wise";
+      path = "local";
     else if (input.has_bonded_faces())
-      path =
-          input.time.scheme == Scheme::symplectic ? "element-wise" : "global";
+      path = input.time.scheme == Scheme::explicit_moreau_jean ? "local"
+                                                               : "assembled";
     else if (input.solver.path != "auto")
       path = input.solver.path;
     else
-      path = crossing > 0. && dynamic_step(input) > 5. * crossing
-                 ? "global"
-                 : "element-wise";
+      path = crossing > 0. && dynamic_step(input) > 5. * crossing ? "assembled"
+                                                                  : "local";
   }
 
   template <int dim>
@@ -199,7 +198,8 @@ namespace nsfd
           make_moving_dynamics<dim>(communicator, inelastic->bodies(), points);
       return;
     }
-    if (input.has_bonded_faces() && input.time.scheme == Scheme::symplectic) {
+    if (input.has_bonded_faces() &&
+        input.time.scheme == Scheme::explicit_moreau_jean) {
       auto joined =
           make_explicit_bonded_dynamics<dim>(communicator, bodies, points);
       bonded = joined.get();
@@ -215,7 +215,7 @@ namespace nsfd
       return;
     }
     dynamics = make_linear_dynamics(input, communicator, *discretization,
-                                    path == "global");
+                                    path == "assembled");
   }
 
   template struct Model<2>;

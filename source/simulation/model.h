@@ -26,7 +26,7 @@ namespace nsfd
     std::unique_ptr<MeshGroups<dim>> groups;
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<StepControl> control;
-    std::string path; ///< of the linear algebra: element-wise or global
+    std::string path; ///< of the linear algebra: local or assembled
     std::unique_ptr<Dynamics<dim>> dynamics;
     BondedDynamics<dim> *bonded = nullptr; ///< the same, if faces are bonded
     std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
@@ -59,7 +59,7 @@ namespace nsfd
                                    const Communicator &communicator);
 
     /**
-     * After cells have changed: all parts again, and steps that the symplectic
+     * After cells have changed: all parts again, and steps that the explicit
      * scheme can take on them. Collective.
      */
     void rebuild(const SceneInput &input, const Communicator &communicator);

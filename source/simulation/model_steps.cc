@@ -20,8 +20,8 @@ namespace nsfd
   {
     if (input.time.step_kind != StepKind::time &&
         discretization->crossing_time() == 0.) {
-      problems.push_back("Time/step: all bodies are rigid, there is no "
-                         "crossing time; write the step as a time");
+      problems.push_back("Time/step: all bodies are rigid, no wave "
+                         "crosses a cell; write the step as a time");
       return;
     }
     const bool quasi_static = input.statics && input.statics->steps;
@@ -60,7 +60,8 @@ namespace nsfd
     bonded->set_bonds(joined);
   }
 
-  /** Bodies, and bonds between them, are explicit in the symplectic scheme. */
+  /** Bodies, and bonds between them, act by explicit forces in the explicit
+   * scheme. */
   template <int dim>
   double Model<dim>::stable_limit(const SceneInput &input,
                                   const Communicator &communicator,
@@ -73,7 +74,7 @@ namespace nsfd
     return stable_step(*dynamics, enough);
   }
 
-  /** The base step, halved as often as the smallest cells. */
+  /** The base step, bisected as often as the smallest cells. */
   template <int dim>
   double
   Model<dim>::step_of_smallest_cells(const Communicator &communicator) const
@@ -94,8 +95,8 @@ namespace nsfd
                                       std::numeric_limits<double>::infinity());
     if (dynamic_step(input) > limit)
       problems.push_back(fmt::format(
-          "Time/step is {:.4g} s, and the symplectic scheme is stable up to "
-          "{:.4g} s: write at most `{:.3f} crossings`",
+          "Time/step is {:.4g} s, and the explicit scheme is stable up to "
+          "{:.4g} s: write at most `{:.3f} courant`",
           dynamic_step(input), limit,
           0.999 * limit / discretization->crossing_time()));
   }
@@ -113,7 +114,7 @@ namespace nsfd
   Model<dim>::dynamic_control(const SceneInput &input, const double start) const
   {
     return std::make_unique<StepControl>(input.time.end, dynamic_step(input),
-                                         input.time.maximum_halvings, start);
+                                         input.time.maximum_bisections, start);
   }
 
   template <int dim>
@@ -122,7 +123,7 @@ namespace nsfd
   {
     return std::make_unique<StepControl>(input.statics->until,
                                          input.statics->step,
-                                         input.time.maximum_halvings, start);
+                                         input.time.maximum_bisections, start);
   }
 
   template void Model<2>::build_control(const SceneInput &,

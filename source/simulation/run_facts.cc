@@ -97,9 +97,9 @@ namespace nsfd
                                   : "lower Solver/tolerance";
       case WatchedLine::joints:
       case WatchedLine::supports:
-        return "lower Solver/tolerance; rows may ask for the same";
+        return "lower Solver/tolerance; joints may be redundant";
       case WatchedLine::scheme:
-        return time.scheme == Scheme::symplectic
+        return time.scheme == Scheme::explicit_moreau_jean
                    ? "set step to a shorter time, or scheme = moreau-jean"
                : time.cohesion_rule != CohesionRule::exact && !input.statics
                    ? "set cohesion rule = exact"
@@ -186,7 +186,7 @@ namespace nsfd
         input.statics && input.statics->at_jump == SolutionJump::dynamic;
     facts.takes_jumps =
         input.statics && input.statics->at_jump == SolutionJump::relax;
-    facts.maximum_halvings = input.time.maximum_halvings;
+    facts.maximum_bisections = input.time.maximum_bisections;
     facts.automatic_steps = input.time.step_kind == StepKind::automatic;
     facts.beyond_unique = counter("steps_beyond_uniqueness");
     facts.solution_jumps = counter("solution_jumps");

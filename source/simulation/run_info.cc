@@ -122,7 +122,7 @@ namespace nsfd
         info.version, input.file, summary.cells, summary.dofs,
         summary.interface_points, step);
     if (crossing > 0.)
-      std::cout << fmt::format(" ({:.3g} crossings)", step / crossing);
+      std::cout << fmt::format(" (Courant number {:.3g})", step / crossing);
     std::cout << "\n";
     for (const auto &[kind, name] : info.parts)
       std::cout << fmt::format("  {:<24} {}\n", kind, name);

@@ -63,7 +63,7 @@ namespace nsfd
                                       material.bulk_viscosity);
       const TimeInput &time = input.time;
       const double step = time.step_kind == StepKind::time ? time.step
-                          : time.step_kind == StepKind::crossings
+                          : time.step_kind == StepKind::courant
                               ? time.step * discretization.crossing_time()
                               : 0.;
       const double numerical =

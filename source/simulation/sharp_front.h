@@ -11,9 +11,9 @@ namespace nsfd
 
   /**
    * The largest stress that loads and prescribed motions bring into bodies with
-   * breakable faces within one crossing of their largest cell, at any time of
-   * the run; a velocity v brings density x wave speed x v. Nothing if no face
-   * may break or no cell deforms. Collective.
+   * breakable faces within the transit time of their largest cell, at any time
+   * of the run; a velocity v brings density x wave speed x v. Nothing if no
+   * face may break or no cell deforms. Collective.
    */
   template <int dim>
   std::optional<SharpFront>

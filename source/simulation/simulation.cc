@@ -230,7 +230,7 @@ namespace nsfd
 
     /**
      * Where the step has arrived, the mesh may be too coarse. True if it has
-     * changed, and the step is to be taken again.
+     * changed, and the step is to be repeated.
      */
     template <int dim>
     bool Simulation<dim>::change_mesh(State &next)

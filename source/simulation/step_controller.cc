@@ -31,7 +31,7 @@ namespace nsfd
 
   /**
    * `step = auto`: a point came to soften in a step that is too long for it.
-   * True if the step is to be taken again, with shorter ones to its end.
+   * True if the step is to be repeated, with shorter ones to its end.
    */
   template <int dim>
   bool StepController<dim>::is_beyond_uniqueness(
@@ -40,7 +40,7 @@ namespace nsfd
   {
     auto &control = *model_.control;
     if (input_.time.step_kind != StepKind::automatic || !report.beyond_unique ||
-        !control.can_halve())
+        !control.can_bisect())
       return false;
     const double h = control.step();
     const double unique = integrator.unique_step(state, next);
@@ -63,7 +63,7 @@ namespace nsfd
   {
     auto &control = *model_.control;
     if (report.overshoot <= input_.time.largest_overshoot ||
-        control.level() >= 3 || !control.can_halve())
+        control.level() >= 3 || !control.can_bisect())
       return false;
     const double h = control.step();
     control.limit(std::clamp(report.share, 0.125, 0.5) * h);
@@ -87,13 +87,13 @@ namespace nsfd
     ++attempts_;
     auto &control = *model_.control;
     const double length = control.step() * rejected.share();
-    if (control.halve()) {
-      while (control.step() > length && control.halve()) {
+    if (control.bisect()) {
+      while (control.step() > length && control.bisect()) {
       }
       return Outcome::again;
     }
-    failure +=
-        fmt::format("; {} halvings did not help", input_.time.maximum_halvings);
+    failure += fmt::format("; {} bisections did not help",
+                           input_.time.maximum_bisections);
     return Outcome::failed;
   }
 
@@ -109,7 +109,7 @@ namespace nsfd
     StepRequest step;
     step.length = control.step();
     step.end = control.next_time();
-    step.can_be_shorter = control.can_halve();
+    step.can_be_shorter = control.can_bisect();
     // A shorter step is the cure for a step with several solutions, but not
     // for every hard one: each further attempt may cost twice as much.
     step.idle_rounds <<= step.can_be_shorter ? std::min(attempts_, 10u) : 10;

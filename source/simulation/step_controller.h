@@ -27,7 +27,7 @@ namespace nsfd
 
     enum class Outcome {
       taken,
-      again,       ///< to be taken again, shorter
+      again,       ///< to be repeated, shorter
       handed_over, ///< by the integrator: the next one goes on from the state
       failed
     };

@@ -33,7 +33,7 @@ namespace nsfd
 
     enum class Outcome {
       taken,
-      again, ///< to be taken again: shorter, or by the next integrator
+      again, ///< to be repeated: shorter, or by the next integrator
       failed
     };
 

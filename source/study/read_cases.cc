@@ -32,12 +32,8 @@ namespace nsfd
       void add(const InputErrors &more)
       {
         for (const Diagnostic &one : more.diagnostics())
-          if (seen_.insert(key(one)).second) {
-            if (one.is_error)
-              errors_.error(one.location, one.message, one.advice);
-            else
-              errors_.warning(one.location, one.message, one.advice);
-          }
+          if (seen_.insert(key(one)).second)
+            errors_.add(one);
       }
 
     private:
@@ -155,9 +151,8 @@ namespace nsfd
       one.tolerance = scene->solver.tolerance;
       if (!scene->statics && scene->time.step_kind == StepKind::time)
         one.half_step = fmt::format("{:.17g} s", 0.5 * scene->time.step);
-      if (!scene->statics && scene->time.step_kind == StepKind::crossings)
-        one.half_step =
-            fmt::format("{:.17g} crossings", 0.5 * scene->time.step);
+      if (!scene->statics && scene->time.step_kind == StepKind::courant)
+        one.half_step = fmt::format("{:.17g} courant", 0.5 * scene->time.step);
       fill_numbers(*scene, combination, one.numbers);
       return one;
     }

@@ -204,8 +204,9 @@ namespace nsfd
                          "of each case; short ones are repeated more often");
       study.ranks = reader.integer("ranks", "1", 1, any_count,
                                    "of each case; may vary as Study/ranks");
-      study.jobs = reader.integer(
-          "jobs", "1", 1, 256, "cases at a time; times are honest with 1 only");
+      study.jobs =
+          reader.integer("jobs", "1", 1, 256,
+                         "cases at a time; run times are reliable with 1 only");
       study.outputs =
           reader.boolean("outputs", false, "fields and reports of every case");
       study.limit_checks = reader.boolean(

@@ -1,5 +1,6 @@
 #include "study_numbers.h"
 
+#include "parameters/former_words.h"
 #include "parameters/quantity.h"
 #include "study_input.h"
 
@@ -25,7 +26,7 @@ namespace nsfd
     if (begin == std::string::npos)
       return number;
     unit = unit.substr(begin, unit.find_last_not_of(' ') - begin + 1);
-    if (unit == "crossings")
+    if (current_unit(unit) == "courant")
       return number;
     const auto scale = find_unit(unit);
     if (!scale)

@@ -262,7 +262,7 @@ namespace nsfd
       std::vector<std::string> head = {
           "case",    "status",      "unknowns",   "steps",     "Newton",
           "Krylov",  "factors",     "set-up (s)", "solve (s)", "spread",
-          "repeats", "memory (MB)", "ledger",     "numerical"};
+          "repeats", "memory (MB)", "balance",    "numerical"};
       for (const std::string &error : errors)
         head.push_back(readable(error));
       std::vector<std::vector<std::string>> rows;
@@ -377,7 +377,7 @@ namespace nsfd
     }
     diagrams.add(
         "ledger_defect",
-        balance_chart(study, "EnergyBalance defect", "relative defect",
+        balance_chart(study, "Energy balance", "relative defect",
                       [](const CaseResult &r) { return r.balance_residual; }));
     diagrams.add("numerical_dissipation",
                  balance_chart(study, "Numerical dissipation",

@@ -125,7 +125,7 @@ namespace nsfd
       std::string text =
           fixed("case", width) +
           fmt::format("  {:<9} {:>9} {:>7} {:>10} {:>6} {:>8} {:>9}", "status",
-                      "unknowns", "steps", "CPU s", "+-", "MB", "ledger");
+                      "unknowns", "steps", "CPU s", "+-", "MB", "balance");
       if (!errors.empty())
         text += fmt::format(" {:>16}", errors[0]);
       text += "\n";

@@ -59,7 +59,7 @@ namespace nsfd
       for (std::size_t i = 0; i < n; ++i)
         terms[i] = 0.5 * next.displacement[i] * elastic->at_end()[i];
       result.elastic = communicator.sum(terms);
-      result.of_strain = symplectic_share(kick, *elastic, old, next);
+      result.of_strain = explicit_share(kick, *elastic, old, next);
     } else
       result.elastic = 0.5 * energy(Operator::stiffness, next.displacement);
     if (!elastic && theta_ > 0.5) {
@@ -92,10 +92,10 @@ namespace nsfd
    * / 2. It comes and goes.
    */
   template <int dim>
-  double EnergyBalance<dim>::symplectic_share(const double kick,
-                                              const ElasticForces<dim> &elastic,
-                                              const State &old,
-                                              const State &next) const
+  double EnergyBalance<dim>::explicit_share(const double kick,
+                                            const ElasticForces<dim> &elastic,
+                                            const State &old,
+                                            const State &next) const
   {
     const std::size_t n = next.velocity.size();
     std::vector<double> terms(n);

@@ -20,7 +20,7 @@ namespace nsfd
 {
   namespace
   {
-    // The longest and the shortest pseudo-time step, in crossings of a cell.
+    // The longest and the shortest pseudo-time step, as Courant numbers.
     // Above, (h/crossing)^2 times round-off would be seen in the jumps.
     constexpr double longest = 300., shortest = 0.05;
     constexpr unsigned int most_rounds = 200, accelerated = 12;
@@ -381,7 +381,7 @@ namespace nsfd
       refuse_rigid_body_modes(old, time);
       throw StepRejected(fmt::format(
           "no equilibrium was found at t = {:.6g}: {:.2e} of the forces are "
-          "left over; worst face {}",
+          "not balanced; worst face {}",
           time, relaxation_->imbalance(), relaxation_->worst_face()));
     }
     ++counters_.equilibria;

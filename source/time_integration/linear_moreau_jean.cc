@@ -24,7 +24,7 @@ namespace nsfd
       : MoreauJean<dim>(input, discretization, dynamics), solver_(solver),
         bonded_(bonded)
   {
-    if (input.time.scheme == Scheme::symplectic)
+    if (input.time.scheme == Scheme::explicit_moreau_jean)
       elastic_forces_ = std::make_unique<ElasticForces<dim>>(dynamics);
     if (input.has_bonded_faces())
       bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);

@@ -33,7 +33,7 @@ namespace nsfd
                            this->free_motion_, this->step_problem_,
                            this->timings_},
             bodies)),
-        solver_name_(solver_name(input.solver.method, "contacts alone"))
+        solver_name_(solver_name(input.solver.method, "frictional contact"))
   {
   }
 
@@ -47,7 +47,7 @@ namespace nsfd
                            this->free_motion_, this->step_problem_,
                            this->timings_},
             bodies)),
-        solver_name_(solver_name(input.solver.method, "chain"))
+        solver_name_(solver_name(input.solver.method, "cascade"))
   {
   }
 
@@ -80,8 +80,8 @@ namespace nsfd
     auto &dynamics = this->dynamics_;
     const auto lost = [&] {
       return StepRejected(fmt::format(
-          "a body has no motion in the step of {:.4g} at t = {:.6g}: it would "
-          "be turned inside out, or its material finds no stress",
+          "a cell would be inverted in the step of {:.4g} at t = {:.6g}, or "
+          "the stress of its material was not found",
           h, old.time));
     };
     SolverReport total;
@@ -138,8 +138,8 @@ namespace nsfd
       return true;
     if (round == most_iterations || !std::isfinite(error))
       throw StepRejected(fmt::format(
-          "the motion of the step of {:.4g} at t = {:.6g} did not come to "
-          "rest: velocities are off by {:.1e} of all after {} iterations",
+          "the Newton iteration of the step of {:.4g} at t = {:.6g} did not "
+          "converge: relative error {:.1e} after {} iterations",
           h, old.time, std::sqrt(error / energy_scale_), round + 1));
     return false;
   }

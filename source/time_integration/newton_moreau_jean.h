@@ -34,7 +34,7 @@ namespace nsfd
 
     State initial_state() const override;
     void complete(State &state) const override;
-    /** Rejected is also what does not come to rest in 40 rounds. */
+    /** A step that has not converged after 40 rounds is rejected. */
     StepReport
     advance(const State &old, double time_step, State &next,
             unsigned int idle_rounds = SolverControl().idle_rounds) override;

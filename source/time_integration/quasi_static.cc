@@ -58,14 +58,14 @@ namespace nsfd
       released_ += equilibrium.left_over;
       what = fmt::format(
           "solution jump between t = {:.8g} and {:.8g}: no equilibrium "
-          "continues the last one, {:.6g} J are left over; worst face {}",
+          "continues the last one, {:.6g} J are released; worst face {}",
           old.time, step.end, equilibrium.left_over, equilibrium.place);
     } else if (found && equilibrium.skips_peak)
       what = fmt::format(
           "no equilibrium was found between t = {:.8g} and {:.8g} that does "
-          "not skip the peak of a law: {} would be beyond it, and has seen "
+          "not skip the peak of a law: {} would be beyond it, and has reached "
           "{:.3g} of that traction; shorter steps of the load (`step`, "
-          "`maximum halvings`) come closer",
+          "`maximum bisections`) come closer",
           old.time, step.end, equilibrium.place, equilibrium.peak_seen);
     else if (found)
       what = fmt::format(

@@ -36,7 +36,7 @@ namespace nsfd
           1e-6 * std::max(step.next.largest_energy, step.energy_scale)))
       throw StepRejected(fmt::format(
           "the energies of the step of {:.4g} at t = {:.6g} do not add up "
-          "(relative defect {:.1e}): rows that ask for the same have made "
+          "(relative defect {:.1e}): redundant joints have made "
           "impulses too large; worst face {}",
           step.time_step, step.old.time, report.balance_residual,
           describe_(step.worst_point)));

@@ -15,12 +15,12 @@ namespace nsfd
   } // namespace
 
   StepControl::StepControl(const double end, const double base,
-                           const unsigned int maximum_halvings,
+                           const unsigned int maximum_bisections,
                            const double start)
       : end_(end), ceiling_(std::numeric_limits<double>::infinity()),
         n_base_(static_cast<unsigned long long>(
             std::fmax(1., std::ceil((end - start) / base * (1. - round_off))))),
-        maximum_level_(maximum_halvings), start_(start)
+        maximum_level_(maximum_bisections), start_(start)
   {
     base_ = (end - start) / double(n_base_);
   }
@@ -56,13 +56,13 @@ namespace nsfd
     }
   }
 
-  bool StepControl::halve()
+  bool StepControl::bisect()
   {
     if (level_ == maximum_level_)
       return false;
     ++level_;
     position_ *= 2;
-    ++n_halvings_;
+    ++n_bisections_;
     return true;
   }
 
@@ -70,7 +70,7 @@ namespace nsfd
   {
     const Archive::Part part(archive, "step_control");
     archive.numbers("step_levels", start_, end_, base_, n_base_, base_count_,
-                    position_, level_, maximum_level_, n_halvings_, ceiling_);
+                    position_, level_, maximum_level_, n_bisections_, ceiling_);
   }
 
   void StepControl::limit(const double limit)

@@ -15,7 +15,7 @@ namespace nsfd
   {
   public:
     /** @p base is shortened so that the end is met exactly. */
-    StepControl(double end, double base, unsigned int maximum_halvings,
+    StepControl(double end, double base, unsigned int maximum_bisections,
                 double start = 0.);
 
     bool finished() const { return base_count_ == n_base_; }
@@ -28,22 +28,22 @@ namespace nsfd
 
     /** The step was taken. */
     void accept();
-    bool can_halve() const { return level_ < maximum_level_; }
+    bool can_bisect() const { return level_ < maximum_level_; }
     /** One level down. False if no finer level is allowed. */
-    bool halve();
+    bool bisect();
     /** Down until step() <= @p limit, as far as levels go. */
     void limit(double limit);
     /** Do not go up above steps of @p limit at the next accept(). */
     void set_ceiling(double limit) { ceiling_ = limit; }
 
-    unsigned int halvings() const { return n_halvings_; }
+    unsigned int bisections() const { return n_bisections_; }
 
     void serialize(Archive &archive);
 
   private:
     double end_, base_, ceiling_;
     unsigned long long n_base_, base_count_ = 0, position_ = 0;
-    unsigned int level_ = 0, maximum_level_, n_halvings_ = 0;
+    unsigned int level_ = 0, maximum_level_, n_bisections_ = 0;
     double start_;
   };
 } // namespace nsfd

@@ -48,7 +48,7 @@ subsection Interface: all
 end
 subsection Time
   set end   = 1000
-  set step  = 0.5 crossings
+  set step  = 0.5 courant
   set theta = 0.5
 end
 subsection Solver
@@ -87,7 +87,7 @@ subsection Boundary: right
 end
 subsection Time
   set end   = 1000
-  set step  = 1 crossings
+  set step  = 1 courant
   set theta = 0.5
 end
 subsection Solver
@@ -152,14 +152,15 @@ end
   {
     std::string text = bars;
     text.replace(text.find("LAW"), 3, law);
-    Scene<2> scene(text, {"Time/cohesion rule=" + rule,
-                          "Time/step=" + step + " crossings"});
+    Scene<2> scene(
+        text, {"Time/cohesion rule=" + rule, "Time/step=" + step + " courant"});
     const auto &origins = scene.discretization->origins();
     const auto &e = scene.state.energy;
     Separation result;
     for (bool whole = true; whole && scene.state.time < 500.;) {
       const double damage = e.damage;
-      result.halved |= scene.advance_halving() < scene.time_step * (1. - 1e-9);
+      result.halved |=
+          scene.advance_bisecting() < scene.time_step * (1. - 1e-9);
       result.steps += e.damage > damage;
       whole = false;
       for (std::size_t i = 0; i < origins.size(); ++i)

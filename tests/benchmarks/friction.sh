@@ -3,7 +3,7 @@
 #   sh tests/benchmarks/friction.sh [cells] [steps] [intact faces] [more options]
 # runs prm/benchmarks/broken_faces.prm on cells x cells quads (20) for the given
 # number of steps (20) per case: degree 1 and 2; 10, 30 and 100 % of the faces
-# broken; steps of 0.5, 2 and 20 crossings; intact faces spring or unilateral.
+# broken; Courant numbers 0.5, 2 and 20; intact faces spring or unilateral.
 # More options go to every run, for example --set Solver/method='gauss seidel'.
 # DEGREES, SHARES, STEPS and LIMIT (seconds per case) narrow it down.
 #
@@ -11,7 +11,7 @@
 #   whole     of the wanted steps, solved without cutting
 #   cuts      rejected attempts
 #   Newton..  per accepted step: median (largest)
-#   factors   global factorisations per accepted step
+#   factors   factorisations of the assembled matrix per accepted step
 #   ms        CPU of the contact solve per wanted step, rejected attempts included
 #   ratio     the same over a frictionless step of the intact square with
 #             unilateral faces, solved by factorisation right before
@@ -37,7 +37,7 @@ run() { # run DEGREE STEP SHARE INTACT STEPS [options]
     --set "Constants/C=$((21 * degree * degree))" \
     --set "Discretization/degree=$degree" --set "Constants/share=$share" \
     --set "Interface: faces/intact faces=$faces" \
-    --set "Time/step=$step crossings" --set "Time/end=$end" \
+    --set "Time/step=$step courant" --set "Time/end=$end" \
     --set "Time/theta=$theta" "$@" --output "$out/run" --force --quiet \
     2>"$out/errors" || [ -s "$out/run/summary.json" ] || cat "$out/errors" >&2
 }
@@ -62,7 +62,7 @@ echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 for p in ${DEGREES:-1 2}; do
   for step in ${STEPS:-0.5 2 20}; do
     run "$p" "$step" 0 unilateral 3 --set Constants/mu=0 \
-      --set Solver/path=global --set "Solver/linear solver=direct"
+      --set Solver/path=assembled --set "Solver/linear solver=direct"
     intact_ms=$(awk "BEGIN { print 1e3 * $(value 'nonsmooth solve') / $(value steps) }")
     for share in ${SHARES:-0.1 0.3 1}; do
       run "$p" "$step" "$share" "$intact" "$steps" "$@"

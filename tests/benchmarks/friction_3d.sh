@@ -2,7 +2,7 @@
 # Friction on broken faces in three dimensions, as a Markdown table:
 #   sh tests/benchmarks/friction_3d.sh [cells ...] [-- more options]
 # runs prm/benchmarks/broken_brick.prm on bricks of cells^3 (6 10): STEPS steps
-# (1) of STEP crossings (2), SHARE of the faces broken (0.3), at most LIMIT
+# (1) of Courant number STEP (2), SHARE of the faces broken (0.3), at most LIMIT
 # seconds each (600). More options go to every run.
 #
 #   matrices  made ready to solve with, median (worst) per step
@@ -33,7 +33,7 @@ for n in ${sizes:-6 10}; do
   timeout "${LIMIT:-600}" ./nsfd prm/benchmarks/broken_brick.prm \
     --set "Constants/n=$n" --set "Mesh/cells=$n, $n, $n" \
     --set "Constants/share=${SHARE:-0.3}" --set "Time/end=$end" \
-    --set "Time/step=${STEP:-2} crossings" "$@" \
+    --set "Time/step=${STEP:-2} courant" "$@" \
     --output "$out/run" --force --quiet || true
   awk -v n="$n" -v steps="$(value steps)" -v cuts="$(value rejected_steps)" \
     -v newton="$(spread newton)" -v krylov="$(spread krylov)" \

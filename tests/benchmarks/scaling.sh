@@ -39,7 +39,7 @@ row() { # row SERIES DIMENSION DEGREE CELLS RATIO STEP STEPS PATH [options]
     --set "Mesh/lower corner=$lower" --set "Mesh/upper corner=$upper" \
     --set "Interface: faces/stiffness=$cells * $ratio" \
     --set "Discretization/degree=$degree" --set "Time/theta=$theta" \
-    --set "Time/step=$step crossings" --set "Time/end=$end" \
+    --set "Time/step=$step courant" --set "Time/end=$end" \
     --set "Solver/path=$path" --set "Output/fields=false" "$@" \
     --output "$out/run" --force --quiet 2>"$out/errors" || status=$?
   if [ ! -s "$out/run/summary.json" ]; then
@@ -61,7 +61,7 @@ case "${1:-}" in
 stiffness)
   for ratio in $all_ratios; do
     for step in $all_steps; do
-      row "C L/E = $ratio" 2 1 40 "$ratio" "$step" 5 global \
+      row "C L/E = $ratio" 2 1 40 "$ratio" "$step" 5 assembled \
         --set "Solver/linear solver=${2:-cg}"
     done
   done ;;
@@ -70,31 +70,31 @@ degree)
     for ratio in 21 1e5; do
       for step in $all_steps; do
         row "p = $degree; C L/E = $ratio" 2 $degree 20 "$ratio" "$step" 5 \
-          global --set "Solver/linear solver=cg"
+          assembled --set "Solver/linear solver=cg"
       done
     done
   done
   for degree in 1 2; do
     for step in $all_steps; do
-      row "p = $degree; 3D" 3 $degree 6 21 "$step" 5 global \
+      row "p = $degree; 3D" 3 $degree 6 21 "$step" 5 assembled \
         --set "Solver/linear solver=cg"
     done
   done ;;
 meshes)
   for step in 1 100; do
     for cells in 20 40 80 160; do
-      row "2D; step $step" 2 1 $cells 21 $step 3 global \
+      row "2D; step $step" 2 1 $cells 21 $step 3 assembled \
         --set "Solver/linear solver=cg"
     done
     for cells in 8 16 32; do
-      row "3D; step $step" 3 1 $cells 21 $step 3 global \
+      row "3D; step $step" 3 1 $cells 21 $step 3 assembled \
         --set "Solver/linear solver=cg"
     done
   done ;;
 contact)
   for ratio in $all_ratios; do
     for step in $all_steps; do
-      row "contact; C L/E = $ratio" 2 1 20 "$ratio" "$step" 5 global \
+      row "contact; C L/E = $ratio" 2 1 20 "$ratio" "$step" 5 assembled \
         --set "Solver/linear solver=cg" \
         --set "Interface: faces/intact faces=unilateral"
     done
@@ -102,20 +102,20 @@ contact)
 cost)
   for solver in direct cg; do
     for cells in 40 80 160 350; do
-      row "2D $solver" 2 1 $cells 21 10 3 global \
+      row "2D $solver" 2 1 $cells 21 10 3 assembled \
         --set "Solver/linear solver=$solver"
     done
   done ;;
 paths)
   for degree in 1 2; do
     for step in 0.25 0.5 1 2 5 10; do
-      for path in element-wise global; do
+      for path in local assembled; do
         row "2D; p = $degree; $path" 2 $degree 40 21 $step 10 $path
       done
     done
   done
   for step in 0.25 0.5 1 2 5 10; do
-    for path in element-wise global; do
+    for path in local assembled; do
       row "3D; $path" 3 1 10 21 $step 10 $path
     done
   done ;;

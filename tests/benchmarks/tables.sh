@@ -3,7 +3,7 @@
 #   sh tests/benchmarks/tables.sh solver   work per step of the pulse scene
 #   sh tests/benchmarks/tables.sh orders   L2 error of the standing mode
 #   sh tests/benchmarks/tables.sh cost     fracture everywhere, time by part
-#   sh tests/benchmarks/tables.sh paths    element-wise against global path
+#   sh tests/benchmarks/tables.sh paths    local against assembled path
 #   sh tests/benchmarks/tables.sh crack    crack that runs and stops
 #   sh tests/benchmarks/tables.sh procedures  three ways to update damage
 #   sh tests/benchmarks/tables.sh auto     step = auto against fixed steps
@@ -28,7 +28,7 @@ error() { # error KEY: the same among the errors, which come after the energies
 
 case "${1:-}" in
 solver)
-  echo "| degree | C_N L/E | step (crossings) | Newton per step | CG per Newton | CG per step |"
+  echo "| degree | C_N L/E | Courant number | Newton per step | CG per Newton | CG per step |"
   echo "|---|---|---|---|---|---|"
   for p in 1 2 3; do
     for ratio in 21 1e3 1e5 1e8; do
@@ -36,7 +36,7 @@ solver)
         end=$(awk "BEGIN { print 20 * $step / 20 / 1.16 }")
         run prm/benchmarks/pulse.prm --set "Mesh/cells=20, 20" \
           --set "Constants/ratio=$ratio" \
-          --set "Discretization/degree=$p" --set "Time/step=$step crossings" \
+          --set "Discretization/degree=$p" --set "Time/step=$step courant" \
           --set "Time/end=$end"
         awk -v p=$p -v c=$ratio -v h=$step -v n="$(value newton)" \
           -v k="$(value krylov)" -v s="$(value steps)" 'BEGIN {
@@ -68,14 +68,14 @@ cost)
   ./nsfd prm/benchmarks/fracture_everywhere.prm --output "$out/run" --force |
     sed -n '/steps, /,/energy:/p' ;;
 paths)
-  echo "| step (crossings) | element-wise: CG per step, ms per step | global: CG per step, ms per step |"
+  echo "| Courant number | local: CG per step, ms per step | assembled: CG per step, ms per step |"
   echo "|---|---|---|"
   for step in 0.5 2 5 20 100; do
     end=$(awk "BEGIN { print 10 * $step / 20 / 1.16 }")
     row="| $step |"
-    for path in element-wise global; do
+    for path in local assembled; do
       run prm/benchmarks/pulse.prm --set "Mesh/cells=20, 20" \
-        --set "Time/step=$step crossings" --set "Time/end=$end" \
+        --set "Time/step=$step courant" --set "Time/end=$end" \
         --set "Solver/path=$path"
       row="$row $(awk -v k="$(value krylov)" -v s="$(value steps)" \
         -v t="$(value 'nonsmooth solve')" \
@@ -105,9 +105,9 @@ procedures)
     verification/stop benchmarks/fracture_everywhere; do
     case $scene in
     quickstart) set -- --set "Time/end=80 us" ;;
-    */midplane) set -- --set "Mesh/cells=10, 10" --set "Time/step=0.3 crossings" ;;
+    */midplane) set -- --set "Mesh/cells=10, 10" --set "Time/step=0.3 courant" ;;
     */fracture_everywhere)
-      set -- --set "Mesh/cells=20, 20" --set "Time/step=0.1 crossings" \
+      set -- --set "Mesh/cells=20, 20" --set "Time/step=0.1 courant" \
         --set "Time/end=38 ns" --set "Interface: all/stiffness=5.67e18 Pa/m" ;;
     *) set -- ;;
     esac
@@ -131,7 +131,7 @@ auto)
     steps=$2
     shift 2
     for step in auto $steps; do
-      [ "$step" = auto ] || step="$step crossings"
+      [ "$step" = auto ] || step="$step courant"
       run "prm/$name.prm" "$@" --set "Time/step=$step" \
         --set Output/fields=false --set Output/report=false
       awk -v f="$(basename "$name")" -v h="$step" -v n="$(value steps)" \

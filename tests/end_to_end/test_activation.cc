@@ -53,7 +53,7 @@ end
 subsection Time
   set end  = )" +
              (flat ? "8 us" : "4 us") + R"(
-  set step = 0.5 crossings
+  set step = 0.5 courant
 end
 subsection Solver
   set tolerance = 1e-10

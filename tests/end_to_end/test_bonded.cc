@@ -31,8 +31,7 @@ namespace end_to_end::test_bonded
   {
     const Workspace workspace;
     Settings settings{elsewhere, midline, no_fields};
-    settings.push_back("Time/step=" + std::to_string(GetParam()) +
-                       " crossings");
+    settings.push_back("Time/step=" + std::to_string(GetParam()) + " courant");
     const Result result =
         good_run(workspace, "midplane", {scene("midplane"), settings});
     ASSERT_TRUE(result.completed());
@@ -40,7 +39,7 @@ namespace end_to_end::test_bonded
                  std::abs(result.dissipated("damage") / 5e-6 - 1.), 1e-9);
     EXPECT_EQ(result.number("fragments"), 2);
     EXPECT_EQ(result.counter("released_bonds"), 80.);
-    // 6e-3 of the toughness at 5 crossings, 2e-4 at 1 with this criterion
+    // 6e-3 of the toughness at Courant number 5, 2e-4 at 1 with this criterion
     expect_below("energy left in broken bonds over the toughness",
                  std::abs(result.dissipated("numerical")) / 5e-6,
                  GetParam() > 1. ? 1e-2 : 1e-3);
@@ -115,7 +114,7 @@ namespace end_to_end::test_bonded
           good_run(workspace, scheme,
                    {file,
                     {"Mesh/cells=10, 10", "Time/scheme=" + scheme,
-                     "Time/step=" + step + " crossings", no_fields}});
+                     "Time/step=" + step + " courant", no_fields}});
       EXPECT_TRUE(result.completed());
       EXPECT_EQ(result.counter("rejected_steps"), 0.);
       expect_below(scheme + ": ledger", result.number("ledger_defect_max"),
@@ -126,7 +125,7 @@ namespace end_to_end::test_bonded
       return result;
     };
     const Result implicit = tear("moreau-jean", "0.2"),
-                 by_forces = tear("symplectic", "0.05");
+                 by_forces = tear("explicit", "0.05");
     EXPECT_GE(implicit.number("fragments"), 2);
     EXPECT_EQ(by_forces.counter("redone_steps"), 0.);
     EXPECT_EQ(by_forces.counter("global_factorisations"), 0.);

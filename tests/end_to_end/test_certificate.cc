@@ -59,8 +59,9 @@ namespace end_to_end::test_certificate
         good_run(workspace, "ball", {scene("ball"), {}, 1, true});
     EXPECT_TRUE(result.summary.at("certificate").at("ok").get<bool>());
     for (const char *line :
-         {"end", "residual", "penetration", "ledger defect", "given by impact",
-          "given by time scheme", "uniqueness", "taken again"})
+         {"end", "residual", "penetration", "balance residual",
+          "given by impact", "given by time scheme", "uniqueness",
+          "rejected steps"})
       EXPECT_EQ(verdict(result, line), "ok") << line;
     EXPECT_EQ(verdict(result, "cohesive zone"), "none");
     const auto &residual =
@@ -69,7 +70,7 @@ namespace end_to_end::test_certificate
     EXPECT_EQ(residual.at("bound"), 1e-8);
     const std::string last = last_lines(workspace, scene("ball"));
     EXPECT_EQ(last.substr(0, last.find('\n')), "certificate: ok");
-    EXPECT_LT(last.find("taken again"), last.find("energy at the end"))
+    EXPECT_LT(last.find("rejected steps"), last.find("energy at the end"))
         << "the profile comes later\n"
         << last;
     const std::string page = read_text(result.directory / "report.html");
@@ -81,7 +82,7 @@ namespace end_to_end::test_certificate
     const Workspace workspace;
     const Result result =
         good_run(workspace, "long_steps",
-                 {scene("midplane"), {"Time/step=2 crossings"}, 1, true});
+                 {scene("midplane"), {"Time/step=2 courant"}, 1, true});
     ASSERT_GT(result.counter("steps_beyond_uniqueness"), 0.);
     EXPECT_EQ(verdict(result, "uniqueness"), "not ok");
     EXPECT_NE(result.summary.at("certificate")
@@ -130,7 +131,7 @@ namespace end_to_end::test_certificate
         workspace, "wall", {benchmark("falling_wall"), {"Time/end=0.5 s"}});
     EXPECT_GT(result.number("penetration_max"), 1e-4);
     EXPECT_EQ(verdict(result, "penetration"), "ok");
-    EXPECT_EQ(verdict(result, "ledger defect"), "ok");
+    EXPECT_EQ(verdict(result, "balance residual"), "ok");
   }
 
   // ------------------------------------------------ what the method assumes
@@ -275,7 +276,7 @@ end
                                 {file, {std::string("Constants/Y=") + height}});
       ASSERT_TRUE(result.completed()) << result.description();
       for (const char *line :
-           {"penetration", "ledger defect", "given by friction",
+           {"penetration", "balance residual", "given by friction",
             "given by impact", "given by time scheme"})
         EXPECT_EQ(verdict(result, line), "ok")
             << line << " at " << height << "\n"
@@ -339,7 +340,7 @@ end
     const Workspace workspace;
     const std::vector<std::string> too_hard = {
         "Solver/maximum iterations=1", "Solver/method=dual newton",
-        "Time/maximum halvings=0", "Solver/tolerance=1e-13"};
+        "Time/maximum bisections=0", "Solver/tolerance=1e-13"};
     const Result result = run(workspace, "failed", {quickstart(), too_hard});
     ASSERT_EQ(result.outcome.exit_code, 3) << result.description();
     EXPECT_EQ(verdict(result, "end"), "not ok");

@@ -92,18 +92,18 @@ namespace end_to_end::test_command_line
          1,
          "set twice"},
         {"check", {stop_scene, "--check"}, 0, "nothing is run"},
-        // C L/E = 21, law (19), quads of degree 1: 0.123 crossings
+        // C L/E = 21, law (19), quads of degree 1: Courant number 0.123
         {"check_advice",
          {fracture_scene, "--check"},
          0,
-         "0.123 crossings while a point softens: this step is above"},
+         "(Courant number 0.123) while a point softens: this step is above"},
         {"list", {"--list"}, 0, "camacho-ortiz"},
         {"help", {"--help"}, 0, "--check"},
         {"version", {"--version"}, 0, "nsfd "},
         {"print_parameters",
          {stop_scene, "--print-parameters"},
          0,
-         "set maximum halvings"},
+         "set maximum bisections"},
     };
 
     void PrintTo(const Call &call, std::ostream *stream)
@@ -265,7 +265,7 @@ end
       const fs::path directory = workspace.path() / "stopped";
       Process process({NSFD_PROGRAM, scene("midplane").string(), "--quiet",
                        "--output", directory.string(), "--set",
-                       "Mesh/cells=10, 10", "--set", "Time/step=1e-3 crossings",
+                       "Mesh/cells=10, 10", "--set", "Time/step=1e-3 courant",
                        "--set", "Output/fields every=0"},
                       workspace.path());
       const auto n_steps = [&] {

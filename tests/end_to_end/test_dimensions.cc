@@ -69,7 +69,7 @@ namespace end_to_end::test_dimensions
     expect_below("compliance", std::abs(result.error("compliance") - 1.5949747),
                  1e-7, "1 + (1/2)/5 + sqrt(1/2)(1/5 + 1/2)");
     expect_below("modulus", result.error("modulus"), 5e-8,
-                 "solver tolerance 1e-12 at steps of 40 crossings");
+                 "solver tolerance 1e-12 at Courant number 40");
     expect_below("stress", result.error("stress"), 5e-8);
   }
 } // namespace end_to_end::test_dimensions

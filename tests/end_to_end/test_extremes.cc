@@ -175,7 +175,7 @@ end
                 {"Obstacle: floor/friction=0.5", "Time/end=1 s",
                  "Material: ball/initial velocity x=2 m/s",
                  "Solver/method=dual newton", "Solver/maximum iterations=1",
-                 "Time/maximum halvings=0"}};
+                 "Time/maximum bisections=0"}};
     what.report = true;
     const Result result = run(workspace, "unsolved", what);
     EXPECT_EQ(result.outcome.exit_code, 3) << result.description();

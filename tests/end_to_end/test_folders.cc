@@ -103,7 +103,7 @@ namespace end_to_end::test_folders
   {
     const Workspace workspace;
     const fs::path directory = workspace.path() / "run";
-    const Launch slow = with(small, {"Time/step=1e-4 crossings"});
+    const Launch slow = with(small, {"Time/step=1e-4 courant"});
     Process first(command_of(slow, directory, {}), workspace.path());
     ASSERT_TRUE(wait_for_rows(directory, 2));
     for (const char *option : {"--force", "--resume"})
@@ -175,8 +175,8 @@ namespace end_to_end::test_folders
   TEST(FolderDisk, Full)
   {
     const Workspace workspace;
-    const Launch writing = with(
-        small, {"Output/fields every steps=1", "Time/step=0.05 crossings"});
+    const Launch writing =
+        with(small, {"Output/fields every steps=1", "Time/step=0.05 courant"});
     struct Case {
       const char *name, *format;
       unsigned int ranks;
@@ -222,7 +222,7 @@ namespace end_to_end::test_folders
   {
     const Workspace workspace;
     const Launch bad = {scene("midplane"),
-                        {"Time/step=2 crossings", "Mesh/cells=6, 6"}};
+                        {"Time/step=2 courant", "Mesh/cells=6, 6"}};
     const Outcome lax = run_in(workspace, workspace.path() / "lax", {}, bad);
     EXPECT_EQ(lax.exit_code, 0) << lax.err;
     ASSERT_FALSE(

@@ -47,7 +47,7 @@ subsection Boundary: right
 end
 subsection Time
   set end  = 150 us
-  set step = 0.5 crossings
+  set step = 0.5 courant
 end
 subsection Solver
   set tolerance = 1e-10

@@ -147,7 +147,7 @@ namespace end_to_end::test_meshes
                                 "subsection Boundary: right end\n"
                                 "  set where      = right end\n"
                                 "  set velocity x = 1 m/s\nend\n";
-    const std::string time = "  set end = 0.3 us\n  set step = 0.5 crossings\n";
+    const std::string time = "  set end = 0.3 us\n  set step = 0.5 courant\n";
     for (const char *file : {"plate_41_binary.msh", "plate.geo"}) {
       const std::string text = plate(file, open_crack + springs, time);
       Launch launch;
@@ -290,7 +290,7 @@ namespace end_to_end::test_meshes
         "  set velocity x = -20 m/s\nend\n"
         "subsection Time\n"
         "  set end  = 0.5 us\n"
-        "  set step = 0.5 crossings\nend\n";
+        "  set step = 0.5 courant\nend\n";
     const Result result = run_text(workspace, "grains", text);
     ASSERT_TRUE(result.completed()) << result.description();
     EXPECT_GT(result.dissipated("damage"), 0.);

@@ -61,7 +61,7 @@ namespace end_to_end::test_mirror
          1e-8},
         // plane and speeds off the middle, for the same reason
         {"midplane",
-         {"Mesh/cells=10, 10", "Time/step=0.3 crossings"},
+         {"Mesh/cells=10, 10", "Time/step=0.3 courant"},
          {"Interface: midline/where=abs(x - 4 um) < 1 nm",
           "Boundary: left/velocity x=-1 m/s",
           "Boundary: right/velocity x=3 m/s"},

@@ -283,7 +283,7 @@ end
       if (profile["step"][k] == profile["step"].back())
         sum += profile["pressure"][k] * 0.25; // nodes, half a side each
     expect_below("profile", std::abs(sum / (lower + upper) / 10. - 1.), 1e-6);
-    // joints and long steps are solved on the global path, where round-off
+    // joints and long steps are solved on the assembled path, where round-off
     // knows the ranks
     launch.ranks = 2;
     const Result two = good_run(workspace, "two", launch);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <ostream>
 
-// One, two and four ranks give the same files: bit for bit on the element-wise
-// path, to 1e-9 with global solves. What is wrong is said once.
+// One, two and four ranks give the same files: bit for bit on the local
+// path, to 1e-9 with assembled matrices. What is wrong is said once.
 
 namespace end_to_end::test_ranks
 {
@@ -15,7 +15,7 @@ namespace end_to_end::test_ranks
   {
     struct RankRow {
       std::string name;
-      std::vector<std::string> element_wise, global;
+      std::vector<std::string> local, assembled;
       std::string scene = name; ///< the file
     };
 
@@ -63,7 +63,7 @@ namespace end_to_end::test_ranks
          "midplane"},
         {"mode", {"Time/end=200 us"}, {"Time/end=100 us"}},
         {"patch_blocks", {}, {}},
-        // steps of 20 crossings: jumps are known to C h^2 = 2000 tolerances
+        // Courant number 20: jumps are known to C h^2 = 2000 tolerances
         {"patch_crossed", {}, {"Solver/tolerance=1e-13"}},
         {"rigid_motion", {}, {}},
         {"static_crossed", {}, {}},
@@ -142,8 +142,8 @@ namespace end_to_end::test_ranks
   {
     const RankRow &row = GetParam();
     const Workspace workspace;
-    std::vector<std::string> set = {"Solver/path=element-wise"};
-    set.insert(set.end(), row.element_wise.begin(), row.element_wise.end());
+    std::vector<std::string> set = {"Solver/path=local"};
+    set.insert(set.end(), row.local.begin(), row.local.end());
     const Result one = good_run(workspace, "1 rank", {file_of(row), set});
     ASSERT_TRUE(one.completed());
     const auto fields = records(one, "fields");
@@ -167,9 +167,9 @@ namespace end_to_end::test_ranks
   {
     const RankRow &row = GetParam();
     const Workspace workspace;
-    std::vector<std::string> set = {"Solver/path=global",
+    std::vector<std::string> set = {"Solver/path=assembled",
                                     "Output/fields=false"};
-    set.insert(set.end(), row.global.begin(), row.global.end());
+    set.insert(set.end(), row.assembled.begin(), row.assembled.end());
     const Result one = good_run(workspace, "1 rank", {file_of(row), set});
     ASSERT_TRUE(one.completed());
     for (const unsigned int n : {2u, 4u}) {
@@ -182,14 +182,14 @@ namespace end_to_end::test_ranks
     }
   }
 
-  // Rubbing cracks at 2 crossings by interior points, whose factor is on the
-  // first rank: the energies of one rank to 1e-9 of the largest.
+  // Rubbing cracks at Courant number 2 by interior points, whose factor is on
+  // the first rank: the energies of one rank to 1e-9 of the largest.
   TEST(Ranks, InteriorPointsAgree)
   {
     const Workspace workspace;
     const std::vector<std::string> set = {
         "Constants/n=6",         "Mesh/cells=6, 6",
-        "Constants/share=0.4",   "Time/step=2 crossings",
+        "Constants/share=0.4",   "Time/step=2 courant",
         "Time/end=1.4",          "Solver/method=interior point",
         "Solver/tolerance=1e-11"};
     const auto file = benchmark("broken_faces");
@@ -215,7 +215,7 @@ namespace end_to_end::test_ranks
       EXPECT_NEAR(two.error(name) / one.error(name), 1., 1e-12) << name;
   }
 
-  // Explicit bonds are sums over one body, as all of the element-wise path.
+  // Explicit bonds are sums over one body, as all of the local path.
   TEST(Ranks, ExplicitBondsAreTheSameBitForBit)
   {
     const Workspace workspace;
@@ -261,11 +261,11 @@ namespace end_to_end::test_ranks
                           ? scene(row.name)
                           : benchmark(row.name);
     const Workspace workspace;
-    const Result one = good_run(workspace, "1 rank", {file, row.element_wise});
+    const Result one = good_run(workspace, "1 rank", {file, row.local});
     ASSERT_TRUE(one.completed());
     for (const unsigned int n : {2u, 3u}) {
       const Result several = good_run(workspace, std::to_string(n) + " ranks",
-                                      {file, row.element_wise, n});
+                                      {file, row.local, n});
       ASSERT_TRUE(several.completed());
       EXPECT_TRUE(one.history_text == several.history_text)
           << "history.csv of " << n << " ranks differs by "

@@ -48,19 +48,19 @@ namespace end_to_end::test_restart
                                           "bonded"});
     const Launch rubbing = {benchmark("broken_faces"),
                             {"Constants/n=6", "Mesh/cells=6, 6",
-                             "Constants/share=0.4", "Time/step=2 crossings",
+                             "Constants/share=0.4", "Time/step=2 courant",
                              "Time/end=1.4"}};
     const Launch torn = {benchmark("fracture_extrinsic"),
                          {"Mesh/cells=8, 8", "Time/end=9 ns"}};
-    const std::string global = "Solver/path=global",
+    const std::string assembled = "Solver/path=assembled",
                       cg = "Solver/linear solver=cg";
 
     // whatever a step may leave to the next one
     const std::vector<RestartRow> rows = {
         {"breaking", breaking},
         {"breaking_late", breaking, 0.8},
-        {"breaking_global", with(breaking, {global, "Time/end=42 us"})},
-        {"breaking_cg", with(breaking, {global, cg, "Time/end=42 us"})},
+        {"breaking_assembled", with(breaking, {assembled, "Time/end=42 us"})},
+        {"breaking_cg", with(breaking, {assembled, cg, "Time/end=42 us"})},
         {"gauss_seidel",
          with(midplane,
               {"Solver/method=gauss seidel", "Interface: elsewhere/law=elastic",
@@ -76,15 +76,15 @@ namespace end_to_end::test_restart
         {"extrinsic", midplane},
         {"fields_in_hdf5", with(midplane, {"Output/format=hdf5"})},
         {"extrinsic_long_steps",
-         with(midplane, {global, cg, "Time/step=6 crossings"})},
+         with(midplane, {assembled, cg, "Time/step=6 courant"})},
         {"bonded", bonded},
         {"bonded_cg", with(bonded, {cg})},
         {"bonded_everywhere",
-         with(torn, {"Time/scheme=moreau-jean", "Time/step=0.6 crossings"})},
-        {"symplectic", torn},
+         with(torn, {"Time/scheme=moreau-jean", "Time/step=0.6 courant"})},
+        {"explicit", torn},
         {"rubbing", rubbing},
         {"rubbing_iterations",
-         with(rubbing, {"Constants/n=4", "Mesh/cells=4, 4", global, cg})},
+         with(rubbing, {"Constants/n=4", "Mesh/cells=4, 4", assembled, cg})},
         {"interior_point", with(rubbing, {"Solver/method=interior point"})},
         {"ball", {scene("ball"), {"Time/end=0.6 s"}}},
         {"stop", {scene("stop"), {}}},
@@ -106,10 +106,10 @@ namespace end_to_end::test_restart
         {"quasi_static_extrinsic", {scene("static_extrinsic"), {}}, 0.3},
         {"jump_in_time",
          {scene("static_michel"),
-          {"Time/at solution jump=dynamic", "Time/dynamic step=10 crossings"}}},
+          {"Time/at solution jump=dynamic", "Time/dynamic step=10 courant"}}},
         {"jump_in_time_before",
          {scene("static_michel"),
-          {"Time/at solution jump=dynamic", "Time/dynamic step=10 crossings"}},
+          {"Time/at solution jump=dynamic", "Time/dynamic step=10 courant"}},
          0.01},
         {"equilibrium_first", {scene("static_start"), {}}},
         {"arkode_explicit",
@@ -309,6 +309,40 @@ namespace end_to_end::test_restart
     expect_same(whole, after);
   }
 
+  // Words that are called otherwise today: the same run, which goes on in
+  // either.
+  TEST(Restart, InFormerWords)
+  {
+    const Workspace workspace;
+    const Launch now = storing(
+                     with(midplane,
+                          {"Time/step=0.6 courant", "Time/maximum bisections=5",
+                           "Solver/method=cascade", "Solver/path=local"}),
+                     20),
+                 former = storing(
+                     with(midplane,
+                          {"Time/step=0.6 crossings", "Time/maximum halvings=5",
+                           "Solver/method=chain", "Solver/path=element-wise"}),
+                     20);
+    const Result whole = good_run(workspace, "whole", now);
+    const Result stored = good_run(workspace, "resumed", former);
+    EXPECT_EQ(whole.history_text, stored.history_text);
+    EXPECT_EQ(whole.outcome.err.find("note:"), std::string::npos);
+    for (const std::string name : {"bisections", "cascade", "local"}) {
+      const std::string note = name + "` today; both words work";
+      const auto first = stored.outcome.err.find(note);
+      EXPECT_NE(first, std::string::npos) << stored.outcome.err;
+      EXPECT_EQ(stored.outcome.err.find(note, first + 1), std::string::npos);
+    }
+    fs::rename(previous(stored.directory), newest(stored.directory));
+    const Result after = resume(workspace, "resumed", now);
+    ASSERT_TRUE(after.completed()) << after.description();
+    EXPECT_EQ(after.outcome.err.find("changed since the checkpoint"),
+              std::string::npos)
+        << after.outcome.err;
+    EXPECT_EQ(after.history_text, whole.history_text);
+  }
+
   // Exit code 3 stores the last good state: a solver that can goes on from it.
   TEST(Restart, AfterAStepThatFailed)
   {
@@ -318,7 +352,7 @@ namespace end_to_end::test_restart
                           "Material: ball/initial velocity x=2 m/s"}};
     const Launch bad =
         with(good, {"Solver/method=dual newton", "Solver/maximum iterations=1",
-                    "Time/maximum halvings=0"});
+                    "Time/maximum bisections=0"});
     const Result failed = run(workspace, "ball", bad);
     EXPECT_EQ(failed.outcome.exit_code, 3) << failed.description();
     const Result again = resume(workspace, "ball", bad);

@@ -117,8 +117,8 @@ namespace end_to_end::test_restart_refused
     const std::string history = read_text(stored_.directory / "history.csv");
     const Result result =
         resume(workspace_, "run",
-               with(small, {"Time/end=6 ns", "Time/step=0.3 crossings",
-                            "Solver/path=global", "Solver/tolerance=1e-9"}));
+               with(small, {"Time/end=6 ns", "Time/step=0.3 courant",
+                            "Solver/path=assembled", "Solver/tolerance=1e-9"}));
     ASSERT_TRUE(result.completed()) << result.description();
     EXPECT_NE(result.outcome.err.find("Time/end: 4 ns, now 6 ns"),
               std::string::npos)

@@ -257,7 +257,7 @@ namespace end_to_end::test_scenes
     EXPECT_EQ(result.counter("steps_beyond_uniqueness"), 0.);
     EXPECT_EQ(result.counter("rejected_steps"), 0.);
     EXPECT_GE(result.number("fragments"), 2);
-    // 1/2 crossing before the crack, 1/8 while it runs
+    // Courant number 1/2 before the crack, 1/8 while it runs
     const auto &steps = result.history["time_step"];
     const double longest = *std::max_element(steps.begin(), steps.end());
     EXPECT_EQ(steps[1], longest);
@@ -272,12 +272,12 @@ namespace end_to_end::test_scenes
 
   TEST_P(MidplaneStepTest, TakesTheToughnessAtAnyStep)
   {
-    const double crossings = GetParam();
+    const double courant = GetParam();
     const Workspace workspace;
     const Result result =
         good_run(workspace, "midplane",
                  {scene("midplane"),
-                  {"Time/step=" + std::to_string(crossings) + " crossings",
+                  {"Time/step=" + std::to_string(courant) + " courant",
                    "Output/fields=false"}});
     ASSERT_TRUE(result.completed());
     expect_below("damage over 5 uJ/m, less 1",
@@ -288,7 +288,7 @@ namespace end_to_end::test_scenes
                  column_difference(result.history, "reaction_right_x",
                                    result.history, "reaction_left_x", -1.),
                  1e-5, "solver tolerance 1e-8 per step");
-    if (crossings < 0.3) {
+    if (courant < 0.3) {
       expect_below("separation time over 5.63 ns, less 1",
                    std::abs(result.error("separation_time") / 5.63e-9 - 1.),
                    0.02);

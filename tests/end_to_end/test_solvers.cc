@@ -33,8 +33,8 @@ namespace end_to_end::test_solvers
         {"incline", {"Output/fields every=0.1 s"}, 1e-9, 1e-9, 1e-9, plain},
         {"interface_step", {"Mesh/cells=80, 1"}, 1e-9, 1e-8, 1e-8, plain},
         {"mode", {}, 1e-8, 1e-8, 1e-8, "700 steps of 1e-10"},
-        // The scene's own steps of 20 and 40 crossings are for the global
-        // path; sweeps need steps of the order of one crossing.
+        // The scene's own Courant numbers, 20 and 40, are for the assembled
+        // path; sweeps need some 1.
         {"patch_blocks",
          {"Time/step=1", "Time/end=20"},
          1e-9,
@@ -57,10 +57,10 @@ namespace end_to_end::test_solvers
     struct Choice {
       const char *method, *path;
     };
-    const Choice choices[] = {{"dual newton", "element-wise"},
-                              {"dual newton", "global"},
-                              {"gauss seidel", "element-wise"},
-                              {"gauss seidel", "global"}};
+    const Choice choices[] = {{"dual newton", "local"},
+                              {"dual newton", "assembled"},
+                              {"gauss seidel", "local"},
+                              {"gauss seidel", "assembled"}};
 
     Result solve(const Workspace &workspace, const std::string &name,
                  const std::vector<std::string> &set, const Choice &choice,
@@ -116,17 +116,17 @@ namespace end_to_end::test_solvers
                            [](const auto &info) { return info.param.name; });
 
   // The steps of a quasi-static run: conjugate gradients on the faces against
-  // the factored global matrix.
+  // the factored assembled matrix.
   TEST(Solvers, PathsAgreeAtLongSteps)
   {
     for (const std::string name : {"patch_blocks", "patch_crossed"}) {
       const Workspace workspace;
       const Result faces = solve(workspace, name, {}, choices[0], "1e-12"),
-                   global = solve(workspace, name, {}, choices[1], "1e-12");
-      ASSERT_TRUE(faces.completed() && global.completed());
+                   assembled = solve(workspace, name, {}, choices[1], "1e-12");
+      ASSERT_TRUE(faces.completed() && assembled.completed());
       expect_below(name + ": energies",
-                   energy_difference(faces.history, global.history), 1e-7,
-                   "W + D has the square of the 20 to 40 crossings of a step "
+                   energy_difference(faces.history, assembled.history), 1e-7,
+                   "W + D has the square of the Courant number, 20 to 40, "
                    "for its condition number: 1e-12 grows to 1e-9 and more");
     }
   }
@@ -137,7 +137,7 @@ namespace end_to_end::test_solvers
   {
     const Workspace workspace;
     const std::vector<std::string> set = {"Mesh/cells=10, 10",
-                                          "Time/step=0.3 crossings",
+                                          "Time/step=0.3 courant",
                                           "Output/fields every=1 ns"};
     const Result reference = solve(workspace, "midplane", set, choices[0]);
     ASSERT_TRUE(reference.completed());
@@ -175,7 +175,7 @@ namespace end_to_end::test_solvers
       double bound;
     };
     const Scene scenes[] = {
-        {"midplane", {"Mesh/cells=10, 10", "Time/step=0.1 crossings"}, 1e-6},
+        {"midplane", {"Mesh/cells=10, 10", "Time/step=0.1 courant"}, 1e-6},
         {"quickstart", {"Time/end=70 us"}, 1e-6},
         {"stop", {}, 1e-8},
         {"step_load", {}, 1e-7}};
@@ -185,7 +185,7 @@ namespace end_to_end::test_solvers
       ASSERT_TRUE(reference.completed());
       for (const char *const method : {"fixed point", "anderson"}) {
         const Result other =
-            solve(workspace, row.name, row.set, {method, "element-wise"});
+            solve(workspace, row.name, row.set, {method, "local"});
         ASSERT_TRUE(other.completed());
         expect_below(row.name + ", " + method + ": damage",
                      std::abs(other.dissipated("damage") -
@@ -232,7 +232,7 @@ namespace end_to_end::test_solvers
     const Result result =
         good_run(workspace, "midplane",
                  {scene("midplane"),
-                  {"Mesh/cells=20, 20", "Solver/path=global",
+                  {"Mesh/cells=20, 20", "Solver/path=assembled",
                    "Solver/tolerance=1e-11", "Output/fields=false"}});
     ASSERT_TRUE(result.completed());
     expect_below("damage", result.error("damage"), 1e-4);

@@ -190,7 +190,7 @@ namespace end_to_end::test_stability
     }
   }
 
-  // theta = 1, steps of 1000 crossings: equilibrium; theta = 1/2, of 100: the
+  // theta = 1, Courant number 1000: equilibrium; theta = 1/2, of 100: the
   // energy stays bounded (the energy balance of longer ones: doc/stability.md).
   TEST(Stability, LargeSteps)
   {
@@ -278,7 +278,7 @@ namespace end_to_end::test_stability
   }
 
   // Edges from 1e-6 to 1, angles of 0.06 degrees, and steps as long as the
-  // whole body needs them: 5e7 crossings of the smallest cell.
+  // whole body needs them: a Courant number of 5e7.
   TEST(Stability, Slivers)
   {
     const Workspace workspace;

@@ -118,7 +118,7 @@ namespace end_to_end::test_stop
   {
     const Workspace workspace;
     const fs::path directory = workspace.path() / "a run";
-    const Launch launch = with(good, {"Time/step=1e-3 crossings"});
+    const Launch launch = with(good, {"Time/step=1e-3 courant"});
     Process process(command_of(launch, directory, {"--force"}),
                     workspace.path());
     ASSERT_TRUE(wait_for_rows(directory, 5));

@@ -60,7 +60,7 @@ namespace end_to_end::test_study
 
     const Words three_meshes = {"Discretization/degree=1,2",
                                 "Mesh/cells=[4*2^0..2, 1] & "
-                                "Time/step=0.02/2^0..2 crossings"};
+                                "Time/step=0.02/2^0..2 courant"};
   } // namespace
 
   // The step is so short that the mesh alone decides: p + 1 for the
@@ -192,7 +192,7 @@ namespace end_to_end::test_study
     // one iteration, and no shorter step: not enough for 1e-10
     const Outcome outcome =
         study(workspace,
-              {"Solver/maximum iterations=1, 200 & Time/maximum halvings=0",
+              {"Solver/maximum iterations=1, 200 & Time/maximum bisections=0",
                "Mesh/cells=[4, 1],[8, 1]"},
               {"--set", "Study/limit checks=false"});
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;

@@ -347,7 +347,7 @@ namespace nsfd::fuzz
                                                     "/dev/stdin",
                                                     "auto",
                                                     "none",
-                                                    "1 crossings",
+                                                    "1 courant",
                                                     "1e17 s",
                                                     "1 furlong"};
     return any_of(values, random);

@@ -28,7 +28,7 @@ subsection Interface: all
 end
 subsection Time
   set end  = 1
-  set step = 0.2 crossings
+  set step = 0.2 courant
 end
 )";
 } // namespace nsfd::test

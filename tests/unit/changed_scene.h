@@ -58,7 +58,7 @@ subsection Obstacle: floor
 end
 subsection Time
   set end = 10 ns
-  set step = 0.6 crossings
+  set step = 0.6 courant
   set theta = 0.5
 end
 subsection Solver

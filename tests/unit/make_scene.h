@@ -72,15 +72,15 @@ namespace nsfd
       }
 
       /**
-       * One step, halved as often as it takes to be solved, like a run does.
+       * One step, bisected as often as it takes to be solved, like a run does.
        * Returns its length.
        */
-      double advance_halving()
+      double advance_bisecting()
       {
         double h = time_step;
-        for (unsigned int halving = 0; halving < 10; ++halving, h /= 2.)
+        for (unsigned int level = 0; level < 10; ++level, h /= 2.)
           try {
-            advance(h, halving);
+            advance(h, level);
             return h;
           } catch (const StepRejected &) {
           }

@@ -95,16 +95,16 @@ end
 )";
 
   const std::string quads = mesh("rectangle", "3, 2", "3, 2", 3) + solid +
-                            springs + supports_2d + time("2 crossings");
+                            springs + supports_2d + time("2 courant");
   const std::string triangles = mesh("crossed triangles", "3, 2", "2, 1", 2) +
                                 solid + springs + supports_2d +
-                                time("2 crossings");
+                                time("2 courant");
   const std::string hexes = mesh("brick", "3, 2, 1", "2, 2, 1", 2) + solid +
-                            springs + supports_3d + time("2 crossings");
+                            springs + supports_3d + time("2 courant");
   const std::string tets = mesh("tetrahedra", "3, 2, 1", "2, 1, 1", 1) + solid +
-                           springs + supports_3d + time("2 crossings");
+                           springs + supports_3d + time("2 courant");
   const std::string mixed = mesh("rectangle", "3, 2", "4, 3", 2) + half_rigid +
-                            solid + springs + supports_2d + time("2 crossings");
+                            solid + springs + supports_2d + time("2 courant");
 
   inline Vector random_vector(const std::size_t n, const unsigned int seed)
   {

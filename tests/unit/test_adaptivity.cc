@@ -57,7 +57,7 @@ subsection Boundary: roof
 end
 subsection Time
   set end  = 1
-  set step = 0.5 crossings
+  set step = 0.5 courant
 end
 subsection Adaptivity
   set levels              = 2

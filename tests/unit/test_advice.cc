@@ -226,7 +226,8 @@ end
             contraction_number(*scene.input, scene.stepper->problem(), soft,
                                *scene.dynamics, bound);
         EXPECT_LE(number, 1. + 1e-9) << type << " " << degree;
-        // and not far off: C_N L/E = 21 has to be felt at 0.05 to 0.2 crossings
+        // and not far off: C_N L/E = 21 has to be felt at Courant numbers 0.05
+        // to 0.2
         EXPECT_GE(number, 0.3) << type << " " << degree;
       }
   }

@@ -129,7 +129,7 @@ namespace test_body_system
       subsection Time
         set end   = 100
         set theta = 1
-        set step  = 2 crossings
+        set step  = 2 courant
       end
     )";
   }

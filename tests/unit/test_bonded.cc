@@ -31,7 +31,7 @@ subsection Interface: all
 end
 subsection Time
   set end   = 1000
-  set step  = 2 crossings
+  set step  = 2 courant
   set theta = 0.6
 end
 )";
@@ -429,14 +429,14 @@ subsection Interface: all
 end
 subsection Time
   set end  = 40
-  set step = 0.25 crossings
+  set step = 0.25 courant
 end
 )";
     Scene<2> scene(brick + breakable + driven);
     ASSERT_NE(scene.bonded, nullptr);
     unsigned int released = 0;
     while (scene.state.time < 10.) {
-      const double h = scene.advance_halving();
+      const double h = scene.advance_bisecting();
       EXPECT_GT(h, 0.);
     }
     for (const PointKind kind : scene.state.kind)

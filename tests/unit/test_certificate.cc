@@ -102,16 +102,16 @@ namespace nsfd::test_certificate
            f.steps = 0;
          },
          Verdict::not_measured, "equilibria"},
-        {"Balance", "ledger defect",
+        {"Balance", "balance residual",
          [](RunFacts &f) { f.balance_residual = 1e-8; }, Verdict::bad,
-         "do not add up"},
-        {"BalanceUnknown", "ledger defect",
+         "balance is violated"},
+        {"BalanceUnknown", "balance residual",
          [](RunFacts &f) { f.balance_residual = nan_value; }, Verdict::bad, ""},
         {"Given", "given by friction",
          [](RunFacts &f) {
            f.given = {{"friction", 2e-9, 1e-9, "set sliding = energy safe"}};
          },
-         Verdict::bad, "out of nothing"},
+         Verdict::bad, "energy created"},
         {"GivenUnknown", "given by friction",
          [](RunFacts &f) {
            f.given = {{"friction", nan_value, 1e-9, ""}};
@@ -137,7 +137,7 @@ namespace nsfd::test_certificate
          },
          // a strength of sqrt(1 / 2.5)
          Verdict::bad, "points every 400 µm, or a strength 0.63 times"},
-        {"Attempts", "taken again", [](RunFacts &f) { f.rejected = 99; },
+        {"Attempts", "rejected steps", [](RunFacts &f) { f.rejected = 99; },
          Verdict::bad, "shorten Time/step"},
         {"Rotation", "rotation",
          [](RunFacts &f) { f.limits.rotation->value = 3.; }, Verdict::bad,
@@ -174,7 +174,7 @@ namespace nsfd::test_certificate
     for (const CertificateLine &one : certificate.lines)
       EXPECT_EQ(one.verdict, Verdict::ok) << one.name;
     EXPECT_EQ(line(certificate, "cohesive zone").number, 4.);
-    EXPECT_EQ(line(certificate, "taken again").number, 3.);
+    EXPECT_EQ(line(certificate, "rejected steps").number, 3.);
   }
 
   TEST_P(CertificateTest, NamesWhatIsNot)
@@ -227,7 +227,7 @@ namespace nsfd::test_certificate
     const Certificate certificate = certify(facts);
     EXPECT_EQ(line(certificate, "solution jumps").remark.find("set at"),
               std::string::npos);
-    for (const char *name : {"penetration", "taken again"}) {
+    for (const char *name : {"penetration", "rejected steps"}) {
       const std::string &remark = line(certificate, name).remark;
       EXPECT_EQ(line(certificate, name).verdict, Verdict::bad);
       EXPECT_EQ(remark.find("shorten Time/step"), std::string::npos) << remark;

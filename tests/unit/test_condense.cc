@@ -44,7 +44,7 @@ subsection Loads
 end
 subsection Time
   set end  = 1
-  set step = 1 crossings
+  set step = 1 courant
 end
 )";
 
@@ -69,7 +69,7 @@ end
     Scene<dim> scene(text, all);
     std::size_t pressed = 0;
     for (unsigned int k = 0; k < steps; ++k) {
-      scene.advance_halving();
+      scene.advance_bisecting();
       const ContactProblem contacts = last_contacts<dim>(scene);
       if (contacts.n_contacts() == 0)
         continue;

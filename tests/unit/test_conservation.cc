@@ -52,7 +52,7 @@ subsection Interface: all
 end
 subsection Time
   set end   = 1000
-  set step  = 0.5 crossings
+  set step  = 0.5 courant
   set theta = 0.5
 end
 subsection Solver
@@ -137,13 +137,13 @@ end
     for (const std::string step : {"0.05", "2", "20"})
       for (const std::string C : {"21", "1e5"}) {
         SCOPED_TRACE("C L/E = " + C + ", step " + step);
-        conserves<2>(pulse,
-                     stiffness(C) +
-                         std::vector<std::string>{
-                             "Time/step=" + step + " crossings",
-                             step == "20" ? "Solver/path=global"
-                                          : "Solver/path=element-wise"},
-                     50);
+        conserves<2>(
+            pulse,
+            stiffness(C) +
+                std::vector<std::string>{"Time/step=" + step + " courant",
+                                         step == "20" ? "Solver/path=assembled"
+                                                      : "Solver/path=local"},
+            50);
       }
   }
 
@@ -294,7 +294,7 @@ subsection Loads
 end
 subsection Time
   set end   = 1000
-  set step  = 0.05 crossings
+  set step  = 0.05 courant
 end
 )";
 
@@ -323,7 +323,7 @@ end
         };
         double largest = energy(scene.state);
         for (unsigned int step = 0; step < 60; ++step) {
-          const double h = scene.advance_halving();
+          const double h = scene.advance_bisecting();
           const State &now = scene.state, &old = scene.next;
           double work = 0.;
           for (std::size_t k = 0; k < now.impulse.size(); ++k)
@@ -364,7 +364,7 @@ end
         Scene<2> scene(everything, overrides);
         for (unsigned int step = 0; step < 150; ++step) {
           const State before = scene.state;
-          scene.advance_halving();
+          scene.advance_bisecting();
           const State &now = scene.state;
           const EnergyLines &e = now.energy;
           // 1e-12: round-off over all points and steps; required are 1e-9
@@ -395,7 +395,7 @@ end
     Scene<2> scene(everything, {"Interface: all/intact faces=unilateral",
                                 "Solver/tolerance=1e-11"});
     for (unsigned int step = 0; step < 100; ++step)
-      scene.advance_halving();
+      scene.advance_bisecting();
     EXPECT_GT(scene.state.energy.damage, 0.01 * scene.state.initial_energy);
     EXPECT_NEAR(scene.state.energy.numerical, 0.,
                 1e-9 * scene.state.largest_energy);

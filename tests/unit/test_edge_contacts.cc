@@ -416,7 +416,7 @@ end
         if (distance < scene.time_step * speed)
           fastest = std::max(fastest, speed);
       });
-      scene.advance_halving();
+      scene.advance_bisecting();
     }
     EXPECT_GT(contact_counters(scene).edge_rows, 100u);
     EXPECT_GT(deepest, 0.);

@@ -39,7 +39,7 @@ subsection Interface: all
 end
 subsection Time
   set end  = 1
-  set step = 0.1 crossings
+  set step = 0.1 courant
 end
 )";
 
@@ -150,7 +150,7 @@ end
                  {"plane = stress", "write plane = strain"});
     expect_words(complaints(scene_of(viscous), {"Time/scheme=arkode"}),
                  {"arkode knows no viscosity", "moreau-jean"});
-    expect_words(complaints(scene_of(viscous), {"Time/scheme=symplectic",
+    expect_words(complaints(scene_of(viscous), {"Time/scheme=explicit",
                                                 "Interface: all/law=bonded"}),
                  {"explicit forces", "moreau-jean"});
     expect_words(

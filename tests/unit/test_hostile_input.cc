@@ -141,7 +141,7 @@ end
             << path << ":" << i + 1;
         bool told = false;
         for (const Diagnostic &d : errors.diagnostics())
-          told = told || (d.is_error && d.location.line == i + 1);
+          told = told || (d.is_error() && d.location.line == i + 1);
         EXPECT_TRUE(told) << path << ":" << i + 1 << "\n" << errors.report();
       }
     }
@@ -288,7 +288,7 @@ end
     EXPECT_EQ(place_of("no such file", "Time/end: x").line, 0u);
   }
 
-  // crossings of cells 1e4 m from the origin are off by round-off
+  // wave speeds over cells 1e4 m from the origin are off by round-off
   TEST(StepControl, RoundOffAddsNoStep)
   {
     const auto n_steps = [](const double end, const double step) {

@@ -129,7 +129,7 @@ end
       SCOPED_TRACE(motion);
       Scene<2> scene(block, {motion, "Time/step=0.1"});
       for (unsigned int k = 0; k < 40; ++k)
-        scene.advance_halving();
+        scene.advance_bisecting();
       EXPECT_GT(scene.state.energy.plastic, 0.);
     }
   }
@@ -264,7 +264,7 @@ end
     Scene<2> scene(mixed);
     double worst = 0.;
     for (unsigned int k = 0; k < 300; ++k) {
-      scene.advance_halving();
+      scene.advance_bisecting();
       const EnergyLines &e = scene.state.energy;
       worst = std::max(worst, std::abs(e.kinetic + e.elastic + e.cohesive +
                                        e.damage + e.friction + e.viscous +

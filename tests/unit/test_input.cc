@@ -36,7 +36,7 @@ namespace nsfd::test_input
     EXPECT_EQ(scene->interfaces[0].law_name, "rigid");
     EXPECT_EQ(scene->interfaces[0].law, nullptr);
     EXPECT_EQ(scene->time.end, 10e-9);
-    EXPECT_EQ(scene->time.step_kind, StepKind::crossings);
+    EXPECT_EQ(scene->time.step_kind, StepKind::courant);
     EXPECT_EQ(scene->time.step, 0.5);
     EXPECT_EQ(scene->solver.tolerance, 1e-8);
     EXPECT_EQ(scene->verification, nullptr);
@@ -124,7 +124,7 @@ subsection Time
 end
 subsection Solver
   set method = gauss seidel
-  set path = element-wise
+  set path = local
 end
 subsection Output
   set directory = here
@@ -211,8 +211,8 @@ end
       return read_good(small_scene, {"Time/step=" + value})->time;
     };
     EXPECT_EQ(step("auto").step_kind, StepKind::automatic);
-    EXPECT_EQ(step("2 crossings").step, 2.);
-    EXPECT_EQ(step("0.6crossings").step_kind, StepKind::crossings);
+    EXPECT_EQ(step("2 courant").step, 2.);
+    EXPECT_EQ(step("0.6courant").step_kind, StepKind::courant);
     EXPECT_EQ(step("1e-9").step_kind, StepKind::time);
     EXPECT_EQ(step("2e-3 ns").step, 2e-12);
   }
@@ -249,7 +249,7 @@ end
     ASSERT_NE(first, nullptr);
     for (const char *line :
          {"# small - the least that runs", "set dimension = 2",
-          "set theta            = 0.5", "  set degree               = 3",
+          "set theta              = 0.5", "  set degree               = 3",
           "  set velocity x       = 2 m/s * cos(t)", "subsection Solver",
           "  # set pressure"})
       EXPECT_NE(first->echo.find(line), std::string::npos) << line << "\n"

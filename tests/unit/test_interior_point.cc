@@ -42,7 +42,7 @@ namespace test_interior_point
       subsection Time
         set end   = 100
         set theta = 1
-        set step  = 2 crossings
+        set step  = 2 courant
         set cohesion rule = end point
       end
     )" + more;
@@ -69,7 +69,7 @@ namespace test_interior_point
         Scene<2> scene(
             square(springs),
             with("interior point", {"Interface: faces/friction=" + mu,
-                                    "Time/step=" + step + " crossings"}));
+                                    "Time/step=" + step + " courant"}));
         for (unsigned int k = 0; k < 4; ++k) {
           StepReport report;
           ASSERT_NO_THROW(report = scene.advance())
@@ -146,7 +146,7 @@ namespace test_interior_point
         square(springs),
         with("interior point", {"Interface: faces/friction=0.3",
                                 "Interface: faces/restitution=0.5",
-                                "Time/theta=0.5", "Time/step=0.5 crossings"}));
+                                "Time/theta=0.5", "Time/step=0.5 courant"}));
     const double start = scene.energy();
     for (unsigned int k = 0; k < 6; ++k) {
       scene.advance();
@@ -160,9 +160,9 @@ namespace test_interior_point
     Scene<2> scene(square(springs),
                    with("interior point", {"Interface: faces/friction=0.5",
                                            "Interface: faces/strength=2e-5",
-                                           "Time/step=0.5 crossings"}));
+                                           "Time/step=0.5 courant"}));
     for (unsigned int k = 0; k < 4; ++k) {
-      EXPECT_NO_THROW(scene.advance_halving()) << k;
+      EXPECT_NO_THROW(scene.advance_bisecting()) << k;
       for (const double beta : scene.state.beta)
         EXPECT_LE(beta, 1.);
     }
@@ -195,7 +195,7 @@ namespace test_interior_point
       subsection Time
         set end   = 100
         set theta = 1
-        set step  = 2 crossings
+        set step  = 2 courant
       end
       subsection Solver
         set method = interior point
@@ -212,8 +212,8 @@ namespace test_interior_point
   {
     // at long steps the interior points come first, and no hand-over is needed
     Scene<2> scene(square(springs),
-                   with("chain", {"Interface: faces/friction=0.5",
-                                  "Time/step=20 crossings"}));
+                   with("cascade", {"Interface: faces/friction=0.5",
+                                    "Time/step=20 courant"}));
     for (unsigned int k = 0; k < 4; ++k)
       EXPECT_NO_THROW(scene.advance()) << k;
   }

@@ -431,7 +431,7 @@ end
     Scene<2> scene(heap);
     double deepest = 0.;
     for (unsigned int k = 0; k < 700; ++k) {
-      scene.advance_halving();
+      scene.advance_bisecting();
       if (k % 10 != 0)
         continue;
       const auto now = quads(scene);

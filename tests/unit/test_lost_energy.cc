@@ -60,7 +60,7 @@ subsection Boundary: right
 end
 subsection Time
   set end   = 1000
-  set step  = 1 crossings
+  set step  = 1 courant
   set theta = 0.5
 end
 subsection Solver
@@ -81,12 +81,12 @@ end
   {
     std::string text = bars;
     text.replace(text.find("LAW"), 3, law);
-    Scene<2> scene(text, {"Time/cohesion rule=" + rule,
-                          "Time/step=" + step + " crossings"});
+    Scene<2> scene(
+        text, {"Time/cohesion rule=" + rule, "Time/step=" + step + " courant"});
     const auto &origins = scene.discretization->origins();
     const auto &e = scene.state.energy;
     for (bool separated = false; !separated;) {
-      scene.advance_halving();
+      scene.advance_bisecting();
       if (scene.state.time > 60.)
         return std::numeric_limits<double>::quiet_NaN();
       separated = true;
@@ -107,9 +107,9 @@ end
     for (const auto &law : laws)
       for (const std::string step : {"5", "1", "0.25", "0.05"}) {
         SCOPED_TRACE(law + ", step " + step);
-        // Energies up to 200 G, solved to 1e-12. At 5 crossings a softening
-        // step may have several solutions and be redone shorter: the work of
-        // those that are kept is the same.
+        // Energies up to 200 G, solved to 1e-12. At Courant number 5 a
+        // softening step may have several solutions and be redone shorter: the
+        // work of those that are kept is the same.
         EXPECT_NEAR(removed_energy(law, "exact", step), 1., 1e-9);
       }
   }

@@ -45,7 +45,7 @@ subsection Obstacle: wall
 end
 subsection Time
   set end  = 1000
-  set step = 0.5 crossings
+  set step = 0.5 courant
 end
 subsection Solver
   set tolerance = 1e-10
@@ -206,12 +206,12 @@ end
       for (const std::string theta : {"0.5", "0.7"}) {
         SCOPED_TRACE(material + "theta " + theta);
         Scene<2> cells(text(material, rigid),
-                       {"Solver/path=element-wise", "Time/theta=" + theta}),
-            global(text(material, rigid),
-                   {"Solver/path=global", "Time/theta=" + theta}),
+                       {"Solver/path=local", "Time/theta=" + theta}),
+            assembled(text(material, rigid),
+                      {"Solver/path=assembled", "Time/theta=" + theta}),
             bonded(text(material, "  set law = bonded"),
                    {"Time/theta=" + theta});
-        for (Scene<2> *scene : {&cells, &global, &bonded}) {
+        for (Scene<2> *scene : {&cells, &assembled, &bonded}) {
           double dissipated = 0., worst = 0.;
           for (unsigned int k = 0; k < 20; ++k) {
             scene->advance();
@@ -225,7 +225,7 @@ end
           else
             EXPECT_EQ(dissipated, 0.);
         }
-        EXPECT_LT(difference(global.state.velocity, cells.state.velocity),
+        EXPECT_LT(difference(assembled.state.velocity, cells.state.velocity),
                   1e-7);
       }
   }
@@ -324,15 +324,15 @@ end
                             "  set strength = 0.1\n  set friction = 0.3";
     for (const std::vector<std::string> &more :
          {std::vector<std::string>{},
-          std::vector<std::string>{"Time/scheme=symplectic",
-                                   "Time/step=0.1 crossings"},
-          std::vector<std::string>{"Solver/path=global"},
+          std::vector<std::string>{"Time/scheme=explicit",
+                                   "Time/step=0.1 courant"},
+          std::vector<std::string>{"Solver/path=assembled"},
           std::vector<std::string>{"Solver/method=interior point"}}) {
       SCOPED_TRACE(more.empty() ? "plain" : more.front());
       Scene<2> scene(text(plain + viscous, law), more);
       double viscous_energy = 0., worst = 0.;
       for (unsigned int k = 0; k < 40; ++k) {
-        scene.advance_halving();
+        scene.advance_bisecting();
         worst = std::max(worst, defect(scene));
         EXPECT_GE(scene.state.energy.viscous, viscous_energy);
         viscous_energy = scene.state.energy.viscous;
@@ -408,7 +408,7 @@ subsection Interface: all
 end
 subsection Time
   set end  = 1000
-  set step = 0.5 crossings
+  set step = 0.5 courant
 end
 )";
     for (const auto &[law, viscosity] :

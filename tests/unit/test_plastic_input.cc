@@ -97,13 +97,13 @@ end
           {{at + "rate exponent=0.5"}, "rate exponent"},
           {{at + "rate exponent=1"}, "reference rate"},
           {{"plane=stress", "motion=large"},
-           "model = viscoplastic is not there for plane = stress"},
+           "model = viscoplastic is not available for plane = stress"},
           {{"Interface: all/law=bonded"},
-           "joins bodies without memory, and the scene has model = "
+           "joins bodies without history, and the scene has model = "
            "viscoplastic"},
-          {{"Solver/path=global"}, "path = global has one matrix"},
-          {{"Time/scheme=symplectic"},
-           "scheme = symplectic is not there for model = viscoplastic"},
+          {{"Solver/path=assembled"}, "path = assembled has one matrix"},
+          {{"Time/scheme=explicit"},
+           "scheme = explicit is not available for model = viscoplastic"},
           {{"Time/start=equilibrium"}, "equilibria of scenes with model"},
       };
       for (const Refused &row : table) {

@@ -35,8 +35,8 @@ namespace small_meshes::test_preconditioners
   template <int dim>
   void check_sparse(const std::string &text, const std::string &solver)
   {
-    Scene<dim> scene(text,
-                     {"Solver/path=global", "Solver/linear solver=" + solver});
+    Scene<dim> scene(
+        text, {"Solver/path=assembled", "Solver/linear solver=" + solver});
     auto &dynamics = *scene.dynamics;
     const Vector diagonal = delassus_diagonal(dynamics);
     const std::size_t n = diagonal.size();
@@ -75,7 +75,7 @@ namespace small_meshes::test_preconditioners
 
   TEST(Preconditioner, SparseReusesItsFactor)
   {
-    Scene<2> scene(quads, {"Solver/path=global"});
+    Scene<2> scene(quads, {"Solver/path=assembled"});
     auto &dynamics = *scene.dynamics;
     Vector D = delassus_diagonal(dynamics);
     dynamics.prepare_preconditioner(D);

@@ -104,7 +104,7 @@ end
 subsection Time
   set start = equilibrium
   set end   = 1 ms
-  set step  = 0.5 crossings
+  set step  = 0.5 courant
 end
 )");
       held.start();

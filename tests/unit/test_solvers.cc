@@ -45,7 +45,7 @@ subsection Loads
 end
 subsection Time
   set end  = 100
-  set step = 0.4 crossings
+  set step = 0.4 courant
 end
 subsection Solver
   set tolerance = 1e-10
@@ -87,7 +87,7 @@ subsection Loads
 end
 subsection Time
   set end  = 100
-  set step = 0.4 crossings
+  set step = 0.4 courant
 end
 subsection Solver
   set tolerance = 1e-10
@@ -119,7 +119,7 @@ subsection Interface: all
 end
 subsection Time
   set end  = 100
-  set step = 0.05 crossings
+  set step = 0.05 courant
 end
 subsection Solver
   set tolerance = 1e-10
@@ -172,7 +172,7 @@ end
     bool same_velocities = true;
     double least_friction = 0., least_damage = 0.; ///< share of the energy
     /// friction that is not unique: fixed points on its threshold and Newton's
-    /// method may cycle, and must say so; the chain goes on
+    /// method may cycle, and must say so; the cascade goes on
     bool may_cycle = false;
   };
 
@@ -187,7 +187,7 @@ end
   {
     Scene<dim> scene(text, overrides);
     for (unsigned int step = 0; step < n_steps; ++step) {
-      scene.advance_halving();
+      scene.advance_bisecting();
       const auto &problem = scene.stepper->problem();
       const double scale = 4. * scene.state.energy.kinetic;
       const double size = largest(scene.state.relative_velocity);
@@ -246,7 +246,7 @@ end
     for (const std::string step : {"0.4", "2"})
       solve_along<2>(pile,
                      {"Discretization/interface points=1",
-                      "Time/step=" + step + " crossings"},
+                      "Time/step=" + step + " courant"},
                      30, {true, 0.05, 0.});
   }
 
@@ -357,7 +357,7 @@ end
   }
 
   /** A beam of rigid blocks on springs E/l, one end is lifted. */
-  const std::string chain = R"(
+  const std::string row = R"(
 set dimension = 2
 subsection Mesh
   set type         = rectangle
@@ -382,7 +382,7 @@ subsection Time
   set theta = 1
 end
 subsection Solver
-  set path = global
+  set path = assembled
 end
 )";
 
@@ -391,7 +391,7 @@ end
   // inertia of a block: h^2 C w W is some 1e8 here.
   TEST(Solvers, StiffSpringsBetweenRigidBodies)
   {
-    Scene<2> scene(chain, {"Solver/tolerance=1e-11"});
+    Scene<2> scene(row, {"Solver/tolerance=1e-11"});
     for (unsigned int step = 0; step < 20; ++step) {
       const StepReport report = scene.advance();
       EXPECT_LE(report.solver.newton, 3u) << step;
@@ -419,7 +419,7 @@ end
     Scene<2> scene(
         pile, {"Interface: joints/friction=0", "Obstacle: floor/friction=0"});
     for (unsigned int step = 0; step < 5; ++step)
-      scene.advance_halving();
+      scene.advance_bisecting();
     const auto &problem = scene.stepper->problem();
     const double scale = 4. * scene.state.energy.kinetic;
     std::mt19937 random(3);

@@ -51,7 +51,7 @@ subsection Boundary: bottom
 end
 subsection Time
   set end  = 1000
-  set step = 2 crossings
+  set step = 2 courant
 end
 )";
   }

@@ -80,14 +80,14 @@ end
         bool exists = true;
         try {
           found = statics.advance(state, control.next_time(), next,
-                                  control.can_halve());
+                                  control.can_bisect());
         } catch (const StepRejected &) {
           exists = false;
         }
         if (!exists || !found.accepted()) {
           const double limit = found.share * control.step();
-          if (control.halve()) {
-            while (control.step() > limit && control.halve()) {
+          if (control.bisect()) {
+            while (control.step() > limit && control.bisect()) {
             }
             continue;
           }

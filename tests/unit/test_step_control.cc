@@ -46,7 +46,7 @@ TEST(StepControl, DownAtOnceUpOneLevelPerStep)
     control.accept();
   }
   EXPECT_TRUE(control.finished());
-  EXPECT_EQ(control.halvings(), 0u) << "no step was rejected";
+  EXPECT_EQ(control.bisections(), 0u) << "no step was rejected";
 }
 
 TEST(StepControl, TheLadderEnds)
@@ -54,7 +54,7 @@ TEST(StepControl, TheLadderEnds)
   StepControl control(1., 1., 2);
   control.limit(1e-9);
   EXPECT_EQ(control.step(), 0.25);
-  EXPECT_FALSE(control.halve());
+  EXPECT_FALSE(control.bisect());
 }
 
 TEST(AutomaticStep, IsShortWherePointsSoften)

@@ -250,7 +250,7 @@ namespace nsfd::test_stored_solvers
           << name;
     }
     EXPECT_FALSE(
-        SolverRegistry<2>::instance().create("chain")->contact_solver());
+        SolverRegistry<2>::instance().create("cascade")->contact_solver());
   }
 
   class StoredSolverTest : public testing::TestWithParam<std::string>

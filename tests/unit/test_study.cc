@@ -322,7 +322,7 @@ namespace nsfd::test_study
                              "end\n"
                              "subsection Time\n"
                              "  set end  = 1\n"
-                             "  set step = 0.5 crossings\n"
+                             "  set step = 0.5 courant\n"
                              "end\n");
     InputErrors errors;
     auto study = read_study(file.name(), {},
@@ -342,7 +342,7 @@ namespace nsfd::test_study
     ASSERT_EQ(cases.size(), 4u);
     EXPECT_EQ(cases[1].numbers.at("cells"), 4.);
     EXPECT_EQ(cases[2].numbers.at("theta"), 1.);
-    EXPECT_EQ(cases[0].half_step, "0.25 crossings");
+    EXPECT_EQ(cases[0].half_step, "0.25 courant");
     // complete scenes without pictures, each with its folder
     EXPECT_NE(cases[0].scene.find("set end"), std::string::npos);
     EXPECT_EQ(cases[0].scene.find("Vary"), std::string::npos);

@@ -274,25 +274,26 @@ namespace nsfd
     increment,  ///< the mean of the step
     energy_safe ///< that of the end, the mean where friction would give energy
   };
-  enum class StepKind { time, crossings, automatic };
+  enum class StepKind { time, courant, automatic };
 
   enum class Scheme {
     moreau_jean,
-    symplectic, ///< Moreau-Jean with the forces of the bodies at t_k
-    arkode      ///< smooth scenes, by SUNDIALS
+    explicit_moreau_jean, ///< with the forces of the bodies at t_k
+    arkode                ///< smooth scenes, by SUNDIALS
   };
 
   struct TimeInput {
     Scheme scheme = Scheme::moreau_jean;
     double end = 0.;
-    StepKind step_kind = StepKind::crossings;
-    double step = 0.5; ///< s, or cell crossings L/c_p; largest step for `auto`
+    StepKind step_kind = StepKind::courant;
+    /// s, or Courant number h c_p / L; the largest step for `auto`
+    double step = 0.5;
     double theta = 0.5;
     double forecast_gamma1 = 0.5, forecast_gamma2 = 0.;
     CohesionRule cohesion_rule = CohesionRule::exact;
     ContactTarget contact_target = ContactTarget::energy_safe;
     Sliding sliding = Sliding::energy_safe;
-    unsigned int maximum_halvings = 10;
+    unsigned int maximum_bisections = 10;
     double largest_overshoot = 0.05; ///< of the strength of a bonded point
     /// of scheme = arkode: implicit (SDIRK) or explicit Runge-Kutta pairs,
     /// their order and the error per step relative to the largest motion
@@ -303,7 +304,7 @@ namespace nsfd
     /** Weight of the new velocity in the forces of the bodies. */
     double bulk_theta() const
     {
-      return scheme == Scheme::symplectic ? 0. : theta;
+      return scheme == Scheme::explicit_moreau_jean ? 0. : theta;
     }
 
     /**
@@ -315,13 +316,15 @@ namespace nsfd
      */
     double kick(const double h, const double last) const
     {
-      return scheme == Scheme::symplectic && last > 0. ? (h + last) / 2. : h;
+      return scheme == Scheme::explicit_moreau_jean && last > 0.
+                 ? (h + last) / 2.
+                 : h;
     }
 
     /** Weight of the new velocity in the work of impulses and loads. */
     double work_theta() const
     {
-      return scheme == Scheme::symplectic ? 0.5 : theta;
+      return scheme == Scheme::explicit_moreau_jean ? 0.5 : theta;
     }
   };
 
@@ -338,14 +341,14 @@ namespace nsfd
     double until = 0.;  ///< s, end of the quasi-static steps
     double step = 0.;   ///< s, of the load
     SolutionJump at_jump = SolutionJump::stop;
-    double tolerance = 1e-11; ///< force left over, relative to those present
+    double tolerance = 1e-11; ///< unbalanced force, relative to those present
   };
 
   struct SolverInput {
     std::string method = "auto"; ///< auto | dual newton | gauss seidel
-    std::string path = "auto";   ///< auto | element-wise | global
+    std::string path = "auto";   ///< auto | local | assembled
     std::string linear_solver =
-        "auto"; ///< of the global path: auto | direct | cg
+        "auto"; ///< of the assembled path: auto | direct | cg
     double tolerance = 1e-8;
     unsigned int maximum_iterations = 200;
     /// none | hard | all: steps whose contacts become stored problems

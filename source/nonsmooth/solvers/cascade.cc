@@ -13,12 +13,12 @@ namespace nsfd
      * One solver after the other until the natural map is small: Newton's
      * method on the dual problem (with its sweeps of Gauss-Seidel), then
      * interior points where points may touch. At long steps, where Newton's
-     * method needs a global factor in every iteration and Coulomb friction
-     * makes it cycle, the interior points come first; without friction, after
-     * a few steps of Newton's, which are enough where few contacts change.
-     * Every hand-over is in the report. Steps in which points soften are not
-     * handed over: a shorter step is their cure, until four cuts have shown
-     * that it is none.
+     * method needs a factor of all bodies in every iteration and Coulomb
+     * friction makes it cycle, the interior points come first; without
+     * friction, after a few steps of Newton's, which are enough where few
+     * contacts change. Every hand-over is in the report. Steps in which points
+     * soften are not handed over: a shorter step is their cure, until four cuts
+     * have shown that it is none.
      */
     template <int dim>
     class Cascade final : public NonsmoothSolver<dim>
@@ -49,7 +49,7 @@ namespace nsfd
           std::swap(first, second);
           second_name = "dual newton";
         }
-        // a Newton step costs a global factor here, as one of the path does
+        // a Newton step costs such a factor here, as one of the path does
         const auto n = all.sum_integer(dynamics.bodies().n_dofs());
         const bool brief =
             lasts && !rubs && static_cast<long long>(n) <= largest_factor<dim>;
@@ -169,10 +169,10 @@ namespace nsfd
 
     using Cascade2 = Cascade<2>;
     using Cascade3 = Cascade<3>;
-    NSFD_REGISTER(SolverRegistry<2>, Cascade2, "chain",
+    NSFD_REGISTER(SolverRegistry<2>, Cascade2, "cascade",
                   "dual newton, then interior point where it fails on contact; "
                   "at long steps the other way round");
-    NSFD_REGISTER(SolverRegistry<3>, Cascade3, "chain",
+    NSFD_REGISTER(SolverRegistry<3>, Cascade3, "cascade",
                   "dual newton, then interior point where it fails on contact; "
                   "at long steps the other way round");
   } // namespace

@@ -78,10 +78,10 @@ namespace nsfd
                          LawEvaluation<dim> &evaluation,
                          SolverReport report) const
       {
-        const auto chain = SolverRegistry<dim>::instance().create("chain");
-        const SolverReport next = chain->solve(problem, dynamics, energy_scale,
-                                               control, impulse, evaluation);
-        report.switches.push_back("chain");
+        const auto cascade = SolverRegistry<dim>::instance().create("cascade");
+        const SolverReport next = cascade->solve(
+            problem, dynamics, energy_scale, control, impulse, evaluation);
+        report.switches.push_back("chain"); // as summary.json counts it
         report.go_on_with(next);
         return report;
       }
@@ -340,11 +340,11 @@ namespace nsfd
 
     using ContactsAlone2 = ContactsAlone<2>;
     using ContactsAlone3 = ContactsAlone<3>;
-    NSFD_REGISTER(SolverRegistry<2>, ContactsAlone2, "contacts alone",
-                  "contact and friction of rigid bodies, by the solvers of "
-                  "stored problems; the chain where more acts");
-    NSFD_REGISTER(SolverRegistry<3>, ContactsAlone3, "contacts alone",
-                  "contact and friction of rigid bodies, by the solvers of "
-                  "stored problems; the chain where more acts");
+    NSFD_REGISTER(SolverRegistry<2>, ContactsAlone2, "frictional contact",
+                  "contact and friction of rigid bodies by the solvers of "
+                  "stored problems, else the cascade");
+    NSFD_REGISTER(SolverRegistry<3>, ContactsAlone3, "frictional contact",
+                  "contact and friction of rigid bodies by the solvers of "
+                  "stored problems, else the cascade");
   } // namespace
 } // namespace nsfd

@@ -19,7 +19,7 @@ namespace nsfd
    *
    *   T(u_a)^2 / (2 k) - (I(u_b) - I(u_a)),        I the area under T,
    *
-   * is left over. In dynamics it is the kinetic and elastic energy of the bar
+   * is released. In dynamics it is the kinetic and elastic energy of the bar
    * right after. Without a jump nothing is left.
    *
    * Measured when the interface is broken: the displacement of the grip, over
@@ -143,6 +143,6 @@ namespace nsfd
   };
 
   NSFD_REGISTER(VerificationRegistry, Jump, "jump",
-                "Bar pulled slowly until its interface snaps: grip, energy "
-                "left over");
+                "Bar pulled slowly until its interface snaps: grip, released "
+                "energy");
 } // namespace nsfd
