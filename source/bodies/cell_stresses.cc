@@ -5,6 +5,7 @@
 #include "discretization/cell_sampler.h"
 #include "discretization/cells.h"
 
+#include "nsfd/materials/material_model.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -20,12 +21,11 @@ namespace nsfd
     if (!input.has_history())
       return;
     for (const MaterialInput &material : input.materials)
-      materials_.push_back(material.plastic
-                               ? make_history_material<dim>(
-                                     material.young, material.poisson,
-                                     *material.plastic, input.large_motion,
-                                     input.plane_stress)
-                               : nullptr);
+      materials_.push_back(
+          material.kind == MaterialKind::history_dependent
+              ? material.model->history_dependent<dim>(
+                    material, input.large_motion, input.plane_stress)
+              : nullptr);
     first_ = first_histories(discretization);
   }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "materials/history_material.h"
 #include "nsfd/discretization/discretization.h"
+#include "nsfd/materials/history_material.h"
 #include "state/state.h"
 
 #include <array>

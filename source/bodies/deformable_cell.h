@@ -1,6 +1,6 @@
 #pragma once
 
-#include "materials/hyperelastic.h"
+#include "nsfd/materials/hyperelastic.h"
 
 #include <vector>
 

@@ -5,6 +5,7 @@
 
 #include "finite_cell.h"
 #include "history_cell.h"
+#include "nsfd/materials/material_model.h"
 #include "nsfd/scene/scene_input.h"
 
 namespace nsfd
@@ -21,16 +22,14 @@ namespace nsfd
       for (const auto &g : shape.gradients)
         for (unsigned int d = 0; d < dim; ++d)
           gradients.push_back(g[d]);
-      if (material.plastic)
+      if (material.kind == MaterialKind::history_dependent)
         return std::make_unique<const HistoryCell<dim>>(
-            make_history_material<dim>(material.young, material.poisson,
-                                       *material.plastic, input.large_motion,
-                                       input.plane_stress),
+            material.model->history_dependent<dim>(material, input.large_motion,
+                                                   input.plane_stress),
             input.large_motion, shape.JxW, gradients);
-      if (is_finite_strain(material.model))
+      if (material.kind == MaterialKind::finite_strain)
         return std::make_unique<const FiniteCell<dim>>(
-            make_hyperelastic<dim>(material.model, material.young,
-                                   material.poisson, input.plane_stress),
+            material.model->hyperelastic<dim>(material, input.plane_stress),
             shape.JxW, gradients);
       return nullptr;
     }
@@ -39,11 +38,10 @@ namespace nsfd
   unsigned int n_history(const SceneInput &input, const unsigned int material)
   {
     const MaterialInput &m = input.materials[material];
-    if (!m.plastic)
+    if (m.kind != MaterialKind::history_dependent)
       return 0;
     // the same in the plane and in space
-    return make_history_material<3>(m.young, m.poisson, *m.plastic,
-                                    input.large_motion, false)
+    return m.model->history_dependent<3>(m, input.large_motion, false)
         ->n_history();
   }
 

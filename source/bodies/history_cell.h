@@ -1,7 +1,7 @@
 #pragma once
 
 #include "deformable_cell.h"
-#include "materials/history_material.h"
+#include "nsfd/materials/history_material.h"
 
 #include <memory>
 

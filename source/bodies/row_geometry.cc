@@ -1,6 +1,6 @@
 #include "row_geometry.h"
 
-#include "obstacle_shape.h"
+#include "obstacle_geometry.h"
 
 #include "nsfd/scene/scene_input.h"
 

@@ -1,7 +1,7 @@
 #include "surface_contacts.h"
 
 #include "core/gather.h"
-#include "obstacle_shape.h"
+#include "obstacle_geometry.h"
 
 #include "nsfd/scene/scene_input.h"
 

@@ -205,7 +205,7 @@ namespace nsfd
     const auto &material = input_->materials[cells_->body_class(body).material];
     if (material.rigid)
       return {};
-    if (is_finite_strain(material.model))
+    if (material.kind == MaterialKind::finite_strain)
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
     const auto &of_cell = cells_->shape(body).elasticity;
     if (of_cell.size() == 1)

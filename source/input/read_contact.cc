@@ -111,7 +111,7 @@ namespace nsfd
           reader.error("material",
                        fmt::format("a pin holds a place of a rigid body, and "
                                    "material `{}` is {}",
-                                   material.name, model_name(material.model)),
+                                   material.name, material.model_name),
                        "name a material with model = rigid; a Boundary block "
                        "with velocities 0 holds faces");
       const std::vector<double> at =

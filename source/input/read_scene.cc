@@ -4,6 +4,7 @@
 #include "nonsmooth/solvers/contact_solvers.h"
 #include "nsfd/adaptivity/indicator.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/obstacles/obstacle_shape.h"
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/verification/verification_case.h"
 #include "read_sections.h"
@@ -207,6 +208,10 @@ namespace nsfd
     append_registered("verification case", VerificationRegistry::instance());
     append_registered("indicator", IndicatorRegistry::instance());
     append_registered("observable", ObservableRegistry::instance());
+    for (const std::string &name : obstacle_shape_names())
+      parts.push_back(
+          {"obstacle shape", name,
+           ObstacleShapeRegistry::instance().entries().at(name).text});
     append("mesh", mesh_types());
     append("solver", known_solvers());
     for (const auto &[name, text] : contact_solvers())

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/parameters/initial_expression.h"
 #include "nsfd/parameters/section_reader.h"
 #include "nsfd/scene/scene_input.h"
 #include "parameters/input_errors.h"
@@ -104,15 +105,6 @@ namespace nsfd
 
   /** left, right, ..., front, back. */
   bool is_side(const std::string &word);
-
-  /**
-   * An expression of x, y, z that is read once, before the first step; time in
-   * it is an error.
-   */
-  Expression read_initial_expression(SectionReader &reader,
-                                     const std::string &name,
-                                     const std::string &default_text, Unit unit,
-                                     const std::string &text);
 
   /** An expression that may be left out. */
   std::optional<Expression> read_optional_expression(SectionReader &reader,

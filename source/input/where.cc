@@ -252,22 +252,6 @@ namespace nsfd
     return std::find(sides.begin(), sides.end(), word) != sides.end();
   }
 
-  Expression read_initial_expression(SectionReader &reader,
-                                     const std::string &name,
-                                     const std::string &default_text,
-                                     const Unit unit, const std::string &text)
-  {
-    const Expression expression =
-        reader.expression(name, default_text, unit, text);
-    if (expression.depends_on_time())
-      reader.error(name,
-                   fmt::format("{} = {} depends on t, but is read once, before "
-                               "the first step",
-                               name, expression.text()),
-                   "write an expression of x, y, z");
-    return expression;
-  }
-
   Where read_where(SectionReader &reader, const std::string &default_text,
                    const WhereUse use, const SceneInput &scene,
                    const std::string &text)

@@ -2,25 +2,13 @@
 
 #include "elasticity.h"
 
-#include "hyperelastic.h"
+#include "nsfd/materials/material_model.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <cmath>
 
 namespace nsfd
 {
-  namespace
-  {
-    /** S_33 in plane strain, where C_33 = 1. */
-    double out_of_plane(const BulkModel model, const double lambda,
-                        const Voigt<2> &C)
-    {
-      return model == BulkModel::neo_hookean
-                 ? lambda / 2. * std::log(determinant(C))
-                 : lambda * (C[0] + C[1] - 2.) / 2.;
-    }
-  } // namespace
-
   template <int dim>
   std::array<double, 6> cauchy_stress(const MaterialInput &material,
                                       const bool plane_stress,
@@ -37,8 +25,7 @@ namespace nsfd
           C[voigt_place<dim>(a, b)] += F[c][a] * F[c][b];
     std::array<double, 6> sigma{};
     const auto elastic =
-        make_hyperelastic<dim>(material.model, material.young, material.poisson,
-                               plane_stress && dim == 2);
+        material.model->hyperelastic<dim>(material, plane_stress && dim == 2);
     if (!elastic->stress(C, S))
       return sigma;
     const double J = std::sqrt(determinant(C));
@@ -51,10 +38,9 @@ namespace nsfd
                 F[a][c] * S[voigt_place<dim>(c, d)] * F[b][d] / J;
     if constexpr (dim == 2)
       if (!plane_stress)
-        sigma[2] =
-            out_of_plane(material.model,
-                         LinearElasticity<dim>(material, false).lambda, C) /
-            J;
+        sigma[2] = material.model->stress_across(
+                       LinearElasticity<dim>(material, false).lambda, C) /
+                   J;
     return sigma;
   }
 

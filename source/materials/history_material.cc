@@ -1,4 +1,4 @@
-#include "history_material.h"
+#include "nsfd/materials/history_material.h"
 
 #include "matrix_log.h"
 #include "strain.h"

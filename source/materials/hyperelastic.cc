@@ -1,6 +1,4 @@
-#include "hyperelastic.h"
-
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/materials/hyperelastic.h"
 
 #include <cmath>
 #include <limits>
@@ -364,20 +362,27 @@ namespace nsfd
 
   template <int dim>
   std::unique_ptr<const Hyperelastic<dim>>
-  make_hyperelastic(const BulkModel model, const double young,
-                    const double poisson, const bool plane_stress)
+  make_saint_venant_kirchhoff(const double young, const double poisson,
+                              const bool plane_stress)
   {
     const double mu = young / (2. * (1. + poisson));
-    const double lambda = 2. * mu * poisson / (1. - 2. * poisson);
-    if (model == BulkModel::saint_venant_kirchhoff && !plane_stress)
-      return std::make_unique<SaintVenantKirchhoff<dim>>(lambda, mu);
-    // 2 lambda mu / (lambda + 2 mu), also where lambda is infinite
-    if (model == BulkModel::saint_venant_kirchhoff && dim == 2)
+    if (!plane_stress)
       return std::make_unique<SaintVenantKirchhoff<dim>>(
-          2. * mu * poisson / (1. - poisson), mu);
-    if (model == BulkModel::neo_hookean && !plane_stress)
-      return std::make_unique<NeoHooke<dim>>(lambda, mu);
-    throw std::invalid_argument("no such energy of finite strain");
+          2. * mu * poisson / (1. - 2. * poisson), mu);
+    if (dim != 2)
+      throw std::invalid_argument("plane stress is for the plane");
+    // 2 lambda mu / (lambda + 2 mu), also where lambda is infinite
+    return std::make_unique<SaintVenantKirchhoff<dim>>(
+        2. * mu * poisson / (1. - poisson), mu);
+  }
+
+  template <int dim>
+  std::unique_ptr<const Hyperelastic<dim>> make_neo_hooke(const double young,
+                                                          const double poisson)
+  {
+    const double mu = young / (2. * (1. + poisson));
+    return std::make_unique<NeoHooke<dim>>(
+        2. * mu * poisson / (1. - 2. * poisson), mu);
   }
 
 #define INSTANTIATE(dim)                                                       \
@@ -385,8 +390,10 @@ namespace nsfd
   template bool step_stress<dim>(const Hyperelastic<dim> &,                    \
                                  const Voigt<dim> &, const Voigt<dim> &,       \
                                  double, bool, StepStress<dim> &);             \
-  template std::unique_ptr<const Hyperelastic<dim>> make_hyperelastic<dim>(    \
-      BulkModel, double, double, bool)
+  template std::unique_ptr<const Hyperelastic<dim>>                            \
+  make_saint_venant_kirchhoff<dim>(double, double, bool);                      \
+  template std::unique_ptr<const Hyperelastic<dim>> make_neo_hooke<dim>(       \
+      double, double)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

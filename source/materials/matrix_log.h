@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hyperelastic.h"
 #include "nsfd/core/space.h"
+#include "nsfd/materials/hyperelastic.h"
 
 namespace nsfd
 {

@@ -7,6 +7,7 @@
 
 #include "core/archive.h"
 #include "discretization/cell_geometry.h"
+#include "nsfd/obstacles/obstacle_shape.h"
 #include "nsfd/scene/scene_input.h"
 #include "records/engineering.h"
 
@@ -232,8 +233,7 @@ namespace nsfd
     constexpr double none = std::numeric_limits<double>::infinity();
     double result = none;
     for (const auto &obstacle : input_.obstacles)
-      if (obstacle.shape != ObstacleShape::plane && !obstacle.hollow)
-        result = std::min(result, 2. * obstacle.radius);
+      result = std::min(result, obstacle.shape->thickness(obstacle));
     if (!input_.contacts.empty()) {
       for (const auto &[body, whole] : measure_bodies(discretization_))
         result = std::min(

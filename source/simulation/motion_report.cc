@@ -1,5 +1,7 @@
 #include "motion_report.h"
 
+#include "nsfd/obstacles/obstacle_shape.h"
+
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
@@ -46,11 +48,7 @@ namespace nsfd
     std::string text = obstacle.moves() ? "moving " : "";
     if (obstacle.hollow)
       text += "hollow ";
-    if (obstacle.shape == ObstacleShape::plane)
-      return text + "plane";
-    if (obstacle.shape == ObstacleShape::cylinder)
-      return text + "cylinder";
-    return text + (dimension == 2 ? "disc" : "sphere");
+    return text + obstacle.shape->text(dimension);
   }
 
   std::vector<ReportLine> motion_report(const SceneInput &input)
@@ -59,9 +57,9 @@ namespace nsfd
     if (!input.large_motion)
       return lines;
     for (const MaterialInput &material : input.materials)
-      if (is_finite_strain(material.model))
-        lines.push_back({"finite strain",
-                         material.name + ": " + model_name(material.model)});
+      if (material.kind == MaterialKind::finite_strain)
+        lines.push_back(
+            {"finite strain", material.name + ": " + material.model_name});
       else if (material.rigid)
         lines.push_back(
             {"rigid bodies",

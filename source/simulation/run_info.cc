@@ -59,8 +59,7 @@ namespace nsfd
     parts.emplace_back("element",
                        model.discretization->cells().element->get_name());
     for (const auto &material : input.materials)
-      parts.emplace_back("material " + material.name,
-                         model_name(material.model));
+      parts.emplace_back("material " + material.name, material.model_name);
     for (const auto &[keyword, sentence] : motion_report(input))
       parts.emplace_back(keyword, sentence);
     for (const auto &block : input.interfaces) {

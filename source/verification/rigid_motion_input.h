@@ -43,7 +43,7 @@ namespace nsfd::cases
   inline const ObstacleInput &only_plane(const SceneInput &input)
   {
     demand(input.obstacles.size() == 1 &&
-               input.obstacles[0].shape == ObstacleShape::plane &&
+               input.obstacles[0].shape_name == "plane" &&
                !input.obstacles[0].moves(),
            "the case needs one Obstacle, a plane at rest");
     return input.obstacles[0];

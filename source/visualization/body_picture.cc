@@ -1,6 +1,7 @@
 #include "body_view.h"
 #include "chart_axis.h"
 #include "colour_map.h"
+#include "picture_values.h"
 #include "svg_elements.h"
 
 #include <fmt/format.h>
@@ -16,13 +17,6 @@ namespace nsfd
     using Colouring = PictureOptions::Colouring;
 
     const Rgb no_value = {176., 182., 190.};
-
-    double coloured_value(const Snapshot::Polygon &polygon,
-                          const PictureOptions::Colouring colouring)
-    {
-      return colouring == PictureOptions::Colouring::speed ? polygon.speed
-                                                           : polygon.value;
-    }
 
     /** The largest fragment light grey, others in turn from a palette. */
     std::map<unsigned int, Rgb> fragment_colours(const Snapshot &snapshot)
@@ -45,17 +39,6 @@ namespace nsfd
         result[by_size[i].second] =
             i == 0 ? rgb(0xc3cbd4) : rgb(palette[(i - 1) % palette.size()]);
       return result;
-    }
-
-    enum class FaceState { intact, damaged, broken, contact };
-
-    FaceState state_of(const Snapshot::FacePiece &face)
-    {
-      if (face.contact)
-        return FaceState::contact;
-      if (face.beta <= 1e-9)
-        return FaceState::broken;
-      return face.beta < 1. - 1e-9 ? FaceState::damaged : FaceState::intact;
     }
 
     const Rgb broken_rgb = rgb(0xe3122b);
@@ -415,85 +398,6 @@ namespace nsfd
       return body;
     }
   } // namespace
-
-  PictureOptions picture_options(const std::vector<Snapshot> &snapshots,
-                                 const PictureOptions::Colouring colouring)
-  {
-    PictureOptions options;
-    options.colouring = colouring;
-
-    Box reference;
-    double largest_displacement = 0.;
-    std::vector<double> values;
-    for (const auto &snapshot : snapshots) {
-      const Vector3 mean = mean_displacement(snapshot);
-      for (const auto &polygon : snapshot.polygons) {
-        for (const auto &x : polygon.reference)
-          if (is_finite(x))
-            reference.add(x);
-        for (const auto &u : polygon.displacement)
-          if (is_finite(u))
-            largest_displacement = std::max(
-                largest_displacement,
-                std::hypot(u[0] - mean[0], u[1] - mean[1], u[2] - mean[2]));
-        const double value = coloured_value(polygon, colouring);
-        if (std::isfinite(value))
-          values.push_back(value);
-      }
-      for (const auto &face : snapshot.faces) {
-        const FaceState state = state_of(face);
-        options.explain_damaged |= state == FaceState::damaged;
-        options.explain_broken |= state == FaceState::broken;
-        options.explain_contact |= state == FaceState::contact;
-      }
-    }
-    if (reference.empty())
-      return options;
-
-    const double size = reference.size();
-    if (largest_displacement > 1e-12 * size &&
-        largest_displacement < 0.02 * size)
-      options.magnification = nice_below(0.05 * size / largest_displacement);
-
-    // cells at a singular point must not make all others dark
-    if (!values.empty()) {
-      const auto nth =
-          values.begin() + static_cast<long>(0.998 * (values.size() - 1));
-      std::nth_element(values.begin(), nth, values.end());
-      options.colour_max = std::max(*nth, 0.);
-      if (options.colour_max > 0.) {
-        const double unit =
-            std::pow(10., std::floor(std::log10(options.colour_max)) - 1.);
-        options.colour_max =
-            std::ceil(options.colour_max / unit * (1. - 1e-9)) * unit;
-      }
-    }
-
-    Box drawn, rest;
-    for (const auto &snapshot : snapshots) {
-      const Projection projection(snapshot, options.magnification);
-      for (const auto &polygon : snapshot.polygons) {
-        for (const auto &x : deformed_corners(polygon, projection))
-          drawn.add(projection.to_plane(x));
-        for (const auto &x : polygon.reference)
-          if (is_finite(x))
-            rest.add(projection.to_plane(x));
-      }
-    }
-    if (drawn.empty())
-      drawn = rest;
-    // fragments that fly far off leave the picture
-    const double margin = 1.5 * rest.size();
-    for (unsigned int d = 0; d < 2; ++d) {
-      options.lower[d] = std::max(drawn.lower[d], rest.lower[d] - margin);
-      options.upper[d] = std::min(drawn.upper[d], rest.upper[d] + margin);
-      if (!(options.lower[d] < options.upper[d])) {
-        options.lower[d] = rest.lower[d] - 0.01 * size;
-        options.upper[d] = rest.upper[d] + 0.01 * size;
-      }
-    }
-    return options;
-  }
 
   std::string body_picture(const Snapshot &snapshot,
                            const PictureOptions &options, const SvgUse use)

@@ -35,17 +35,13 @@ namespace finite_strain
     const double mu = young / (2. * (1. + poisson)),
                  lambda =
                      young * poisson / ((1. + poisson) * (1. - 2. * poisson));
-    const auto saint_venant = BulkModel::saint_venant_kirchhoff;
     std::vector<Law<dim>> all = {
         {"Saint-Venant Kirchhoff",
-         make_hyperelastic<dim>(saint_venant, young, poisson, false), lambda,
-         mu},
-        {"neo-Hooke",
-         make_hyperelastic<dim>(BulkModel::neo_hookean, young, poisson, false),
-         lambda, mu}};
+         make_saint_venant_kirchhoff<dim>(young, poisson, false), lambda, mu},
+        {"neo-Hooke", make_neo_hooke<dim>(young, poisson), lambda, mu}};
     if (dim == 2)
       all.push_back({"Saint-Venant Kirchhoff in plane stress",
-                     make_hyperelastic<dim>(saint_venant, young, poisson, true),
+                     make_saint_venant_kirchhoff<dim>(young, poisson, true),
                      2. * lambda * mu / (lambda + 2. * mu), mu});
     return all;
   }

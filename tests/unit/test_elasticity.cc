@@ -38,7 +38,6 @@ namespace test_elasticity
   MaterialInput laminate(const std::array<double, 3> &axis)
   {
     MaterialInput material;
-    material.model = BulkModel::transversely_isotropic;
     material.density = 2.;
     auto &constants = material.transverse.emplace();
     constants.axis = axis;

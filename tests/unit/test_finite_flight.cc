@@ -118,8 +118,8 @@ namespace finite_strain::test_finite_flight
   /** Stiff cells of micrometres, at rest and loaded: all sizes are relative. */
   TEST(FiniteCell, SmallStiffCellsMoveUnderTheirLoad)
   {
-    const std::shared_ptr<const Hyperelastic<2>> steel = make_hyperelastic<2>(
-        BulkModel::saint_venant_kirchhoff, 2e11, 0.3, false);
+    const std::shared_ptr<const Hyperelastic<2>> steel =
+        make_saint_venant_kirchhoff<2>(2e11, 0.3, false);
     const double edge = 1e-6;
     const Cell<2> cell(steel, 1, edge); // of the density 1
     std::vector<double> u(cell.n, 0.), v0(cell.n, 0.), v(cell.n, 0.),

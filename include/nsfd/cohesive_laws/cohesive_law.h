@@ -65,6 +65,9 @@ namespace nsfd
    * A point with a times the strength and g times the toughness evaluates
    * a T(a d / g): the shape stays, openings scale with g / a and the stiffness
    * with a^2 / g. The caller does this scaling.
+   *
+   * LawPoint (law_point.h) makes of a law and these factors what is stored and
+   * dissipated between two states and the strength for a traction.
    */
   class CohesiveLaw
   {

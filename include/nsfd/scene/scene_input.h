@@ -77,25 +77,15 @@ namespace nsfd
     unsigned int interface_points = 2; ///< per direction of a face
   };
 
-  enum class BulkModel {
-    linear_elastic,
-    rigid,
-    saint_venant_kirchhoff, ///< finite strain
-    neo_hookean,            ///< finite strain, compressible
-    transversely_isotropic, ///< small strain
-    j2_plastic,             ///< small or finite strain, with history
-    viscoplastic            ///< the same with an overstress
+  class MaterialModel; // see materials/material_model.h
+
+  /** How the bodies of a material move and strain. */
+  enum class MaterialKind {
+    small_strain,     ///< linear elastic
+    rigid,            ///< not at all
+    finite_strain,    ///< by an energy of F^T F
+    history_dependent ///< with internal variables; small or finite strain
   };
-
-  /** As a parameter file writes it: "neo-hookean". */
-  const char *model_name(BulkModel model);
-
-  /** Of scenes with large motions. */
-  inline bool is_finite_strain(const BulkModel model)
-  {
-    return model == BulkModel::saint_venant_kirchhoff ||
-           model == BulkModel::neo_hookean;
-  }
 
   /** What a rigid material of a scene with large motions says of its bodies. */
   struct RigidInput {
@@ -142,8 +132,10 @@ namespace nsfd
   struct MaterialInput {
     std::string name;
     Where where;
-    BulkModel model = BulkModel::linear_elastic;
-    bool rigid = false; ///< model = rigid
+    std::string model_name = "linear elastic"; ///< as the file writes it
+    std::shared_ptr<const MaterialModel> model;
+    MaterialKind kind = MaterialKind::small_strain; ///< of the model
+    bool rigid = false;                             ///< of that kind
     RigidInput rigid_bodies;
     /// not a number where there is no such constant: of what is graded, and E
     /// and nu of transversely isotropic materials
@@ -225,17 +217,14 @@ namespace nsfd
     bool exact_motion = false; ///< of the verification case
   };
 
-  enum class ObstacleShape {
-    plane,
-    sphere,  ///< a disc in the plane
-    cylinder ///< without ends; in space only
-  };
+  class ObstacleShape; // see obstacles/obstacle_shape.h
 
   /** A rigid half space, ball or cylinder; boundary faces may touch it. */
   struct ObstacleInput {
     std::string name;
-    Where where; ///< boundary faces that may touch it
-    ObstacleShape shape = ObstacleShape::plane;
+    Where where;                      ///< boundary faces that may touch it
+    std::string shape_name = "plane"; ///< as the file writes it
+    std::shared_ptr<const ObstacleShape> shape;
     std::array<double, 3> point{}; ///< on the plane, centre, or on the axis
     /// of a plane, out of the obstacle; axis of a cylinder; unit length
     std::array<double, 3> normal{};
@@ -430,7 +419,7 @@ namespace nsfd
     bool has_history() const
     {
       for (const auto &material : materials)
-        if (material.plastic)
+        if (material.kind == MaterialKind::history_dependent)
           return true;
       return false;
     }

@@ -147,7 +147,7 @@ namespace nsfd
     {
       if (material.transverse)
         return set_transverse(*material.transverse, plane_stress);
-      demand(material.model == BulkModel::linear_elastic,
+      demand(material.model_name == "linear elastic",
              "the material must be elastic");
       const double E = material.young, nu = material.poisson;
       polarisation_ = {{is_fast_ ? 1. : 0., is_fast_ ? 0. : 1.}};

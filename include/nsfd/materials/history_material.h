@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hyperelastic.h"
+#include "nsfd/materials/hyperelastic.h"
 
 #include <memory>
 

@@ -5,8 +5,6 @@
 
 namespace nsfd
 {
-  enum class BulkModel; // see scene/scene_input.h
-
   /**
    * The entries of a symmetric matrix, each once and as it stands in it: 11,
    * 22, 12 in the plane and 11, 22, 33, 12, 13, 23 in space.
@@ -94,12 +92,18 @@ namespace nsfd
 
   /**
    * Saint-Venant Kirchhoff, W = lambda/2 (tr E)^2 + mu E:E with
-   * E = (C - 1) / 2, or compressible neo-Hooke,
-   * W = mu/2 (tr C - dim - ln det C) + lambda/8 (ln det C)^2. Plane stress is
-   * for the first one in the plane; other requests throw invalid_argument.
+   * E = (C - 1) / 2. Plane stress is for the plane: throws invalid_argument in
+   * space.
    */
   template <int dim>
   std::unique_ptr<const Hyperelastic<dim>>
-  make_hyperelastic(BulkModel model, double young, double poisson,
-                    bool plane_stress);
+  make_saint_venant_kirchhoff(double young, double poisson, bool plane_stress);
+
+  /**
+   * Compressible neo-Hooke, W = mu/2 (tr C - dim - ln det C) +
+   * lambda/8 (ln det C)^2. Not in plane stress.
+   */
+  template <int dim>
+  std::unique_ptr<const Hyperelastic<dim>> make_neo_hooke(double young,
+                                                          double poisson);
 } // namespace nsfd
