@@ -67,11 +67,12 @@ namespace nsfd
     {
       materials::demand_large_motion(reader, setting, material);
       if (setting.plane_stress)
-        reader.error("model",
-                     fmt::format("model = {} is not there for plane = stress",
-                                 material.model_name),
-                     "write plane = strain, or model = saint-venant "
-                     "kirchhoff");
+        reader.error(
+            "model",
+            fmt::format("model = {} is not available for plane = stress",
+                        material.model_name),
+            "write plane = strain, or model = saint-venant "
+            "kirchhoff");
       read_finite_strain(reader, setting, material);
     }
 

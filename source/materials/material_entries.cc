@@ -131,7 +131,7 @@ namespace nsfd::materials
     if (material.is_viscous() && setting.dimension == 2 && setting.plane_stress)
       reader.error(material.shear_viscosity > 0. ? viscosity_names[0]
                                                  : viscosity_names[1],
-                   "viscosity is not there for plane = stress, where the "
+                   "viscosity is not available for plane = stress, where the "
                    "strain normal to the plane has a history of its own",
                    "write plane = strain, or leave it out");
   }

@@ -63,11 +63,12 @@ namespace nsfd
     {
       using namespace materials;
       if (setting.plane_stress && setting.large_motion)
-        reader.error("model",
-                     fmt::format("model = {} is not there for plane = stress "
-                                 "with motion = large",
-                                 material.model_name),
-                     "write plane = strain, or motion = small");
+        reader.error(
+            "model",
+            fmt::format("model = {} is not available for plane = stress "
+                        "with motion = large",
+                        material.model_name),
+            "write plane = strain, or motion = small");
       refuse_axis(reader);
       const std::string uniform = why_uniform(setting);
       read_isotropic(reader, uniform.empty() ? "the material flows" : uniform,
