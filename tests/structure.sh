@@ -118,5 +118,6 @@ find source include/nsfd -name '*.h' -o -name '*.cc' | sort |
       printf "unformatted files %d\n", count("unformatted", unformatted, " ")
       printf "long files %d\n", count("long", long, " ")
       printf "large classes %d\n", count("large", large, ";")
-      exit bad || upward || circles || unformatted != ""
+      exit bad || upward || circles || unformatted != "" || long != "" ||
+        large != ""
     }'

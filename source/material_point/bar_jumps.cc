@@ -1,7 +1,7 @@
 #include "bar.h"
 #include "drive_point.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 
 #include <algorithm>
 #include <cmath>

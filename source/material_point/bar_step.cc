@@ -1,6 +1,6 @@
 #include "bar.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include "cohesive_laws/friction_weight.h"
 #include "nonsmooth/point_law.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 
 #include <fmt/format.h>
 

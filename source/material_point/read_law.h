@@ -2,7 +2,7 @@
 
 #include "bar.h"
 #include "nsfd/nonsmooth/one_step_problem.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 #include "parameters/input_errors.h"
 #include "path.h"
 

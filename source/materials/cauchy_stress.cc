@@ -3,7 +3,7 @@
 #include "elasticity.h"
 
 #include "nsfd/materials/material_model.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/material_input.h"
 
 #include <cmath>
 

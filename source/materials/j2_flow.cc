@@ -1,6 +1,6 @@
 #include "j2_flow.h"
 
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/material_input.h"
 
 #include <algorithm>
 #include <cmath>

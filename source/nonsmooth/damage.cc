@@ -1,6 +1,6 @@
 #include "damage.h"
 
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 
 #include <algorithm>
 #include <cmath>

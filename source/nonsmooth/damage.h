@@ -30,10 +30,7 @@ namespace nsfd
      * A step that ends at @p end damages the point; also where the end is not a
      * number, as against the infinite secant of an extrinsic law at 0.
      */
-    bool grows(const Reach &end) const
-    {
-      return LawPoint::grows(history_, end);
-    }
+    bool grows(const Reach &end) const { return nsfd::grows(history_, end); }
 
     /** The traction does not fall to zero with the opening: form (5). */
     bool plateau() const { return interaction_.plateau; }

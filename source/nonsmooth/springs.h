@@ -3,7 +3,7 @@
 #include "core/bracketed_root.h"
 
 #include "nsfd/nonsmooth/one_step_problem.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "nsfd/postprocess/running_crack.h"
 
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/material_input.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "nsfd/discretization/discretization.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 #include "nsfd/verification/verification_case.h"
 #include "postprocess/crack_shape.h"
 #include "state/state.h"

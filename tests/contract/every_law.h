@@ -4,7 +4,6 @@
 
 #include "nonsmooth/point_law.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
-#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

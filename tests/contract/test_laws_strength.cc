@@ -10,7 +10,7 @@ namespace every_law::test_laws_strength
   double ratio(const LawPoint &point, const Traction &t,
                const double friction = 0.)
   {
-    return point.strength_ratio<2>(t[0], &t[1], {}, friction);
+    return strength_ratio<2>(point, t[0], &t[1], {}, friction);
   }
 
   /** Largest traction in pure shear, as the law gives it. */
@@ -53,7 +53,7 @@ namespace every_law::test_laws_strength
                       1e-13 * k); // tractions are of the size of R_max
         // the direction of the shear in the face does not matter
         const double shear[] = {0.6 * t[1], -0.8 * t[1]};
-        EXPECT_NEAR(point.strength_ratio<3>(t[0], shear), ratio(point, t),
+        EXPECT_NEAR(strength_ratio<3>(point, t[0], shear), ratio(point, t),
                     1e-13);
       }
   }
@@ -148,8 +148,9 @@ namespace every_law::test_laws_strength
       const LawPoint point(law, 1.3, 0.7, true);
       const double d = 0.4 * end_of_softening(law), T = 1.3 * law.traction(d);
       const double shear = 0.;
-      EXPECT_NEAR(point.strength_ratio<2>(T, &shear, {d / 0.7, 0.}), 1., 1e-12);
-      EXPECT_NEAR(point.strength_ratio<2>(1.3 * law.strength(), &shear), 1.,
+      EXPECT_NEAR(strength_ratio<2>(point, T, &shear, {d / 0.7, 0.}), 1.,
+                  1e-12);
+      EXPECT_NEAR(strength_ratio<2>(point, 1.3 * law.strength(), &shear), 1.,
                   1e-14);
     });
   }

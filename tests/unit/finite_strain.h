@@ -1,7 +1,6 @@
 #pragma once
 
 #include "bodies/finite_cell.h"
-#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

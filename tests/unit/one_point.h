@@ -2,7 +2,7 @@
 
 #include "make_law.h"
 #include "nonsmooth/point_law.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "materials/matrix_log.h"
 
 #include "bodies/history_cell.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/material_input.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include "rigid_in_rubber.h"
 
 #include "cohesive_laws/friction_weight.h"
-#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

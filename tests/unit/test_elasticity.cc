@@ -2,7 +2,7 @@
 
 #include "make_scene.h"
 
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/material_input.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "materials/j2_flow.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/material_input.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "law_checks.h"
 
 #include "nonsmooth/point_law.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/time_input.h"
 
 #include <optional>
 

@@ -1,5 +1,4 @@
 #include "input/read_scene.h"
-#include "nsfd/scene/scene_input.h"
 
 #include <gtest/gtest.h>
 

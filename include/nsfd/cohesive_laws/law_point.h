@@ -58,6 +58,12 @@ namespace nsfd
     double total() const { return damage + viscous; }
   };
 
+  /** A step from the history @p history that ends at @p end damages. */
+  inline bool grows(const Reach &history, const Reach &end)
+  {
+    return !(end.opening <= history.opening && end.slip <= history.slip);
+  }
+
   /**
    * A cohesive law at a point: with its factors of strength and opening, the
    * potential and the dissipation at two states, and the strength for a
@@ -109,12 +115,6 @@ namespace nsfd
       return {std::sqrt(jump.opening * jump.opening +
                         shear_weight_ * jump.slip_square),
               0.};
-    }
-
-    /** A step from the history @p history that ends at @p end damages. */
-    static bool grows(const Reach &history, const Reach &end)
-    {
-      return !(end.opening <= history.opening && end.slip <= history.slip);
     }
 
     /** The history after @p time at @p end; a delay needs the time. */
@@ -214,17 +214,6 @@ namespace nsfd
       return std::sqrt(square);
     }
 
-    /** The share of the strength that a traction in Pa takes; splits above 1.
-     */
-    template <int dim>
-    double strength_ratio(const double normal, const double *shear,
-                          const Reach &history = {},
-                          const double friction = 0.) const
-    {
-      return effective_traction<dim>(normal, shear, friction) /
-             strength(history);
-    }
-
   private:
     const CohesiveLaw &law_;
     const MixedLaw *mixed_;
@@ -260,4 +249,14 @@ namespace nsfd
                        : stiffness_ratio_ * stiffness_ratio_ / shear_weight_;
     }
   };
+
+  /** The share of the strength that a traction in Pa takes; splits above 1. */
+  template <int dim>
+  double strength_ratio(const LawPoint &point, const double normal,
+                        const double *shear, const Reach &history = {},
+                        const double friction = 0.)
+  {
+    return point.effective_traction<dim>(normal, shear, friction) /
+           point.strength(history);
+  }
 } // namespace nsfd

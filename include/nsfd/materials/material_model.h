@@ -3,7 +3,7 @@
 #include "nsfd/core/registry.h"
 #include "nsfd/materials/history_material.h"
 #include "nsfd/materials/hyperelastic.h"
-#include "nsfd/scene/scene_input.h"
+#include "nsfd/scene/material_input.h"
 
 #include <memory>
 #include <stdexcept>

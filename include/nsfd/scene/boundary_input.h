@@ -1,0 +1,24 @@
+#pragma once
+
+#include "nsfd/parameters/expression.h"
+#include "nsfd/scene/where_input.h"
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace nsfd
+{
+  struct BoundaryInput {
+    std::string name;
+    Where where;
+    /// prescribed motion per component: velocity, or displacement (then its
+    /// time derivative is what the rows prescribe, exactly per step)
+    std::array<std::optional<Expression>, 3> velocity, displacement;
+    std::array<Expression, 3> traction; ///< Pa, per component
+    bool has_traction = false;
+    Expression pressure; ///< Pa, positive pushes on the body
+    bool has_pressure = false;
+    bool exact_motion = false; ///< of the verification case
+  };
+} // namespace nsfd
