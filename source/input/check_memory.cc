@@ -1,6 +1,5 @@
 #include "core/machine_memory.h"
-#include "mesh/mesh_types.h"
-#include "mesh/named_mesh.h"
+#include "nsfd/mesh/mesh_type.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -13,39 +12,11 @@ namespace nsfd
 {
   namespace
   {
-    /** Numbers of the arguments of a generator: divisions, or lengths. */
-    double largest_whole_number(const std::string &arguments)
-    {
-      double largest = 1.;
-      for (std::size_t i = 0; i < arguments.size();) {
-        char *end = nullptr;
-        const double value = std::strtod(arguments.c_str() + i, &end);
-        const std::size_t next = std::size_t(end - arguments.c_str());
-        if (next == i) {
-          ++i;
-          continue;
-        }
-        if (value == std::floor(value) && std::isfinite(value))
-          largest = std::max(largest, value);
-        i = next;
-      }
-      return largest;
-    }
-
     double n_cells(const MeshInput &mesh, const unsigned int dimension)
     {
       const double refined = std::ldexp(1., int(dimension * mesh.refinements));
-      const MeshType *type = find_mesh_type(mesh.type);
-      double n = 1.;
-      if (mesh.named)
-        n = double(mesh.named->cells.size());
-      else if (!mesh.cells.empty()) {
-        for (const unsigned int cells : mesh.cells)
-          n *= cells;
-        if (type != nullptr)
-          n *= type->cells_per_brick;
-      } else if (mesh.type.compare(0, 11, "subdivided_") == 0)
-        n = std::pow(largest_whole_number(mesh.generator_arguments), dimension);
+      const auto type = find_mesh_type(mesh.type);
+      double n = type ? type->n_cells(mesh, dimension) : 1.;
       if (mesh.split_simplices)
         n *= dimension + 1;
       return n * refined;

@@ -1,6 +1,4 @@
-#include "mesh/mesh_types.h"
-#include "mesh/named_mesh.h"
-#include "read_named_mesh.h"
+#include "nsfd/mesh/mesh_type.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -13,22 +11,6 @@ namespace nsfd
 {
   namespace
   {
-    /** The type if it fills a box, else null. */
-    const MeshType *find_box_type(const std::string &name)
-    {
-      const MeshType *type = find_mesh_type(name);
-      return type != nullptr && type->kind == MeshType::Kind::box ? type
-                                                                  : nullptr;
-    }
-
-    std::string repeated(const std::string &value, const unsigned int count)
-    {
-      std::string result = value;
-      for (unsigned int i = 1; i < count; ++i)
-        result += ", " + value;
-      return result;
-    }
-
     /** The type, checked; empty if nothing more can be read. */
     std::string read_type(SectionReader &reader, const unsigned int dimension,
                           const bool is_body)
@@ -44,20 +26,18 @@ namespace nsfd
       if (type == "bodies" && !is_body)
         return type;
       std::vector<std::string> names;
-      for (const MeshType &known : mesh_types())
-        if (!is_body || (known.kind != MeshType::Kind::bodies &&
-                         known.kind != MeshType::Kind::named))
-          names.push_back(known.name);
+      for (const std::string &name : mesh_type_names())
+        if (!is_body || find_mesh_type(name)->is_for_bodies())
+          names.push_back(name);
 
-      const MeshType *known = find_mesh_type(type);
-      if (known != nullptr && known->dimension != 0 &&
-          known->dimension != dimension)
+      const auto known = find_mesh_type(type);
+      if (known && known->dimension() != 0 && known->dimension() != dimension)
         reader.error("type",
                      fmt::format("type = {} needs dimension = {}, not {}", type,
-                                 known->dimension, dimension),
+                                 known->dimension(), dimension),
                      dimension == 2 ? "write for example: rectangle"
                                     : "write for example: brick");
-      else if (known != nullptr && known->kind == MeshType::Kind::named &&
+      else if (known && known->is_one_mesh() && !known->is_for_bodies() &&
                is_body)
         reader.error("type",
                      fmt::format("type = {} is for section Mesh: it brings its "
@@ -75,81 +55,6 @@ namespace nsfd
       return "";
     }
 
-    void read_notch(SectionReader &reader, MeshInput &mesh,
-                    const bool can_compare)
-    {
-      const unsigned int n_before = reader.errors().n_errors();
-      mesh.notch_length =
-          reader.number("notch length", "", units::length, Range::positive(),
-                        "m, from the left side to the tip");
-      mesh.notch_height = reader.number("notch height", "", units::length,
-                                        Range::any(), "m, y of its middle");
-      mesh.notch_width = reader.number(
-          "notch width", "0", units::length, Range::non_negative(),
-          "m; 0 removes no cells, for an Interface block with broken faces");
-      if (!can_compare || reader.errors().n_errors() > n_before)
-        return;
-      if (mesh.notch_length >= mesh.upper[0] - mesh.lower[0])
-        reader.error("notch length",
-                     fmt::format("notch length = {:g} goes through the plate",
-                                 mesh.notch_length),
-                     "it must be shorter than the plate is long");
-      if (mesh.notch_height - .5 * mesh.notch_width <= mesh.lower[1] ||
-          mesh.notch_height + .5 * mesh.notch_width >= mesh.upper[1])
-        reader.error(
-            "notch height",
-            fmt::format("notch height = {:g}, with a width of {:g}, is "
-                        "not inside the plate",
-                        mesh.notch_height, mesh.notch_width),
-            "write a height between the lower and the upper corner");
-    }
-
-    /** More cells than any machine of today holds are a slip of the pen. */
-    void check_size(SectionReader &reader, const MeshInput &mesh,
-                    const MeshType &type)
-    {
-      constexpr double most_cells = 1e9;
-      double n_cells = type.cells_per_brick *
-                       std::pow(2., static_cast<double>(mesh.cells.size()) *
-                                        mesh.refinements);
-      for (const unsigned int n : mesh.cells)
-        n_cells *= n;
-      if (n_cells > most_cells)
-        reader.error("cells",
-                     fmt::format("the mesh would have {:.2g} cells after {} "
-                                 "refinements",
-                                 n_cells, mesh.refinements),
-                     "write fewer cells or refinements");
-    }
-
-    void read_box(SectionReader &reader, const unsigned int dimension,
-                  const MeshType &type, MeshInput &mesh)
-    {
-      const unsigned int n_before = reader.errors().n_errors();
-      mesh.lower = reader.numbers("lower corner", repeated("0", dimension),
-                                  units::length, Range::any(), dimension, "m");
-      mesh.upper = reader.numbers("upper corner", "", units::length,
-                                  Range::any(), dimension, "m");
-      mesh.cells = reader.integers("cells", "", 1, dimension,
-                                   "number per direction, before refinement");
-      if (mesh.type != "notched plate")
-        reader.refuse({"notch length", "notch width", "notch height"},
-                      "the mesh `" + mesh.type + "` has no notch");
-      // after an error, the numbers are not those of the user
-      const bool can_compare = reader.errors().n_errors() == n_before;
-      for (unsigned int d = 0; can_compare && d < dimension; ++d)
-        if (mesh.upper[d] <= mesh.lower[d])
-          reader.error("upper corner",
-                       fmt::format("upper corner: {} = {:g} must be greater "
-                                   "than {:g} of the lower corner",
-                                   "xyz"[d], mesh.upper[d], mesh.lower[d]),
-                       "exchange the two corners");
-      if (can_compare)
-        check_size(reader, mesh, type);
-      if (mesh.type == "notched plate")
-        read_notch(reader, mesh, can_compare);
-    }
-
     MeshInput read_one_mesh(SectionReader &reader, const unsigned int dimension,
                             const bool is_body)
     {
@@ -160,17 +65,7 @@ namespace nsfd
 
       mesh.refinements = reader.integer("refinements", "0", 0, 20,
                                         "times every cell is halved");
-      if (const MeshType *type = find_box_type(mesh.type)) {
-        read_box(reader, dimension, *type, mesh);
-        if (type->simplices)
-          mesh.split_simplices = read_split(reader);
-      } else if (mesh.type == "file")
-        read_mesh_from_file(reader, dimension, mesh);
-      else if (mesh.type == "voronoi")
-        read_voronoi(reader, mesh);
-      else if (mesh.type != "bodies")
-        mesh.generator_arguments = reader.word(
-            "arguments", "", "of the generator, as deal.II takes them: a : b");
+      find_mesh_type(mesh.type)->read(reader, dimension, mesh);
       mesh.distortion = reader.number(
           "distortion", "0", units::none, {0., 0.5, false, true},
           "share of the cell size by which interior vertices move");
@@ -184,17 +79,15 @@ namespace nsfd
     {
       if (mesh.split_simplices)
         return false;
-      if (mesh.named)
-        return all_simplices(*mesh.named);
-      const MeshType *type = find_box_type(mesh.type);
-      return type != nullptr && type->simplices;
+      const auto type = find_mesh_type(mesh.type);
+      return type && type->has_simplices(mesh);
     }
   } // namespace
 
   bool has_numbered_groups(const SceneInput &scene)
   {
-    const MeshType *type = find_mesh_type(scene.mesh.type);
-    return type != nullptr && type->kind == MeshType::Kind::generator;
+    const auto type = find_mesh_type(scene.mesh.type);
+    return type && type->has_ids();
   }
 
   bool has_simplices(const SceneInput &scene)

@@ -1,9 +1,9 @@
 #include "read_scene.h"
 
-#include "mesh/mesh_types.h"
 #include "nonsmooth/solvers/contact_solvers.h"
 #include "nsfd/adaptivity/indicator.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/mesh/mesh_type.h"
 #include "nsfd/obstacles/obstacle_shape.h"
 #include "nsfd/postprocess/observable.h"
 #include "nsfd/verification/verification_case.h"
@@ -212,7 +212,9 @@ namespace nsfd
       parts.push_back(
           {"obstacle shape", name,
            ObstacleShapeRegistry::instance().entries().at(name).text});
-    append("mesh", mesh_types());
+    for (const std::string &name : mesh_type_names())
+      parts.push_back(
+          {"mesh", name, MeshTypeRegistry::instance().entries().at(name).text});
     append("solver", known_solvers());
     for (const auto &[name, text] : contact_solvers())
       parts.push_back({"solver of stored problems", name, text});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/mesh/coarse_mesh.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <deal.II/base/point.h>
@@ -11,15 +12,6 @@
 
 namespace nsfd
 {
-  /** A mesh of one level as plain data, equal on every rank. */
-  template <int dim>
-  struct CoarseMesh {
-    std::vector<dealii::Point<dim>> vertices;
-    std::vector<dealii::CellData<dim>> cells;
-    /// faces whose boundary id is not 0 or that have a manifold id
-    dealii::SubCellData boundary;
-  };
-
   /** Edges, corner angles (degrees) and corner Jacobians of one cell. */
   struct CellShape {
     double shortest_edge, longest_edge;
@@ -34,17 +26,6 @@ namespace nsfd
   /** Local vertices of each face. */
   template <int dim>
   std::vector<std::vector<unsigned int>> cell_faces(unsigned int n_corners);
-
-  /** True for the types that fill the box between the two corners. */
-  bool is_box(const std::string &mesh_type);
-
-  /**
-   * rectangle, brick, notched plate, crossed triangles, diagonal triangles or
-   * tetrahedra, with 2^refinements times the cells of the input.
-   */
-  template <int dim>
-  CoarseMesh<dim> lattice_mesh(const MeshInput &input, unsigned int refinements,
-                               std::vector<std::string> &problems);
 
   /**
    * Move every interior vertex by less than @p share of its shortest edge; the

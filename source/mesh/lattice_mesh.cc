@@ -1,3 +1,5 @@
+#include "lattice_mesh.h"
+
 #include "mesh_topology.h"
 
 #include <fmt/format.h>
@@ -85,86 +87,7 @@ namespace nsfd
           }
       return mesh;
     }
-
-    template <int dim>
-    void cut_notch(const MeshInput &input, CoarseMesh<dim> &mesh,
-                   std::vector<std::string> &problems)
-    {
-      if (input.notch_width == 0.)
-        return;
-      // cells whose centre is on the rim of the slot stay, in any units
-      const double rim = 1e-9 * (input.upper[1] - input.lower[1]);
-      const auto in_slot = [&](const CellData<dim> &cell) {
-        const Point<dim> p = centre(mesh, cell);
-        return p[0] < input.lower[0] + input.notch_length - rim &&
-               std::abs(p[1] - input.notch_height) <
-                   .5 * input.notch_width - rim;
-      };
-      const auto end =
-          std::remove_if(mesh.cells.begin(), mesh.cells.end(), in_slot);
-      if (end == mesh.cells.end())
-        problems.push_back(fmt::format(
-            "the notch of width {:g} contains no cell centre; take smaller "
-            "cells, "
-            "or width 0 and an interface that is broken from the start",
-            input.notch_width));
-      mesh.cells.erase(end, mesh.cells.end());
-      remove_unused_vertices(mesh);
-    }
-
-    /** The report's mesh: both diagonals of every rectangle. */
-    CoarseMesh<2> cut_in_four(const CoarseMesh<2> &boxes)
-    {
-      CoarseMesh<2> mesh;
-      mesh.vertices = boxes.vertices;
-      for (const auto &box : boxes.cells) {
-        const auto &v = box.vertices;
-        const unsigned int c = mesh.vertices.size();
-        mesh.vertices.push_back(centre(boxes, box));
-        for (const auto &[a, b] :
-             {std::pair{v[0], v[1]}, {v[1], v[3]}, {v[3], v[2]}, {v[2], v[0]}})
-          mesh.cells.emplace_back(3).vertices = {a, b, c};
-      }
-      return mesh;
-    }
-
-    /**
-     * Kuhn's simplices, all on the diagonal from the lower to the upper
-     * corner: one per order in which the axes are walked.
-     */
-    template <int dim>
-    CoarseMesh<dim> cut_along_diagonal(const CoarseMesh<dim> &boxes)
-    {
-      CoarseMesh<dim> mesh;
-      mesh.vertices = boxes.vertices;
-      for (const auto &box : boxes.cells) {
-        std::array<unsigned int, dim> order{};
-        for (unsigned int d = 0; d < dim; ++d)
-          order[d] = d;
-        do {
-          std::vector<unsigned int> v = {box.vertices[0]};
-          unsigned int corner = 0;
-          for (const unsigned int d : order)
-            v.push_back(box.vertices[corner |= 1u << d]);
-          unsigned int inversions = 0;
-          for (unsigned int a = 0; a < dim; ++a)
-            for (unsigned int b = a + 1; b < dim; ++b)
-              inversions += order[a] > order[b];
-          if (inversions % 2 == 1)
-            std::swap(v[dim - 1], v[dim]);
-          mesh.cells.emplace_back(dim + 1).vertices = v;
-        } while (std::next_permutation(order.begin(), order.end()));
-      }
-      return mesh;
-    }
   } // namespace
-
-  bool is_box(const std::string &type)
-  {
-    return type == "rectangle" || type == "brick" ||
-           type == "crossed triangles" || type == "diagonal triangles" ||
-           type == "tetrahedra";
-  }
 
   template <int dim>
   CoarseMesh<dim> lattice_mesh(const MeshInput &input,
@@ -178,15 +101,72 @@ namespace nsfd
     std::array<unsigned int, dim> n{};
     for (unsigned int d = 0; d < dim; ++d)
       n[d] = input.cells[d] << refinements;
+    return boxes<dim>(input, n);
+  }
 
-    CoarseMesh<dim> mesh = boxes<dim>(input, n);
-    if (input.type == "notched plate")
-      cut_notch(input, mesh, problems);
-    if constexpr (dim == 2)
-      if (input.type == "crossed triangles")
-        mesh = cut_in_four(mesh);
-    if (input.type == "diagonal triangles" || input.type == "tetrahedra")
-      mesh = cut_along_diagonal(mesh);
+  template <int dim>
+  void cut_notch(const MeshInput &input, CoarseMesh<dim> &mesh,
+                 std::vector<std::string> &problems)
+  {
+    if (input.notch_width == 0.)
+      return;
+    // cells whose centre is on the rim of the slot stay, in any units
+    const double rim = 1e-9 * (input.upper[1] - input.lower[1]);
+    const auto in_slot = [&](const CellData<dim> &cell) {
+      const Point<dim> p = centre(mesh, cell);
+      return p[0] < input.lower[0] + input.notch_length - rim &&
+             std::abs(p[1] - input.notch_height) < .5 * input.notch_width - rim;
+    };
+    const auto end =
+        std::remove_if(mesh.cells.begin(), mesh.cells.end(), in_slot);
+    if (end == mesh.cells.end())
+      problems.push_back(fmt::format(
+          "the notch of width {:g} contains no cell centre; take smaller "
+          "cells, "
+          "or width 0 and an interface that is broken from the start",
+          input.notch_width));
+    mesh.cells.erase(end, mesh.cells.end());
+    remove_unused_vertices(mesh);
+  }
+
+  CoarseMesh<2> cut_in_four(const CoarseMesh<2> &boxes)
+  {
+    CoarseMesh<2> mesh;
+    mesh.vertices = boxes.vertices;
+    for (const auto &box : boxes.cells) {
+      const auto &v = box.vertices;
+      const unsigned int c = mesh.vertices.size();
+      mesh.vertices.push_back(centre(boxes, box));
+      for (const auto &[a, b] :
+           {std::pair{v[0], v[1]}, {v[1], v[3]}, {v[3], v[2]}, {v[2], v[0]}})
+        mesh.cells.emplace_back(3).vertices = {a, b, c};
+    }
+    return mesh;
+  }
+
+  template <int dim>
+  CoarseMesh<dim> cut_along_diagonal(const CoarseMesh<dim> &boxes)
+  {
+    CoarseMesh<dim> mesh;
+    mesh.vertices = boxes.vertices;
+    for (const auto &box : boxes.cells) {
+      std::array<unsigned int, dim> order{};
+      for (unsigned int d = 0; d < dim; ++d)
+        order[d] = d;
+      do {
+        std::vector<unsigned int> v = {box.vertices[0]};
+        unsigned int corner = 0;
+        for (const unsigned int d : order)
+          v.push_back(box.vertices[corner |= 1u << d]);
+        unsigned int inversions = 0;
+        for (unsigned int a = 0; a < dim; ++a)
+          for (unsigned int b = a + 1; b < dim; ++b)
+            inversions += order[a] > order[b];
+        if (inversions % 2 == 1)
+          std::swap(v[dim - 1], v[dim]);
+        mesh.cells.emplace_back(dim + 1).vertices = v;
+      } while (std::next_permutation(order.begin(), order.end()));
+    }
     return mesh;
   }
 
@@ -194,4 +174,10 @@ namespace nsfd
                                       std::vector<std::string> &);
   template CoarseMesh<3> lattice_mesh(const MeshInput &, unsigned int,
                                       std::vector<std::string> &);
+  template void cut_notch(const MeshInput &, CoarseMesh<2> &,
+                          std::vector<std::string> &);
+  template void cut_notch(const MeshInput &, CoarseMesh<3> &,
+                          std::vector<std::string> &);
+  template CoarseMesh<2> cut_along_diagonal(const CoarseMesh<2> &);
+  template CoarseMesh<3> cut_along_diagonal(const CoarseMesh<3> &);
 } // namespace nsfd

@@ -201,6 +201,12 @@ namespace nsfd
         }
     }
 
+    bool fills_box(const MeshInput &mesh)
+    {
+      const auto type = find_mesh_type(mesh.type);
+      return type && type->fills_box();
+    }
+
     template <int dim>
     void find_overlapping_boxes(const std::vector<BodyInput> &bodies,
                                 const std::vector<CoarseMesh<dim>> &meshes,
@@ -209,7 +215,7 @@ namespace nsfd
     {
       for (unsigned int a = 0; a < bodies.size(); ++a)
         for (unsigned int b = a + 1; b < bodies.size(); ++b) {
-          if (!is_box(bodies[a].mesh.type) || !is_box(bodies[b].mesh.type))
+          if (!fills_box(bodies[a].mesh) || !fills_box(bodies[b].mesh))
             continue;
           const auto box_a = bounding_box(meshes[a].vertices),
                      box_b = bounding_box(meshes[b].vertices);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh/mesh_builder.h"
-#include "mesh/mesh_types.h"
+#include "nsfd/mesh/mesh_type.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/shared_tria.h>
