@@ -41,14 +41,16 @@ namespace nsfd
     }
 
   private:
-    void make(const MaterialInput &material, const bool plane_stress,
-              std::unique_ptr<const Hyperelastic<2>> &result) const override
+    void
+    make_energy(const MaterialInput &material, const bool plane_stress,
+                std::unique_ptr<const Hyperelastic<2>> &result) const override
     {
       result = make_saint_venant_kirchhoff<2>(material.young, material.poisson,
                                               plane_stress);
     }
-    void make(const MaterialInput &material, const bool plane_stress,
-              std::unique_ptr<const Hyperelastic<3>> &result) const override
+    void
+    make_energy(const MaterialInput &material, const bool plane_stress,
+                std::unique_ptr<const Hyperelastic<3>> &result) const override
     {
       result = make_saint_venant_kirchhoff<3>(material.young, material.poisson,
                                               plane_stress);
@@ -82,13 +84,15 @@ namespace nsfd
     }
 
   private:
-    void make(const MaterialInput &material, bool,
-              std::unique_ptr<const Hyperelastic<2>> &result) const override
+    void
+    make_energy(const MaterialInput &material, bool,
+                std::unique_ptr<const Hyperelastic<2>> &result) const override
     {
       result = make_neo_hooke<2>(material.young, material.poisson);
     }
-    void make(const MaterialInput &material, bool,
-              std::unique_ptr<const Hyperelastic<3>> &result) const override
+    void
+    make_energy(const MaterialInput &material, bool,
+                std::unique_ptr<const Hyperelastic<3>> &result) const override
     {
       result = make_neo_hooke<3>(material.young, material.poisson);
     }

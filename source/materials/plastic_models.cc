@@ -97,17 +97,19 @@ namespace nsfd
     }
 
   private:
-    void make(const MaterialInput &material, const bool finite_strain,
-              const bool plane_stress,
-              std::unique_ptr<const HistoryMaterial<2>> &result) const override
+    void make_history(
+        const MaterialInput &material, const bool finite_strain,
+        const bool plane_stress,
+        std::unique_ptr<const HistoryMaterial<2>> &result) const override
     {
       result = make_history_material<2>(material.young, material.poisson,
                                         *material.plastic, finite_strain,
                                         plane_stress);
     }
-    void make(const MaterialInput &material, const bool finite_strain,
-              const bool plane_stress,
-              std::unique_ptr<const HistoryMaterial<3>> &result) const override
+    void make_history(
+        const MaterialInput &material, const bool finite_strain,
+        const bool plane_stress,
+        std::unique_ptr<const HistoryMaterial<3>> &result) const override
     {
       result = make_history_material<3>(material.young, material.poisson,
                                         *material.plastic, finite_strain,

@@ -202,6 +202,7 @@ namespace nsfd
       explicit CrossedTriangles(const std::string &) : BoxMesh(3, 2, 4) {}
 
     private:
+      using BoxMesh::cut;
       void cut(const MeshInput &, CoarseMesh<2> &mesh,
                std::vector<std::string> &) const override
       {
@@ -215,6 +216,7 @@ namespace nsfd
       explicit DiagonalTriangles(const std::string &) : BoxMesh(4, 2, 2) {}
 
     private:
+      using BoxMesh::cut;
       void cut(const MeshInput &, CoarseMesh<2> &mesh,
                std::vector<std::string> &) const override
       {
@@ -228,6 +230,7 @@ namespace nsfd
       explicit Tetrahedra(const std::string &) : BoxMesh(5, 3, 6) {}
 
     private:
+      using BoxMesh::cut;
       void cut(const MeshInput &, CoarseMesh<3> &mesh,
                std::vector<std::string> &) const override
       {

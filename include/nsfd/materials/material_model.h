@@ -49,7 +49,7 @@ namespace nsfd
     hyperelastic(const MaterialInput &material, const bool plane_stress) const
     {
       std::unique_ptr<const Hyperelastic<dim>> result;
-      make(material, plane_stress, result);
+      make_energy(material, plane_stress, result);
       if (!result)
         throw std::logic_error("not a model of finite strain");
       return result;
@@ -62,7 +62,7 @@ namespace nsfd
                       const bool plane_stress) const
     {
       std::unique_ptr<const HistoryMaterial<dim>> result;
-      make(material, finite_strain, plane_stress, result);
+      make_history(material, finite_strain, plane_stress, result);
       if (!result)
         throw std::logic_error("not a model with history");
       return result;
@@ -75,20 +75,21 @@ namespace nsfd
     virtual double stress_across(double lambda, const Voigt<2> &C) const;
 
   protected:
-    virtual void make(const MaterialInput &, bool,
-                      std::unique_ptr<const Hyperelastic<2>> &) const
+    /** With plane stress or not; for the plane and for space. */
+    virtual void make_energy(const MaterialInput &, bool,
+                             std::unique_ptr<const Hyperelastic<2>> &) const
     {
     }
-    virtual void make(const MaterialInput &, bool,
-                      std::unique_ptr<const Hyperelastic<3>> &) const
+    virtual void make_energy(const MaterialInput &, bool,
+                             std::unique_ptr<const Hyperelastic<3>> &) const
     {
     }
-    virtual void make(const MaterialInput &, bool, bool,
-                      std::unique_ptr<const HistoryMaterial<2>> &) const
+    virtual void make_history(const MaterialInput &, bool, bool,
+                              std::unique_ptr<const HistoryMaterial<2>> &) const
     {
     }
-    virtual void make(const MaterialInput &, bool, bool,
-                      std::unique_ptr<const HistoryMaterial<3>> &) const
+    virtual void make_history(const MaterialInput &, bool, bool,
+                              std::unique_ptr<const HistoryMaterial<3>> &) const
     {
     }
   };
