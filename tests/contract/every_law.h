@@ -4,6 +4,7 @@
 
 #include "nonsmooth/point_law.h"
 #include "nsfd/cohesive_laws/cohesive_law.h"
+#include "nsfd/scene/time_input.h"
 
 #include <gtest/gtest.h>
 
