@@ -98,10 +98,13 @@ namespace nsfd
     }
   };
 
-  NSFD_REGISTER(MaterialRegistry, SaintVenantKirchhoffModel,
-                "saint-venant kirchhoff",
-                "Hooke's law between the Green strain and its stress; large "
-                "rotations, moderate strains; motion = large");
-  NSFD_REGISTER(MaterialRegistry, NeoHookean, "neo-hookean",
-                "compressible, resists being crushed; motion = large");
+  NSFD_REGISTER(
+      MaterialRegistry, SaintVenantKirchhoffModel, "saint-venant kirchhoff",
+      "Hooke's law between the Green strain and its stress; large "
+      "rotations, moderate strains; motion = large",
+      "Young modulus = 2 GPa; Poisson ratio = 0.3; density = 1000 kg/m^3");
+  NSFD_REGISTER(
+      MaterialRegistry, NeoHookean, "neo-hookean",
+      "compressible, resists being crushed; motion = large",
+      "Young modulus = 2 GPa; Poisson ratio = 0.3; density = 1000 kg/m^3");
 } // namespace nsfd

@@ -134,8 +134,12 @@ namespace nsfd
 
   NSFD_REGISTER(MaterialRegistry, J2Plastic, "j2 plastic",
                 "flow on the surface of von Mises, which grows and moves; "
-                "small or large motion");
+                "small or large motion",
+                "Young modulus = 2 GPa; Poisson ratio = 0.3; density = 1000 "
+                "kg/m^3; yield stress = 20 MPa");
   NSFD_REGISTER(MaterialRegistry, Viscoplastic, "viscoplastic",
                 "the same, and beyond the surface by an overstress that grows "
-                "with the rate; small or large motion");
+                "with the rate; small or large motion",
+                "Young modulus = 2 GPa; Poisson ratio = 0.3; density = 1000 "
+                "kg/m^3; yield stress = 20 MPa; viscosity = 1e6 Pa*s");
 } // namespace nsfd

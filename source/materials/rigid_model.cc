@@ -106,5 +106,6 @@ namespace nsfd
     }
   };
 
-  NSFD_REGISTER(MaterialRegistry, Rigid, "rigid", "bodies do not deform");
+  NSFD_REGISTER(MaterialRegistry, Rigid, "rigid", "bodies do not deform",
+                "density = 1000 kg/m^3");
 } // namespace nsfd

@@ -138,9 +138,14 @@ namespace nsfd
     }
   };
 
-  NSFD_REGISTER(MaterialRegistry, LinearElastic, "linear elastic",
-                "Hooke's law; motion = small");
+  NSFD_REGISTER(
+      MaterialRegistry, LinearElastic, "linear elastic",
+      "Hooke's law; motion = small",
+      "Young modulus = 2 GPa; Poisson ratio = 0.3; density = 1000 kg/m^3");
   NSFD_REGISTER(
       MaterialRegistry, TransverselyIsotropic, "transversely isotropic",
-      "Hooke's law about an axis: fibres, layers, wood; motion = small");
+      "Hooke's law about an axis: fibres, layers, wood; motion = small",
+      "axial Young modulus = 10 GPa; transverse Young modulus = 1 GPa; axial "
+      "Poisson ratio = 0.3; transverse Poisson ratio = 0.4; axial shear "
+      "modulus = 0.6 GPa; density = 500 kg/m^3");
 } // namespace nsfd

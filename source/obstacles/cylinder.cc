@@ -39,5 +39,7 @@ namespace nsfd
   };
 
   NSFD_REGISTER(ObstacleShapeRegistry, Cylinder, "cylinder",
-                "a rod or a pipe without ends, in space; motion = large");
+                "a rod or a pipe without ends, in space; motion = large",
+                "axis = 1, 2, -1; radius = 2 m",
+                "axis = 0, 0, 3; radius = 2 m; hollow = true");
 } // namespace nsfd

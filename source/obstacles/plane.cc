@@ -33,5 +33,5 @@ namespace nsfd
   };
 
   NSFD_REGISTER(ObstacleShapeRegistry, Plane, "plane",
-                "a half space; small or large motion");
+                "a half space; small or large motion", "normal = 1, 2, -2");
 } // namespace nsfd

@@ -35,5 +35,6 @@ namespace nsfd
   };
 
   NSFD_REGISTER(ObstacleShapeRegistry, Sphere, "sphere",
-                "a ball or a shell, a disc in the plane; motion = large");
+                "a ball or a shell, a disc in the plane; motion = large",
+                "radius = 2 m", "radius = 2 m; hollow = true");
 } // namespace nsfd
