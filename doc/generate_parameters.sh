@@ -298,6 +298,46 @@ sections() {
   printf '```\n'
 }
 
+# Entries of an Interface block of scene $1: with "common" those that every
+# cohesive law has, else one block per law with its own only.
+interfaces() {
+  ./nsfd "$1" --print-parameters >"$scratch/all"
+  printf '```\n'
+  awk -v part="$2" '
+    function name(line) {
+      sub(/^ *(# )?set /, "", line)
+      sub(/ *=.*/, "", line)
+      return line
+    }
+    # an extrinsic law has all of them, behind its own
+    FNR == NR {
+      if ($0 == "subsection Interface: camacho-ortiz") inside = 1
+      if (inside && (name($0) == "where" || name($0) == "strength factor"))
+        shared = name($0)
+      if (inside && shared == "strength factor" || name($0) == "where")
+        common[name($0)] = 1
+      if (inside && /^end/) inside = 0
+      next
+    }
+    /^subsection Interface: / { block = $3; if (part != "common" && n++) print "" }
+    /^subsection/ && !/^subsection Interface: / { block = "" }
+    block == "" { next }
+    part == "common" && block == "camacho-ortiz" {
+      if (/^subsection/) print "subsection Interface: ..."
+      else if (/^end/ || name($0) in common || name($0) == "law") {
+        sub(/ = camacho-ortiz/, " = ...          ")
+        sub(/ = x < 4/, " = all  ")
+        print
+      }
+    }
+    part != "common" && (/^subsection/ || /^end/ || !(name($0) in common)) {
+      if (name($0) == "law") sub(/ *#.*/, "")
+      print
+    }
+    /^end/ { block = "" }' "$scratch/all" "$scratch/all"
+  printf '```\n'
+}
+
 {
   cat <<'END'
 # Parameters
@@ -350,10 +390,21 @@ END
   cat <<'END'
 ```
 
-## Interfaces: one block per law
+## Interfaces: entries that every law has
+
+`unloading` belongs to extrinsic laws. Of these entries `elastic` has `where`
+and those from `friction` to `crack pressure`; `contact` has `where`, `friction`,
+`restitution`, `dilatancy`, `wear coefficient` and `crack pressure`; `rigid` and
+`bonded` have `where` alone.
 
 END
-  sections "$scratch/parts.prm" 'Interface: .*'
+  interfaces "$scratch/parts.prm" common
+  cat <<'END'
+
+## Interfaces: entries of each law
+
+END
+  interfaces "$scratch/parts.prm" own
   cat <<'END'
 
 ## Obstacles, rigid and transversely isotropic materials
@@ -450,11 +501,11 @@ Marks from the rows of a CSV file (`--path FILE.csv`): `set type = file` and
 ### A bar in place of a path
 
 With a section `Bar` the point is pulled open by an elastic bar of stiffness
-`k = E/L` whose grip moves: the uniaxial example of the report (section 8 of
+`k = E/L` whose grip moves: the uniaxial example of [AM06] (section 10 of
 [theory.md](theory.md)). `curve.csv` then has `time`, `grip` (U), `opening` (u),
 `velocity`, the `pull` k (U - u) of the bar, the traction `cohesion` of the law,
 `beta`, and energies per area: in the `bar`, `kinetic`, `stored` in the point,
-`damage`, `viscous`, `left_over` by static jumps, and the `work` of the grip.
+`damage`, `viscous`, `left_over` (released by static jumps), and the `work` of the grip.
 `bar.svg` shows the pull over u, `grip.svg` over U, `energies.svg` where the
 work went. In equilibrium, with its jumps:
 

@@ -1,4 +1,4 @@
-// Prints the tables of doc/conservation.md: what the cohesion rules do to the
+// Prints the tables of doc/results.md: what the cohesion rules do to the
 // energy of an elastic pulse, and what they take out of it in one separation.
 
 #include "../unit/make_scene.h"

@@ -2,7 +2,7 @@
 # Strong and weak scaling to 1e5 ranks from what was measured on one and two:
 #   sh tests/benchmarks/rank_model.sh strong|weak > TABLE.csv
 # Machine: latency, bandwidth and the time of a reduction over a doubling of ranks
-# are assumed, those of a cluster; the rest is measured (doc/scaling.md says how).
+# are assumed, those of a cluster; the rest is measured (doc/performance.md says how).
 set -eu
 what=${1:-strong}
 # seconds of work per point and step, exchanges and reductions per step, bytes per

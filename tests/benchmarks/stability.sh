@@ -24,7 +24,7 @@ build/tests/end_to_end/nsfd_end_to_end --gtest_filter='Stability.*' |
        /^\[  FAILED.*Stability/ { printf "| %s | FAILED | | |\n", test }'
 
 echo
-echo "| scene | options | steps | outcome | ledger defect | penetration over its bound | created by friction, over the work |"
+echo "| scene | options | steps | outcome | balance residual | penetration over its bound | created by friction, over the work |"
 echo "|---|---|---|---|---|---|---|"
 value() { # value KEY: a number from the summary
   sed -n "s/^ *\"$1\": *\([-0-9.e+]*\),*$/\1/p" "$out/run/summary.json" | head -n 1

@@ -311,7 +311,7 @@ namespace end_to_end::test_restart
 
   // Words that are called otherwise today: the same run, which goes on in
   // either.
-  TEST(Restart, InFormerWords)
+  TEST(Restart, AfterWordsHaveChanged)
   {
     const Workspace workspace;
     const Launch now = storing(
