@@ -381,6 +381,9 @@ that it does not use.
   1e9 steps.
 - `--set 'Section/name=value'` changes an entry from the command line; a block
   is named in full: `--set 'Interface: all/toughness=2 J/m^2'`.
+- Former words of entries and values (`maximum halvings`, `symplectic`, `global`,
+  `element-wise`, `chain`, `contacts alone`) go on working; a note names today's
+  word. `crossings` and `courant` are the same.
 
 ## A whole scene: `prm/quickstart.prm`
 

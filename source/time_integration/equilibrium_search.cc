@@ -28,8 +28,9 @@ namespace nsfd
     constexpr unsigned int most_held_rounds = 40, most_bits = 100;
 
     /**
-     * Ten crossings of all bodies: then masses hold against their slowest
-     * vibration with less than a hundredth of its stiffness.
+     * Ten times the transit time of all bodies: then masses hold
+     * against their slowest vibration with less than a hundredth of its
+     * stiffness.
      */
     template <int dim>
     double first_step(const SceneInput &input,

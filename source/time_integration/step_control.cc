@@ -9,7 +9,7 @@ namespace nsfd
 {
   namespace
   {
-    // Lengths of cells far from the origin, hence crossings, are known to
+    // Lengths of cells far from the origin, hence Courant numbers, are known to
     // round-off of the coordinates only: 2e-9 at 1e7 lengths of a cell.
     constexpr double round_off = 1e-8;
   } // namespace

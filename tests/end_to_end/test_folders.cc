@@ -211,8 +211,9 @@ namespace end_to_end::test_folders
     for (const std::string &name : result.history.names())
       EXPECT_TRUE(units["history.csv"].contains(name)) << name;
     for (const auto &[key, value] : result.summary.items())
-      if (value.is_number() || key == "energy" || key == "dissipated")
+      if (value.is_number() || key == "energy" || key == "dissipated") {
         EXPECT_TRUE(units["summary.json"].contains(key)) << key;
+      }
     EXPECT_EQ(units["history.csv"]["damage"], "J/m");
     EXPECT_GE(result.number("loop_cpu_seconds"), 0.);
     EXPECT_LT(result.number("loop_cpu_seconds"), result.number("cpu_seconds"));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace test_pivots
+namespace test_lemke
 {
   using Vector = std::vector<double>;
 
@@ -29,7 +29,7 @@ namespace test_pivots
   }
 
   // One contact: open, stick and slide by hand. W = I, mu = 1/2.
-  TEST(Pivots, OneContact)
+  TEST(Lemke, OneContact)
   {
     Vector r;
     ASSERT_TRUE(nsfd::solve_by_lemke({1, 0, 0, 1}, {1, 3}, {0.5}, 1, r));
@@ -43,7 +43,7 @@ namespace test_pivots
   }
 
   // Two contacts of the same point twice: W is singular, the sum is given.
-  TEST(Pivots, DependentRows)
+  TEST(Lemke, DependentRows)
   {
     const Vector W{1, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1},
         q{-2, 3, -2, 3};
@@ -56,7 +56,7 @@ namespace test_pivots
 
   // Thirty contacts on ten unknowns: W = A A^T has rank 10 of 60. Velocities
   // q = A v leave solutions; the laws hold to round-off.
-  TEST(Pivots, RandomRankDeficient)
+  TEST(Lemke, RandomRankDeficient)
   {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> value(-1., 1.);
@@ -82,4 +82,4 @@ namespace test_pivots
     }
     EXPECT_GE(solved, 8u);
   }
-} // namespace test_pivots
+} // namespace test_lemke
