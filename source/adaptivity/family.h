@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/bodies.h"
+#include "discretization/bodies.h"
 #include "state/state.h"
 
 #include <vector>

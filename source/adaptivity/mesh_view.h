@@ -1,9 +1,9 @@
 #pragma once
 
 #include "delassus/dynamics.h"
+#include "discretization/discretization.h"
+#include "nonsmooth/one_step_problem.h"
 #include "nsfd/adaptivity/indicator.h"
-#include "nsfd/discretization/discretization.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
 #include "state/state.h"
 
 #include <optional>

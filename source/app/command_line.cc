@@ -1,10 +1,13 @@
 #include "command_line.h"
 
 #include "common_options.h"
+#include "core/load_plug_in.h"
 #include "core/version.h"
 #include "help_text.h"
 #include "input/read_scene.h"
+#include "nsfd/core/plug_in.h"
 #include "parameters/input_errors.h"
+#include "processes.h"
 #include "study/study_input.h"
 #include "subcommand.h"
 
@@ -148,12 +151,16 @@ namespace nsfd
         if (!part.example.empty())
           out << fmt::format("  {:<{}}  for example: {}\n", "", width,
                              part.example);
+        for (const PlugIn &one : loaded_plug_ins())
+          if (one.name == part.plug_in)
+            out << fmt::format("  {:<{}}  of the plug-in {}\n", "", width,
+                               one.file);
       }
     }
 
     /** --help, --version or --list. */
     bool print_information(const CLI::App &nsfd, const CLI::App *sub,
-                           std::ostream &out)
+                           const CommandLine &line, std::ostream &out)
     {
       const auto given = [&](const std::string &name) {
         for (const CLI::App *app : {&nsfd, sub})
@@ -167,9 +174,10 @@ namespace nsfd
         out << nsfd.help();
       else if (given("--version"))
         out << "nsfd " << version().number << " " << version().git_hash << "\n";
-      else if (given("--list"))
+      else if (given("--list")) {
+        common_options::load_plug_ins(line);
         print_list(out);
-      else
+      } else
         return false;
       return true;
     }
@@ -226,7 +234,7 @@ namespace nsfd
         }
         if (words.subcommand.empty() && words.only_information) {
           nsfd_.parse(argc, argv);
-          print_information(nsfd_, nullptr, out);
+          print_information(nsfd_, nullptr, line, out);
           return exit_code::done;
         }
         const NamedSubcommand &chosen = choose(words);
@@ -239,10 +247,12 @@ namespace nsfd
         const std::vector<std::string> extras = nsfd_.remaining(true);
         if (!extras.empty())
           refuse_extra(nsfd_, chosen, line.program, extras.front());
-        if (print_information(nsfd_, nsfd_.get_subcommand(chosen.name), out))
+        if (print_information(nsfd_, nsfd_.get_subcommand(chosen.name), line,
+                              out))
           return exit_code::done;
         common_options::check(line);
         chosen.subcommand->check(line);
+        common_options::load_plug_ins(line);
         line.subcommand = chosen.subcommand;
         return {};
       }
@@ -304,6 +314,12 @@ namespace nsfd
       return tree.parse(argc, argv, line, out, err);
     } catch (const WrongUsage &error) {
       return refuse(error.what(), error.advice());
+    } catch (const PlugInError &error) {
+      InputErrors errors;
+      errors.error({error.file(), 0, 0, 0, ""}, error.what(), error.advice());
+      if (is_first_process())
+        err << errors.report();
+      return exit_code::bad_input;
     } catch (const CLI::ParseError &error) {
       return refuse(error.what(),
                     "`" + line.program + " --help` prints all options");

@@ -21,13 +21,14 @@ namespace nsfd
     std::vector<std::string> words; ///< all of it, the program first
     std::string program = "nsfd";   ///< as messages name it: `nsfd law`
 
-    std::string file;             ///< a scene, or the name of a law
-    std::vector<std::string> set; ///< Section/name=value, as given
-    std::string output;           ///< empty: what the file says
-    bool resume = false;          ///< from what is in the output directory
-    std::string resume_folder;    ///< what follows --resume
-    bool force = false;           ///< overwrite the output directory
-    bool check = false;           ///< read and build, but do not run
+    std::string file;                  ///< a scene, or the name of a law
+    std::vector<std::string> set;      ///< Section/name=value, as given
+    std::vector<std::string> plug_ins; ///< files of --plug-in
+    std::string output;                ///< empty: what the file says
+    bool resume = false;               ///< from what is in the output directory
+    std::string resume_folder;         ///< what follows --resume
+    bool force = false;                ///< overwrite the output directory
+    bool check = false;                ///< read and build, but do not run
     bool print_parameters = false;
     bool quiet = false;
     bool verbose = false; ///< a line for every step

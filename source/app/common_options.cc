@@ -1,5 +1,8 @@
 #include "common_options.h"
 
+#include "core/load_plug_in.h"
+
+#include <cstdlib>
 #include <filesystem>
 
 namespace nsfd::common_options
@@ -33,6 +36,11 @@ namespace nsfd::common_options
   void add_general(CLI::App &app, CommandLine &line)
   {
     app.add_flag("--quiet", line.quiet, "print errors only");
+    app.add_option("--plug-in", line.plug_ins,
+                   "load parts built outside, see doc/adding.md; repeatable")
+        ->type_size(1)
+        ->allow_extra_args(false)
+        ->type_name("FILE");
     app.add_flag("-h,--help", "print this help")->group("Information");
   }
 
@@ -123,5 +131,13 @@ namespace nsfd::common_options
     if (line.quiet && line.verbose)
       throw WrongUsage("--quiet and --verbose exclude each other",
                        "write one of them");
+  }
+
+  void load_plug_ins(const CommandLine &line)
+  {
+    if (const char *folders = std::getenv("NSFD_PLUG_INS"))
+      load_plug_ins_of(folders);
+    for (const std::string &file : line.plug_ins)
+      load_plug_in(file);
   }
 } // namespace nsfd::common_options

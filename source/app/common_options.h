@@ -11,7 +11,7 @@
  */
 namespace nsfd::common_options
 {
-  /** --quiet and --help: for all subcommands. */
+  /** --quiet, --plug-in and --help: for all subcommands. */
   void add_general(CLI::App &app, CommandLine &line);
 
   /** The word behind the subcommand: @p name as the help shows it. */
@@ -38,4 +38,7 @@ namespace nsfd::common_options
 
   /** What they mean together. Throws WrongUsage. */
   void check(CommandLine &line);
+
+  /** Load what NSFD_PLUG_INS and --plug-in name. Throws PlugInError. */
+  void load_plug_ins(const CommandLine &line);
 } // namespace nsfd::common_options

@@ -70,6 +70,9 @@ namespace nsfd
                            "folder for the results, default output/law_NAME");
         common::add_force(app, line, "overwrite the results of an earlier run");
         common::add_check(app, line, "say whether it would run, do not run it");
+        app.add_flag("--contract", contract_,
+                     "try what every law must keep, on all its examples; exit "
+                     "code 1 if it does not");
         common::add_print_parameters(app, line, "print it as a complete file");
         common::add_general(app, line);
       }
@@ -104,14 +107,15 @@ namespace nsfd
           const auto law = read_law(line.file, line.overrides(), errors);
           return print_parameters(law ? law->echo : "", errors);
         }
-        return run_on_first_process(line, [&line] {
+        return run_on_first_process(line, [&line, this] {
           return run_law({line.file, line.overrides(), line.check, line.quiet,
-                          line.force});
+                          line.force, contract_});
         });
       }
 
     private:
       std::string path_, opening_, slip_, reaction_, steps_, rule_;
+      bool contract_ = false;
     };
   } // namespace
 

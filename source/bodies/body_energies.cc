@@ -1,6 +1,6 @@
 #include "body_energies.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include <array>
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "discretization/cells.h"
+#include "discretization/discretization.h"
 #include "nsfd/bodies/rigid_step.h"
-#include "nsfd/discretization/discretization.h"
 #include "state/state.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "nsfd/materials/history_material.h"
 #include "state/state.h"
 

@@ -3,7 +3,7 @@
 #include "body_layout.h"
 #include "moving_row.h"
 
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "nonsmooth/one_step_problem.h"
 
 #include <array>
 #include <map>

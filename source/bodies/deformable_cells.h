@@ -1,7 +1,7 @@
 #pragma once
 
 #include "deformable_cell.h"
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 
 #include <memory>
 #include <vector>

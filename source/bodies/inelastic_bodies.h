@@ -2,7 +2,7 @@
 
 #include "deformable_cells.h"
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "state/state.h"
 
 #include <vector>

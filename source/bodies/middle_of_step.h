@@ -4,7 +4,7 @@
 #include "row_geometry.h"
 #include "step_motion.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 namespace nsfd
 {

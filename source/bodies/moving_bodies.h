@@ -8,8 +8,8 @@
 #include "rigid_motions.h"
 #include "step_motion.h"
 
-#include "nsfd/core/communicator.h"
-#include "nsfd/discretization/discretization.h"
+#include "core/communicator.h"
+#include "discretization/discretization.h"
 #include "state/state.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "contact_points.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 namespace nsfd
 {

@@ -2,7 +2,7 @@
 
 #include "body_layout.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include <array>
 #include <vector>

@@ -3,8 +3,8 @@
 #include "hdf5_image.h"
 #include "rank_order.h"
 
-#include "core/archive.h"
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
+#include "nsfd/core/archive.h"
 
 #include <memory>
 

@@ -2,6 +2,7 @@
 
 #include "checkpoint_file.h"
 
+#include "core/load_plug_in.h"
 #include "core/stopwatch.h"
 #include "nsfd/scene/scene_input.h"
 #include "records/run_options.h"
@@ -74,6 +75,8 @@ namespace nsfd
     std::ostringstream file;
     file << std::ifstream(input_.file, std::ios::binary).rdbuf();
     image->write("program", checkpoint_file::program());
+    if (const std::string used = used_plug_ins(); !used.empty())
+      image->write("plug_ins", used);
     image->write("command_line", options_.command_line);
     image->write("parameters", input_.echo);
     image->write("parameter_file", file.str());

@@ -3,7 +3,7 @@
 #include "checkpoint_archive.h"
 #include "parameter_changes.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include <cstdint>
 #include <filesystem>

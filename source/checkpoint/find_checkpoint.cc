@@ -1,11 +1,14 @@
 #include "checkpoint_file.h"
 #include "checkpoints.h"
 
+#include "core/load_plug_in.h"
+#include "nsfd/core/plug_in.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
 
 #include <iostream>
+#include <sstream>
 #include <system_error>
 
 namespace nsfd
@@ -35,6 +38,36 @@ namespace nsfd
         }
         found.notes += fmt::format("  {}: {}\n", file.string(), problem);
       }
+    }
+
+    /** False, and noted, if a law may have another formula now. */
+    bool compare_plug_ins(FoundCheckpoint &found)
+    {
+      std::string then;
+      if (!found.image->read("plug_ins", then))
+        return true; // of a program that had none
+      std::string refused;
+      std::istringstream lines(then);
+      for (std::string name, checksum; lines >> name >> checksum;) {
+        const PlugIn *now = nullptr;
+        for (const PlugIn &one : loaded_plug_ins())
+          if (one.name == name)
+            now = &one;
+        if (!now)
+          refused +=
+              fmt::format("  {0} is not loaded: --plug-in PATH/{0}.so\n", name);
+        else if (now->checksum != checksum)
+          refused += fmt::format("  {} is another file now: checksum {}, was "
+                                 "{}\n",
+                                 now->file, now->checksum, checksum);
+      }
+      if (!refused.empty())
+        found.notes +=
+            "these plug-ins give what was computed another meaning:\n" +
+            refused +
+            "  load those that the run began with, or start a new run: "
+            "--output DIR\n";
+      return refused.empty();
     }
 
     /** False if one is not allowed. Both kinds are noted. */
@@ -88,7 +121,8 @@ namespace nsfd
             found.notes +
             "  checkpoints come with `set checkpoint every steps = 100` in "
             "section Output, and when a run is stopped\n";
-      good = found.image && compare_parameters(input, found);
+      good = found.image && compare_plug_ins(found) &&
+             compare_parameters(input, found);
       if (!found.notes.empty())
         std::cerr << input.file << ": " << (good ? "note: " : "error: ")
                   << found.notes;

@@ -60,7 +60,9 @@ namespace nsfd
 
   bool ParameterChange::allowed() const
   {
-    static const std::vector<std::string> free = {"Time/end",
+    // plug-ins themselves are compared, not where they are named
+    static const std::vector<std::string> free = {"plug-ins",
+                                                  "Time/end",
                                                   "Time/step",
                                                   "Time/dynamic step",
                                                   "Time/maximum bisections",

@@ -2,7 +2,7 @@
 
 #include "core/bytes_type.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include <mpi.h>
 

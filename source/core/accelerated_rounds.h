@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/core/communicator.h"
+#include "communicator.h"
 
 #include <functional>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "nsfd/core/communicator.h"
+#include "communicator.h"
 
 #include "sum_kernels.h"
 

@@ -2,7 +2,7 @@
 
 #include "bytes_type.h"
 
-#include "nsfd/core/communicator.h"
+#include "communicator.h"
 
 #include <mpi.h>
 

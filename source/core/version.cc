@@ -1,12 +1,18 @@
 #include "version.h"
 
+#include "nsfd/core/interface.h"
+#include "nsfd/core/plug_in.h"
+
 #include <deal.II/base/config.h>
 
 #include <mpi.h>
 
 namespace nsfd
 {
-  Version version() { return {NSFD_VERSION, NSFD_GIT_HASH, NSFD_BUILD_TYPE}; }
+  Version version()
+  {
+    return {NSFD_VERSION, NSFD_GIT_HASH, NSFD_BUILD_TYPE, NSFD_BUILT_FOR};
+  }
 
   std::vector<std::pair<std::string, std::string>> library_versions()
   {

@@ -9,6 +9,7 @@ namespace nsfd
   /** What this program was built from. */
   struct Version {
     std::string number, git_hash, build_type;
+    std::string interface; ///< what plug-ins must have been built against
   };
   Version version();
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/bodies.h"
+#include "discretization/bodies.h"
 
 namespace nsfd
 {

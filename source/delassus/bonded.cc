@@ -5,8 +5,8 @@
 #include "linear_algebra/factor_limits.h"
 #include "sparse_assembly.h"
 
-#include "core/archive.h"
 #include "core/cost.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 #include <utility>

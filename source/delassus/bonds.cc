@@ -2,7 +2,7 @@
 
 #include "body_loops.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <stdexcept>
 

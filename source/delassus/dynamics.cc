@@ -3,9 +3,9 @@
 #include "block_inverse.h"
 #include "body_loops.h"
 
-#include "core/archive.h"
 #include "core/cost.h"
 #include "discretization/point_places.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 

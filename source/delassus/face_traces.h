@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/communicator.h"
 #include "core/neighbor_messages.h"
-#include "nsfd/core/communicator.h"
-#include "nsfd/discretization/bodies.h"
+#include "discretization/bodies.h"
 
 #include <array>
 #include <vector>

@@ -2,9 +2,9 @@
 #include "linear_algebra/factor_limits.h"
 #include "sparse_assembly.h"
 
-#include "core/archive.h"
 #include "core/cost.h"
 #include "dynamics.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "conforming_space.h"
 
+#include "discretization/bodies.h"
 #include "linear_algebra/spd_solver.h"
-#include "nsfd/discretization/bodies.h"
 
 #include <array>
 #include <vector>

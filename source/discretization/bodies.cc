@@ -1,4 +1,4 @@
-#include "nsfd/discretization/bodies.h"
+#include "bodies.h"
 
 #include <algorithm>
 #include <cmath>

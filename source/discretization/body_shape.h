@@ -2,7 +2,7 @@
 
 #include "materials/elasticity.h"
 
-#include "nsfd/discretization/bodies.h"
+#include "bodies.h"
 
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>

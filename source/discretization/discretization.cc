@@ -1,4 +1,4 @@
-#include "nsfd/discretization/discretization.h"
+#include "discretization.h"
 
 #include "cells.h"
 #include "face_points.h"

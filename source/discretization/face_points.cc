@@ -5,8 +5,8 @@
 #include "spring_shares.h"
 
 #include "cell_geometry.h"
+#include "core/communicator.h"
 #include "mesh/mesh_builder.h"
-#include "nsfd/core/communicator.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <deal.II/grid/cell_id.h>

@@ -2,7 +2,7 @@
 
 #include "cells.h"
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization.h"
 
 #include <vector>
 

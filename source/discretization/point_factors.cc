@@ -1,6 +1,6 @@
 #include "point_factors.h"
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>

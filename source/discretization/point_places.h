@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/bodies.h"
+#include "bodies.h"
 
 #include <algorithm>
 #include <array>

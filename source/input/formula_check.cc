@@ -1,7 +1,7 @@
 #include "formula_check.h"
 
 #include "discretization/cells.h"
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "nsfd/scene/scene_input.h"
 #include "parameters/bad_values.h"
 

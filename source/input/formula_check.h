@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include <string>
 #include <vector>

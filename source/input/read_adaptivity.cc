@@ -76,9 +76,8 @@ namespace nsfd
     {
       SectionReader reader(section, errors);
       const auto &registry = IndicatorRegistry::instance();
-      const std::string type =
-          reader.choice("type", "process zone", registry.names(),
-                        fmt::format("{}", fmt::join(registry.names(), ", ")));
+      const std::string type = read_registered_name(
+          reader, "type", "process zone", registry.names());
       if (!registry.knows(type)) {
         reader.accept_everything();
         return nullptr;

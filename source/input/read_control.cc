@@ -29,8 +29,8 @@ namespace nsfd
         if (value)
           reader.error(
               "case", fmt::format("case = {} is not a verification case", name),
-              did_you_mean(name, registry.names(),
-                           "`nsfd --list` prints all names"));
+              advice_on_name(name, registry.names(),
+                             "`nsfd --list` prints all names"));
         return;
       }
       const unsigned int n_before = errors.n_errors();

@@ -42,7 +42,7 @@ namespace nsfd
       if (std::find(known.begin(), known.end(), name) == known.end())
         reader.error(
             "law", fmt::format("law = {} is not a law", name),
-            did_you_mean(name, known, "`nsfd --list` prints all names"));
+            advice_on_name(name, known, "`nsfd --list` prints all names"));
       else
         return name;
       reader.accept_everything();

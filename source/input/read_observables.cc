@@ -33,8 +33,7 @@ namespace nsfd
       block.name = reader.block_name();
       const auto &registry = ObservableRegistry::instance();
       block.type =
-          reader.choice("type", "crack", registry.names(),
-                        fmt::format("{}", fmt::join(registry.names(), ", ")));
+          read_registered_name(reader, "type", "crack", registry.names());
       block.every = reader.integer("every steps", "1", 1, 1000000000,
                                    "steps from row to row");
       if (registry.knows(block.type))

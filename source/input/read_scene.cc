@@ -142,6 +142,8 @@ namespace nsfd
       scene->file = name;
       read_opening(file, *scene);
       read_constants(file, errors);
+      if (!read_plug_ins(file, errors, "nsfd", name))
+        return nullptr;
       read_top(file, errors, *scene);
       read_mesh(file, errors, *scene);
       read_discretization(file, errors, *scene);
@@ -202,7 +204,8 @@ namespace nsfd
                                             const auto &registry) {
       for (const auto &[name, entry] : registry.entries())
         parts.push_back({kind, name, entry.text,
-                         entry.examples.empty() ? "" : entry.examples.front()});
+                         entry.examples.empty() ? "" : entry.examples.front(),
+                         entry.plug_in});
     };
     append_registered("cohesive law", CohesiveLawRegistry::instance());
     append_registered("verification case", VerificationRegistry::instance());

@@ -30,6 +30,7 @@ namespace nsfd
   struct NamedPart {
     std::string kind, name, text;
     std::string example = {}; ///< entries it needs: "strength = 3 MPa; ..."
+    std::string plug_in = {}; ///< that brings it
   };
 
   /** Material models, interface laws, verification cases, meshes, solvers: in

@@ -18,6 +18,26 @@ namespace nsfd
   /** Section `Constants`: numbers for all the values that follow. */
   void read_constants(ParameterFile &file, InputErrors &errors);
 
+  /**
+   * Entry `plug-ins` at the top: what @p name needs. False, and reported with
+   * the line to type behind @p command, if one is not loaded: what it would
+   * bring is then unknown, and nothing more should be read.
+   */
+  bool read_plug_ins(ParameterFile &file, InputErrors &errors,
+                     const std::string &command, const std::string &name);
+
+  /** did_you_mean() for a name that a plug-in may bring. */
+  std::string advice_on_name(const std::string &word,
+                             const std::vector<std::string> &known,
+                             const std::string &otherwise);
+
+  /** The name of a registered part; the default, and reported, if it is none.
+   */
+  std::string read_registered_name(SectionReader &reader,
+                                   const std::string &entry,
+                                   const std::string &default_text,
+                                   const std::vector<std::string> &known);
+
   /** Mesh, the bodies of a mesh of type `bodies`, Discretization. */
   void read_mesh(ParameterFile &file, InputErrors &errors, SceneInput &scene);
   void read_discretization(ParameterFile &file, InputErrors &errors,

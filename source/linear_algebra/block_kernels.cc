@@ -1,6 +1,6 @@
 // No deal.II here: plain arrays, several instruction sets, and the same sums
 // in the same order in both kernels.
-#include "nsfd/linear_algebra/block_kernels.h"
+#include "block_kernels.h"
 
 #include "core/instruction_sets.h"
 

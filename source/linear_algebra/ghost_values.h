@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/communicator.h"
 #include "core/neighbor_messages.h"
-#include "nsfd/core/communicator.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "nonsmooth/one_step_problem.h"
 #include "path.h"
 
 #include <memory>

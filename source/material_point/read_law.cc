@@ -77,9 +77,9 @@ namespace nsfd
           reader.error(
               "law",
               fmt::format("law = {} is not a cohesive law", curve.law_name),
-              did_you_mean(curve.law_name, registry.names(),
-                           fmt::format("known are: {}",
-                                       fmt::join(registry.names(), ", "))));
+              advice_on_name(curve.law_name, registry.names(),
+                             fmt::format("known are: {}",
+                                         fmt::join(registry.names(), ", "))));
         return curve;
       }
       const auto law = read_cohesive_law(reader, curve.law_name);
@@ -124,6 +124,8 @@ namespace nsfd
       auto input = std::make_unique<LawInput>();
       input->title = output_name;
       read_constants(file, errors);
+      if (!read_plug_ins(file, errors, "nsfd law", file.location().source))
+        return nullptr;
       for (ParameterSection *block : file.open_blocks("Interface")) {
         SectionReader reader(*block, errors);
         input->curves.push_back(read_block(reader));
@@ -258,7 +260,7 @@ namespace nsfd
     if (path.extension() != ".prm" && !std::filesystem::exists(path, ignored)) {
       errors.error(
           {what, 0, 0, 0, ""}, "is neither a cohesive law nor a parameter file",
-          did_you_mean(
+          advice_on_name(
               what, registry.names(),
               fmt::format("laws are: {}", fmt::join(registry.names(), ", "))));
       return nullptr;
@@ -267,6 +269,26 @@ namespace nsfd
     if (!file.read_file(what, errors))
       return nullptr;
     return read_parsed(file, path.stem().string(), overrides, errors);
+  }
+
+  std::vector<std::unique_ptr<LawInput>>
+  read_examples(const std::string &what,
+                const std::vector<std::string> &overrides, InputErrors &errors)
+  {
+    const auto &registry = CohesiveLawRegistry::instance();
+    std::vector<std::unique_ptr<LawInput>> inputs;
+    if (!registry.knows(what) || !overrides.empty())
+      inputs.push_back(read_law(what, overrides, errors));
+    else
+      for (const std::string &example : registry.entries().at(what).examples) {
+        ParameterFile file;
+        file.read_text(text_of(what, entries_of(example)), "example of " + what,
+                       errors);
+        inputs.push_back(read_parsed(file, "law_" + what, {}, errors));
+        if (inputs.back())
+          inputs.back()->entries = example;
+      }
+    return inputs;
   }
 
   std::unique_ptr<LawInput>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bar.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "nonsmooth/one_step_problem.h"
 #include "nsfd/scene/time_input.h"
 #include "parameters/input_errors.h"
 #include "path.h"
@@ -43,6 +43,12 @@ namespace nsfd
   std::unique_ptr<LawInput> read_law(const std::string &what,
                                      const std::vector<std::string> &overrides,
                                      InputErrors &errors);
+
+  /** As read_law(); a registered law without @p overrides once with each of its
+   * examples. */
+  std::vector<std::unique_ptr<LawInput>>
+  read_examples(const std::string &what,
+                const std::vector<std::string> &overrides, InputErrors &errors);
 
   /** As read_law(), for the text of a file that messages call @p name. */
   std::unique_ptr<LawInput>

@@ -4,8 +4,10 @@
 #include "law_charts.h"
 #include "law_table.h"
 #include "run_bar.h"
+#include "try_contract.h"
 
 #include "core/exit_code.h"
+#include "core/load_plug_in.h"
 #include "core/output_folder.h"
 #include "visualization/svg.h"
 
@@ -118,6 +120,8 @@ namespace nsfd
 
   int run_law(const LawCommand &command)
   {
+    if (command.contract)
+      return try_contract(command);
     InputErrors errors;
     const auto input = read_law(command.file, command.overrides, errors);
     std::cerr << errors.report();
@@ -131,8 +135,10 @@ namespace nsfd
     if (!claim_directory(input->directory, command.force))
       return exit_code::bad_input;
     OutputFolder &folder = OutputFolder::instance();
-    folder.describe(
-        nlohmann::json{{"subcommand", "law"}, {"file", command.file}}.dump());
+    folder.describe(nlohmann::json{{"subcommand", "law"},
+                                   {"file", command.file},
+                                   {"plug_ins", used_plug_ins()}}
+                        .dump());
 
     if (input->bar) {
       run_bar(*input, command.quiet);

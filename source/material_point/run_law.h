@@ -10,6 +10,7 @@ namespace nsfd
     std::string file;                   ///< or the name of a law
     std::vector<std::string> overrides; ///< Section/name=value
     bool check = false, quiet = false, force = false;
+    bool contract = false; ///< try what every law must keep, drive nothing
   };
 
   /**

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/materials/material_extremes.h"
+#include "material_extremes.h"
 
 #include <deal.II/base/point.h>
 

@@ -1,4 +1,4 @@
-#include "nsfd/mesh/body_table.h"
+#include "body_table.h"
 
 #include "owned_cells.h"
 

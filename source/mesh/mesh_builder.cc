@@ -3,7 +3,7 @@
 #include "core/mix_bits.h"
 #include "level_mesh.h"
 
-#include "nsfd/mesh/body_table.h"
+#include "body_table.h"
 
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>

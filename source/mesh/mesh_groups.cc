@@ -1,6 +1,6 @@
 #include "mesh_builder.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include "coarse_mesh.h"
 #include "named_mesh.h"

@@ -1,4 +1,4 @@
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "one_step_problem.h"
 
 namespace nsfd
 {

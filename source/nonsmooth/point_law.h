@@ -1,7 +1,8 @@
 #pragma once
 
+#include "one_step_problem.h"
+
 #include "nsfd/cohesive_laws/law_point.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
 
 #include <cmath>
 

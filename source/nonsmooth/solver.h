@@ -2,7 +2,7 @@
 
 #include "delassus/dynamics.h"
 #include "nsfd/core/registry.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "one_step_problem.h"
 #include "point_law.h"
 #include "solver_report.h"
 

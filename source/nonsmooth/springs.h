@@ -2,8 +2,8 @@
 
 #include "core/bracketed_root.h"
 
-#include "nsfd/nonsmooth/one_step_problem.h"
 #include "nsfd/scene/time_input.h"
+#include "one_step_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crack_shape.h"
-#include "nsfd/discretization/bodies.h"
+#include "discretization/bodies.h"
 
 #include <algorithm>
 #include <numeric>

@@ -4,8 +4,8 @@
 #include "snapshot.h"
 #include "xdmf_series.h"
 
-#include "core/archive.h"
 #include "core/output_folder.h"
+#include "nsfd/core/archive.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bodies/fragments.h"
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "records/fragment_record.h"
 #include "state/state.h"
 

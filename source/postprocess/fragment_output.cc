@@ -1,7 +1,7 @@
 #include "fragment_output.h"
 
-#include "core/archive.h"
 #include "core/cost.h"
+#include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "run_view.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 #include "table_file.h"
 

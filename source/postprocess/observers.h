@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/communicator.h"
+#include "discretization/discretization.h"
 #include "mesh/mesh_builder.h"
-#include "nsfd/core/communicator.h"
-#include "nsfd/discretization/discretization.h"
 #include "nsfd/records/observable_record.h"
 #include "nsfd/records/run_record.h"
 #include "state/state.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "nsfd/records/run_record.h"
 #include "state/state.h"
 

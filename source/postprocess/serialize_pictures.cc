@@ -1,6 +1,6 @@
 #include "serialize_pictures.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <array>
 

@@ -208,6 +208,14 @@ namespace nsfd
     json["version"] = info.version;
     json["git_hash"] = info.git_hash;
     json["build_type"] = info.build_type;
+    json["interface"] = info.interface;
+    json["plug_ins"] = Json::array();
+    for (const PlugIn &one : info.plug_ins)
+      json["plug_ins"].push_back({{"name", one.name},
+                                  {"file", one.file},
+                                  {"checksum", one.checksum},
+                                  {"parts", one.parts},
+                                  {"used", one.used}});
     json["libraries"] = info.libraries;
     json["command_line"] = info.command_line;
     json["file"] = info.file;

@@ -2,6 +2,7 @@
 
 #include "discretization/body_shape.h"
 #include "discretization/cell_sampler.h"
+#include "discretization/discretization.h"
 
 #include "mesh/mesh_builder.h"
 #include "nsfd/postprocess/observable.h"

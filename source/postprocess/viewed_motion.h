@@ -2,6 +2,7 @@
 
 #include "bodies/cell_stresses.h"
 
+#include "discretization/discretization.h"
 #include "nsfd/postprocess/observable.h"
 #include "state/state.h"
 

@@ -1,7 +1,7 @@
 #include "vtu.h"
 
-#include "core/archive.h"
 #include "core/output_folder.h"
+#include "nsfd/core/archive.h"
 #include "visualization/markup.h"
 
 #include <fmt/format.h>

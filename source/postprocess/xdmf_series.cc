@@ -2,8 +2,8 @@
 
 #include "core/hdf5_file.h"
 
-#include "core/archive.h"
 #include "core/output_folder.h"
+#include "nsfd/core/archive.h"
 #include "visualization/markup.h"
 
 #include <fmt/format.h>

@@ -5,8 +5,8 @@
 
 #include "mesh/owned_cells.h"
 
-#include "core/archive.h"
 #include "discretization/point_places.h"
+#include "nsfd/core/archive.h"
 
 #include <deal.II/grid/cell_id.h>
 

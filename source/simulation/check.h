@@ -1,7 +1,7 @@
 #pragma once
 
 #include "delassus/dynamics.h"
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 
 namespace nsfd
 {

@@ -5,8 +5,8 @@
 #include "discretization/cells.h"
 #include "sharp_front.h"
 
-#include "core/archive.h"
 #include "discretization/cell_geometry.h"
+#include "nsfd/core/archive.h"
 #include "nsfd/obstacles/obstacle_shape.h"
 #include "nsfd/scene/scene_input.h"
 #include "records/engineering.h"

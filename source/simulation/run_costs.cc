@@ -1,7 +1,7 @@
 #include "run_costs.h"
 
-#include "core/archive.h"
 #include "delassus/delassus_cost.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 #include <sstream>

@@ -1,6 +1,6 @@
 #include "run_facts.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 #include "zone_resolution.h"
 
 #include <algorithm>

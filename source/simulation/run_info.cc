@@ -46,6 +46,8 @@ namespace nsfd
     info.version = program.number;
     info.git_hash = program.git_hash;
     info.build_type = program.build_type;
+    info.interface = program.interface;
+    info.plug_ins = loaded_plug_ins();
     info.command_line = options.command_line;
     info.file = input.file;
     info.date = today();
@@ -89,6 +91,9 @@ namespace nsfd
                                            : "at the start");
     if (input.verification)
       parts.emplace_back("verification", "exact values");
+    for (const PlugIn &one : info.plug_ins)
+      if (one.used)
+        parts.emplace_back("plug-in", one.file);
     return info;
   }
 

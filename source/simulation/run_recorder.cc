@@ -4,9 +4,9 @@
 #include "run_end.h"
 #include "run_info.h"
 
-#include "core/archive.h"
 #include "core/cost.h"
 #include "discretization/cells.h"
+#include "nsfd/core/archive.h"
 #include "postprocess/fragment_output.h"
 #include "records/run_options.h"
 

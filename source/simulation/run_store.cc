@@ -2,8 +2,8 @@
 
 #include "print_problems.h"
 
-#include "core/archive.h"
 #include "core/cost.h"
+#include "nsfd/core/archive.h"
 #include "time_integration/serialize_state.h"
 
 #include <fmt/format.h>

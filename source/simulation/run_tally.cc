@@ -2,8 +2,8 @@
 
 #include "run_info.h"
 
-#include "core/archive.h"
 #include "core/stopwatch.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 

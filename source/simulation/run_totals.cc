@@ -1,6 +1,6 @@
 #include "run_totals.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 #include <sstream>

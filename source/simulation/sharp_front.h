@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "records/motion_limits.h"
 
 #include <optional>

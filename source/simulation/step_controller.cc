@@ -1,8 +1,8 @@
 #include "step_controller.h"
 
-#include "core/archive.h"
 #include "core/stop_request.h"
 #include "input/formula_check.h"
+#include "nsfd/core/archive.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "print_problems.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "discretization/discretization.h"
+#include "nonsmooth/one_step_problem.h"
 #include "records/certificate.h"
 
 #include <optional>

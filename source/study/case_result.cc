@@ -189,6 +189,7 @@ namespace nsfd
     json["version"] = stamp.version;
     json["git_hash"] = stamp.git_hash;
     json["ranks"] = stamp.ranks;
+    json["plug_ins"] = stamp.plug_ins;
     json["setup_seconds"] = r.setup;
     json["solve_seconds"] = r.solve;
     json["wall_seconds"] = r.wall;
@@ -204,7 +205,8 @@ namespace nsfd
     if (!json.is_object() || json.value("status", "") != "done" ||
         json.value("version", "") != stamp.version ||
         json.value("git_hash", "") != stamp.git_hash ||
-        json.value("ranks", 0u) != stamp.ranks)
+        json.value("ranks", 0u) != stamp.ranks ||
+        json.value("plug_ins", "") != stamp.plug_ins)
       return false;
     const auto times = [&json](const char *name) {
       return json.value(name, std::vector<double>());

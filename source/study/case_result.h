@@ -61,6 +61,7 @@ namespace nsfd
   struct CaseStamp {
     std::string version, git_hash;
     unsigned int ranks = 1;
+    std::string plug_ins = {}; ///< with their checksums
   };
   void write_case(const std::string &file, const CaseStamp &stamp,
                   const CaseResult &result);

@@ -2,6 +2,7 @@
 
 #include "core/exit_code.h"
 #include "core/output_folder.h"
+#include "nsfd/core/plug_in.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -160,6 +161,8 @@ namespace nsfd
       words.push_back(fs::read_symlink("/proc/self/exe").string());
       words.insert(words.end(),
                    {scene, "--output", output, "--force", "--quiet"});
+      for (const PlugIn &one : loaded_plug_ins())
+        words.insert(words.end(), {"--plug-in", one.file});
       return words;
     }
 

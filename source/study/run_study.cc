@@ -3,6 +3,7 @@
 #include "study_results.h"
 
 #include "core/exit_code.h"
+#include "core/load_plug_in.h"
 #include "core/output_folder.h"
 #include "core/version.h"
 #include "parameters/input_errors.h"
@@ -38,7 +39,7 @@ namespace nsfd
       Runner(const StudyResults &study, const StudyCommand &command,
              std::ostream &out)
           : study_(study), command_(command),
-            out_(out), stamp_{study.version, study.git_hash, 1}
+            out_(out), stamp_{study.version, study.git_hash, 1, used_plug_ins()}
       {
       }
 

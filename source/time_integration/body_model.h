@@ -2,9 +2,9 @@
 
 #include "bodies/body_energies.h"
 
+#include "discretization/discretization.h"
+#include "nonsmooth/one_step_problem.h"
 #include "nonsmooth/solver.h"
-#include "nsfd/discretization/discretization.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
 #include "state/state.h"
 
 #include <map>

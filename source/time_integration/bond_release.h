@@ -1,7 +1,7 @@
 #pragma once
 
 #include "delassus/bonded.h"
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "state/state.h"
 
 namespace nsfd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "nsfd/parameters/expression.h"
 
 #include <vector>

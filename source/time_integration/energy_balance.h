@@ -5,8 +5,8 @@
 
 #include "bodies/body_energies.h"
 
+#include "discretization/discretization.h"
 #include "nonsmooth/solver.h"
-#include "nsfd/discretization/discretization.h"
 #include "state/state.h"
 
 #include <vector>

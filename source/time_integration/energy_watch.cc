@@ -1,6 +1,6 @@
 #include "energy_watch.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 

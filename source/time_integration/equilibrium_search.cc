@@ -6,9 +6,9 @@
 #include "static_balance.h"
 
 #include "core/accelerated_rounds.h"
-#include "core/archive.h"
 #include "core/stopwatch.h"
 #include "discretization/loads.h"
+#include "nsfd/core/archive.h"
 
 #include <fmt/format.h>
 

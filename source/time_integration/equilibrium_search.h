@@ -4,7 +4,7 @@
 #include "time_integrator.h"
 
 #include "delassus/dynamics.h"
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 
 #include <memory>
 

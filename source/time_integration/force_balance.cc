@@ -1,6 +1,6 @@
 #include "force_balance.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 #include <cmath>

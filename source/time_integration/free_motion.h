@@ -1,8 +1,8 @@
 #pragma once
 
 #include "delassus/dynamics.h"
-#include "nsfd/discretization/discretization.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "discretization/discretization.h"
+#include "nonsmooth/one_step_problem.h"
 
 #include <memory>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "delassus/dynamics.h"
+#include "discretization/discretization.h"
 #include "nonsmooth/solver.h"
-#include "nsfd/discretization/discretization.h"
 #include "state/state.h"
 
 #include <utility>

@@ -6,7 +6,7 @@
 #include "step_problem.h"
 #include "time_integrator.h"
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 
 #include <memory>
 

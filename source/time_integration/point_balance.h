@@ -2,8 +2,8 @@
 
 #include "uniqueness.h"
 
+#include "discretization/discretization.h"
 #include "nonsmooth/solver.h"
-#include "nsfd/discretization/discretization.h"
 #include "state/state.h"
 #include "time_integrator.h"
 

@@ -1,6 +1,6 @@
 #include "quasi_static.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <fmt/format.h>
 

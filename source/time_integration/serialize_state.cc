@@ -1,6 +1,6 @@
 #include "serialize_state.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 #include "state/point_fields.h"
 
 namespace nsfd

@@ -2,9 +2,9 @@
 
 #include "step_data.h"
 
-#include "core/archive.h"
 #include "discretization/cells.h"
 #include "discretization/loads.h"
+#include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>

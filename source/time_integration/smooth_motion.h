@@ -2,7 +2,7 @@
 
 #include "time_integrator.h"
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 
 #include <memory>
 #include <vector>

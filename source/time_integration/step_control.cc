@@ -1,6 +1,6 @@
 #include "step_control.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <cmath>
 #include <limits>

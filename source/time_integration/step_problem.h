@@ -4,9 +4,9 @@
 #include "step_costs.h"
 
 #include "delassus/dynamics.h"
+#include "discretization/discretization.h"
+#include "nonsmooth/one_step_problem.h"
 #include "nonsmooth/solver.h"
-#include "nsfd/discretization/discretization.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
 
 #include <memory>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "delassus/dynamics.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "nonsmooth/one_step_problem.h"
 
 #include <vector>
 

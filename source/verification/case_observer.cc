@@ -5,7 +5,7 @@
 #include "discretization/cells.h"
 #include "postprocess/face_pieces.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/discretization/discretization.h"
+#include "discretization/discretization.h"
 #include "nsfd/scene/time_input.h"
 #include "nsfd/verification/verification_case.h"
 #include "postprocess/crack_shape.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <optional>
 

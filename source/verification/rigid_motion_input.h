@@ -2,8 +2,8 @@
 
 #include "nsfd/verification/case_input.h"
 
-#include "core/archive.h"
 #include "nsfd/bodies/rigid_step.h"
+#include "nsfd/core/archive.h"
 
 #include <string>
 #include <vector>

@@ -106,6 +106,8 @@ namespace end_to_end
     double seconds = 120.;
     /// J, for the energy balance of a scene in which hardly anything moves
     double energy_scale = 0.;
+    std::vector<std::string> more = {}; ///< further words, --plug-in FILE
+    std::string program = NSFD_PROGRAM; ///< or one that is installed
   };
 
   struct Result {

@@ -16,12 +16,13 @@ namespace end_to_end
     if (what.ranks > 1)
       command = {NSFD_MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n",
                  std::to_string(what.ranks)};
-    command.insert(command.end(), {NSFD_PROGRAM, what.file.string(), "--quiet",
+    command.insert(command.end(), {what.program, what.file.string(), "--quiet",
                                    "--output", directory.string()});
     if (!what.report)
       command.insert(command.end(), {"--set", "Output/report=false"});
     for (const std::string &assignment : what.set)
       command.insert(command.end(), {"--set", assignment});
+    command.insert(command.end(), what.more.begin(), what.more.end());
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }

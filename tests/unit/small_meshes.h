@@ -4,7 +4,7 @@
 #include "make_scene.h"
 
 #include "delassus/inner_solver.h"
-#include "nsfd/linear_algebra/block_kernels.h"
+#include "linear_algebra/block_kernels.h"
 
 #include <gtest/gtest.h>
 

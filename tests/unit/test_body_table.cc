@@ -3,7 +3,7 @@
 #include "discretization/cells.h"
 #include "rigid_in_rubber.h"
 
-#include "nsfd/mesh/body_table.h"
+#include "mesh/body_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "linear_algebra/krylov.h"
 
-#include "nsfd/core/communicator.h"
+#include "core/communicator.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
+#include "core/communicator.h"
 #include "core/hdf5_file.h"
-#include "nsfd/core/communicator.h"
 #include "postprocess/xdmf_series.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "nsfd/core/plug_in.h"
+
 #include <functional>
 #include <map>
 #include <memory>
@@ -24,6 +26,7 @@ namespace nsfd
       Factory factory;
       std::string text;
       std::vector<std::string> examples;
+      std::string plug_in; ///< that it comes from; empty: the program
     };
 
     static Registry &instance()
@@ -40,8 +43,13 @@ namespace nsfd
       const Factory factory = [](Arguments... arguments) {
         return std::make_unique<Part>(std::forward<Arguments>(arguments)...);
       };
-      entries_[name] = {factory, text, {examples...}};
-      return true;
+      const auto [entry, is_new] = entries_.try_emplace(name);
+      if (is_new)
+        entry->second = {
+            factory, text, {examples...}, plug_ins::owner_of(name)};
+      else
+        plug_ins::refuse_name(name, entry->second.plug_in);
+      return is_new;
     }
 
     bool knows(const std::string &name) const
@@ -52,7 +60,9 @@ namespace nsfd
     std::unique_ptr<Base> create(const std::string &name,
                                  Arguments... arguments) const
     {
-      return entries_.at(name).factory(arguments...);
+      const Entry &entry = entries_.at(name);
+      plug_ins::note_use(entry.plug_in);
+      return entry.factory(arguments...);
     }
 
     const std::map<std::string, Entry> &entries() const { return entries_; }

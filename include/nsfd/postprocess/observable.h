@@ -1,10 +1,10 @@
 #pragma once
 
 #include "nsfd/core/registry.h"
-#include "nsfd/discretization/discretization.h"
-#include "nsfd/nonsmooth/one_step_problem.h"
+#include "nsfd/discretization/point_origin.h"
 #include "nsfd/records/observable_record.h"
 #include "nsfd/records/run_record.h"
+#include "nsfd/state/point_kind.h"
 
 #include <array>
 #include <functional>
@@ -156,9 +156,8 @@ namespace nsfd
 
   /**
    * Something that a scene asks for: numbers after each step. Registered by
-   * name, one file each in scene/observables; built from its block
-   * `Observable: name` and the scene, which has been read. Its constructor
-   * reports what is wrong to the reader.
+   * name, one file each; built from its block `Observable: name` and the scene,
+   * which has been read. Its constructor reports what is wrong to the reader.
    */
   class Observable
   {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "nsfd/core/plug_in.h"
 #include "nsfd/records/cost_record.h"
 #include "nsfd/records/observable_record.h"
 
@@ -70,6 +71,8 @@ namespace nsfd
   /** What run.json says. */
   struct RunInfo {
     std::string version, git_hash, command_line, file, date, host, build_type;
+    std::string interface; ///< that plug-ins were built against
+    std::vector<PlugIn> plug_ins;
     std::map<std::string, std::string> libraries;
     unsigned int ranks = 1;
     std::vector<unsigned int> seeds;

@@ -1,8 +1,8 @@
 #include "contact_path.h"
 #include "gathered.h"
 
-#include "core/archive.h"
 #include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nsfd/core/archive.h"
 
 namespace nsfd
 {

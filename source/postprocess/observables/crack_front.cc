@@ -1,6 +1,6 @@
 #include "crack_front.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "verification/spring_and_floor.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 

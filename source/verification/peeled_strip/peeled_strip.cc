@@ -1,7 +1,7 @@
 #include "nsfd/verification/case_input.h"
 #include "verification/line_fit.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 #include "nsfd/parameters/section_reader.h"
 
 #include <limits>

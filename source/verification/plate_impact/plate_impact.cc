@@ -1,6 +1,6 @@
 #include "verification/spalling_plane.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <optional>
 

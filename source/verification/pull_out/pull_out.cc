@@ -1,6 +1,6 @@
 #include "verification/pulled_fibre.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 namespace nsfd
 {

@@ -1,6 +1,6 @@
 #include "nsfd/verification/case_input.h"
 
-#include "core/archive.h"
+#include "nsfd/core/archive.h"
 
 #include <algorithm>
 

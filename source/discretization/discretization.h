@@ -1,9 +1,11 @@
 #pragma once
 
-#include "nsfd/core/communicator.h"
-#include "nsfd/discretization/bodies.h"
-#include "nsfd/materials/material_extremes.h"
-#include "nsfd/mesh/body_table.h"
+#include "bodies.h"
+
+#include "core/communicator.h"
+#include "materials/material_extremes.h"
+#include "mesh/body_table.h"
+#include "nsfd/discretization/point_origin.h"
 
 #include <deal.II/base/point.h>
 
@@ -21,22 +23,6 @@ namespace nsfd
   struct Cells;
   template <int dim>
   class Loads;
-
-  /** Where a point of InterfacePoints comes from. */
-  struct PointOrigin {
-    enum class Kind : unsigned char {
-      interface, ///< between two cells, `block` of SceneInput::interfaces
-      motion,    ///< prescribed motion, `block` of boundaries
-      obstacle,  ///< `block` of obstacles
-      surface,   ///< of large motions, for one step: `block` of contacts
-      pin        ///< of large motions: `block` of pins
-    };
-    Kind kind = Kind::interface;
-    unsigned int block = 0;
-    /// of the springs of an interface over that of its law, in (0, 1]: less on
-    /// faces of refined cells where springs keep the modulus of the body
-    double compliance = 1.;
-  };
 
   /** Place of a face point. */
   template <int dim>

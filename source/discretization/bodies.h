@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nsfd/linear_algebra/block_kernels.h"
+#include "linear_algebra/block_kernels.h"
 
 #include <array>
 #include <cstdint>
