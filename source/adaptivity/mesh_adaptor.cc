@@ -59,7 +59,7 @@ namespace nsfd
   bool MeshAdaptor<dim>::mark(const MeshState<dim> &mesh,
                               const bool may_coarsen)
   {
-    const auto &communicator = mesh.dynamics.communicator();
+    const auto &communicator = mesh.delassus.communicator();
     const auto cells = owned_cells(triangulation_);
     std::vector<unsigned int> levels;
     for (const auto &cell : cells)

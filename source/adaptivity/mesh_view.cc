@@ -125,7 +125,7 @@ namespace nsfd
                                           &points.frame[i * dim * dim]);
           std::copy(t.begin(), t.end(), &traction[side][i * dim]);
         }
-    mesh_.dynamics.exchange({{traction[0].data(), traction[1].data()}}, dim);
+    mesh_.delassus.exchange({{traction[0].data(), traction[1].data()}}, dim);
     for (const auto &face : points.faces) {
       if (face.boundary)
         continue;
@@ -196,20 +196,20 @@ namespace nsfd
   template <int dim>
   double StateView<dim>::sum(const std::vector<double> &terms) const
   {
-    return mesh_.dynamics.communicator().sum(terms);
+    return mesh_.delassus.communicator().sum(terms);
   }
 
   template <int dim>
   double StateView<dim>::max(const double value) const
   {
-    return mesh_.dynamics.communicator().max(value);
+    return mesh_.delassus.communicator().max(value);
   }
 
   template <int dim>
   std::vector<double>
   StateView<dim>::gather(const std::vector<double> &values) const
   {
-    return gather_all(mesh_.dynamics.communicator(), values);
+    return gather_all(mesh_.delassus.communicator(), values);
   }
 
   template std::vector<std::array<double, 6>>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 #include "nsfd/adaptivity/indicator.h"
@@ -17,7 +17,7 @@ namespace nsfd
   template <int dim>
   struct MeshState {
     const Discretization<dim> &discretization;
-    const Dynamics<dim> &dynamics;
+    const DelassusOperator<dim> &delassus;
     const OneStepProblem<dim> &problem;
     const State &state;
   };

@@ -48,7 +48,7 @@ namespace nsfd
                                       const MeshState<dim> &mesh)
     {
       std::vector<double> result(mesh.state.jump.size());
-      mesh.dynamics.relative_velocity(mesh.state.displacement.data(),
+      mesh.delassus.relative_velocity(mesh.state.displacement.data(),
                                       result.data());
       for (std::size_t k = 0; k < result.size(); ++k)
         result[k] = mesh.state.jump[k] - result[k];
@@ -344,9 +344,9 @@ namespace nsfd
     const std::size_t n = points.n_points;
     State state = fresh.state;
     set_motion(fresh, state);
-    fresh.dynamics.relative_velocity(state.displacement.data(),
+    fresh.delassus.relative_velocity(state.displacement.data(),
                                      state.jump.data());
-    fresh.dynamics.relative_velocity(state.velocity.data(),
+    fresh.delassus.relative_velocity(state.velocity.data(),
                                      state.relative_velocity.data());
     memory_.resize(n, state);
 
@@ -370,7 +370,7 @@ namespace nsfd
             std::copy_n(memory, size, row);
           row[Memory::face] = memory ? kept : inside ? inside_a_cell : none;
         });
-    fresh.dynamics.exchange({{rows[0].data(), rows[1].data()}}, size);
+    fresh.delassus.exchange({{rows[0].data(), rows[1].data()}}, size);
 
     for (std::size_t i = 0; i < n; ++i) {
       const bool boundary = points.faces[points.face_of[i]].boundary;

@@ -13,8 +13,8 @@ namespace nsfd
 
   /**
    * The bodies of a scene of small motions with history-dependent materials. To
-   * Dynamics, bodies() are linear: a cell of such a material is a class of its
-   * own, with the tangent of its motion as its stiffness.
+   * DelassusOperator, bodies() are linear: a cell of such a material is a class
+   * of its own, with the tangent of its motion as its stiffness.
    */
   template <int dim>
   class InelasticBodies

@@ -26,9 +26,9 @@ namespace nsfd
    * those of rigid bodies follow from their places and turns, which all ranks
    * know: State::rigid, in the order of BodyTable.
    *
-   * During a step they are linear in what Dynamics sees: bodies() and points()
-   * with traces, frames and tangents at the middle of the motion. There a point
-   * moves by exactly h H v_theta.
+   * During a step they are linear in what DelassusOperator sees: bodies() and
+   * points() with traces, frames and tangents at the middle of the motion.
+   * There a point moves by exactly h H v_theta.
    */
   template <int dim>
   class MovingBodies

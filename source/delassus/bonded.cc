@@ -19,10 +19,10 @@ namespace nsfd
     constexpr double tight = 1e-12;
 
     template <int dim>
-    class Bonded final : public BondedDynamics<dim>
+    class Bonded final : public BondedDelassus<dim>
     {
     public:
-      using typename BondedDynamics<dim>::Operator;
+      using typename BondedDelassus<dim>::Operator;
 
       Bonded(const Communicator &communicator, const Bodies &bodies,
              const InterfacePoints<dim> &points, const std::string &solver,
@@ -87,7 +87,7 @@ namespace nsfd
                         const InterfacePoints<dim> &points,
                         const std::string &solver,
                         const std::vector<double> &coordinates)
-        : BondedDynamics<dim>(communicator, bodies, points)
+        : BondedDelassus<dim>(communicator, bodies, points)
     {
       // K >= so much of the bodies' own: their blocks bound W from above
       this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
@@ -153,7 +153,7 @@ namespace nsfd
     {
       if (time_step != this->time_step_ || theta != this->theta_)
         valid_ = joined_valid_ = is_joined_ = false;
-      Dynamics<dim>::reinit(time_step, theta);
+      DelassusOperator<dim>::reinit(time_step, theta);
     }
 
     /** Factor M_hat if the step or the bonds have changed. */
@@ -194,7 +194,7 @@ namespace nsfd
         solve(x, y);
         return;
       }
-      BondedDynamics<dim>::apply(op, x, y);
+      BondedDelassus<dim>::apply(op, x, y);
     }
 
     template <int dim>
@@ -336,7 +336,7 @@ namespace nsfd
     template <int dim>
     void Bonded<dim>::serialize(Archive &archive)
     {
-      BondedDynamics<dim>::serialize(archive);
+      BondedDelassus<dim>::serialize(archive);
       bool factored = valid_, joined = joined_valid_,
            condensed = !condensed_.empty();
       std::size_t n_solves = n_solves_;
@@ -401,8 +401,8 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::unique_ptr<BondedDynamics<dim>>
-  make_bonded_dynamics(const Communicator &communicator, const Bodies &bodies,
+  std::unique_ptr<BondedDelassus<dim>>
+  make_bonded_delassus(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
                        const std::vector<double> &coordinates)
@@ -411,12 +411,12 @@ namespace nsfd
                                          coordinates);
   }
 
-  template std::unique_ptr<BondedDynamics<2>>
-  make_bonded_dynamics<2>(const Communicator &, const Bodies &,
+  template std::unique_ptr<BondedDelassus<2>>
+  make_bonded_delassus<2>(const Communicator &, const Bodies &,
                           const InterfacePoints<2> &, const std::string &,
                           const std::vector<double> &);
-  template std::unique_ptr<BondedDynamics<3>>
-  make_bonded_dynamics<3>(const Communicator &, const Bodies &,
+  template std::unique_ptr<BondedDelassus<3>>
+  make_bonded_delassus<3>(const Communicator &, const Bodies &,
                           const InterfacePoints<3> &, const std::string &,
                           const std::vector<double> &);
 } // namespace nsfd

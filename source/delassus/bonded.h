@@ -22,12 +22,12 @@ namespace nsfd
    * joined in the same way by their viscous stress.
    */
   template <int dim>
-  class BondedDynamics : public Dynamics<dim>
+  class BondedDelassus : public DelassusOperator<dim>
   {
   public:
-    using Operator = typename Dynamics<dim>::Operator;
+    using Operator = typename DelassusOperator<dim>::Operator;
 
-    BondedDynamics(const Communicator &communicator, const Bodies &bodies,
+    BondedDelassus(const Communicator &communicator, const Bodies &bodies,
                    const InterfacePoints<dim> &points);
 
     /**
@@ -58,11 +58,12 @@ namespace nsfd
 
   /**
    * For implicit steps: M_hat with the bonds in it has a factor or is inverted
-   * by iterations. @p solver and @p coordinates as in make_sparse_dynamics().
+   * by iterations. @p solver and @p coordinates as in
+   * make_assembled_delassus().
    */
   template <int dim>
-  std::unique_ptr<BondedDynamics<dim>>
-  make_bonded_dynamics(const Communicator &communicator, const Bodies &bodies,
+  std::unique_ptr<BondedDelassus<dim>>
+  make_bonded_delassus(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
                        const std::vector<double> &coordinates);
@@ -72,8 +73,8 @@ namespace nsfd
    * displacement and M_hat = M: the local path.
    */
   template <int dim>
-  std::unique_ptr<BondedDynamics<dim>>
-  make_explicit_bonded_dynamics(const Communicator &communicator,
+  std::unique_ptr<BondedDelassus<dim>>
+  make_explicit_bonded_delassus(const Communicator &communicator,
                                 const Bodies &bodies,
                                 const InterfacePoints<dim> &points);
 } // namespace nsfd

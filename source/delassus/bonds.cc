@@ -9,10 +9,10 @@
 namespace nsfd
 {
   template <int dim>
-  BondedDynamics<dim>::BondedDynamics(const Communicator &communicator,
+  BondedDelassus<dim>::BondedDelassus(const Communicator &communicator,
                                       const Bodies &bodies,
                                       const InterfacePoints<dim> &points)
-      : Dynamics<dim>(communicator, bodies, points), bulk_(*this),
+      : DelassusOperator<dim>(communicator, bodies, points), bulk_(*this),
         bonded_(points.n_points, 0), jump_(points.n_points * dim),
         traction_(points.n_points * dim), force_(bodies.n_dofs())
   {
@@ -23,7 +23,7 @@ namespace nsfd
   }
 
   template <int dim>
-  bool BondedDynamics<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
+  bool BondedDelassus<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
   {
     if (!this->communicator_.any(bonded != bonded_))
       return false;
@@ -39,9 +39,9 @@ namespace nsfd
   }
 
   template <int dim>
-  void BondedDynamics<dim>::serialize(Archive &archive)
+  void BondedDelassus<dim>::serialize(Archive &archive)
   {
-    Dynamics<dim>::serialize(archive);
+    DelassusOperator<dim>::serialize(archive);
     std::vector<std::uint8_t> bonded(bonded_);
     archive.points("bonded", bonded);
     if (archive.reads())
@@ -49,17 +49,17 @@ namespace nsfd
   }
 
   template <int dim>
-  void BondedDynamics<dim>::apply(const Operator op, const double *x,
+  void BondedDelassus<dim>::apply(const Operator op, const double *x,
                                   double *y) const
   {
-    Dynamics<dim>::apply(op, x, y);
+    DelassusOperator<dim>::apply(op, x, y);
     if (op == Operator::stiffness || op == Operator::damping)
       add_bonds(op == Operator::damping, x, y);
   }
 
   /** y += K_bonds x, or C_bonds x. */
   template <int dim>
-  void BondedDynamics<dim>::add_bonds(const bool viscous, const double *x,
+  void BondedDelassus<dim>::add_bonds(const bool viscous, const double *x,
                                       double *y) const
   {
     const auto &points = this->points_;
@@ -106,6 +106,6 @@ namespace nsfd
         gather, dof_scatter<true>(bodies, y));
   }
 
-  template class BondedDynamics<2>;
-  template class BondedDynamics<3>;
+  template class BondedDelassus<2>;
+  template class BondedDelassus<3>;
 } // namespace nsfd

@@ -8,8 +8,8 @@
 namespace nsfd
 {
   template <int dim>
-  BulkTraction<dim>::BulkTraction(const Dynamics<dim> &dynamics)
-      : dynamics_(dynamics), bonds_(dynamics.points().n_points)
+  BulkTraction<dim>::BulkTraction(const DelassusOperator<dim> &delassus)
+      : delassus_(delassus), bonds_(delassus.points().n_points)
   {
     set_bonds();
     side_1_.resize((bonds_.size() + 1) * dim);
@@ -19,8 +19,8 @@ namespace nsfd
   template <int dim>
   void BulkTraction<dim>::set_bonds()
   {
-    const auto &points = dynamics_.points();
-    const auto &bodies = dynamics_.bodies();
+    const auto &points = delassus_.points();
+    const auto &bodies = delassus_.bodies();
     std::array<std::vector<double>, 2> bounds; // elastic and viscous
     for (auto &side : bounds)
       side.assign(2 * (points.n_points + 1), -1.); // no body
@@ -32,7 +32,7 @@ namespace nsfd
           bounds[s][2 * std::size_t(p)] = body.traction_bound;
           bounds[s][2 * std::size_t(p) + 1] = body.viscous_bound;
         }
-    dynamics_.exchange({{bounds[0].data(), bounds[1].data()}}, 2);
+    delassus_.exchange({{bounds[0].data(), bounds[1].data()}}, 2);
     for (std::size_t i = 0; i < bonds_.size(); ++i) {
       const double a = bounds[0][2 * i], b = bounds[1][2 * i];
       if (a < 0. || b < 0.)
@@ -73,12 +73,12 @@ namespace nsfd
   void BulkTraction<dim>::mean(const Block BodyClass::*block,
                                const double *motion, double *traction) const
   {
-    const auto &points = dynamics_.points();
-    const auto &bodies = dynamics_.bodies();
+    const auto &points = delassus_.points();
+    const auto &bodies = delassus_.bodies();
     std::fill(side_1_.begin(), side_1_.end(), 0.);
     std::fill(side_2_.begin(), side_2_.end(), 0.);
     values_of_both_sides(
-        dynamics_,
+        delassus_,
         [&](const std::size_t k) -> const Block & {
           return bodies.classes[k].*block;
         },

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics.h"
+#include "delassus_operator.h"
 
 #include <vector>
 
@@ -20,7 +20,7 @@ namespace nsfd
   {
   public:
     /** Collective. */
-    explicit BulkTraction(const Dynamics<dim> &dynamics);
+    explicit BulkTraction(const DelassusOperator<dim> &delassus);
 
     /**
      * Of the penalty over Lambda_1 Lambda_2 / (Lambda_1 + Lambda_2). Above 1
@@ -40,7 +40,7 @@ namespace nsfd
       double viscous_penalty = 0.;
     };
     const std::vector<Bond> &bonds() const { return bonds_; }
-    const Dynamics<dim> &dynamics() const { return dynamics_; }
+    const DelassusOperator<dim> &delassus() const { return delassus_; }
 
     /**
      * t at every point, in the local frames, in Pa, from the displacement of
@@ -60,7 +60,7 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         energy +=
             jump[c] * (traction[c] + bonds_[point].penalty / 2. * jump[c]);
-      return dynamics_.points().weight[point] * energy;
+      return delassus_.points().weight[point] * energy;
     }
 
   private:
@@ -68,7 +68,7 @@ namespace nsfd
     void mean(const Block BodyClass::*traction, const double *motion,
               double *result) const;
 
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     std::vector<Bond> bonds_; ///< per point
     mutable std::vector<double> side_1_, side_2_;
   };

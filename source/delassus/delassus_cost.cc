@@ -8,11 +8,11 @@
 namespace nsfd
 {
   template <int dim>
-  DelassusCost count_delassus(const Dynamics<dim> &dynamics)
+  DelassusCost count_delassus(const DelassusOperator<dim> &delassus)
   {
     const double number = sizeof(double);
-    const auto &bodies = dynamics.bodies();
-    const auto &blocks = dynamics.class_blocks();
+    const auto &bodies = delassus.bodies();
+    const auto &blocks = delassus.class_blocks();
     DelassusCost cost;
     double most = -1.;
     for (std::size_t k = 0; k < blocks.size(); ++k) {
@@ -31,7 +31,7 @@ namespace nsfd
     cost.bytes += slots * (2. * dim * number + sizeof(unsigned int) + 1.);
     // per point: frame twice, impulse, both sides and the result, and what is
     // kept in Cartesian components
-    const double points = double(dynamics.points().n_points);
+    const double points = double(delassus.points().n_points);
     cost.bytes += points * number * (2. * dim * dim + 5. * dim);
     cost.flops += points * (2. * (2. * dim - 1.) * dim + dim);
     return cost;
@@ -84,6 +84,6 @@ namespace nsfd
     return limits;
   }
 
-  template DelassusCost count_delassus<2>(const Dynamics<2> &);
-  template DelassusCost count_delassus<3>(const Dynamics<3> &);
+  template DelassusCost count_delassus<2>(const DelassusOperator<2> &);
+  template DelassusCost count_delassus<3>(const DelassusOperator<3> &);
 } // namespace nsfd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics.h"
+#include "delassus_operator.h"
 
 namespace nsfd
 {
@@ -13,7 +13,7 @@ namespace nsfd
   };
 
   template <int dim>
-  DelassusCost count_delassus(const Dynamics<dim> &dynamics);
+  DelassusCost count_delassus(const DelassusOperator<dim> &delassus);
 
   /**
    * What the machine does in this moment, on arrays as large as those of one

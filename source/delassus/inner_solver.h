@@ -17,7 +17,8 @@ namespace nsfd
 
   /**
    * Newton systems in single precision, for steps that need a few digits only:
-   * what dynamics may offer where W is applied so often that it matters.
+   * what a Delassus operator may offer where W is applied so often that it
+   * matters.
    */
   class InnerSolver
   {

@@ -65,21 +65,21 @@ namespace nsfd
 
   template <int dim>
   std::array<std::vector<PointTrace>, 2>
-  point_traces(const Dynamics<dim> &dynamics, const long long first_dof,
+  point_traces(const DelassusOperator<dim> &delassus, const long long first_dof,
                const bool with_traction)
   {
-    const auto &points = dynamics.points();
-    const auto &bodies = dynamics.bodies();
+    const auto &points = delassus.points();
+    const auto &bodies = delassus.bodies();
     double largest = 0.;
     for (const auto &body : bodies.classes)
       largest = std::max(largest, double(body.n_dofs));
     const unsigned int width =
-        unsigned(dynamics.communicator().max(largest)); // on every rank
+        unsigned(delassus.communicator().max(largest)); // on every rank
     std::vector<const Block BodyClass::*> tractions;
     if (with_traction)
       tractions.push_back(&BodyClass::traction);
     if (with_traction &&
-        dynamics.communicator().any(std::any_of(
+        delassus.communicator().any(std::any_of(
             bodies.classes.begin(), bodies.classes.end(),
             [](const BodyClass &body) { return body.viscous_bound > 0.; })))
       tractions.push_back(&BodyClass::viscous_traction);
@@ -98,7 +98,7 @@ namespace nsfd
                          double(first_dof) + double(bodies.first_dof[b]), width,
                          tractions, side[s].data() + point * stride);
                    });
-    dynamics.exchange({{side[0].data(), side[1].data()}}, stride);
+    delassus.exchange({{side[0].data(), side[1].data()}}, stride);
 
     std::array<std::vector<PointTrace>, 2> traces;
     for (unsigned int s = 0; s < 2; ++s)
@@ -109,7 +109,7 @@ namespace nsfd
   }
 
   template std::array<std::vector<PointTrace>, 2>
-  point_traces<2>(const Dynamics<2> &, long long, bool);
+  point_traces<2>(const DelassusOperator<2> &, long long, bool);
   template std::array<std::vector<PointTrace>, 2>
-  point_traces<3>(const Dynamics<3> &, long long, bool);
+  point_traces<3>(const DelassusOperator<3> &, long long, bool);
 } // namespace nsfd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics.h"
+#include "delassus_operator.h"
 
 #include <array>
 #include <vector>
@@ -24,6 +24,6 @@ namespace nsfd
   /** Per side and point. Collective. */
   template <int dim>
   std::array<std::vector<PointTrace>, 2>
-  point_traces(const Dynamics<dim> &dynamics, long long first_dof,
+  point_traces(const DelassusOperator<dim> &delassus, long long first_dof,
                bool with_traction);
 } // namespace nsfd

@@ -174,13 +174,13 @@ namespace nsfd
   }
 
   template <int dim>
-  void SimdLayout<dim>::set_values(const Dynamics<dim> &dynamics)
+  void SimdLayout<dim>::set_values(const DelassusOperator<dim> &delassus)
   {
     // by the root of the diagonal of W
     scale.assign(points_.n_points * dim, 1.);
     for (std::size_t f = 0; f < points_.faces.size(); ++f) {
       const unsigned int n = points_.faces[f].count * dim;
-      const double *W = dynamics.face_block(f);
+      const double *W = delassus.face_block(f);
       for (unsigned int k = 0; k < n; ++k)
         if (W[k * n + k] > 0.)
           scale[std::size_t(points_.faces[f].first) * dim + k] =
@@ -189,17 +189,17 @@ namespace nsfd
     unit = 0.;
     for (const double s : scale)
       unit = std::max(unit, s * s);
-    unit = std::ldexp(1., std::ilogb(dynamics.communicator().max(unit)));
+    unit = std::ldexp(1., std::ilogb(delassus.communicator().max(unit)));
     for (std::size_t g = 0; g < body_groups.size(); ++g)
-      set_bodies(dynamics, body_groups[g], members_[g]);
+      set_bodies(delassus, body_groups[g], members_[g]);
     face_blocks.resize(face_groups.size());
     for (auto &group : face_groups)
-      set_faces(dynamics, group);
+      set_faces(delassus, group);
   }
 
   /** The blocks in units in which those of the traces are of order one. */
   template <int dim>
-  void SimdLayout<dim>::set_bodies(const Dynamics<dim> &dynamics,
+  void SimdLayout<dim>::set_bodies(const DelassusOperator<dim> &delassus,
                                    simd::BodyGroup &group,
                                    const std::vector<unsigned int> &members)
   {
@@ -211,7 +211,7 @@ namespace nsfd
     group.by_row.assign(lanes * group.row_column.size(), 0.f);
     for (std::size_t m = 0; m < (group.shared ? 1 : members.size()); ++m) {
       const unsigned int k = bodies_.class_of[members[m]];
-      const auto &blocks = dynamics.class_blocks()[k];
+      const auto &blocks = delassus.class_blocks()[k];
       const Block &A = group.dense ? blocks.delassus : blocks.inverse,
                   &H = bodies_.classes[k].trace;
       const auto at = [&](const std::size_t entries, const std::size_t e) {
@@ -235,7 +235,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void SimdLayout<dim>::set_faces(const Dynamics<dim> &dynamics,
+  void SimdLayout<dim>::set_faces(const DelassusOperator<dim> &delassus,
                                   FaceGroup &group)
   {
     const unsigned int n = group.n(), packed = group.packed();
@@ -254,7 +254,7 @@ namespace nsfd
       if (f == none)
         continue;
       const std::size_t first = points_.faces[f].first;
-      const double *W = dynamics.face_block(f), *s = &scale[first * dim];
+      const double *W = delassus.face_block(f), *s = &scale[first * dim];
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j <= i; ++j)
           blocks[(batch * packed + i * (i + 1) / 2 + j) * width + lane] =

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics.h"
+#include "delassus_operator.h"
 #include "linear_algebra/simd_kernels.h"
 
 #include <array>
@@ -21,7 +21,7 @@ namespace nsfd
     SimdLayout(const Bodies &bodies, const InterfacePoints<dim> &points);
 
     /** After M_hat has changed. Collective. */
-    void set_values(const Dynamics<dim> &dynamics);
+    void set_values(const DelassusOperator<dim> &delassus);
 
     /** Calls function(component of the points, where it is in the group). */
     template <typename Function>
@@ -59,9 +59,11 @@ namespace nsfd
     void group_bodies();
     void group_faces();
     void place_points();
-    void set_bodies(const Dynamics<dim> &dynamics, simd::BodyGroup &group,
+    void set_bodies(const DelassusOperator<dim> &delassus,
+                    simd::BodyGroup &group,
                     const std::vector<unsigned int> &members);
-    void set_faces(const Dynamics<dim> &dynamics, simd::FaceGroup &group);
+    void set_faces(const DelassusOperator<dim> &delassus,
+                   simd::FaceGroup &group);
 
     const Bodies &bodies_;
     const InterfacePoints<dim> &points_;

@@ -22,7 +22,10 @@ namespace nsfd
                const InterfacePoints<dim> &points);
 
     /** After M_hat has changed. Collective. */
-    void reinit(const Dynamics<dim> &dynamics) { layout_.set_values(dynamics); }
+    void reinit(const DelassusOperator<dim> &delassus)
+    {
+      layout_.set_values(delassus);
+    }
 
     /** (W + D) x = r by conjugate gradients; returns the iterations. */
     unsigned int conjugate_gradients(const InnerSystem &system,

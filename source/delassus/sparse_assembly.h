@@ -19,7 +19,7 @@ namespace nsfd
   class SparseAssembly
   {
   public:
-    /** @p coordinates as in make_sparse_dynamics(). */
+    /** @p coordinates as in make_assembled_delassus(). */
     SparseAssembly(const Communicator &communicator, const Bodies &bodies,
                    const InterfacePoints<dim> &points,
                    const std::vector<double> &coordinates);

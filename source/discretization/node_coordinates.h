@@ -8,7 +8,7 @@ namespace nsfd
 {
   /**
    * Per unknown of a deformable body the coordinate of its node along its own
-   * component, what make_sparse_dynamics() glues by. Of no meaning for the
+   * component, what make_assembled_delassus() glues by. Of no meaning for the
    * modes of rigid bodies.
    */
   template <int dim>

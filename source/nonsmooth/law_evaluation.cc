@@ -21,11 +21,11 @@ namespace nsfd
 
   template <int dim>
   LawEvaluation<dim>::LawEvaluation(const OneStepProblem<dim> &problem,
-                                    const Dynamics<dim> &dynamics,
+                                    const DelassusOperator<dim> &delassus,
                                     const double energy_scale,
                                     const double tolerance)
       : velocity(problem.n_points * dim), defect(problem.n_points * dim),
-        solutions(problem.n_points), problem_(problem), dynamics_(dynamics),
+        solutions(problem.n_points), problem_(problem), delassus_(delassus),
         floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
   {
     const Charge charge(Cost::laws);
@@ -43,7 +43,7 @@ namespace nsfd
   template <int dim>
   void LawEvaluation<dim>::update(const std::vector<double> &impulse)
   {
-    dynamics_.apply_delassus(impulse.data(), velocity.data());
+    delassus_.apply_delassus(impulse.data(), velocity.data());
     for (std::size_t k = 0; k < velocity.size(); ++k)
       velocity[k] += problem_.free_velocity[k];
     update_laws(impulse);
@@ -95,7 +95,7 @@ namespace nsfd
         worst_point = i;
       }
     }
-    const auto sums = dynamics_.communicator().sums(terms_.data(), 2, n);
+    const auto sums = delassus_.communicator().sums(terms_.data(), 2, n);
     const double scale = std::sqrt(sums[1]) + floor_;
     const double norm = std::sqrt(sums[0]);
     error = relative_natural_map(norm, scale);

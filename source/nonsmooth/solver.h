@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "nsfd/core/registry.h"
 #include "one_step_problem.h"
 #include "point_law.h"
@@ -25,7 +25,7 @@ namespace nsfd
   {
   public:
     LawEvaluation(const OneStepProblem<dim> &problem,
-                  const Dynamics<dim> &dynamics, double energy_scale,
+                  const DelassusOperator<dim> &delassus, double energy_scale,
                   double tolerance);
 
     /** Recompute U = U_free + W P and everything that follows. */
@@ -74,7 +74,7 @@ namespace nsfd
 
   private:
     const OneStepProblem<dim> &problem_;
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     double floor_;
     std::vector<LinearPoint<dim>> linear_;
     std::vector<double> terms_;
@@ -91,11 +91,10 @@ namespace nsfd
   {
   public:
     virtual ~NonsmoothSolver() = default;
-    virtual SolverReport solve(const OneStepProblem<dim> &problem,
-                               Dynamics<dim> &dynamics, double energy_scale,
-                               const SolverControl &control,
-                               std::vector<double> &impulse,
-                               LawEvaluation<dim> &evaluation) = 0;
+    virtual SolverReport
+    solve(const OneStepProblem<dim> &problem, DelassusOperator<dim> &delassus,
+          double energy_scale, const SolverControl &control,
+          std::vector<double> &impulse, LawEvaluation<dim> &evaluation) = 0;
 
     /**
      * The same solver for problems of contact and friction alone whose W is
@@ -113,7 +112,7 @@ namespace nsfd
   /** Faces in colours: no two faces of a colour share a body. */
   template <int dim>
   std::vector<std::vector<unsigned int>>
-  colour_faces(const Dynamics<dim> &dynamics);
+  colour_faces(const DelassusOperator<dim> &delassus);
 
   /**
    * @p count sweeps of nonlinear Gauss-Seidel over the colours: the full law,
@@ -121,7 +120,7 @@ namespace nsfd
    */
   template <int dim>
   void gauss_seidel(const OneStepProblem<dim> &problem,
-                    const Dynamics<dim> &dynamics,
+                    const DelassusOperator<dim> &delassus,
                     const std::vector<std::vector<unsigned int>> &colours,
                     unsigned int count, std::vector<double> &impulse);
 } // namespace nsfd

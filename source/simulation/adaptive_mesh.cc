@@ -30,7 +30,7 @@ namespace nsfd
     template <int dim>
     MeshState<dim> mesh_state(const Model<dim> &model, const State &state)
     {
-      return {*model.discretization, *model.dynamics, model.stepper->problem(),
+      return {*model.discretization, *model.delassus, model.stepper->problem(),
               state};
     }
 

@@ -162,10 +162,10 @@ namespace nsfd
   template <int dim>
   double contraction_number(const SceneInput &input,
                             const OneStepProblem<dim> &problem,
-                            const State &softening, Dynamics<dim> &dynamics,
-                            const double h)
+                            const State &softening,
+                            DelassusOperator<dim> &delassus, const double h)
   {
-    const auto &points = dynamics.points();
+    const auto &points = delassus.points();
     const double chi =
         input.time.cohesion_rule == CohesionRule::exact ? 0.5 : 1.;
     std::vector<double> scale(points.n_points * dim, 0.), x(scale), y(scale);
@@ -187,21 +187,21 @@ namespace nsfd
             std::sin(double(face.key % 10007) + (i - face.first) + 2.5 * c);
       }
     }
-    dynamics.reinit(h, input.time.bulk_theta());
+    delassus.reinit(h, input.time.bulk_theta());
     const std::size_t n_owned = points.n_owned * dim;
     double result = 0.;
     for (unsigned int k = 0; k < 300; ++k) {
       const double norm =
-          std::sqrt(dynamics.communicator().dot(x.data(), x.data(), n_owned));
+          std::sqrt(delassus.communicator().dot(x.data(), x.data(), n_owned));
       if (norm == 0.)
         return 0.;
       for (std::size_t j = 0; j < x.size(); ++j)
         x[j] *= scale[j] / norm;
-      dynamics.apply_delassus(x.data(), y.data());
+      delassus.apply_delassus(x.data(), y.data());
       for (std::size_t j = 0; j < x.size(); ++j)
         y[j] *= scale[j];
       const double value =
-          std::sqrt(dynamics.communicator().dot(y.data(), y.data(), n_owned));
+          std::sqrt(delassus.communicator().dot(y.data(), y.data(), n_owned));
       x.swap(y);
       if (k > 20 && value <= result * (1. + 1e-5))
         return value;
@@ -224,8 +224,10 @@ namespace nsfd
                                   const SceneInput &, int);
   template double contraction_number<2>(const SceneInput &,
                                         const OneStepProblem<2> &,
-                                        const State &, Dynamics<2> &, double);
+                                        const State &, DelassusOperator<2> &,
+                                        double);
   template double contraction_number<3>(const SceneInput &,
                                         const OneStepProblem<3> &,
-                                        const State &, Dynamics<3> &, double);
+                                        const State &, DelassusOperator<3> &,
+                                        double);
 } // namespace nsfd

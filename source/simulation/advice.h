@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 
@@ -87,11 +87,11 @@ namespace nsfd
    *
    * over all cohesive points at once, by power iteration, from below to about
    * 1 %. Below 1 the step is a contraction. Laws whose slope is infinite are
-   * left out. Changes the step of @p dynamics. Collective.
+   * left out. Changes the step of @p delassus. Collective.
    */
   template <int dim>
   double contraction_number(const SceneInput &input,
                             const OneStepProblem<dim> &problem,
-                            const State &softening, Dynamics<dim> &dynamics,
-                            double time_step);
+                            const State &softening,
+                            DelassusOperator<dim> &delassus, double time_step);
 } // namespace nsfd

@@ -331,12 +331,13 @@ namespace nsfd
     template <int dim>
     double step_of_contraction(const SceneInput &input,
                                const OneStepProblem<dim> &problem,
-                               const State &softening, Dynamics<dim> &dynamics,
-                               double h, double number)
+                               const State &softening,
+                               DelassusOperator<dim> &delassus, double h,
+                               double number)
     {
       for (unsigned int k = 0; k < 6 && std::abs(number - 1.) > 0.01; ++k) {
         h /= std::sqrt(number);
-        number = contraction_number(input, problem, softening, dynamics, h);
+        number = contraction_number(input, problem, softening, delassus, h);
       }
       return h;
     }
@@ -405,8 +406,9 @@ namespace nsfd
   int print_check(const SceneInput &input,
                   const dealii::Triangulation<dim> &triangulation,
                   const Discretization<dim> &discretization,
-                  const MoreauJean<dim> &stepper, Dynamics<dim> &dynamics,
-                  const double step, const Communicator &communicator)
+                  const MoreauJean<dim> &stepper,
+                  DelassusOperator<dim> &delassus, const double step,
+                  const Communicator &communicator)
   {
     const MeshReport mesh = mesh_report<dim>(triangulation);
     const std::array<double, 3> counts = {
@@ -433,10 +435,10 @@ namespace nsfd
     }
     const State softening = all_softening(state, discretization, input);
     advisor.contraction =
-        contraction_number(input, stepper.problem(), softening, dynamics, step);
+        contraction_number(input, stepper.problem(), softening, delassus, step);
     if (advisor.contraction >= 1.)
       advisor.contraction_step =
-          step_of_contraction(input, stepper.problem(), softening, dynamics,
+          step_of_contraction(input, stepper.problem(), softening, delassus,
                               step, advisor.contraction);
     if (!communicator.is_root())
       return exit_code::done;
@@ -455,9 +457,11 @@ namespace nsfd
   template int print_check<2>(const SceneInput &,
                               const dealii::Triangulation<2> &,
                               const Discretization<2> &, const MoreauJean<2> &,
-                              Dynamics<2> &, double, const Communicator &);
+                              DelassusOperator<2> &, double,
+                              const Communicator &);
   template int print_check<3>(const SceneInput &,
                               const dealii::Triangulation<3> &,
                               const Discretization<3> &, const MoreauJean<3> &,
-                              Dynamics<3> &, double, const Communicator &);
+                              DelassusOperator<3> &, double,
+                              const Communicator &);
 } // namespace nsfd

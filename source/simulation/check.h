@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 
 namespace nsfd
@@ -19,6 +19,7 @@ namespace nsfd
   int print_check(const SceneInput &input,
                   const dealii::Triangulation<dim, dim> &triangulation,
                   const Discretization<dim> &discretization,
-                  const MoreauJean<dim> &stepper, Dynamics<dim> &dynamics,
-                  double step, const Communicator &communicator);
+                  const MoreauJean<dim> &stepper,
+                  DelassusOperator<dim> &delassus, double step,
+                  const Communicator &communicator);
 } // namespace nsfd

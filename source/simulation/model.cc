@@ -19,17 +19,17 @@ namespace nsfd
   {
     /** Of small motions, for bodies without bonds between them. */
     template <int dim>
-    std::unique_ptr<Dynamics<dim>> make_linear_dynamics(
+    std::unique_ptr<DelassusOperator<dim>> make_linear_delassus(
         const SceneInput &input, const Communicator &communicator,
         const Discretization<dim> &discretization, const bool assembled)
     {
       const auto &bodies = discretization.bodies();
       const auto &points = discretization.points();
       if (assembled)
-        return make_sparse_dynamics<dim>(communicator, bodies, points,
-                                         input.solver.linear_solver,
-                                         node_coordinates(discretization));
-      return make_elementwise_dynamics<dim>(communicator, bodies, points);
+        return make_assembled_delassus<dim>(communicator, bodies, points,
+                                            input.solver.linear_solver,
+                                            node_coordinates(discretization));
+      return make_local_delassus<dim>(communicator, bodies, points);
     }
 
     template <int dim>
@@ -59,7 +59,7 @@ namespace nsfd
       return problems;
     charge_memory("bodies and points");
     choose_path(input);
-    build_dynamics(input, communicator);
+    build_delassus(input, communicator);
     if (input.time.scheme == Scheme::explicit_moreau_jean)
       check_stability(input, communicator, problems);
     if (!problems.empty())
@@ -71,11 +71,11 @@ namespace nsfd
     build_stepper(input);
     if (input.time.scheme == Scheme::arkode)
       smooth_motion = std::make_unique<SmoothMotion<dim>>(
-          input, *discretization, *dynamics);
+          input, *discretization, *delassus);
     if (input.statics)
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
-          make_linear_dynamics(input, communicator, *discretization,
+          make_linear_delassus(input, communicator, *discretization,
                                input.solver.path != "local"),
           make_solver<dim>(input, "dual newton"));
     return problems;
@@ -86,14 +86,14 @@ namespace nsfd
   {
     if (moving)
       stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
-                                                        *moving, *dynamics);
+                                                        *moving, *delassus);
     else if (inelastic)
       stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
-                                                        *inelastic, *dynamics);
+                                                        *inelastic, *delassus);
     else {
       solver = make_solver<dim>(input, "cascade");
       stepper = std::make_unique<LinearMoreauJean<dim>>(
-          input, *discretization, *dynamics, *solver, bonded);
+          input, *discretization, *delassus, *solver, bonded);
     }
   }
 
@@ -116,24 +116,24 @@ namespace nsfd
   {
     const auto stepper_counters = stepper->counters();
     const auto timings = stepper->timings();
-    const auto dynamics_counters = dynamics->counters();
+    const auto delassus_counters = delassus->counters();
     stepper.reset();
     solver.reset();
-    dynamics.reset();
+    delassus.reset();
     std::vector<std::string> problems, warnings;
     const auto materials = material_indices<dim>(input, *groups, *triangulation,
                                                  problems, warnings);
     *discretization = Discretization<dim>(communicator, *triangulation, *groups,
                                           materials, input);
-    build_dynamics(input, communicator);
-    dynamics->continue_counters(dynamics_counters);
+    build_delassus(input, communicator);
+    delassus->continue_counters(delassus_counters);
     if (input.time.scheme == Scheme::explicit_moreau_jean) {
       const double limit = stable_limit(input, communicator,
                                         step_of_smallest_cells(communicator));
       control->limit(limit);
       control->set_ceiling(limit);
     }
-    dynamics->reinit(control->step(), input.time.bulk_theta());
+    delassus->reinit(control->step(), input.time.bulk_theta());
     build_stepper(input);
     stepper->continue_counters(timings, stepper_counters);
   }
@@ -180,7 +180,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Model<dim>::build_dynamics(const SceneInput &input,
+  void Model<dim>::build_delassus(const SceneInput &input,
                                   const Communicator &communicator)
   {
     const auto &bodies = discretization->bodies();
@@ -188,33 +188,33 @@ namespace nsfd
     if (input.large_motion) {
       moving = std::make_unique<MovingBodies<dim>>(input, *discretization,
                                                    communicator);
-      dynamics = make_moving_dynamics<dim>(communicator, moving->bodies(),
+      delassus = make_moving_delassus<dim>(communicator, moving->bodies(),
                                            moving->points());
       return;
     }
     if (input.has_history()) {
       inelastic = std::make_unique<InelasticBodies<dim>>(*discretization);
-      dynamics =
-          make_moving_dynamics<dim>(communicator, inelastic->bodies(), points);
+      delassus =
+          make_moving_delassus<dim>(communicator, inelastic->bodies(), points);
       return;
     }
     if (input.has_bonded_faces() &&
         input.time.scheme == Scheme::explicit_moreau_jean) {
       auto joined =
-          make_explicit_bonded_dynamics<dim>(communicator, bodies, points);
+          make_explicit_bonded_delassus<dim>(communicator, bodies, points);
       bonded = joined.get();
-      dynamics = std::move(joined);
+      delassus = std::move(joined);
       return;
     }
     if (input.has_bonded_faces()) {
-      auto joined = make_bonded_dynamics<dim>(
+      auto joined = make_bonded_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
           node_coordinates(*discretization));
       bonded = joined.get();
-      dynamics = std::move(joined);
+      delassus = std::move(joined);
       return;
     }
-    dynamics = make_linear_dynamics(input, communicator, *discretization,
+    delassus = make_linear_delassus(input, communicator, *discretization,
                                     path == "assembled");
   }
 

@@ -27,8 +27,8 @@ namespace nsfd
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<StepControl> control;
     std::string path; ///< of the linear algebra: local or assembled
-    std::unique_ptr<Dynamics<dim>> dynamics;
-    BondedDynamics<dim> *bonded = nullptr; ///< the same, if faces are bonded
+    std::unique_ptr<DelassusOperator<dim>> delassus;
+    BondedDelassus<dim> *bonded = nullptr; ///< the same, if faces are bonded
     std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
     /// of small motions with history-dependent materials, or null
     std::unique_ptr<InelasticBodies<dim>> inelastic;
@@ -85,7 +85,7 @@ namespace nsfd
                          std::vector<std::string> &problems);
     void join_all(const SceneInput &input);
     void choose_path(const SceneInput &input);
-    void build_dynamics(const SceneInput &input,
+    void build_delassus(const SceneInput &input,
                         const Communicator &communicator);
     void build_stepper(const SceneInput &input);
   };

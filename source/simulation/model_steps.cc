@@ -70,8 +70,8 @@ namespace nsfd
     if (!bonded)
       return communicator.min(stable_step(discretization->bodies()));
     join_all(input);
-    dynamics->reinit(control->step(), 0.);
-    return stable_step(*dynamics, enough);
+    delassus->reinit(control->step(), 0.);
+    return stable_step(*delassus, enough);
   }
 
   /** The base step, bisected as often as the smallest cells. */

@@ -94,11 +94,11 @@ namespace nsfd
 
   /** What one application of W takes, and what the machine allows for. */
   template <int dim>
-  void RunCosts<dim>::measure(const Dynamics<dim> &dynamics,
+  void RunCosts<dim>::measure(const DelassusOperator<dim> &delassus,
                               CostRecord &cost) const
   {
-    const Communicator &communicator = dynamics.communicator();
-    const DelassusCost one = count_delassus(dynamics);
+    const Communicator &communicator = delassus.communicator();
+    const DelassusCost one = count_delassus(delassus);
     cost.flops = one.flops;
     cost.bytes = one.bytes;
     double total = 0.;
@@ -124,10 +124,10 @@ namespace nsfd
   }
 
   template <int dim>
-  CostRecord RunCosts<dim>::finish(const Dynamics<dim> &dynamics) const
+  CostRecord RunCosts<dim>::finish(const DelassusOperator<dim> &delassus) const
   {
     CostRecord cost;
-    const Communicator &communicator = dynamics.communicator();
+    const Communicator &communicator = delassus.communicator();
     const MessageCounts mine = sent();
     cost.ranks = unsigned(communicator.size());
     cost.sent = {communicator.max(mine.messages),
@@ -160,7 +160,7 @@ namespace nsfd
     }
     cost.memory = memory_lines();
     if (communicator.any(cost.applications > 0.))
-      measure(dynamics, cost);
+      measure(delassus, cost);
     return cost;
   }
 

@@ -20,7 +20,7 @@ namespace nsfd
     void record(const SolverReport &report, unsigned long long applications);
 
     /** Measures the machine if the run took more than a second. Collective. */
-    CostRecord finish(const Dynamics<dim> &dynamics) const;
+    CostRecord finish(const DelassusOperator<dim> &delassus) const;
 
     void serialize(Archive &archive);
 
@@ -32,7 +32,7 @@ namespace nsfd
     std::vector<CostLine> lines() const;
     MessageCounts sent_before_; ///< on the first rank
     MessageCounts sent() const;
-    void measure(const Dynamics<dim> &dynamics, CostRecord &cost) const;
+    void measure(const DelassusOperator<dim> &delassus, CostRecord &cost) const;
   };
 
   /** Seconds of CPU by stage of the step, in the order to print. */

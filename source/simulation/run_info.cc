@@ -83,7 +83,7 @@ namespace nsfd
                              : obstacle.name);
     if (model.discretization->loads().any())
       parts.emplace_back("loads", "body forces and tractions");
-    parts.emplace_back("dynamics", model.path);
+    parts.emplace_back("linear algebra", model.path);
     parts.emplace_back("solver", model.method);
     if (input.statics)
       parts.emplace_back("equilibria", input.statics->steps

@@ -25,7 +25,7 @@ namespace nsfd
     beyond_unique_ += report.beyond_unique;
     released_ += report.released;
     watch_.add(report.changes);
-    costs_.record(report.solver, model_.dynamics->counters().delassus);
+    costs_.record(report.solver, model_.delassus->counters().delassus);
     solved_steps_.add(steps_.integrator().residual_kind(),
                       report.solver.residual);
     for (const auto &name : report.solver.switches)
@@ -40,17 +40,17 @@ namespace nsfd
   RunTally<dim>::fill_counters(const State &state,
                                std::map<std::string, double> &counters) const
   {
-    const auto &dynamics = model_.dynamics->counters();
+    const auto &delassus = model_.delassus->counters();
     auto &c = counters;
-    c["delassus_applications"] = double(dynamics.delassus);
-    c["block_factorisations"] = double(dynamics.factorisations);
-    c["global_factorisations"] = double(dynamics.global_factorisations);
-    c["coarse_spaces"] = double(dynamics.coarse_spaces);
-    c["global_solves"] = double(dynamics.global_solves);
-    c["inner_iterations"] = double(dynamics.inner_iterations);
+    c["delassus_applications"] = double(delassus.delassus);
+    c["block_factorisations"] = double(delassus.factorisations);
+    c["global_factorisations"] = double(delassus.global_factorisations);
+    c["coarse_spaces"] = double(delassus.coarse_spaces);
+    c["global_solves"] = double(delassus.global_solves);
+    c["inner_iterations"] = double(delassus.inner_iterations);
     // products with W and, inside the preconditioner, with A
     c["operator_applications"] =
-        double(dynamics.delassus + dynamics.inner_iterations);
+        double(delassus.delassus + delassus.inner_iterations);
     if (model_.bonded)
       c["released_bonds"] = double(released_);
     c["steps_beyond_uniqueness"] = beyond_unique_;

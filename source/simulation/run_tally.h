@@ -39,7 +39,7 @@ namespace nsfd
     const SolvedSteps &solved_steps() const { return solved_steps_; }
     const EnergyWatch &watch() const { return watch_; }
     /** Collective. */
-    CostRecord costs() const { return costs_.finish(*model_.dynamics); }
+    CostRecord costs() const { return costs_.finish(*model_.delassus); }
 
     /** Arguments as of totals(). Collective. */
     void serialize(Archive &archive, const State &state, double output,

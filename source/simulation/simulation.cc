@@ -108,7 +108,7 @@ namespace nsfd
     {
       return print_check<dim>(
           input_, *model_.triangulation, *model_.discretization,
-          *model_.stepper, *model_.dynamics,
+          *model_.stepper, *model_.delassus,
           model_.dynamic_control(input_, 0.)->base_step(), communicator_);
     }
 
@@ -129,7 +129,7 @@ namespace nsfd
     template <int dim>
     bool Simulation<dim>::set_state(const std::optional<FoundCheckpoint> &found)
     {
-      model_.dynamics->reinit(model_.control->step(), input_.time.bulk_theta());
+      model_.delassus->reinit(model_.control->step(), input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
       if (!input_.adaptivity) {
         state_ = model_.stepper->initial_state();

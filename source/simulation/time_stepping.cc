@@ -103,7 +103,7 @@ namespace nsfd
   void TimeStepping<dim>::serialize_solvers(Archive &archive)
   {
     const Archive::Part part(archive, "solver");
-    model_.dynamics->serialize(archive);
+    model_.delassus->serialize(archive);
     if (model_.solver)
       model_.solver->serialize(archive);
     for (TimeIntegrator<dim> *one : model_.integrators())

@@ -36,16 +36,16 @@ namespace nsfd
      * W^+ W P, by conjugate gradients from zero.
      */
     template <int dim>
-    std::vector<double> least_impulse(const Dynamics<dim> &dynamics,
+    std::vector<double> least_impulse(const DelassusOperator<dim> &delassus,
                                       const OneStepProblem<dim> &problem,
                                       const std::vector<double> &P)
     {
-      const auto &communicator = dynamics.communicator();
+      const auto &communicator = delassus.communicator();
       const std::size_t n = problem.n_points * dim,
                         n_owned = problem.n_owned * dim;
       const auto apply = [&](const std::vector<double> &in,
                              std::vector<double> &out) {
-        dynamics.apply_delassus(in.data(), out.data());
+        delassus.apply_delassus(in.data(), out.data());
         for (std::size_t k = 0; k < n; ++k)
           if (!is_joined(problem, k))
             out[k] = 0.;
@@ -67,7 +67,7 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::vector<double> strength_shares(const Dynamics<dim> &dynamics,
+  std::vector<double> strength_shares(const DelassusOperator<dim> &delassus,
                                       const std::vector<PointOrigin> &origins,
                                       const std::vector<double> &impulse,
                                       const OneStepProblem<dim> &problem)
@@ -80,10 +80,10 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_points; ++i)
       if (may_let_go(problem, origins, i))
         candidates.push_back(i);
-    if (!dynamics.communicator().any(!candidates.empty()))
+    if (!delassus.communicator().any(!candidates.empty()))
       return {};
 
-    const auto least = least_impulse(dynamics, problem, joined);
+    const auto least = least_impulse(delassus, problem, joined);
     std::vector<double> shares(problem.n_points, 0.);
     for (const std::size_t i : candidates) {
       const double *P = &least[i * dim];
@@ -95,12 +95,12 @@ namespace nsfd
   }
 
   template <int dim>
-  bool activate(const Dynamics<dim> &dynamics,
+  bool activate(const DelassusOperator<dim> &delassus,
                 const std::vector<PointOrigin> &origins,
                 const std::vector<double> &impulse,
                 OneStepProblem<dim> &problem)
   {
-    const auto shares = strength_shares(dynamics, origins, impulse, problem);
+    const auto shares = strength_shares(delassus, origins, impulse, problem);
     bool any = false;
     for (std::size_t i = 0; i < shares.size(); ++i)
       if (shares[i] > 1.) {
@@ -108,19 +108,21 @@ namespace nsfd
         problem.mask[i] = 0;
         any = true;
       }
-    return dynamics.communicator().any(any);
+    return delassus.communicator().any(any);
   }
 
-  template std::vector<double> strength_shares(const Dynamics<2> &,
+  template std::vector<double> strength_shares(const DelassusOperator<2> &,
                                                const std::vector<PointOrigin> &,
                                                const std::vector<double> &,
                                                const OneStepProblem<2> &);
-  template std::vector<double> strength_shares(const Dynamics<3> &,
+  template std::vector<double> strength_shares(const DelassusOperator<3> &,
                                                const std::vector<PointOrigin> &,
                                                const std::vector<double> &,
                                                const OneStepProblem<3> &);
-  template bool activate(const Dynamics<2> &, const std::vector<PointOrigin> &,
+  template bool activate(const DelassusOperator<2> &,
+                         const std::vector<PointOrigin> &,
                          const std::vector<double> &, OneStepProblem<2> &);
-  template bool activate(const Dynamics<3> &, const std::vector<PointOrigin> &,
+  template bool activate(const DelassusOperator<3> &,
+                         const std::vector<PointOrigin> &,
                          const std::vector<double> &, OneStepProblem<3> &);
 } // namespace nsfd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 
@@ -13,7 +13,7 @@ namespace nsfd
    * extrinsic; 0 at all others, empty if there is none on any rank. Collective.
    */
   template <int dim>
-  std::vector<double> strength_shares(const Dynamics<dim> &dynamics,
+  std::vector<double> strength_shares(const DelassusOperator<dim> &delassus,
                                       const std::vector<PointOrigin> &origins,
                                       const std::vector<double> &impulse,
                                       const OneStepProblem<dim> &problem);
@@ -24,7 +24,7 @@ namespace nsfd
    * one. Collective.
    */
   template <int dim>
-  bool activate(const Dynamics<dim> &dynamics,
+  bool activate(const DelassusOperator<dim> &delassus,
                 const std::vector<PointOrigin> &origins,
                 const std::vector<double> &impulse,
                 OneStepProblem<dim> &problem);

@@ -69,7 +69,7 @@ namespace nsfd
   {
     state.bond_traction.resize(state.jump.size());
     bulk.evaluate(state.displacement.data(), state.bond_traction.data());
-    if (bulk.dynamics().viscous_theta() > 0.) {
+    if (bulk.delassus().viscous_theta() > 0.) {
       std::vector<double> viscous(state.jump.size());
       bulk.evaluate_viscous(state.velocity.data(), viscous.data());
       for (std::size_t k = 0; k < viscous.size(); ++k)
@@ -85,11 +85,11 @@ namespace nsfd
                            const BulkTraction<dim> &bulk, const State &old,
                            State &next)
   {
-    const auto &communicator = bulk.dynamics().communicator();
+    const auto &communicator = bulk.delassus().communicator();
     set_bond_tractions(bulk, next);
     // what bonds store is the work of the elastic part
     std::vector<double> elastic = next.bond_traction;
-    if (bulk.dynamics().viscous_theta() > 0.)
+    if (bulk.delassus().viscous_theta() > 0.)
       bulk.evaluate(next.displacement.data(), elastic.data());
     BondReport report;
     std::vector<double> in_bonds(problem.n_owned, 0.), in_laws(in_bonds);

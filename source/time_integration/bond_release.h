@@ -13,7 +13,7 @@ namespace nsfd
     double share = 1.; ///< of the step in which the first one reached it
   };
 
-  /** Points of @p state that are bonded, for BondedDynamics::set_bonds(). */
+  /** Points of @p state that are bonded, for BondedDelassus::set_bonds(). */
   std::vector<std::uint8_t> bonded_points(const State &state);
 
   /**

@@ -5,8 +5,8 @@
 namespace nsfd
 {
   template <int dim>
-  ElasticForces<dim>::ElasticForces(const Dynamics<dim> &dynamics)
-      : dynamics_(dynamics)
+  ElasticForces<dim>::ElasticForces(const DelassusOperator<dim> &delassus)
+      : delassus_(delassus)
   {
   }
 
@@ -35,7 +35,7 @@ namespace nsfd
   void ElasticForces<dim>::evaluate(const State &state, Known &result) const
   {
     result.force.resize(state.displacement.size());
-    dynamics_.apply(Dynamics<dim>::Operator::stiffness,
+    delassus_.apply(DelassusOperator<dim>::Operator::stiffness,
                     state.displacement.data(), result.force.data());
     result.known = true;
     result.step = state.step;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "state/state.h"
 
 #include <vector>
@@ -16,7 +16,7 @@ namespace nsfd
   class ElasticForces
   {
   public:
-    explicit ElasticForces(const Dynamics<dim> &dynamics);
+    explicit ElasticForces(const DelassusOperator<dim> &delassus);
 
     /** Of the state that a step starts from; other bonds than in the last step
         are other forces. Collective. */
@@ -36,7 +36,7 @@ namespace nsfd
     };
     void evaluate(const State &state, Known &result) const;
 
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     Known start_, end_;
   };
 } // namespace nsfd

@@ -16,9 +16,9 @@ namespace nsfd
   template <int dim>
   EnergyBalance<dim>::EnergyBalance(const SceneInput &input,
                                     const Discretization<dim> &discretization,
-                                    const Dynamics<dim> &dynamics,
+                                    const DelassusOperator<dim> &delassus,
                                     const UniquenessBound<dim> &uniqueness)
-      : discretization_(discretization), dynamics_(dynamics),
+      : discretization_(discretization), delassus_(delassus),
         uniqueness_(uniqueness), theta_(input.time.work_theta()),
         reactions_(discretization.driven_boundaries().size() * dim, 0.)
   {
@@ -32,8 +32,8 @@ namespace nsfd
       const std::vector<double> &forces, const double h, const State &old,
       const State &next, const ElasticForces<dim> *elastic) const
   {
-    using Operator = typename Dynamics<dim>::Operator;
-    const auto &communicator = dynamics_.communicator();
+    using Operator = typename DelassusOperator<dim>::Operator;
+    const auto &communicator = delassus_.communicator();
     const std::size_t n = next.velocity.size();
     const double kick = discretization_.input().time.kick(h, old.last_step);
     // row by row: all terms of all rows at once would be the largest thing of
@@ -41,7 +41,7 @@ namespace nsfd
     std::vector<double> terms(n), change;
     BodyEnergies result;
     const auto energy = [&](const Operator op, const std::vector<double> &x) {
-      dynamics_.apply(op, x.data(), terms.data());
+      delassus_.apply(op, x.data(), terms.data());
       for (std::size_t i = 0; i < n; ++i)
         terms[i] *= x[i];
       return communicator.sum(terms);
@@ -70,7 +70,7 @@ namespace nsfd
           share * energy(Operator::stiffness,
                          change_of(next.displacement, old.displacement));
     }
-    if (dynamics_.viscous_theta() > 0.) {
+    if (delassus_.viscous_theta() > 0.) {
       change.resize(n);
       for (std::size_t i = 0; i < n; ++i)
         change[i] = theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i];
@@ -106,7 +106,7 @@ namespace nsfd
           before * (kick / 2. * (old.velocity[i] + next.velocity[i]) - dq) -
           dq * (after - before) / 2.;
     }
-    return dynamics_.communicator().sum(terms);
+    return delassus_.communicator().sum(terms);
   }
 
   /** w h p U_theta,N of the pressure in cracks. */
@@ -120,7 +120,7 @@ namespace nsfd
       terms[i] = problem.weight[i] * problem.time_step * next.pressure[i] *
                  (theta_ * next.relative_velocity[i * dim] +
                   (1. - theta_) * old.relative_velocity[i * dim]);
-    return dynamics_.communicator().sum(terms);
+    return delassus_.communicator().sum(terms);
   }
 
   template <int dim>
@@ -130,7 +130,7 @@ namespace nsfd
                                    const BodyEnergies &bodies, const State &old,
                                    State &next, StepReport &report)
   {
-    const auto &communicator = dynamics_.communicator();
+    const auto &communicator = delassus_.communicator();
     using Points = PointBalance<dim>;
     Points points(discretization_, uniqueness_, problem, evaluation, origins,
                   theta_, old, next);

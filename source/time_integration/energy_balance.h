@@ -27,7 +27,7 @@ namespace nsfd
   public:
     EnergyBalance(const SceneInput &input,
                   const Discretization<dim> &discretization,
-                  const Dynamics<dim> &dynamics,
+                  const DelassusOperator<dim> &delassus,
                   const UniquenessBound<dim> &uniqueness);
 
     /**
@@ -58,7 +58,7 @@ namespace nsfd
                           const State &old, const State &next) const;
 
     const Discretization<dim> &discretization_;
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     const UniquenessBound<dim> &uniqueness_;
     double theta_; ///< of the velocity that impulses and loads work with
     std::vector<double> reactions_;

@@ -49,20 +49,20 @@ namespace nsfd
   template <int dim>
   EquilibriumSearch<dim>::EquilibriumSearch(
       const SceneInput &input, const Discretization<dim> &discretization,
-      std::unique_ptr<Dynamics<dim>> dynamics,
+      std::unique_ptr<DelassusOperator<dim>> delassus,
       std::unique_ptr<NonsmoothSolver<dim>> solver)
       : input_(input),
         scene_(std::make_unique<const SceneInput>(static_scene(input))),
-        communicator_(dynamics->communicator()),
-        discretization_(discretization), dynamics_(std::move(dynamics)),
+        communicator_(delassus->communicator()),
+        discretization_(discretization), delassus_(std::move(delassus)),
         solver_(std::move(solver)), crossing_(discretization.crossing_time()),
         h_(first_step(input, discretization)), first_h_(h_)
   {
-    dynamics_->reinit(h_, 1.);
+    delassus_->reinit(h_, 1.);
     relaxation_ = std::make_unique<Relaxation<dim>>(*scene_, discretization,
-                                                    *dynamics_, *solver_);
+                                                    *delassus_, *solver_);
     balance_ = std::make_unique<StaticBalance<dim>>(*scene_, discretization,
-                                                    *dynamics_);
+                                                    *delassus_);
   }
 
   template <int dim>
@@ -79,7 +79,7 @@ namespace nsfd
   {
     const Archive::Part part(archive, "equilibria");
     relaxation_->serialize(archive);
-    dynamics_->serialize(archive);
+    delassus_->serialize(archive);
     solver_->serialize(archive);
   }
 
@@ -400,7 +400,7 @@ namespace nsfd
     for (std::size_t k = 0; k < q.size(); ++k)
       change[k] = q[k] - old.displacement[k];
     next.jump.resize(old.jump.size());
-    dynamics_->relative_velocity(change.data(), next.jump.data());
+    delassus_->relative_velocity(change.data(), next.jump.data());
     for (std::size_t k = 0; k < next.jump.size(); ++k)
       next.jump[k] += old.jump[k];
   }

@@ -3,7 +3,7 @@
 #include "step_costs.h"
 #include "time_integrator.h"
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 
 #include <memory>
@@ -55,12 +55,12 @@ namespace nsfd
   {
   public:
     /**
-     * The scene must ask for equilibria: SceneInput::statics. @p dynamics is
+     * The scene must ask for equilibria: SceneInput::statics. @p delassus is
      * one of small motions without bonds between bodies, of its own.
      */
     EquilibriumSearch(const SceneInput &input,
                       const Discretization<dim> &discretization,
-                      std::unique_ptr<Dynamics<dim>> dynamics,
+                      std::unique_ptr<DelassusOperator<dim>> delassus,
                       std::unique_ptr<NonsmoothSolver<dim>> solver);
     ~EquilibriumSearch();
 
@@ -92,9 +92,9 @@ namespace nsfd
     const Counters &counters() const { return counters_; }
     const StepCounters &solver_counters() const;
     const StepTimings &timings() const;
-    const typename Dynamics<dim>::Counters &dynamics_counters() const
+    const typename DelassusOperator<dim>::Counters &delassus_counters() const
     {
-      return dynamics_->counters();
+      return delassus_->counters();
     }
 
   private:
@@ -115,7 +115,7 @@ namespace nsfd
     const std::unique_ptr<const SceneInput> scene_;
     const Communicator &communicator_;
     const Discretization<dim> &discretization_;
-    std::unique_ptr<Dynamics<dim>> dynamics_;
+    std::unique_ptr<DelassusOperator<dim>> delassus_;
     std::unique_ptr<NonsmoothSolver<dim>> solver_;
     std::unique_ptr<Relaxation<dim>> relaxation_;
     std::unique_ptr<StaticBalance<dim>> balance_;

@@ -14,8 +14,8 @@ namespace nsfd
                                 const std::size_t n_owned, double largest,
                                 const double tolerance)
   {
-    const auto &communicator = dynamics_.communicator();
-    const auto &bodies = dynamics_.bodies();
+    const auto &communicator = delassus_.communicator();
+    const auto &bodies = delassus_.bodies();
     for (const double value : q)
       largest = std::max(largest, std::abs(value));
     // some bits of K q, seen from the goal
@@ -58,15 +58,16 @@ namespace nsfd
   ForceBalance<dim>::forces_present(const std::vector<double> &q,
                                     const std::vector<double> &force) const
   {
-    const auto &dynamics = dynamics_;
+    const auto &delassus = delassus_;
     const std::size_t n = q.size();
     const auto norm = [&](const std::vector<double> &x) {
-      return std::sqrt(dynamics.communicator().dot(x.data(), x.data(), n));
+      return std::sqrt(delassus.communicator().dot(x.data(), x.data(), n));
     };
     std::vector<double> forces(n);
-    dynamics.apply(Dynamics<dim>::Operator::stiffness, q.data(), forces.data());
+    delassus.apply(DelassusOperator<dim>::Operator::stiffness, q.data(),
+                   forces.data());
     double present = std::max(norm(forces), norm(free_motion_.loads()));
-    dynamics.generalised_impulse(force.data(), forces.data());
+    delassus.generalised_impulse(force.data(), forces.data());
     return std::max(present, norm(forces));
   }
 
@@ -75,12 +76,12 @@ namespace nsfd
                                   const std::vector<double> &velocity,
                                   const std::vector<double> &force)
   {
-    using Operator = typename Dynamics<dim>::Operator;
-    const auto &dynamics = dynamics_;
-    const auto &communicator = dynamics.communicator();
+    using Operator = typename DelassusOperator<dim>::Operator;
+    const auto &delassus = delassus_;
+    const auto &communicator = delassus.communicator();
     const std::size_t n = q.size();
     residual_.resize(n);
-    dynamics.apply(Operator::mass, velocity.data(), residual_.data());
+    delassus.apply(Operator::mass, velocity.data(), residual_.data());
     for (double &value : residual_)
       value /= h;
     const double left =

@@ -17,9 +17,9 @@ namespace nsfd
   class ForceBalance
   {
   public:
-    ForceBalance(const Dynamics<dim> &dynamics,
+    ForceBalance(const DelassusOperator<dim> &delassus,
                  const FreeMotion<dim> &free_motion)
-        : dynamics_(dynamics), free_motion_(free_motion)
+        : delassus_(delassus), free_motion_(free_motion)
     {
     }
 
@@ -51,7 +51,7 @@ namespace nsfd
     double forces_present(const std::vector<double> &q,
                           const std::vector<double> &force) const;
 
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     const FreeMotion<dim> &free_motion_;
     std::vector<double> residual_;
     double round_off_ = 0., point_round_off_ = 0.; ///< as the next two

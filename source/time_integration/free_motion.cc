@@ -13,8 +13,8 @@ namespace nsfd
   template <int dim>
   FreeMotion<dim>::FreeMotion(const SceneInput &input,
                               const Discretization<dim> &discretization,
-                              Dynamics<dim> &dynamics)
-      : input_(input), discretization_(discretization), dynamics_(dynamics),
+                              DelassusOperator<dim> &delassus)
+      : input_(input), discretization_(discretization), delassus_(delassus),
         crack_pressure_(CrackPressure<dim>::make(input, discretization)),
         loads_(discretization.bodies().n_dofs(), 0.)
   {
@@ -71,34 +71,34 @@ namespace nsfd
     else {
       for (std::size_t i = 0; i < n_dofs; ++i)
         velocity_[i] = old.displacement[i] + h * theta * old.velocity[i];
-      dynamics_.apply(Dynamics<dim>::Operator::stiffness, velocity_.data(),
-                      work_.data());
+      delassus_.apply(DelassusOperator<dim>::Operator::stiffness,
+                      velocity_.data(), work_.data());
     }
     for (std::size_t i = 0; i < n_dofs; ++i)
       work_[i] = kick * (loads_[i] - work_[i]);
-    if (dynamics_.viscous_theta() > 0.) {
-      dynamics_.apply(Dynamics<dim>::Operator::damping, old.velocity.data(),
-                      velocity_.data());
+    if (delassus_.viscous_theta() > 0.) {
+      delassus_.apply(DelassusOperator<dim>::Operator::damping,
+                      old.velocity.data(), velocity_.data());
       for (std::size_t i = 0; i < n_dofs; ++i)
         work_[i] -= h * velocity_[i];
     }
-    dynamics_.apply(Dynamics<dim>::Operator::inverse, work_.data(),
+    delassus_.apply(DelassusOperator<dim>::Operator::inverse, work_.data(),
                     velocity_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)
       velocity_[i] += old.velocity[i];
     if (crack_pressure_)
-      dynamics_.add_velocity_change(
+      delassus_.add_velocity_change(
           crack_pressure_->impulse(pressure, h).data(), velocity_.data());
-    dynamics_.relative_velocity(velocity_.data(), problem.free_velocity.data());
-    dynamics_.set_free_velocity(&velocity_);
+    delassus_.relative_velocity(velocity_.data(), problem.free_velocity.data());
+    delassus_.set_free_velocity(&velocity_);
   }
 
   template <int dim>
   double FreeMotion<dim>::kinetic_product()
   {
-    dynamics_.apply(Dynamics<dim>::Operator::mass, velocity_.data(),
+    delassus_.apply(DelassusOperator<dim>::Operator::mass, velocity_.data(),
                     work_.data());
-    return dynamics_.communicator().dot(velocity_.data(), work_.data(),
+    return delassus_.communicator().dot(velocity_.data(), work_.data(),
                                         velocity_.size());
   }
 

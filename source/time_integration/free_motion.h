@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 
@@ -28,7 +28,7 @@ namespace nsfd
   public:
     FreeMotion(const SceneInput &input,
                const Discretization<dim> &discretization,
-               Dynamics<dim> &dynamics);
+               DelassusOperator<dim> &delassus);
     ~FreeMotion();
 
     /**
@@ -64,7 +64,7 @@ namespace nsfd
   private:
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
-    Dynamics<dim> &dynamics_;
+    DelassusOperator<dim> &delassus_;
     std::unique_ptr<CrackPressure<dim>> crack_pressure_; ///< or null
     std::vector<double> loads_, velocity_, work_;
     bool loads_known_ = false;

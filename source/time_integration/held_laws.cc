@@ -71,7 +71,7 @@ namespace nsfd
     std::vector<double> impulse = iterate_.force;
     for (double &P : impulse)
       P *= iterate_.h;
-    return strength_shares(dynamics_, discretization_.origins(), impulse,
+    return strength_shares(delassus_, discretization_.origins(), impulse,
                            problem_);
   }
 
@@ -131,7 +131,7 @@ namespace nsfd
   template <int dim>
   auto HeldLaws<dim>::prediction() -> Prediction
   {
-    const auto &communicator = dynamics_.communicator();
+    const auto &communicator = delassus_.communicator();
     auto &problem = problem_;
     const auto joints = joint_shares();
     std::vector<unsigned int> springs = interaction_;
@@ -183,7 +183,7 @@ namespace nsfd
   bool HeldLaws<dim>::let_damage_grow(double &largest_growth,
                                       const double stretch)
   {
-    const auto &communicator = dynamics_.communicator();
+    const auto &communicator = delassus_.communicator();
     auto &problem = problem_;
     largest_growth = 0.;
     const auto joints = joint_shares();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/solver.h"
 #include "state/state.h"
@@ -33,9 +33,10 @@ namespace nsfd
   public:
     /** All are those of the rounds and outlive this. */
     HeldLaws(const Discretization<dim> &discretization,
-             const Dynamics<dim> &dynamics, OneStepProblem<dim> &problem,
-             LoadStepIterate<dim> &iterate, const bool has_extrinsic)
-        : discretization_(discretization), dynamics_(dynamics),
+             const DelassusOperator<dim> &delassus,
+             OneStepProblem<dim> &problem, LoadStepIterate<dim> &iterate,
+             const bool has_extrinsic)
+        : discretization_(discretization), delassus_(delassus),
           problem_(problem), iterate_(iterate), has_extrinsic_(has_extrinsic)
     {
     }
@@ -92,7 +93,7 @@ namespace nsfd
     Reach held_reach(std::size_t point) const;
 
     const Discretization<dim> &discretization_;
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     OneStepProblem<dim> &problem_;
     LoadStepIterate<dim> &iterate_;
     const bool has_extrinsic_; ///< points that are rigid until they activate

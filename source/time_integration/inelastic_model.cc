@@ -21,7 +21,7 @@ namespace nsfd
   {
     State state =
         nsfd::initial_state<dim>(parts_.input, parts_.discretization,
-                                 parts_.dynamics, parts_.problem, nullptr);
+                                 parts_.delassus, parts_.problem, nullptr);
     state.material_history = bodies_.begin_history();
     return state;
   }
@@ -29,7 +29,7 @@ namespace nsfd
   template <int dim>
   void InelasticModel<dim>::complete(State &state) const
   {
-    set_energies(parts_.dynamics, parts_.problem, state);
+    set_energies(parts_.delassus, parts_.problem, state);
   }
 
   template <int dim>
@@ -56,7 +56,7 @@ namespace nsfd
     linearise();
     parts_.free_motion.move(*old_, pressure_, parts_.problem);
     v_ = parts_.free_motion.velocity();
-    parts_.dynamics.add_velocity_change(impulse.data(), v_.data());
+    parts_.delassus.add_velocity_change(impulse.data(), v_.data());
     bodies_.put_old_velocities(v_);
     if (!move(impulse, v_))
       return false;
@@ -67,12 +67,12 @@ namespace nsfd
   template <int dim>
   void InelasticModel<dim>::linearise()
   {
-    auto &dynamics = parts_.dynamics;
+    auto &delassus = parts_.delassus;
     const double theta = parts_.input.time.theta;
-    if (dynamics.communicator().any(bodies_.set_tangents(v_)))
-      dynamics.renew(time_step_, theta);
+    if (delassus.communicator().any(bodies_.set_tangents(v_)))
+      delassus.renew(time_step_, theta);
     else
-      dynamics.reinit(time_step_, theta);
+      delassus.reinit(time_step_, theta);
     parts_.step_problem.set(parts_.discretization.origins(), *old_, time_step_,
                             parts_.problem);
   }
@@ -85,8 +85,8 @@ namespace nsfd
     std::vector<double> all(impulse), r(v.size());
     for (std::size_t k = 0; k < pressure_impulse_.size(); ++k)
       all[k] += pressure_impulse_[k];
-    parts_.dynamics.generalised_impulse(all.data(), r.data());
-    return !parts_.dynamics.communicator().any(!bodies_.move(r, v_));
+    parts_.delassus.generalised_impulse(all.data(), r.data());
+    return !parts_.delassus.communicator().any(!bodies_.move(r, v_));
   }
 
   template <int dim>
@@ -111,7 +111,7 @@ namespace nsfd
     std::vector<double> off(v_), U(next.jump.size());
     for (std::size_t i = 0; i < off.size(); ++i)
       off[i] -= v_linear_[i];
-    parts_.dynamics.relative_velocity(off.data(), U.data());
+    parts_.delassus.relative_velocity(off.data(), U.data());
     for (std::size_t k = 0; k < U.size(); ++k) {
       next.jump[k] =
           problem.jump_free[k] + h * theta * next.relative_velocity[k];
@@ -129,7 +129,7 @@ namespace nsfd
   template <int dim>
   BodyEnergies InelasticModel<dim>::account(State &next) const
   {
-    return sum(parts_.dynamics.communicator(), bodies_.account(next));
+    return sum(parts_.delassus.communicator(), bodies_.account(next));
   }
 
   template <int dim>
@@ -142,7 +142,7 @@ namespace nsfd
   void InelasticModel<dim>::relative_velocity(const std::vector<double> &v,
                                               std::vector<double> &U) const
   {
-    parts_.dynamics.relative_velocity(v.data(), U.data());
+    parts_.delassus.relative_velocity(v.data(), U.data());
   }
 
   template <int dim>
@@ -150,9 +150,9 @@ namespace nsfd
   InelasticModel<dim>::kinetic_product(const std::vector<double> &v) const
   {
     std::vector<double> product(v.size());
-    parts_.dynamics.apply(Dynamics<dim>::Operator::mass, v.data(),
+    parts_.delassus.apply(DelassusOperator<dim>::Operator::mass, v.data(),
                           product.data());
-    return parts_.dynamics.communicator().dot(v.data(), product.data(),
+    return parts_.delassus.communicator().dot(v.data(), product.data(),
                                               v.size());
   }
 

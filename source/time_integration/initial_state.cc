@@ -91,13 +91,13 @@ namespace nsfd
     }
 
     template <int dim>
-    double half_product(const Dynamics<dim> &dynamics,
-                        const typename Dynamics<dim>::Operator op,
+    double half_product(const DelassusOperator<dim> &delassus,
+                        const typename DelassusOperator<dim>::Operator op,
                         const std::vector<double> &x)
     {
       std::vector<double> y(x.size());
-      dynamics.apply(op, x.data(), y.data());
-      return dynamics.communicator().dot(x.data(), y.data(), x.size()) / 2.;
+      delassus.apply(op, x.data(), y.data());
+      return delassus.communicator().dot(x.data(), y.data(), x.size()) / 2.;
     }
   } // namespace
 
@@ -119,35 +119,35 @@ namespace nsfd
   }
 
   template <int dim>
-  void set_energies(const Dynamics<dim> &dynamics,
+  void set_energies(const DelassusOperator<dim> &delassus,
                     const OneStepProblem<dim> &problem, State &state)
   {
-    using Operator = typename Dynamics<dim>::Operator;
+    using Operator = typename DelassusOperator<dim>::Operator;
     auto &energy = state.energy;
-    energy.kinetic = half_product(dynamics, Operator::mass, state.velocity);
+    energy.kinetic = half_product(delassus, Operator::mass, state.velocity);
     energy.elastic =
-        half_product(dynamics, Operator::stiffness, state.displacement);
-    energy.cohesive = stored_in_points(dynamics.communicator(), problem, state);
+        half_product(delassus, Operator::stiffness, state.displacement);
+    energy.cohesive = stored_in_points(delassus.communicator(), problem, state);
   }
 
   template <int dim>
   State initial_state(const SceneInput &input,
                       const Discretization<dim> &discretization,
-                      const Dynamics<dim> &dynamics,
+                      const DelassusOperator<dim> &delassus,
                       const OneStepProblem<dim> &problem,
-                      BondedDynamics<dim> *bonded)
+                      BondedDelassus<dim> *bonded)
   {
     State state = initial_motion(input, discretization);
     const std::size_t n = discretization.points().n_points;
     state.jump.assign(n * dim, 0.);
     state.relative_velocity.assign(n * dim, 0.);
-    dynamics.relative_velocity(state.displacement.data(), state.jump.data());
-    dynamics.relative_velocity(state.velocity.data(),
+    delassus.relative_velocity(state.displacement.data(), state.jump.data());
+    delassus.relative_velocity(state.velocity.data(),
                                state.relative_velocity.data());
     set_points(input, discretization, problem, state);
     if (bonded)
       bonded->set_bonds(bonded_points(state));
-    set_energies(dynamics, problem, state);
+    set_energies(delassus, problem, state);
     begin_balance(state);
     return state;
   }
@@ -213,7 +213,7 @@ namespace nsfd
 #define NSFD_INSTANTIATE(dim)                                                  \
   template double initial_gap(const SceneInput &, const Discretization<dim> &, \
                               std::size_t);                                    \
-  template void set_energies(const Dynamics<dim> &,                            \
+  template void set_energies(const DelassusOperator<dim> &,                    \
                              const OneStepProblem<dim> &, State &);            \
   template State initial_motion(const SceneInput &,                            \
                                 const Discretization<dim> &);                  \
@@ -222,8 +222,9 @@ namespace nsfd
   template void set_points(const SceneInput &, const Discretization<dim> &,    \
                            const OneStepProblem<dim> &, State &);              \
   template State initial_state(                                                \
-      const SceneInput &, const Discretization<dim> &, const Dynamics<dim> &,  \
-      const OneStepProblem<dim> &, BondedDynamics<dim> *)
+      const SceneInput &, const Discretization<dim> &,                         \
+      const DelassusOperator<dim> &, const OneStepProblem<dim> &,              \
+      BondedDelassus<dim> *)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

@@ -18,9 +18,9 @@ namespace nsfd
   template <int dim>
   State initial_state(const SceneInput &input,
                       const Discretization<dim> &discretization,
-                      const Dynamics<dim> &dynamics,
+                      const DelassusOperator<dim> &delassus,
                       const OneStepProblem<dim> &problem,
-                      BondedDynamics<dim> *bonded);
+                      BondedDelassus<dim> *bonded);
 
   /**
    * Distance of a boundary point from the half space it may touch, m; 0 for
@@ -32,10 +32,10 @@ namespace nsfd
 
   /**
    * Kinetic, elastic and cohesive energy of a state whose bonds are those of
-   * @p dynamics. Collective.
+   * @p delassus. Collective.
    */
   template <int dim>
-  void set_energies(const Dynamics<dim> &dynamics,
+  void set_energies(const DelassusOperator<dim> &delassus,
                     const OneStepProblem<dim> &problem, State &state);
 
   /** Displacements and velocities of the bodies alone. */

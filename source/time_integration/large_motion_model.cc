@@ -86,12 +86,12 @@ namespace nsfd
       : parts_(parts), bodies_(bodies), lifts_(has_sliding_lift(parts.input)),
         obstacles_(parts.input, bodies.contacts()),
         history_(parts.discretization, bodies.contacts(),
-                 parts.dynamics.communicator())
+                 parts.delassus.communicator())
   {
     if (!parts.input.contacts.empty() || !parts.input.obstacles.empty())
       contacts_ = std::make_unique<SurfaceContacts<dim>>(
           parts.input, parts.discretization, bodies,
-          parts.dynamics.communicator());
+          parts.delassus.communicator());
   }
 
   template <int dim>
@@ -109,7 +109,7 @@ namespace nsfd
                   state.obstacle_shift, state.obstacle_shift);
     bodies_.set_rows({});
     bodies_.set_middle();
-    parts_.dynamics.renew(0., input.time.theta);
+    parts_.delassus.renew(0., input.time.theta);
     const std::size_t n = bodies_.points().n_points;
     const auto jumps = bodies_.jumps(state.displacement);
     state.jump.assign(n * dim, 0.);
@@ -120,7 +120,7 @@ namespace nsfd
               bodies_.points().frame[(i * dim + a) * dim + d] *
               jumps[i * dim + d];
     state.relative_velocity.resize(n * dim);
-    parts_.dynamics.relative_velocity(bodies_.old_velocity().data(),
+    parts_.delassus.relative_velocity(bodies_.old_velocity().data(),
                                       state.relative_velocity.data());
     set_points(input, parts_.discretization, parts_.problem, state);
     if (contacts_)
@@ -133,7 +133,7 @@ namespace nsfd
   template <int dim>
   void LargeMotionModel<dim>::complete(State &state) const
   {
-    const Communicator &all = parts_.dynamics.communicator();
+    const Communicator &all = parts_.delassus.communicator();
     const BodyEnergies energies = sum(all, bodies_.energies(state));
     state.energy.kinetic = energies.kinetic;
     state.energy.elastic = energies.elastic;
@@ -159,7 +159,7 @@ namespace nsfd
       rows = contacts_->rows(old, h);
     }
     const auto pins =
-        pin_rows(parts_.input, bodies_, parts_.dynamics.communicator(), old);
+        pin_rows(parts_.input, bodies_, parts_.delassus.communicator(), old);
     rows.insert(rows.end(), pins.begin(), pins.end());
     bodies_.set_rows(rows);
     add_contacts();
@@ -227,7 +227,7 @@ namespace nsfd
   void LargeMotionModel<dim>::relative_velocity(const std::vector<double> &v,
                                                 std::vector<double> &U) const
   {
-    parts_.dynamics.relative_velocity(v.data(), U.data());
+    parts_.delassus.relative_velocity(v.data(), U.data());
     obstacles_.subtract_velocity(old_.time + time_step_, U);
   }
 
@@ -235,7 +235,7 @@ namespace nsfd
   double
   LargeMotionModel<dim>::kinetic_product(const std::vector<double> &v) const
   {
-    return parts_.dynamics.communicator().sum(bodies_.kinetic_products(v, v));
+    return parts_.delassus.communicator().sum(bodies_.kinetic_products(v, v));
   }
 
   /** In the frames at hand: jumps, relative velocities, what acts where. */
@@ -259,7 +259,7 @@ namespace nsfd
             rows[k].partner == MovingRow<dim>::Partner::pin ? rows[k].jump[a]
             : a == 0                                        ? rows[k].gap
                                                             : 0.;
-    parts_.dynamics.relative_velocity(bodies_.old_velocity().data(),
+    parts_.delassus.relative_velocity(bodies_.old_velocity().data(),
                                       old_.relative_velocity.data());
     obstacles_.subtract_velocity(old_.time, old_.relative_velocity);
     parts_.step_problem.set(origins_, old_, time_step_, problem_);
@@ -320,7 +320,7 @@ namespace nsfd
   {
     tangent_velocity_ = bodies_.velocity();
     bodies_.set_middle();
-    parts_.dynamics.renew(time_step_, parts_.input.time.theta);
+    parts_.delassus.renew(time_step_, parts_.input.time.theta);
     set_problem();
   }
 
@@ -357,8 +357,8 @@ namespace nsfd
     std::vector<double> all(impulse), r(v.size());
     for (std::size_t k = 0; k < pressure_impulse_.size(); ++k)
       all[k] += pressure_impulse_[k];
-    parts_.dynamics.generalised_impulse(all.data(), r.data());
-    return !parts_.dynamics.communicator().any(!bodies_.move(r, v));
+    parts_.delassus.generalised_impulse(all.data(), r.data());
+    return !parts_.delassus.communicator().any(!bodies_.move(r, v));
   }
 
   template <int dim>
@@ -389,13 +389,13 @@ namespace nsfd
   template <int dim>
   BodyEnergies LargeMotionModel<dim>::account(State &) const
   {
-    return sum(parts_.dynamics.communicator(), bodies_.account());
+    return sum(parts_.delassus.communicator(), bodies_.account());
   }
 
   template <int dim>
   void LargeMotionModel<dim>::book_rest(State &next, StepReport &report) const
   {
-    const Communicator &all = parts_.dynamics.communicator();
+    const Communicator &all = parts_.delassus.communicator();
     next.energy.work +=
         all.sum(obstacles_.work(next.impulse, old_.time, problem_.time_step));
     // springs of two stiffnesses store other energies as their frames turn

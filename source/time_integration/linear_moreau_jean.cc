@@ -19,15 +19,15 @@ namespace nsfd
   template <int dim>
   LinearMoreauJean<dim>::LinearMoreauJean(
       const SceneInput &input, const Discretization<dim> &discretization,
-      Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver,
-      BondedDynamics<dim> *bonded)
-      : MoreauJean<dim>(input, discretization, dynamics), solver_(solver),
+      DelassusOperator<dim> &delassus, NonsmoothSolver<dim> &solver,
+      BondedDelassus<dim> *bonded)
+      : MoreauJean<dim>(input, discretization, delassus), solver_(solver),
         bonded_(bonded)
   {
     if (input.time.scheme == Scheme::explicit_moreau_jean)
-      elastic_forces_ = std::make_unique<ElasticForces<dim>>(dynamics);
+      elastic_forces_ = std::make_unique<ElasticForces<dim>>(delassus);
     if (input.has_bonded_faces())
-      bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
+      bulk_ = std::make_unique<BulkTraction<dim>>(delassus);
   }
 
   template <int dim>
@@ -37,7 +37,7 @@ namespace nsfd
   State LinearMoreauJean<dim>::initial_state() const
   {
     State state = nsfd::initial_state(this->input_, this->discretization_,
-                                      this->dynamics_, this->problem_, bonded_);
+                                      this->delassus_, this->problem_, bonded_);
     if (bulk_)
       set_bond_tractions(*bulk_, state);
     return state;
@@ -48,7 +48,7 @@ namespace nsfd
   {
     if (bonded_)
       bonded_->set_bonds(bonded_points(state));
-    set_energies(this->dynamics_, this->problem_, state);
+    set_energies(this->delassus_, this->problem_, state);
     if (bulk_)
       set_bond_tractions(*bulk_, state);
   }
@@ -71,7 +71,7 @@ namespace nsfd
     const bool others = bonded_ && bonded_->set_bonds(bonded_points(old));
     if (elastic_forces_)
       elastic_forces_->start(old, others);
-    this->dynamics_.reinit(h, time.bulk_theta());
+    this->delassus_.reinit(h, time.bulk_theta());
     this->step_problem_.begin();
     this->step_problem_.set(this->discretization_.origins(), old, h,
                             this->problem_);
@@ -94,7 +94,7 @@ namespace nsfd
     // kinetic energies before the impulses: the scale of round-off
     const double energy_scale =
         2. * old.energy.kinetic + this->free_motion_.kinetic_product();
-    LawEvaluation<dim> evaluation(this->problem_, this->dynamics_, energy_scale,
+    LawEvaluation<dim> evaluation(this->problem_, this->delassus_, energy_scale,
                                   this->input_.solver.tolerance);
     StepReport report;
     next.impulse = old.impulse;
@@ -108,7 +108,7 @@ namespace nsfd
           this->step_problem_.control(idle_rounds), energy_scale, old,
           next.impulse, evaluation);
     }
-    save_problem<dim>(this->input_, this->problem_, this->dynamics_, evaluation,
+    save_problem<dim>(this->input_, this->problem_, this->delassus_, evaluation,
                       report.solver, old.step + 1, old.time);
     this->check_.check_solution(h, old.time, report.solver,
                                 evaluation.worst_point);
@@ -151,7 +151,7 @@ namespace nsfd
     next.time = old.time + h;
     next.last_step = h;
     next.velocity = this->free_motion_.velocity();
-    this->dynamics_.add_velocity_change(next.impulse.data(),
+    this->delassus_.add_velocity_change(next.impulse.data(),
                                         next.velocity.data());
     const std::size_t n = next.velocity.size();
     next.displacement.resize(n);
@@ -163,7 +163,7 @@ namespace nsfd
         solved_velocity(this->problem_, evaluation, next.impulse);
     if (bonded_) { // W has no rows there
       std::vector<double> velocity(next.relative_velocity.size());
-      this->dynamics_.relative_velocity(next.velocity.data(), velocity.data());
+      this->delassus_.relative_velocity(next.velocity.data(), velocity.data());
       for (std::size_t k = 0; k < velocity.size(); ++k)
         if (old.kind[k / dim] == PointKind::bonded)
           next.relative_velocity[k] = velocity[k];

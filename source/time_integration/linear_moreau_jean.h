@@ -5,7 +5,7 @@
 namespace nsfd
 {
   template <int dim>
-  class BondedDynamics;
+  class BondedDelassus;
   template <int dim>
   class BulkTraction;
   template <int dim>
@@ -19,11 +19,12 @@ namespace nsfd
   class LinearMoreauJean final : public MoreauJean<dim>
   {
   public:
-    /** @p bonded is @p dynamics if the scene has bonded faces, else null. */
+    /** @p bonded is @p delassus if the scene has bonded faces, else null. */
     LinearMoreauJean(const SceneInput &input,
                      const Discretization<dim> &discretization,
-                     Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver,
-                     BondedDynamics<dim> *bonded = nullptr);
+                     DelassusOperator<dim> &delassus,
+                     NonsmoothSolver<dim> &solver,
+                     BondedDelassus<dim> *bonded = nullptr);
     ~LinearMoreauJean() override;
 
     State initial_state() const override;
@@ -42,7 +43,7 @@ namespace nsfd
                 State &next) const;
 
     NonsmoothSolver<dim> &solver_;
-    BondedDynamics<dim> *bonded_;             ///< or null
+    BondedDelassus<dim> *bonded_;             ///< or null
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
     std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
   };

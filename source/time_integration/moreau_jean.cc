@@ -11,18 +11,18 @@ namespace nsfd
   template <int dim>
   MoreauJean<dim>::MoreauJean(const SceneInput &input,
                               const Discretization<dim> &discretization,
-                              Dynamics<dim> &dynamics)
-      : input_(input), discretization_(discretization), dynamics_(dynamics),
+                              DelassusOperator<dim> &delassus)
+      : input_(input), discretization_(discretization), delassus_(delassus),
         problem_(constant_data(input, discretization)),
-        uniqueness_(std::make_unique<UniquenessBound<dim>>(input, dynamics)),
+        uniqueness_(std::make_unique<UniquenessBound<dim>>(input, delassus)),
         balance_(std::make_unique<EnergyBalance<dim>>(input, discretization,
-                                                      dynamics, *uniqueness_)),
-        free_motion_(input, discretization, dynamics),
-        step_problem_(input, discretization, dynamics, counters_),
+                                                      delassus, *uniqueness_)),
+        free_motion_(input, discretization, delassus),
+        step_problem_(input, discretization, delassus, counters_),
         check_(input, [this](const std::size_t i) { return describe(i); })
   {
     if (input.has_viscous_bodies())
-      dynamics.set_viscous_theta(input.time.work_theta());
+      delassus.set_viscous_theta(input.time.work_theta());
   }
 
   template <int dim>

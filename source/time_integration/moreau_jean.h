@@ -30,7 +30,7 @@ namespace nsfd
   public:
     MoreauJean(const SceneInput &input,
                const Discretization<dim> &discretization,
-               Dynamics<dim> &dynamics);
+               DelassusOperator<dim> &delassus);
     ~MoreauJean() override;
 
     /** State at t = 0: positions, velocities, gaps, broken points. */
@@ -76,7 +76,7 @@ namespace nsfd
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
-    Dynamics<dim> &dynamics_;
+    DelassusOperator<dim> &delassus_;
     Timings timings_;
     Counters counters_;
     OneStepProblem<dim> problem_;

@@ -26,10 +26,10 @@ namespace nsfd
   template <int dim>
   NewtonMoreauJean<dim>::NewtonMoreauJean(
       const SceneInput &input, const Discretization<dim> &discretization,
-      MovingBodies<dim> &bodies, Dynamics<dim> &dynamics)
-      : MoreauJean<dim>(input, discretization, dynamics),
+      MovingBodies<dim> &bodies, DelassusOperator<dim> &delassus)
+      : MoreauJean<dim>(input, discretization, delassus),
         bodies_(std::make_unique<LargeMotionModel<dim>>(
-            StepParts<dim>{input, discretization, dynamics, this->problem_,
+            StepParts<dim>{input, discretization, delassus, this->problem_,
                            this->free_motion_, this->step_problem_,
                            this->timings_},
             bodies)),
@@ -40,10 +40,10 @@ namespace nsfd
   template <int dim>
   NewtonMoreauJean<dim>::NewtonMoreauJean(
       const SceneInput &input, const Discretization<dim> &discretization,
-      InelasticBodies<dim> &bodies, Dynamics<dim> &dynamics)
-      : MoreauJean<dim>(input, discretization, dynamics),
+      InelasticBodies<dim> &bodies, DelassusOperator<dim> &delassus)
+      : MoreauJean<dim>(input, discretization, delassus),
         bodies_(std::make_unique<InelasticModel<dim>>(
-            StepParts<dim>{input, discretization, dynamics, this->problem_,
+            StepParts<dim>{input, discretization, delassus, this->problem_,
                            this->free_motion_, this->step_problem_,
                            this->timings_},
             bodies)),
@@ -77,7 +77,7 @@ namespace nsfd
       const State &old, const double h, const SolverControl &control,
       std::unique_ptr<LawEvaluation<dim>> &evaluation)
   {
-    auto &dynamics = this->dynamics_;
+    auto &delassus = this->delassus_;
     const auto lost = [&] {
       return StepRejected(fmt::format(
           "a cell would be inverted in the step of {:.4g} at t = {:.6g}, or "
@@ -95,15 +95,15 @@ namespace nsfd
       std::vector<double> less(impulse_);
       for (double &P : less)
         P = -P;
-      dynamics.add_velocity_change(less.data(), v_free_.data());
+      delassus.add_velocity_change(less.data(), v_free_.data());
       const StepPoints<dim> points = bodies_->points();
       bodies_->relative_velocity(v_free_, points.problem.free_velocity);
-      dynamics.set_free_velocity(&v_free_);
+      delassus.set_free_velocity(&v_free_);
       if (round == 0)
         energy_scale_ =
             2. * old.energy.kinetic + bodies_->kinetic_product(v_free_);
       evaluation = std::make_unique<LawEvaluation<dim>>(
-          points.problem, dynamics, energy_scale_, control.tolerance);
+          points.problem, delassus, energy_scale_, control.tolerance);
       // factors are those of one round
       const auto solver = SolverRegistry<dim>::instance().create(solver_name_);
       const SolverReport part = this->step_problem_.solve(
@@ -113,7 +113,7 @@ namespace nsfd
       if (!part.converged)
         return total;
       std::vector<double> v = v_free_;
-      dynamics.add_velocity_change(impulse_.data(), v.data());
+      delassus.add_velocity_change(impulse_.data(), v.data());
       if (!bodies_->move(impulse_, v))
         throw lost();
       if (has_settled(old, h, control, round))
@@ -166,7 +166,7 @@ namespace nsfd
           iterate(old, h, this->step_problem_.control(idle_rounds), evaluation);
     }
     const StepPoints<dim> points = bodies_->points();
-    save_problem<dim>(this->input_, points.problem, this->dynamics_,
+    save_problem<dim>(this->input_, points.problem, this->delassus_,
                       *evaluation, report.solver, old.step + 1, old.time);
     this->check_.check_solution(h, old.time, report.solver,
                                 evaluation->worst_point);

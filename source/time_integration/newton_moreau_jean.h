@@ -22,14 +22,16 @@ namespace nsfd
   class NewtonMoreauJean final : public MoreauJean<dim>
   {
   public:
-    /** Rotations and strains of any size. @p dynamics is that of @p bodies. */
+    /** Rotations and strains of any size. @p delassus is that of @p bodies. */
     NewtonMoreauJean(const SceneInput &input,
                      const Discretization<dim> &discretization,
-                     MovingBodies<dim> &bodies, Dynamics<dim> &dynamics);
+                     MovingBodies<dim> &bodies,
+                     DelassusOperator<dim> &delassus);
     /** Small motions, history-dependent materials. */
     NewtonMoreauJean(const SceneInput &input,
                      const Discretization<dim> &discretization,
-                     InelasticBodies<dim> &bodies, Dynamics<dim> &dynamics);
+                     InelasticBodies<dim> &bodies,
+                     DelassusOperator<dim> &delassus);
     ~NewtonMoreauJean() override;
 
     State initial_state() const override;

@@ -9,10 +9,10 @@ namespace nsfd
   template <int dim>
   QuasiStatic<dim>::QuasiStatic(const SceneInput &input,
                                 const Discretization<dim> &discretization,
-                                std::unique_ptr<Dynamics<dim>> dynamics,
+                                std::unique_ptr<DelassusOperator<dim>> delassus,
                                 std::unique_ptr<NonsmoothSolver<dim>> solver)
       : statics_(*input.statics),
-        search_(input, discretization, std::move(dynamics), std::move(solver))
+        search_(input, discretization, std::move(delassus), std::move(solver))
   {
   }
 
@@ -117,7 +117,7 @@ namespace nsfd
     counters["equilibrium_newton"] = double(solver.newton);
     counters["equilibrium_krylov"] = double(solver.krylov);
     counters["equilibrium_factorisations"] =
-        double(search_.dynamics_counters().global_factorisations);
+        double(search_.delassus_counters().global_factorisations);
     if (!takes_steps())
       return;
     counters["shortened_load_steps"] = shortened_;

@@ -18,12 +18,12 @@ namespace nsfd
   {
   public:
     /**
-     * The scene must ask for equilibria: SceneInput::statics. @p dynamics and
+     * The scene must ask for equilibria: SceneInput::statics. @p delassus and
      * @p solver are as for EquilibriumSearch.
      */
     QuasiStatic(const SceneInput &input,
                 const Discretization<dim> &discretization,
-                std::unique_ptr<Dynamics<dim>> dynamics,
+                std::unique_ptr<DelassusOperator<dim>> delassus,
                 std::unique_ptr<NonsmoothSolver<dim>> solver);
 
     State start_from(const State &given) override

@@ -30,14 +30,14 @@ namespace nsfd
   template <int dim>
   Relaxation<dim>::Relaxation(const SceneInput &input,
                               const Discretization<dim> &discretization,
-                              Dynamics<dim> &dynamics,
+                              DelassusOperator<dim> &delassus,
                               NonsmoothSolver<dim> &solver)
-      : input_(input), discretization_(discretization), dynamics_(dynamics),
+      : input_(input), discretization_(discretization), delassus_(delassus),
         solver_(solver), problem_(constant_data(input, discretization)),
-        free_motion_(input, discretization, dynamics),
-        step_problem_(input, discretization, dynamics, counters_),
-        balance_(dynamics, free_motion_),
-        laws_(discretization, dynamics, problem_, iterate_,
+        free_motion_(input, discretization, delassus),
+        step_problem_(input, discretization, delassus, counters_),
+        balance_(delassus, free_motion_),
+        laws_(discretization, delassus, problem_, iterate_,
               step_problem_.has_extrinsic())
   {
   }
@@ -174,7 +174,7 @@ namespace nsfd
         least[i * dim + c] = 0.03 * (c == 0 ? problem.majorant_normal[i]
                                             : problem.majorant_tangential[i]);
     }
-    dynamics_.set_least_compliance(std::move(least));
+    delassus_.set_least_compliance(std::move(least));
   }
 
   /** As far as the iterate is open, or the equilibrium before it. */
@@ -193,7 +193,7 @@ namespace nsfd
   SolverReport Relaxation<dim>::relax(std::vector<double> &q, const double h,
                                       const double tolerance)
   {
-    auto &dynamics = dynamics_;
+    auto &delassus = delassus_;
     const std::size_t n = q.size();
     iterate_.h = h;
     {
@@ -202,13 +202,13 @@ namespace nsfd
       std::vector<double> change(n);
       for (std::size_t k = 0; k < n; ++k)
         change[k] = q[k] - iterate_.old->displacement[k];
-      dynamics.relative_velocity(change.data(), iterate_.at.jump.data());
+      delassus.relative_velocity(change.data(), iterate_.at.jump.data());
       for (std::size_t k = 0; k < iterate_.at.jump.size(); ++k)
         iterate_.at.jump[k] += iterate_.old->jump[k];
       iterate_.at.displacement = q;
       iterate_.at.time = time_ - h;
-      dynamics.reinit(h, 1.);
-      set_step(input_, discretization_, discretization_.origins(), dynamics,
+      delassus.reinit(h, 1.);
+      set_step(input_, discretization_, discretization_.origins(), delassus,
                step_problem_.motion(), iterate_.at, h, problem_);
       constrain(h);
       laws_.find_joint_loads();
@@ -220,7 +220,7 @@ namespace nsfd
     // the floor of the natural map: the largest forces so far
     const double share = std::max(1e-6, 1e-14 / tolerance);
     const double energy_scale = balance_.point_scale() / (share * share);
-    LawEvaluation<dim> evaluation(problem_, dynamics, energy_scale, tolerance);
+    LawEvaluation<dim> evaluation(problem_, delassus, energy_scale, tolerance);
     for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
       set_start(i, evaluation.solutions[i].reach);
     std::vector<double> impulse = iterate_.force;
@@ -244,7 +244,7 @@ namespace nsfd
     if (!report.converged)
       return report;
     std::vector<double> velocity = free_motion_.velocity();
-    dynamics.add_velocity_change(impulse.data(), velocity.data());
+    delassus.add_velocity_change(impulse.data(), velocity.data());
     for (std::size_t k = 0; k < n; ++k)
       q[k] += h * velocity[k];
     for (std::size_t k = 0; k < impulse.size(); ++k)
@@ -270,7 +270,7 @@ namespace nsfd
     start.time = time_ - iterate_.h;
     std::fill(start.relative_velocity.begin(), start.relative_velocity.end(),
               0.);
-    set_step(input_, discretization_, discretization_.origins(), dynamics_,
+    set_step(input_, discretization_, discretization_.origins(), delassus_,
              step_problem_.motion(), start, iterate_.h, problem);
     for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
       if (iterate_.activated[i]) {

@@ -41,7 +41,7 @@ namespace nsfd
     /** @p input is a static_scene() and outlives this. */
     Relaxation(const SceneInput &input,
                const Discretization<dim> &discretization,
-               Dynamics<dim> &dynamics, NonsmoothSolver<dim> &solver);
+               DelassusOperator<dim> &delassus, NonsmoothSolver<dim> &solver);
 
     /**
      * From the equilibrium @p old, which outlives the rounds, to loads and
@@ -102,7 +102,7 @@ namespace nsfd
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
-    Dynamics<dim> &dynamics_;
+    DelassusOperator<dim> &delassus_;
     NonsmoothSolver<dim> &solver_;
     StepTimings timings_;
     StepCounters counters_;

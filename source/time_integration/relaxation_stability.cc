@@ -36,9 +36,9 @@ namespace nsfd
   template <int dim>
   double Relaxation<dim>::softening()
   {
-    auto &dynamics = dynamics_;
+    auto &delassus = delassus_;
     const auto &problem = problem_;
-    const auto &communicator = dynamics.communicator();
+    const auto &communicator = delassus.communicator();
     const std::size_t n = problem.n_points * dim;
     // one row per point that damages: its weight and its direction
     std::vector<double> direction(n, 0.), D(n, -1.);
@@ -95,15 +95,15 @@ namespace nsfd
     std::vector<double> least(n);
     for (std::size_t k = 0; k < n; ++k)
       least[k] = 1e-6 / (iterate_.h * iterate_.h * support_[k / dim]);
-    dynamics.set_least_compliance(std::move(least));
-    dynamics.prepare_preconditioner(D);
+    delassus.set_least_compliance(std::move(least));
+    delassus.prepare_preconditioner(D);
     std::vector<double> share(problem.n_points, 1.), f(n), z(n);
     double largest = 0.;
     for (unsigned int round = 0; round < 60; ++round) {
       for (std::size_t k = 0; k < n; ++k)
         f[k] = D[k] > 0. ? D[k] * direction[k] * share[k / dim] : 0.;
       std::fill(z.begin(), z.end(), 0.);
-      dynamics.precondition(f.data(), z.data());
+      delassus.precondition(f.data(), z.data());
       std::vector<double> terms(2 * problem.n_owned, 0.);
       std::vector<double> next(problem.n_points, 0.);
       for (std::size_t i = 0; i < problem.n_points; ++i) {

@@ -10,10 +10,10 @@ namespace nsfd
   void RowSystem<dim>::set(const std::vector<double> &D)
   {
     D_ = D;
-    empty_ = !dynamics_.communicator().any(std::any_of(
+    empty_ = !delassus_.communicator().any(std::any_of(
         D.begin(), D.end(), [](const double d) { return d >= 0.; }));
     if (!empty_)
-      dynamics_.prepare_preconditioner(D_);
+      delassus_.prepare_preconditioner(D_);
     for (auto *vector : {&vectors_.r, &vectors_.z, &vectors_.p, &vectors_.q})
       vector->assign(D.size(), 0.);
   }
@@ -22,7 +22,7 @@ namespace nsfd
   void RowSystem<dim>::apply(const std::vector<double> &P,
                              std::vector<double> &U) const
   {
-    dynamics_.apply_delassus(P.data(), U.data());
+    delassus_.apply_delassus(P.data(), U.data());
     for (std::size_t k = 0; k < D_.size(); ++k)
       U[k] = D_[k] >= 0. ? U[k] + D_[k] * P[k] : 0.;
   }
@@ -31,7 +31,7 @@ namespace nsfd
   unsigned int RowSystem<dim>::solve(const std::vector<double> &b,
                                      const double goal, std::vector<double> &P)
   {
-    const auto &communicator = dynamics_.communicator();
+    const auto &communicator = delassus_.communicator();
     const auto dot = [&](const std::vector<double> &x,
                          const std::vector<double> &y) {
       return communicator.dot(x.data(), y.data(), n_owned_);
@@ -43,7 +43,7 @@ namespace nsfd
                              std::vector<double> &y) { apply(x, y); };
     const auto precondition = [&](const std::vector<double> &r,
                                   std::vector<double> &z) {
-      dynamics_.precondition(r.data(), z.data());
+      delassus_.precondition(r.data(), z.data());
     };
     double best = std::numeric_limits<double>::infinity();
     unsigned int stalled = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "linear_algebra/krylov.h"
 
 #include <vector>
@@ -9,15 +9,15 @@ namespace nsfd
 {
   /**
    * Linear systems (W + D) P = b on some of the rows of the points, by
-   * conjugate gradients with the preconditioner of the dynamics. W may be
+   * conjugate gradients with the preconditioner of the operator. W may be
    * singular: b must be in its range then.
    */
   template <int dim>
   class RowSystem
   {
   public:
-    RowSystem(Dynamics<dim> &dynamics, std::size_t n_owned)
-        : dynamics_(dynamics), n_owned_(n_owned * dim)
+    RowSystem(DelassusOperator<dim> &delassus, std::size_t n_owned)
+        : delassus_(delassus), n_owned_(n_owned * dim)
     {
     }
 
@@ -37,7 +37,7 @@ namespace nsfd
   private:
     void apply(const std::vector<double> &P, std::vector<double> &U) const;
 
-    Dynamics<dim> &dynamics_;
+    DelassusOperator<dim> &delassus_;
     std::size_t n_owned_;
     std::vector<double> D_;
     krylov::CgVectors vectors_;

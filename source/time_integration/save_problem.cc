@@ -25,7 +25,7 @@ namespace nsfd
 
   template <int dim>
   void save_problem(const SceneInput &input, const OneStepProblem<dim> &problem,
-                    const Dynamics<dim> &dynamics,
+                    const DelassusOperator<dim> &delassus,
                     const LawEvaluation<dim> &evaluation,
                     const SolverReport &report, const unsigned int step,
                     const double time)
@@ -35,7 +35,7 @@ namespace nsfd
     if (which == "none" || (which == "hard" && !hard))
       return;
     ContactProblem contact =
-        condense_contacts<dim>(problem, dynamics, evaluation);
+        condense_contacts<dim>(problem, delassus, evaluation);
     if (contact.n_contacts() == 0)
       return;
     if (!report.converged)
@@ -57,9 +57,11 @@ namespace nsfd
   }
 
   template void save_problem<2>(const SceneInput &, const OneStepProblem<2> &,
-                                const Dynamics<2> &, const LawEvaluation<2> &,
-                                const SolverReport &, unsigned int, double);
+                                const DelassusOperator<2> &,
+                                const LawEvaluation<2> &, const SolverReport &,
+                                unsigned int, double);
   template void save_problem<3>(const SceneInput &, const OneStepProblem<3> &,
-                                const Dynamics<3> &, const LawEvaluation<3> &,
-                                const SolverReport &, unsigned int, double);
+                                const DelassusOperator<3> &,
+                                const LawEvaluation<3> &, const SolverReport &,
+                                unsigned int, double);
 } // namespace nsfd

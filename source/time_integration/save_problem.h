@@ -13,7 +13,7 @@ namespace nsfd
    */
   template <int dim>
   void save_problem(const SceneInput &input, const OneStepProblem<dim> &problem,
-                    const Dynamics<dim> &dynamics,
+                    const DelassusOperator<dim> &delassus,
                     const LawEvaluation<dim> &evaluation,
                     const SolverReport &report, unsigned int step, double time);
 } // namespace nsfd

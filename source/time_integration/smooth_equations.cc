@@ -15,21 +15,21 @@ namespace nsfd
   template <int dim>
   SmoothEquations<dim>::SmoothEquations(
       const SceneInput &input, const Discretization<dim> &discretization,
-      Dynamics<dim> &dynamics, const State &start)
-      : input_(input), discretization_(discretization), dynamics_(dynamics),
-        communicator_(dynamics.communicator()), motion_(input, discretization),
-        free_(make_elementwise_dynamics<dim>(dynamics.communicator(),
-                                             discretization.bodies(),
-                                             discretization.points())),
+      DelassusOperator<dim> &delassus, const State &start)
+      : input_(input), discretization_(discretization), delassus_(delassus),
+        communicator_(delassus.communicator()), motion_(input, discretization),
+        free_(make_local_delassus<dim>(delassus.communicator(),
+                                       discretization.bodies(),
+                                       discretization.points())),
         problem_(constant_data(input, discretization)), kind_(start.kind),
         n_(discretization.bodies().n_dofs()),
         n_rows_(discretization.points().n_points * dim),
         joined_(*free_, discretization.points().n_owned),
-        shifted_(dynamics, discretization.points().n_owned)
+        shifted_(delassus, discretization.points().n_owned)
   {
     free_->reinit(0., 1.);
     if (input.has_bonded_faces())
-      bulk_ = std::make_unique<BulkTraction<dim>>(dynamics);
+      bulk_ = std::make_unique<BulkTraction<dim>>(delassus);
     for (auto *vector : {&work_.given, &work_.mu, &work_.lambda, &work_.rows})
       vector->assign(n_rows_, 0.);
     for (auto *vector :
@@ -220,7 +220,7 @@ namespace nsfd
   auto SmoothEquations<dim>::acceleration(const double t, const double *q)
       -> const Values &
   {
-    dynamics_.apply(Operator::stiffness, q, work_.force.data());
+    delassus_.apply(Operator::stiffness, q, work_.force.data());
     const Values &external = loads(t);
     for (std::size_t k = 0; k < n_; ++k)
       work_.force[k] = external[k] - work_.force[k];
@@ -293,7 +293,7 @@ namespace nsfd
     };
     if (gamma != gamma_) {
       gamma_ = gamma;
-      dynamics_.reinit(gamma, 1.);
+      delassus_.reinit(gamma, 1.);
       Values D = D_joined_;
       for (std::size_t k = 0; k < n_rows_; ++k)
         if (kind_[k / dim] == PointKind::elastic)
@@ -302,11 +302,11 @@ namespace nsfd
     }
     Values w(n_), momentum(n_), product(n_), P(n_rows_, 0.), U(n_rows_),
         jump(n_rows_);
-    dynamics_.apply(Operator::mass, velocity(b), momentum.data());
-    dynamics_.apply(Operator::stiffness, displacement(b), product.data());
+    delassus_.apply(Operator::mass, velocity(b), momentum.data());
+    delassus_.apply(Operator::stiffness, displacement(b), product.data());
     for (std::size_t k = 0; k < n_; ++k)
       momentum[k] -= gamma * product[k];
-    dynamics_.apply(Operator::inverse, momentum.data(), w.data());
+    delassus_.apply(Operator::inverse, momentum.data(), w.data());
     if (!shifted_.empty()) {
       free_->relative_velocity(w.data(), U.data());
       free_->relative_velocity(displacement(b), jump.data());
@@ -318,12 +318,12 @@ namespace nsfd
       }
       counters.iterations += shifted_.solve(
           U, 1e-13 * communicator_.max(norm) * std::sqrt(double(n_rows_)), P);
-      dynamics_.add_velocity_change(P.data(), w.data());
+      delassus_.add_velocity_change(P.data(), w.data());
     }
     for (std::size_t k = 0; k < n_; ++k)
       displacement(x)[k] = displacement(b)[k] + gamma * w[k];
     Values force(n_);
-    dynamics_.apply(Operator::stiffness, displacement(x), force.data());
+    delassus_.apply(Operator::stiffness, displacement(x), force.data());
     for (double &f : force)
       f = -f;
     add_springs(displacement(x), force);

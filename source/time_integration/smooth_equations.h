@@ -22,13 +22,13 @@ namespace nsfd
   class SmoothEquations
   {
   public:
-    using Operator = typename Dynamics<dim>::Operator;
+    using Operator = typename DelassusOperator<dim>::Operator;
     using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
     using Values = std::vector<double>;
 
     SmoothEquations(const SceneInput &input,
                     const Discretization<dim> &discretization,
-                    Dynamics<dim> &dynamics, const State &start);
+                    DelassusOperator<dim> &delassus, const State &start);
 
     /** y' at time @p t. */
     void evaluate(double t, const Vector &y, Vector &rate);
@@ -60,11 +60,11 @@ namespace nsfd
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
-    Dynamics<dim> &dynamics_;
+    DelassusOperator<dim> &delassus_;
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< null without bonds
     const Communicator &communicator_;
     const DrivenMotion<dim> motion_;
-    std::unique_ptr<Dynamics<dim>> free_; ///< of the mass alone
+    std::unique_ptr<DelassusOperator<dim>> free_; ///< of the mass alone
     OneStepProblem<dim> problem_;
     std::vector<PointKind> kind_;
     const std::size_t n_; ///< unknowns of this rank

@@ -31,8 +31,8 @@ namespace nsfd
 
     Equations(const SceneInput &input,
               const Discretization<dim> &discretization,
-              Dynamics<dim> &dynamics, const State &start)
-        : SmoothEquations<dim>(input, discretization, dynamics, start)
+              DelassusOperator<dim> &delassus, const State &start)
+        : SmoothEquations<dim>(input, discretization, delassus, start)
     {
       reactions.assign(discretization.driven_boundaries().size() * dim, 0.);
     }
@@ -204,7 +204,7 @@ namespace nsfd
         std::max(old.rigid_drift, this->communicator_.max(drift));
 
     const auto half = [&](const Operator op, const Values &x) {
-      this->dynamics_.apply(op, x.data(), this->work_.body.data());
+      this->delassus_.apply(op, x.data(), this->work_.body.data());
       return this->communicator_.dot(x.data(), this->work_.body.data(),
                                      this->n_) /
              2.;
@@ -238,8 +238,8 @@ namespace nsfd
   template <int dim>
   SmoothMotion<dim>::SmoothMotion(const SceneInput &input,
                                   const Discretization<dim> &discretization,
-                                  Dynamics<dim> &dynamics)
-      : input_(input), discretization_(discretization), dynamics_(dynamics)
+                                  DelassusOperator<dim> &delassus)
+      : input_(input), discretization_(discretization), delassus_(delassus)
   {
   }
 
@@ -257,7 +257,7 @@ namespace nsfd
   void SmoothMotion<dim>::resume_from(const State &state)
   {
     equations_ =
-        std::make_unique<Equations>(input_, discretization_, dynamics_, state);
+        std::make_unique<Equations>(input_, discretization_, delassus_, state);
   }
 
   template <int dim>

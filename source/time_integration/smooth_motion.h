@@ -27,10 +27,10 @@ namespace nsfd
   class SmoothMotion final : public TimeIntegrator<dim>
   {
   public:
-    /** @p dynamics holds the stiffness of the bodies and bonds. */
+    /** @p delassus holds the stiffness of the bodies and bonds. */
     SmoothMotion(const SceneInput &input,
                  const Discretization<dim> &discretization,
-                 Dynamics<dim> &dynamics);
+                 DelassusOperator<dim> &delassus);
     ~SmoothMotion() override;
 
     /**
@@ -65,7 +65,7 @@ namespace nsfd
   private:
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
-    Dynamics<dim> &dynamics_;
+    DelassusOperator<dim> &delassus_;
     class Equations;
     std::unique_ptr<Equations> equations_; ///< since the start
   };

@@ -62,17 +62,17 @@ namespace nsfd
 
   /** Orthonormal with respect to M. */
   template <int dim>
-  double stable_step(const Dynamics<dim> &dynamics, const double enough)
+  double stable_step(const DelassusOperator<dim> &delassus, const double enough)
   {
-    using Operator = typename Dynamics<dim>::Operator;
-    const auto &communicator = dynamics.communicator();
-    const std::size_t n = dynamics.bodies().n_dofs();
+    using Operator = typename DelassusOperator<dim>::Operator;
+    const auto &communicator = delassus.communicator();
+    const std::size_t n = delassus.bodies().n_dofs();
     std::vector<double> v(n), before(n, 0.), w(n), Kv(n), Mw(n);
     for (std::size_t i = 0; i < n; ++i)
       w[i] = std::sin(1. + 12.9898 * double(i % 4096)); // in all modes
     std::vector<double> alpha, beta;
     const auto norm = [&] {
-      dynamics.apply(Operator::mass, w.data(), Mw.data());
+      delassus.apply(Operator::mass, w.data(), Mw.data());
       return std::sqrt(std::max(0., communicator.dot(w.data(), Mw.data(), n)));
     };
     double length = norm(), bound = 0.;
@@ -80,9 +80,9 @@ namespace nsfd
       v.swap(before);
       for (std::size_t i = 0; i < n; ++i)
         v[i] = w[i] / length;
-      dynamics.apply(Operator::stiffness, v.data(), Kv.data());
+      delassus.apply(Operator::stiffness, v.data(), Kv.data());
       alpha.push_back(communicator.dot(v.data(), Kv.data(), n));
-      dynamics.apply(Operator::inverse, Kv.data(), w.data());
+      delassus.apply(Operator::inverse, Kv.data(), w.data());
       const double last = k > 0 ? length : 0.;
       for (std::size_t i = 0; i < n; ++i)
         w[i] -= alpha.back() * v[i] + last * before[i];
@@ -104,6 +104,6 @@ namespace nsfd
     return step_of(bound);
   }
 
-  template double stable_step(const Dynamics<2> &, double);
-  template double stable_step(const Dynamics<3> &, double);
+  template double stable_step(const DelassusOperator<2> &, double);
+  template double stable_step(const DelassusOperator<3> &, double);
 } // namespace nsfd

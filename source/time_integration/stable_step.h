@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 
 #include <limits>
 
@@ -15,12 +15,12 @@ namespace nsfd
 
   /**
    * The same of bodies that are joined by explicit bonds: the largest frequency
-   * of M^{-1} K from above, by Lanczos' method to a thousandth. @p dynamics is
+   * of M^{-1} K from above, by Lanczos' method to a thousandth. @p delassus is
    * prepared for explicit bodies and has its bonds. As soon as steps of
    * @p enough are known to be stable the search ends with what is known.
    * Collective.
    */
   template <int dim>
-  double stable_step(const Dynamics<dim> &dynamics,
+  double stable_step(const DelassusOperator<dim> &delassus,
                      double enough = std::numeric_limits<double>::infinity());
 } // namespace nsfd

@@ -211,7 +211,7 @@ namespace nsfd
                                          const State &old, State &next,
                                          StepReport &report)
   {
-    const auto &communicator = dynamics_.communicator();
+    const auto &communicator = delassus_.communicator();
     const auto &problem = relaxation.load_step();
     PointTerms<dim> points(problem, relaxation.solutions(), old, next);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
@@ -231,7 +231,7 @@ namespace nsfd
     std::vector<double> terms(3 * n);
     const auto put_elastic = [&](const State &state, const std::size_t row) {
       std::vector<double> product(n);
-      dynamics_.apply(Dynamics<dim>::Operator::stiffness,
+      delassus_.apply(DelassusOperator<dim>::Operator::stiffness,
                       state.displacement.data(), product.data());
       for (std::size_t k = 0; k < n; ++k)
         terms[row * n + k] = state.displacement[k] * product[k] / 2.;

@@ -36,8 +36,8 @@ namespace nsfd
   public:
     StaticBalance(const SceneInput &input,
                   const Discretization<dim> &discretization,
-                  const Dynamics<dim> &dynamics)
-        : discretization_(discretization), dynamics_(dynamics),
+                  const DelassusOperator<dim> &delassus)
+        : discretization_(discretization), delassus_(delassus),
           reactions_(discretization.driven_boundaries().size() * dim, 0.),
           has_pressure_(has_pressure(input))
     {
@@ -63,7 +63,7 @@ namespace nsfd
     static bool has_pressure(const SceneInput &input);
 
     const Discretization<dim> &discretization_;
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     std::vector<double> reactions_;
     bool has_pressure_;
   };

@@ -221,14 +221,14 @@ namespace nsfd
 
     /** Largest row sums of the diagonal blocks of W, point by point. */
     template <int dim>
-    void set_majorants(const Dynamics<dim> &dynamics,
+    void set_majorants(const DelassusOperator<dim> &delassus,
                        OneStepProblem<dim> &problem)
     {
-      const auto &faces = dynamics.points().faces;
+      const auto &faces = delassus.points().faces;
       for (std::size_t f = 0; f < faces.size(); ++f) {
         const auto &face = faces[f];
         const unsigned int n = face.count * dim;
-        const double *W = dynamics.face_block(f);
+        const double *W = delassus.face_block(f);
         for (unsigned int p = 0; p < face.count; ++p) {
           double normal = 0., tangential = 0.;
           for (unsigned int r = 0; r < dim; ++r) {
@@ -326,8 +326,9 @@ namespace nsfd
   void set_step(const SceneInput &input,
                 const Discretization<dim> &discretization,
                 const std::vector<PointOrigin> &origins,
-                const Dynamics<dim> &dynamics, const DrivenMotion<dim> &motion,
-                const State &old, const double h, OneStepProblem<dim> &problem)
+                const DelassusOperator<dim> &delassus,
+                const DrivenMotion<dim> &motion, const State &old,
+                const double h, OneStepProblem<dim> &problem)
   {
     problem.time_step = h;
     problem.kind = old.kind;
@@ -342,7 +343,7 @@ namespace nsfd
     set_viscosity(input, origins, old, problem);
     set_dilatancy(input, origins, old, problem);
     set_motion(motion, discretization, old, problem);
-    set_majorants(dynamics, problem);
+    set_majorants(delassus, problem);
   }
 
   template double intact_stiffness(const OneStepProblem<2> &, std::size_t);
@@ -352,11 +353,11 @@ namespace nsfd
   template OneStepProblem<3> constant_data(const SceneInput &,
                                            const Discretization<3> &);
   template void set_step(const SceneInput &, const Discretization<2> &,
-                         const std::vector<PointOrigin> &, const Dynamics<2> &,
-                         const DrivenMotion<2> &, const State &, double,
-                         OneStepProblem<2> &);
+                         const std::vector<PointOrigin> &,
+                         const DelassusOperator<2> &, const DrivenMotion<2> &,
+                         const State &, double, OneStepProblem<2> &);
   template void set_step(const SceneInput &, const Discretization<3> &,
-                         const std::vector<PointOrigin> &, const Dynamics<3> &,
-                         const DrivenMotion<3> &, const State &, double,
-                         OneStepProblem<3> &);
+                         const std::vector<PointOrigin> &,
+                         const DelassusOperator<3> &, const DrivenMotion<3> &,
+                         const State &, double, OneStepProblem<3> &);
 } // namespace nsfd

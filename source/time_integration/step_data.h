@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 
@@ -28,9 +28,10 @@ namespace nsfd
    * points of @p problem.
    */
   template <int dim>
-  void
-  set_step(const SceneInput &input, const Discretization<dim> &discretization,
-           const std::vector<PointOrigin> &origins,
-           const Dynamics<dim> &dynamics, const DrivenMotion<dim> &motion,
-           const State &old, double time_step, OneStepProblem<dim> &problem);
+  void set_step(const SceneInput &input,
+                const Discretization<dim> &discretization,
+                const std::vector<PointOrigin> &origins,
+                const DelassusOperator<dim> &delassus,
+                const DrivenMotion<dim> &motion, const State &old,
+                double time_step, OneStepProblem<dim> &problem);
 } // namespace nsfd

@@ -11,7 +11,7 @@ namespace nsfd
   struct StepParts {
     const SceneInput &input;
     const Discretization<dim> &discretization;
-    Dynamics<dim> &dynamics;
+    DelassusOperator<dim> &delassus;
     OneStepProblem<dim> &problem; ///< of the points of the mesh
     FreeMotion<dim> &free_motion;
     const StepProblem<dim> &step_problem;

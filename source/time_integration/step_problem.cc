@@ -16,8 +16,9 @@ namespace nsfd
   template <int dim>
   StepProblem<dim>::StepProblem(const SceneInput &input,
                                 const Discretization<dim> &discretization,
-                                Dynamics<dim> &dynamics, StepCounters &counters)
-      : input_(input), discretization_(discretization), dynamics_(dynamics),
+                                DelassusOperator<dim> &delassus,
+                                StepCounters &counters)
+      : input_(input), discretization_(discretization), delassus_(delassus),
         counters_(counters),
         motion_(std::make_unique<DrivenMotion<dim>>(input, discretization)),
         sliding_(input)
@@ -44,7 +45,7 @@ namespace nsfd
                              const State &old, const double h,
                              OneStepProblem<dim> &problem) const
   {
-    set_step(input_, discretization_, origins, dynamics_, *motion_, old, h,
+    set_step(input_, discretization_, origins, delassus_, *motion_, old, h,
              problem);
     sliding_.apply(old.relative_velocity, problem);
   }
@@ -58,16 +59,16 @@ namespace nsfd
   {
     SolverReport report;
     for (unsigned int round = 0;; ++round) {
-      const SolverReport part = solver.solve(problem, dynamics_, energy_scale,
+      const SolverReport part = solver.solve(problem, delassus_, energy_scale,
                                              control, impulse, evaluation);
       report.go_on_with(part);
       ++counters_.solves;
       if (!part.converged || round > 30)
         break;
       if (has_extrinsic_ && !keeps_joints &&
-          activate(dynamics_, origins, impulse, problem))
+          activate(delassus_, origins, impulse, problem))
         ++counters_.activation_rounds;
-      else if (sliding_.revise(dynamics_.communicator(), evaluation, impulse,
+      else if (sliding_.revise(delassus_.communicator(), evaluation, impulse,
                                old.relative_velocity,
                                std::max(old.largest_energy, energy_scale),
                                problem))

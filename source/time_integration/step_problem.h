@@ -3,7 +3,7 @@
 #include "energy_safe_sliding.h"
 #include "step_costs.h"
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 #include "nonsmooth/solver.h"
@@ -26,7 +26,7 @@ namespace nsfd
     /** Work goes into @p counters. */
     StepProblem(const SceneInput &input,
                 const Discretization<dim> &discretization,
-                Dynamics<dim> &dynamics, StepCounters &counters);
+                DelassusOperator<dim> &delassus, StepCounters &counters);
     ~StepProblem();
 
     /** What the input asks of the solver of a step. */
@@ -58,7 +58,7 @@ namespace nsfd
   private:
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
-    Dynamics<dim> &dynamics_;
+    DelassusOperator<dim> &delassus_;
     StepCounters &counters_;
     std::unique_ptr<DrivenMotion<dim>> motion_;
     EnergySafeSliding<dim> sliding_;

@@ -120,10 +120,10 @@ namespace nsfd
 
   template <int dim>
   UniquenessBound<dim>::UniquenessBound(const SceneInput &input,
-                                        const Dynamics<dim> &dynamics)
-      : dynamics_(dynamics), theta_(input.time.theta),
+                                        const DelassusOperator<dim> &delassus)
+      : delassus_(delassus), theta_(input.time.theta),
         chi_(input.time.cohesion_rule == CohesionRule::exact ? 0.5 : 1.),
-        flexibility_(dynamics.points().faces.size(), 0.)
+        flexibility_(delassus.points().faces.size(), 0.)
   {
     for (const auto &block : input.interfaces)
       if (block.law) {
@@ -135,8 +135,8 @@ namespace nsfd
   template <int dim>
   void UniquenessBound<dim>::set_flexibility()
   {
-    const auto &points = dynamics_.points();
-    const auto &bodies = dynamics_.bodies();
+    const auto &points = delassus_.points();
+    const auto &bodies = delassus_.bodies();
     std::vector<Block> delassus;
     for (const auto &body : bodies.classes)
       delassus.push_back(
@@ -163,7 +163,7 @@ namespace nsfd
         sides[points.faces[points.face_of[i]].bodies[1] == int(b)][i] =
             entry->second;
     }
-    dynamics_.exchange({{sides[0].data(), sides[1].data()}}, 1);
+    delassus_.exchange({{sides[0].data(), sides[1].data()}}, 1);
     for (std::size_t f = 0; f < points.faces.size(); ++f)
       flexibility_[f] =
           sides[0][points.faces[f].first] + sides[1][points.faces[f].first];
@@ -181,7 +181,7 @@ namespace nsfd
                              : law.steepest_softening();
     return h * h * theta_ * chi_ * problem.strength_factor[point] *
            problem.opening_factor[point] * slope *
-           flexibility_[dynamics_.points().face_of[point]];
+           flexibility_[delassus_.points().face_of[point]];
   }
 
   /** Of one point; infinite if no step is short enough: the traction jumps. */
@@ -203,7 +203,7 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_owned; ++i)
       if (softens(problem, state, i))
         result = std::min(result, bound(problem, i));
-    return dynamics_.communicator().min(result);
+    return delassus_.communicator().min(result);
   }
 
   template <int dim>
@@ -222,7 +222,7 @@ namespace nsfd
       if (past_peak(law, problem.opening_factor[i], after))
         result = std::min(result, bound(problem, i));
     }
-    return dynamics_.communicator().min(result);
+    return delassus_.communicator().min(result);
   }
 
   template <int dim>
@@ -240,7 +240,7 @@ namespace nsfd
       const double wait = time_to_soften(problem, state, i, 2. * result);
       result = std::min(result, std::max(allowed, 0.5 * wait));
     }
-    return dynamics_.communicator().min(result);
+    return delassus_.communicator().min(result);
   }
 
   template class UniquenessBound<2>;

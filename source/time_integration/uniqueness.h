@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "nonsmooth/one_step_problem.h"
 
 #include <vector>
@@ -26,7 +26,8 @@ namespace nsfd
   {
   public:
     /** Collective. Without a cohesive law the flexibilities are zero. */
-    UniquenessBound(const SceneInput &input, const Dynamics<dim> &dynamics);
+    UniquenessBound(const SceneInput &input,
+                    const DelassusOperator<dim> &delassus);
 
     /** The left side at a cohesive point. */
     double ratio(const OneStepProblem<dim> &problem, std::size_t point,
@@ -52,7 +53,7 @@ namespace nsfd
     void set_flexibility();
     double bound(const OneStepProblem<dim> &problem, std::size_t point) const;
 
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     double theta_, chi_;
     std::vector<double> flexibility_; ///< per face
   };

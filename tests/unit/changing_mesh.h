@@ -57,7 +57,7 @@ namespace nsfd
         const auto problems = model.build(*input, communicator);
         if (!problems.empty())
           throw std::invalid_argument(problems.front());
-        model.dynamics->reinit(model.control->step(), input->time.bulk_theta());
+        model.delassus->reinit(model.control->step(), input->time.bulk_theta());
         adaptive =
             std::make_unique<AdaptiveMesh<dim>>(*input, communicator, model);
         state = model.stepper->initial_state();
@@ -79,9 +79,9 @@ namespace nsfd
 
       void set_jumps(const std::vector<double> &gap)
       {
-        model.dynamics->relative_velocity(state.displacement.data(),
+        model.delassus->relative_velocity(state.displacement.data(),
                                           state.jump.data());
-        model.dynamics->relative_velocity(state.velocity.data(),
+        model.delassus->relative_velocity(state.velocity.data(),
                                           state.relative_velocity.data());
         for (std::size_t k = 0; k < gap.size(); ++k)
           state.jump[k] += gap[k];
@@ -115,7 +115,7 @@ namespace nsfd
       std::vector<double> momenta()
       {
         std::vector<double> Mv(state.velocity.size()), result;
-        model.dynamics->apply(Dynamics<dim>::Operator::mass,
+        model.delassus->apply(DelassusOperator<dim>::Operator::mass,
                               state.velocity.data(), Mv.data());
         const unsigned int n = dim == 2 ? 3 : 6;
         for (unsigned int k = 0; k < n; ++k) {
@@ -186,7 +186,7 @@ namespace nsfd
       double jump_of_motion() const
       {
         std::vector<double> Hq(state.jump.size());
-        model.dynamics->relative_velocity(state.displacement.data(), Hq.data());
+        model.delassus->relative_velocity(state.displacement.data(), Hq.data());
         double largest = 0.;
         for (std::size_t i = 0; i < state.beta.size(); ++i)
           if (model.discretization->origins()[i].kind ==

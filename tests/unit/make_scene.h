@@ -54,7 +54,7 @@ namespace nsfd
           throw std::invalid_argument(
               fmt::format("{}", fmt::join(problems, "\n")));
         time_step = this->dynamic_step(*input);
-        this->dynamics->reinit(time_step, input->time.bulk_theta());
+        this->delassus->reinit(time_step, input->time.bulk_theta());
         state = this->stepper->initial_state();
         next = state;
       }

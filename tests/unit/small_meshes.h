@@ -130,10 +130,10 @@ end
   }
 
   template <int dim>
-  Vector delassus(const Dynamics<dim> &dynamics, const Vector &P)
+  Vector delassus(const DelassusOperator<dim> &delassus, const Vector &P)
   {
     Vector U(P.size());
-    dynamics.apply_delassus(P.data(), U.data());
+    delassus.apply_delassus(P.data(), U.data());
     return U;
   }
 
@@ -146,7 +146,7 @@ end
     for (std::size_t k = 0; k < n; ++k) {
       Vector P(n, 0.);
       P[k] = 1.;
-      W.push_back(delassus(*scene.dynamics, P));
+      W.push_back(delassus(*scene.delassus, P));
     }
     return W;
   }

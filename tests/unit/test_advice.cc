@@ -184,7 +184,7 @@ end
       // (38) is the square of the step over the threshold
       for (const double share : {0.5, 0.99, 1.01, 3.})
         EXPECT_NEAR(contraction_number(*scene.input, scene.stepper->problem(),
-                                       soft, *scene.dynamics,
+                                       soft, *scene.delassus,
                                        share * threshold),
                     share * share, 1e-3 * share * share);
     }
@@ -224,7 +224,7 @@ end
         const double bound = scene.stepper->unique_step(soft);
         const double number =
             contraction_number(*scene.input, scene.stepper->problem(), soft,
-                               *scene.dynamics, bound);
+                               *scene.delassus, bound);
         EXPECT_LE(number, 1. + 1e-9) << type << " " << degree;
         // and not far off: C_N L/E = 21 has to be felt at Courant numbers 0.05
         // to 0.2

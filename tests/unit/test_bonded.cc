@@ -91,7 +91,7 @@ end
     for (std::size_t i = 0; i < bonded.size(); ++i)
       bonded[i] = scene.state.kind[i] == PointKind::bonded;
     scene.bonded->set_bonds(bonded);
-    scene.dynamics->reinit(scene.time_step, scene.input->time.theta);
+    scene.delassus->reinit(scene.time_step, scene.input->time.theta);
   }
 
   double dot(const Vector &a, const Vector &b)
@@ -135,13 +135,13 @@ end
   template <int dim>
   double smallest_ratio(const Scene<dim> &scene, std::mt19937 &random)
   {
-    using Operator = typename Dynamics<dim>::Operator;
+    using Operator = typename DelassusOperator<dim>::Operator;
     const std::size_t n = scene.state.displacement.size();
     const auto &bodies = scene.discretization->bodies();
     const auto apply = [&](const Vector &x, Vector &K, Vector &alone) {
       K.assign(n, 0.);
       alone.assign(n, 0.);
-      scene.dynamics->apply(Operator::stiffness, x.data(), K.data());
+      scene.delassus->apply(Operator::stiffness, x.data(), K.data());
       for (std::size_t b = 0; b < bodies.size(); ++b) {
         const auto &block = bodies.classes[bodies.class_of[b]].stiffness;
         for (unsigned int i = 0; i < block.rows; ++i)
@@ -199,24 +199,24 @@ end
   void expect_symmetric(const Case &one)
   {
     SCOPED_TRACE(one.name);
-    using Operator = typename Dynamics<dim>::Operator;
+    using Operator = typename DelassusOperator<dim>::Operator;
     Scene<dim> scene(one.text);
     bond(scene);
     std::mt19937 random(3);
     const std::size_t n = scene.state.displacement.size();
     const Vector x = random_vector(n, random), y = random_vector(n, random);
     Vector Kx(n), Ky(n);
-    scene.dynamics->apply(Operator::stiffness, x.data(), Kx.data());
-    scene.dynamics->apply(Operator::stiffness, y.data(), Ky.data());
+    scene.delassus->apply(Operator::stiffness, x.data(), Kx.data());
+    scene.delassus->apply(Operator::stiffness, y.data(), Ky.data());
     EXPECT_NEAR(dot(y, Kx), dot(x, Ky),
                 1e-13 * std::sqrt(dot(Kx, Kx) * dot(y, y)));
     // M_hat^{-1} undoes M + h^2 theta^2 K
     Vector Mx(n), back(n);
-    scene.dynamics->apply(Operator::mass, x.data(), Mx.data());
+    scene.delassus->apply(Operator::mass, x.data(), Mx.data());
     const double f = std::pow(scene.time_step * scene.input->time.theta, 2);
     for (std::size_t k = 0; k < n; ++k)
       Mx[k] += f * Kx[k];
-    scene.dynamics->apply(Operator::inverse, Mx.data(), back.data());
+    scene.delassus->apply(Operator::inverse, Mx.data(), back.data());
     for (std::size_t k = 0; k < n; ++k)
       back[k] -= x[k];
     EXPECT_LE(std::sqrt(dot(back, back) / dot(x, x)), 1e-7)
@@ -228,7 +228,7 @@ end
   void expect_exact_on_linear_fields(const Case &one)
   {
     SCOPED_TRACE(one.name);
-    using Operator = typename Dynamics<dim>::Operator;
+    using Operator = typename DelassusOperator<dim>::Operator;
     Scene<dim> scene(one.text);
     bond(scene);
     const auto u = scene.discretization->interpolate(
@@ -239,13 +239,13 @@ end
         });
     const std::size_t n = u.size();
     Vector Ku(n);
-    scene.dynamics->apply(Operator::stiffness, u.data(), Ku.data());
+    scene.delassus->apply(Operator::stiffness, u.data(), Ku.data());
     const double alone = bodies_alone(scene, u);
     // a traction is a gradient: cells 1e3 times as long as high lose digits
     EXPECT_NEAR(dot(u, Ku), alone, 1e-9 * alone);
 
     Vector traction(scene.state.jump.size());
-    BulkTraction<dim>(*scene.dynamics).evaluate(u.data(), traction.data());
+    BulkTraction<dim>(*scene.delassus).evaluate(u.data(), traction.data());
     const double lambda = 0.3 / (1.3 * 0.4), mu = 1. / 2.6;
     const auto &points = scene.discretization->points();
     for (std::size_t i = 0; i < points.n_points; ++i) {
@@ -327,20 +327,21 @@ end
       if (scene.state.kind[k / 2] != PointKind::bonded)
         P[k] = random_vector(1, random)[0];
     Vector r(m), v(m), expected(n), U(n);
-    scene.dynamics->generalised_impulse(P.data(), r.data());
-    scene.dynamics->apply(Dynamics<2>::Operator::inverse, r.data(), v.data());
-    scene.dynamics->relative_velocity(v.data(), expected.data());
+    scene.delassus->generalised_impulse(P.data(), r.data());
+    scene.delassus->apply(DelassusOperator<2>::Operator::inverse, r.data(),
+                          v.data());
+    scene.delassus->relative_velocity(v.data(), expected.data());
     // sparse at first, condensed after a while
     for (unsigned int round = 0; round < 40; ++round) {
-      scene.dynamics->apply_delassus(P.data(), U.data());
+      scene.delassus->apply_delassus(P.data(), U.data());
       for (std::size_t k = 0; k < n; ++k)
         if (scene.state.kind[k / 2] != PointKind::bonded) {
           EXPECT_NEAR(U[k], expected[k], 1e-12) << k << " " << round;
         }
     }
     // the blocks that majorants come from bound it
-    for (std::size_t f = 0; f < scene.dynamics->points().faces.size(); ++f) {
-      const auto &face = scene.dynamics->points().faces[f];
+    for (std::size_t f = 0; f < scene.delassus->points().faces.size(); ++f) {
+      const auto &face = scene.delassus->points().faces[f];
       const unsigned int size = face.count * 2;
       for (unsigned int k = 0; k < size; ++k) {
         const std::size_t row = std::size_t(face.first) * 2 + k;
@@ -348,8 +349,8 @@ end
           continue;
         Vector unit(n, 0.);
         unit[row] = 1.;
-        scene.dynamics->apply_delassus(unit.data(), U.data());
-        EXPECT_LE(U[row], scene.dynamics->face_block(f)[k * size + k]);
+        scene.delassus->apply_delassus(unit.data(), U.data());
+        EXPECT_LE(U[row], scene.delassus->face_block(f)[k * size + k]);
         EXPECT_GT(U[row], 0.);
       }
     }
@@ -365,7 +366,7 @@ end
           value[1] = 0.;
         });
     Vector traction(scene.state.jump.size());
-    BulkTraction<2>(*scene.dynamics).evaluate(u.data(), traction.data());
+    BulkTraction<2>(*scene.delassus).evaluate(u.data(), traction.data());
     const double expected = 0.3 / (1.3 * 0.4) + 2. / 2.6; // lambda + 2 mu
     bool any = false;
     for (std::size_t i = 0; i < scene.state.kind.size(); ++i)

@@ -52,10 +52,10 @@ end
   template <int dim>
   ContactProblem last_contacts(const Scene<dim> &scene)
   {
-    LawEvaluation<dim> evaluation(scene.stepper->problem(), *scene.dynamics, 0.,
+    LawEvaluation<dim> evaluation(scene.stepper->problem(), *scene.delassus, 0.,
                                   1e-12);
     evaluation.update(scene.state.impulse);
-    return condense_contacts<dim>(scene.stepper->problem(), *scene.dynamics,
+    return condense_contacts<dim>(scene.stepper->problem(), *scene.delassus,
                                   evaluation);
   }
 

@@ -229,7 +229,7 @@ end
     const Vector modes[] = {mode(0), mode(1), mode(2)};
     const auto momentum = [&](const unsigned int k) {
       Vector Mv(scene.state.velocity.size());
-      scene.dynamics->apply(Dynamics<2>::Operator::mass,
+      scene.delassus->apply(DelassusOperator<2>::Operator::mass,
                             scene.state.velocity.data(), Mv.data());
       return dot(modes[k], Mv);
     };
@@ -309,10 +309,10 @@ end
                        {"Time/theta=" + theta, "Time/cohesion rule=" + rule});
         const double th = std::stod(theta);
         const std::size_t n = scene.discretization->bodies().n_dofs();
-        using Operator = Dynamics<2>::Operator;
+        using Operator = DelassusOperator<2>::Operator;
         const auto apply = [&](const Operator op, const Vector &x) {
           Vector y(n);
-          scene.dynamics->apply(op, x.data(), y.data());
+          scene.delassus->apply(op, x.data(), y.data());
           return y;
         };
         const auto energy = [&](const State &state) {

@@ -113,7 +113,7 @@ subsection Time
   set step = 0.1
 end
 )");
-    const DelassusCost cost = count_delassus(*scene.dynamics);
+    const DelassusCost cost = count_delassus(*scene.delassus);
     // two points on each of four sides, two components
     EXPECT_EQ(cost.rows, 16u);
     // per point two rotations of 4 products and 2 sums, and the jump

@@ -308,7 +308,7 @@ end
     // H^T nothing: momentum by the mass matrix and rigid translations
     const auto &mesh = *scene.discretization;
     std::vector<double> Mv(scene.state.velocity.size());
-    scene.dynamics->apply(Dynamics<2>::Operator::mass,
+    scene.delassus->apply(DelassusOperator<2>::Operator::mass,
                           scene.state.velocity.data(), Mv.data());
     Vec3 momentum{}, sum{};
     for (unsigned int c = 0; c < 2; ++c) {

@@ -21,7 +21,7 @@ using nsfd::test::Scene;
 namespace test_materials
 {
   using Vector = std::vector<double>;
-  using Operator = Dynamics<2>::Operator;
+  using Operator = DelassusOperator<2>::Operator;
 
   /** A plate that is thrown at a wall; MATERIAL and FACES are filled in. */
   const std::string plate = R"(
@@ -144,7 +144,7 @@ end
         [](const auto &x, unsigned int, double *v) { v[0] = x[0], v[1] = 0.; });
     Vector product(move.size());
     const auto form = [&](const Operator op, const Vector &v) {
-      scene.dynamics->apply(op, v.data(), product.data());
+      scene.delassus->apply(op, v.data(), product.data());
       double sum = 0.;
       for (std::size_t i = 0; i < v.size(); ++i)
         sum += v[i] * product[i];
@@ -243,15 +243,15 @@ end
             v[1] = 0.5 + 0.3 * x[0];
           });
       Vector C(rigid_motion.size()), work(C.size());
-      scene.dynamics->apply(Operator::damping, rigid_motion.data(), C.data());
+      scene.delassus->apply(Operator::damping, rigid_motion.data(), C.data());
       const double of_rigid_motion = largest(C);
       Vector v(C.size()), sum(C.size());
       for (std::size_t i = 0; i < v.size(); ++i)
         v[i] = std::sin(1. + 12.9898 * double(i));
       const double h = scene.time_step, theta = 0.5;
-      scene.dynamics->apply(Operator::mass, v.data(), sum.data());
-      scene.dynamics->apply(Operator::stiffness, v.data(), work.data());
-      scene.dynamics->apply(Operator::damping, v.data(), C.data());
+      scene.delassus->apply(Operator::mass, v.data(), sum.data());
+      scene.delassus->apply(Operator::stiffness, v.data(), work.data());
+      scene.delassus->apply(Operator::damping, v.data(), C.data());
       EXPECT_LT(of_rigid_motion, 1e-13 * largest(C)); // of a motion of size 1
       double power = 0., own = 0.;
       for (std::size_t i = 0; i < v.size(); ++i) {
@@ -261,14 +261,14 @@ end
       if (scene.bonded)
         scene.bonded->set_bonds(
             std::vector<std::uint8_t>(scene.state.kind.size(), 0));
-      scene.dynamics->apply(Operator::damping, v.data(), C.data());
+      scene.delassus->apply(Operator::damping, v.data(), C.data());
       for (std::size_t i = 0; i < v.size(); ++i)
         own += v[i] * C[i];
       EXPECT_GE(power, 31. / 32. * own);
       EXPECT_GT(own, 0.);
       if (scene.bonded)
         continue; // its matrix is another one now
-      scene.dynamics->apply(Operator::inverse, sum.data(), work.data());
+      scene.delassus->apply(Operator::inverse, sum.data(), work.data());
       EXPECT_LT(difference(work, v), 1e-11);
     }
   }
@@ -283,15 +283,15 @@ end
       for (std::size_t i = 0; i < n; ++i)
         v[i] = std::sin(1. + 12.9898 * double(i));
       const double h = scene.time_step, theta = 0.5;
-      scene.dynamics->apply(Operator::mass, v.data(), sum.data());
+      scene.delassus->apply(Operator::mass, v.data(), sum.data());
       for (const auto &[op, share] :
            {std::pair(Operator::stiffness, h * h * theta * theta),
             std::pair(Operator::damping, h * theta)}) {
-        scene.dynamics->apply(op, v.data(), work.data());
+        scene.delassus->apply(op, v.data(), work.data());
         for (std::size_t i = 0; i < n; ++i)
           sum[i] += share * work[i];
       }
-      scene.dynamics->apply(Operator::inverse, sum.data(), work.data());
+      scene.delassus->apply(Operator::inverse, sum.data(), work.data());
       EXPECT_LT(difference(work, v), 1e-10) << solver;
     }
   }
@@ -308,7 +308,7 @@ end
           out[1] = -0.3 * x[1];
         });
     Vector C(v.size());
-    scene.dynamics->apply(Operator::damping, v.data(), C.data());
+    scene.delassus->apply(Operator::damping, v.data(), C.data());
     // eta, zeta = 0.3, 0.2: xx 0.6 (1 - 0.7/3) + 0.14, yy, xy; over 32
     const double trace = 0.7, xx = 0.6 * (1. - trace / 3.) + 0.2 * trace,
                  yy = 0.6 * (-0.3 - trace / 3.) + 0.2 * trace, xy = 0.3 * 0.4;

@@ -19,15 +19,15 @@ namespace small_meshes::test_preconditioners
   }
 
   template <int dim>
-  Vector delassus_diagonal(const Dynamics<dim> &dynamics)
+  Vector delassus_diagonal(const DelassusOperator<dim> &delassus)
   {
-    const auto &points = dynamics.points();
+    const auto &points = delassus.points();
     Vector result(points.n_points * dim);
     for (std::size_t f = 0; f < points.faces.size(); ++f) {
       const unsigned int n = points.faces[f].count * dim;
       for (unsigned int k = 0; k < n; ++k)
         result[std::size_t(points.faces[f].first) * dim + k] =
-            dynamics.face_block(f)[k * n + k];
+            delassus.face_block(f)[k * n + k];
     }
     return result;
   }
@@ -37,21 +37,21 @@ namespace small_meshes::test_preconditioners
   {
     Scene<dim> scene(
         text, {"Solver/path=assembled", "Solver/linear solver=" + solver});
-    auto &dynamics = *scene.dynamics;
-    const Vector diagonal = delassus_diagonal(dynamics);
+    auto &delassus = *scene.delassus;
+    const Vector diagonal = delassus_diagonal(delassus);
     const std::size_t n = diagonal.size();
     for (const bool all : {true, false}) {
       const Vector D = compliance(diagonal, all, 1e-2, 1e2);
-      dynamics.prepare_preconditioner(D);
+      delassus.prepare_preconditioner(D);
       for (unsigned int seed = 0; seed < 3; ++seed) {
         const Vector r = random_vector(n, 30 + seed);
         Vector z(n), Wz(n);
-        dynamics.precondition(r.data(), z.data());
+        delassus.precondition(r.data(), z.data());
         for (std::size_t k = 0; k < n; ++k)
           if (D[k] < 0.) {
             EXPECT_EQ(z[k], 0.) << "does not take part";
           }
-        dynamics.apply_delassus(z.data(), Wz.data());
+        delassus.apply_delassus(z.data(), Wz.data());
         // Woodbury subtracts numbers that are 1 / D = 100 times larger, the
         // inner solve of `cg` stops at 1e-11
         for (std::size_t k = 0; k < n; ++k)
@@ -76,35 +76,35 @@ namespace small_meshes::test_preconditioners
   TEST(Preconditioner, SparseReusesItsFactor)
   {
     Scene<2> scene(quads, {"Solver/path=assembled"});
-    auto &dynamics = *scene.dynamics;
-    Vector D = delassus_diagonal(dynamics);
-    dynamics.prepare_preconditioner(D);
-    const auto count = dynamics.counters().global_factorisations;
-    dynamics.prepare_preconditioner(D);
-    EXPECT_EQ(dynamics.counters().global_factorisations, count);
+    auto &delassus = *scene.delassus;
+    Vector D = delassus_diagonal(delassus);
+    delassus.prepare_preconditioner(D);
+    const auto count = delassus.counters().global_factorisations;
+    delassus.prepare_preconditioner(D);
+    EXPECT_EQ(delassus.counters().global_factorisations, count);
     D[3] *= 2.;
-    dynamics.prepare_preconditioner(D);
-    EXPECT_EQ(dynamics.counters().global_factorisations, count + 1);
-    dynamics.reinit(scene.time_step / 2., 0.6);
-    dynamics.prepare_preconditioner(D);
-    EXPECT_EQ(dynamics.counters().global_factorisations, count + 2);
+    delassus.prepare_preconditioner(D);
+    EXPECT_EQ(delassus.counters().global_factorisations, count + 1);
+    delassus.reinit(scene.time_step / 2., 0.6);
+    delassus.prepare_preconditioner(D);
+    EXPECT_EQ(delassus.counters().global_factorisations, count + 2);
   }
 
   template <int dim>
   void check_elementwise(const std::string &text)
   {
     Scene<dim> scene(text);
-    auto &dynamics = *scene.dynamics;
-    const Vector diagonal = delassus_diagonal(dynamics);
+    auto &delassus = *scene.delassus;
+    const Vector diagonal = delassus_diagonal(delassus);
     const std::size_t n = diagonal.size();
     for (const bool all : {true, false}) {
       const Vector D = compliance(diagonal, all, 1e-2, 1e2);
-      dynamics.prepare_preconditioner(D);
+      delassus.prepare_preconditioner(D);
       const Vector r = random_vector(n, 40);
       Vector z(n, 5.);
-      dynamics.precondition(r.data(), z.data());
+      delassus.precondition(r.data(), z.data());
       // (W_ff + D_f) z_f = r_f on the components that take part
-      const auto &faces = dynamics.points().faces;
+      const auto &faces = delassus.points().faces;
       for (std::size_t f = 0; f < faces.size(); ++f) {
         const unsigned int count = faces[f].count * dim;
         const std::size_t first = std::size_t(faces[f].first) * dim;
@@ -115,7 +115,7 @@ namespace small_meshes::test_preconditioners
           }
           double value = D[first + i] * z[first + i];
           for (unsigned int j = 0; j < count; ++j)
-            value += dynamics.face_block(f)[i * count + j] * z[first + j];
+            value += delassus.face_block(f)[i * count + j] * z[first + j];
           // condition below 1e4 / 1e-2
           ASSERT_NEAR(value, r[first + i], 1e-10);
         }
@@ -152,10 +152,10 @@ namespace small_meshes::test_preconditioners
   void check_inner(const std::string &text)
   {
     Scene<dim> scene(text);
-    auto &dynamics = *scene.dynamics;
-    auto *inner = dynamic_cast<InnerSolver *>(scene.dynamics.get());
+    auto &delassus = *scene.delassus;
+    auto *inner = dynamic_cast<InnerSolver *>(scene.delassus.get());
     ASSERT_NE(inner, nullptr);
-    const Vector diagonal = delassus_diagonal(dynamics);
+    const Vector diagonal = delassus_diagonal(delassus);
     const std::size_t n = diagonal.size();
     Vector root(n);
     for (std::size_t k = 0; k < n; ++k)
@@ -167,7 +167,7 @@ namespace small_meshes::test_preconditioners
         r[k] = D[k] >= 0. ? r[k] * root[k] : 0.;
       EXPECT_GT(inner->solve_inner({D, 1e-6, 1000, nullptr, nullptr, 0.}, r, x),
                 0u);
-      Vector residual = delassus(dynamics, x);
+      Vector residual = delassus(delassus, x);
       for (std::size_t k = 0; k < n; ++k)
         if (D[k] < 0.) {
           EXPECT_EQ(x[k], 0.) << "does not take part";
@@ -195,7 +195,7 @@ namespace small_meshes::test_preconditioners
         }
       }
       EXPECT_GT(inner->solve_inner({D, 1e-6, 400, &J, &R, shift}, f, y), 0u);
-      Vector Wy = delassus(dynamics, y), result(y), inverse(n);
+      Vector Wy = delassus(delassus, y), result(y), inverse(n);
       for (std::size_t k = 0; k < n; ++k) {
         inverse[k] = 1. / root[k];
         Wy[k] -= (1. - shift) * R[k] * y[k];
@@ -229,8 +229,8 @@ namespace small_meshes::test_preconditioners
   TEST(InnerSolver, NothingComesFromNothing)
   {
     Scene<2> scene(quads);
-    auto *inner = dynamic_cast<InnerSolver *>(scene.dynamics.get());
-    const Vector D = delassus_diagonal(*scene.dynamics);
+    auto *inner = dynamic_cast<InnerSolver *>(scene.delassus.get());
+    const Vector D = delassus_diagonal(*scene.delassus);
     Vector x(D.size(), 3.);
     EXPECT_EQ(inner->solve_inner({D, 1e-6, 100, nullptr, nullptr, 0.},
                                  Vector(D.size(), 0.), x),
@@ -243,14 +243,14 @@ namespace small_meshes::test_preconditioners
     // D = 0 with more points than a rigid face has modes: W_ff is singular,
     // the preconditioner must stay symmetric, positive and finite
     Scene<2> scene(mixed);
-    auto &dynamics = *scene.dynamics;
-    const std::size_t n = dynamics.points().n_points * 2;
-    dynamics.prepare_preconditioner(Vector(n, 0.));
+    auto &delassus = *scene.delassus;
+    const std::size_t n = delassus.points().n_points * 2;
+    delassus.prepare_preconditioner(Vector(n, 0.));
     for (unsigned int seed = 0; seed < 10; ++seed) {
       const Vector r = random_vector(n, seed), s = random_vector(n, 50 + seed);
       Vector z(n), y(n);
-      dynamics.precondition(r.data(), z.data());
-      dynamics.precondition(s.data(), y.data());
+      delassus.precondition(r.data(), z.data());
+      delassus.precondition(s.data(), y.data());
       EXPECT_GT(dot(r, z), 0.);
       EXPECT_NEAR(dot(s, z), dot(r, y),
                   1e-12 * std::sqrt(dot(r, z) * dot(s, y)));

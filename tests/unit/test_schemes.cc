@@ -40,7 +40,7 @@ subsection Time
 end
 )";
 
-    using Operator = Dynamics<2>::Operator;
+    using Operator = DelassusOperator<2>::Operator;
 
     // v.Mv/2 + q.Kq/2 - h/2 v.Kq of bodies without impulses (symplectic Euler).
     double kept_energy(const test::Scene<2> &scene)
@@ -48,8 +48,8 @@ end
       const State &s = scene.state;
       const std::size_t n = s.velocity.size();
       std::vector<double> Mv(n), Kq(n);
-      scene.dynamics->apply(Operator::mass, s.velocity.data(), Mv.data());
-      scene.dynamics->apply(Operator::stiffness, s.displacement.data(),
+      scene.delassus->apply(Operator::mass, s.velocity.data(), Mv.data());
+      scene.delassus->apply(Operator::stiffness, s.displacement.data(),
                             Kq.data());
       double sum = 0.;
       for (std::size_t i = 0; i < n; ++i)
@@ -126,8 +126,8 @@ end
       std::vector<double> unit(n, 0.), force(n), column(n);
       for (unsigned int j = 0; j < n; ++j) {
         unit[j] = 1.;
-        scene.dynamics->apply(Operator::stiffness, unit.data(), force.data());
-        scene.dynamics->apply(Operator::inverse, force.data(), column.data());
+        scene.delassus->apply(Operator::stiffness, unit.data(), force.data());
+        scene.delassus->apply(Operator::inverse, force.data(), column.data());
         unit[j] = 0.;
         for (unsigned int i = 0; i < n; ++i)
           matrix(i, j) = column[i];
@@ -137,7 +137,7 @@ end
       for (unsigned int j = 0; j < n; ++j)
         largest = std::max(largest, matrix.eigenvalue(j).real());
       const double exact = 2. / std::sqrt(largest),
-                   found = stable_step(*scene.dynamics);
+                   found = stable_step(*scene.delassus);
       EXPECT_LE(found, exact * (1. + 1e-10));
       EXPECT_GE(found, exact * (1. - 1e-3));
       EXPECT_LT(found, 0.5 * stable_step(scene.discretization->bodies()));

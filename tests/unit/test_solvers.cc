@@ -129,8 +129,8 @@ end
   TEST(GaussSeidel, ColoursShareNoBody)
   {
     const auto check = [](const auto &scene) {
-      const auto &points = scene.dynamics->points();
-      const auto colours = colour_faces(*scene.dynamics);
+      const auto &points = scene.delassus->points();
+      const auto colours = colour_faces(*scene.delassus);
       std::vector<unsigned int> seen(points.faces.size(), 0);
       for (const auto &faces : colours) {
         std::set<int> bodies;
@@ -193,12 +193,12 @@ end
       const double size = largest(scene.state.relative_velocity);
       for (const auto &name : solvers()) {
         const auto solver = SolverRegistry<dim>::instance().create(name);
-        LawEvaluation<dim> evaluation(problem, *scene.dynamics, scale, 1e-10);
+        LawEvaluation<dim> evaluation(problem, *scene.delassus, scale, 1e-10);
         SolverControl control;
         control.tolerance = 1e-10;
         control.maximum_iterations = 2000;
         Vector P(problem.n_points * dim, 0.);
-        const auto report = solver->solve(problem, *scene.dynamics, scale,
+        const auto report = solver->solve(problem, *scene.delassus, scale,
                                           control, P, evaluation);
         if (expected.may_cycle && !report.converged &&
             (name == "fixed point" || name == "anderson" ||
@@ -210,9 +210,9 @@ end
             << name << ", step " << step << ", residual " << report.residual;
 
         // its own statement, checked from scratch
-        LawEvaluation<dim> judge(problem, *scene.dynamics, scale, 1e-10);
+        LawEvaluation<dim> judge(problem, *scene.delassus, scale, 1e-10);
         Vector U(P.size());
-        scene.dynamics->apply_delassus(P.data(), U.data());
+        scene.delassus->apply_delassus(P.data(), U.data());
         judge.update(P);
         EXPECT_LE(judge.error, 1.01e-10) << name;
         for (std::size_t k = 0; k < U.size(); ++k) {
@@ -226,7 +226,7 @@ end
           }
         }
         // a solution needs no work
-        const auto again = solver->solve(problem, *scene.dynamics, scale,
+        const auto again = solver->solve(problem, *scene.delassus, scale,
                                          control, P, evaluation);
         EXPECT_EQ(again.newton + again.sweeps, 0u) << name;
       }
@@ -309,12 +309,12 @@ end
     const auto &problem = scene.stepper->problem();
     for (const auto &name : solvers()) {
       const auto solver = SolverRegistry<2>::instance().create(name);
-      LawEvaluation<2> evaluation(problem, *scene.dynamics, 1., 1e-10);
+      LawEvaluation<2> evaluation(problem, *scene.delassus, 1., 1e-10);
       SolverControl control;
       control.tolerance = 1e-10;
       Vector P(problem.n_points * 2, 0.);
       const auto report =
-          solver->solve(problem, *scene.dynamics, 1., control, P, evaluation);
+          solver->solve(problem, *scene.delassus, 1., control, P, evaluation);
       EXPECT_TRUE(report.converged);
       EXPECT_GT(report.newton + report.sweeps, 0u) << name;
       EXPECT_GT(evaluation.law_calls, 0u) << name;
@@ -330,13 +330,13 @@ end
     const auto &problem = scene.stepper->problem();
     for (const auto &name : solvers()) {
       const auto solver = SolverRegistry<2>::instance().create(name);
-      LawEvaluation<2> evaluation(problem, *scene.dynamics, 1., 1e-8);
+      LawEvaluation<2> evaluation(problem, *scene.delassus, 1., 1e-8);
       SolverControl control;
       control.tolerance = 1e-19;
       control.maximum_iterations = 5;
       Vector P(problem.n_points * 2, 0.);
       const auto report =
-          solver->solve(problem, *scene.dynamics, 1., control, P, evaluation);
+          solver->solve(problem, *scene.delassus, 1., control, P, evaluation);
       EXPECT_FALSE(report.converged) << name;
       EXPECT_GT(report.residual, 1e-19) << name;
       EXPECT_TRUE(std::isfinite(report.residual)) << name;
@@ -407,7 +407,7 @@ end
   {
     const auto &problem = scene.stepper->problem();
     Vector U(P.size());
-    scene.dynamics->apply_delassus(P.data(), U.data());
+    scene.delassus->apply_delassus(P.data(), U.data());
     double result = 0.5 * dot(P, U) + dot(P, problem.free_velocity);
     for (std::size_t i = 0; i < problem.n_points; ++i)
       result -= P[i * dim] * problem.target[i];
@@ -426,13 +426,13 @@ end
     std::normal_distribution<double> number;
     for (const auto &name : solvers()) {
       const auto solver = SolverRegistry<2>::instance().create(name);
-      LawEvaluation<2> evaluation(problem, *scene.dynamics, scale, 1e-12);
+      LawEvaluation<2> evaluation(problem, *scene.delassus, scale, 1e-12);
       SolverControl control;
       control.tolerance = 1e-12;
       control.maximum_iterations = 1000;
       Vector P(problem.n_points * 2, 0.);
       ASSERT_TRUE(
-          solver->solve(problem, *scene.dynamics, scale, control, P, evaluation)
+          solver->solve(problem, *scene.delassus, scale, control, P, evaluation)
               .converged)
           << name;
       const double least = objective(scene, P);

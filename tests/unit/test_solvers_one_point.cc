@@ -43,8 +43,8 @@ namespace solver_checks::test_solvers_one_point
       points.faces = {face};
       points.face_of = {0};
 
-      dynamics = make_elementwise_dynamics<2>(communicator, bodies, points);
-      dynamics->reinit(h, 1.);
+      delassus = make_local_delassus<2>(communicator, bodies, points);
+      delassus->reinit(h, 1.);
 
       resize(problem, 1);
       problem.n_owned = 1;
@@ -61,7 +61,7 @@ namespace solver_checks::test_solvers_one_point
     /** The natural map at P, without and with a share of 1e-3 too much. */
     double error_at(const Vector &P)
     {
-      LawEvaluation<2> evaluation(problem, *dynamics, 1., 1e-12);
+      LawEvaluation<2> evaluation(problem, *delassus, 1., 1e-12);
       evaluation.update(P);
       return evaluation.error;
     }
@@ -81,12 +81,12 @@ namespace solver_checks::test_solvers_one_point
       for (const auto &name : solvers())
         for (const Vector &start : {Vector{0., 0.}, Vector{3., -2.}}) {
           const auto solver = SolverRegistry<2>::instance().create(name);
-          LawEvaluation<2> evaluation(problem, *dynamics, 1., 1e-12);
+          LawEvaluation<2> evaluation(problem, *delassus, 1., 1e-12);
           SolverControl control;
           control.tolerance = 1e-12;
           Vector P(start);
           const auto report =
-              solver->solve(problem, *dynamics, 1., control, P, evaluation);
+              solver->solve(problem, *delassus, 1., control, P, evaluation);
           EXPECT_TRUE(report.converged) << name;
           EXPECT_LE(report.residual, 1e-12) << name;
           // the tolerance times the condition of the problem, below 100
@@ -101,7 +101,7 @@ namespace solver_checks::test_solvers_one_point
     Communicator communicator;
     Bodies bodies;
     InterfacePoints<2> points;
-    std::unique_ptr<Dynamics<2>> dynamics;
+    std::unique_ptr<DelassusOperator<2>> delassus;
     OneStepProblem<2> problem;
   };
 
@@ -110,7 +110,7 @@ namespace solver_checks::test_solvers_one_point
     OnePoint point;
     const Vector P{0.7, -0.3};
     Vector U(2);
-    point.dynamics->apply_delassus(P.data(), U.data());
+    point.delassus->apply_delassus(P.data(), U.data());
     EXPECT_NEAR(U[0], 2. * 0.7 - 0.5 * 0.3, 1e-15);
     EXPECT_NEAR(U[1], 0.5 * 0.7 - 0.3, 1e-15);
   }
@@ -152,11 +152,11 @@ namespace solver_checks::test_solvers_one_point
     point.problem.contact = {1};
     point.problem.interactions[0].friction = 0.3;
     point.set_free_velocity(0.5, 0.8);
-    LawEvaluation<2> evaluation(point.problem, *point.dynamics, 1., 1e-12);
+    LawEvaluation<2> evaluation(point.problem, *point.delassus, 1., 1e-12);
     for (const auto &name : solvers()) {
       const auto solver = SolverRegistry<2>::instance().create(name);
       Vector P{1., 1.};
-      const auto report = solver->solve(point.problem, *point.dynamics, 1.,
+      const auto report = solver->solve(point.problem, *point.delassus, 1.,
                                         SolverControl(), P, evaluation);
       EXPECT_TRUE(report.converged) << name;
       // the floor of the natural map: 1e-6 of a velocity of 1, times 1e-8
@@ -227,7 +227,7 @@ namespace solver_checks::test_solvers_one_point
     const Vector P{-0.6 * limit, 0.7 * limit};
     point.set_free_velocity(-point.W_NN * P[0] - point.W_NT * P[1],
                             -point.W_NT * P[0] - point.W_TT * P[1]);
-    LawEvaluation<2> evaluation(problem, *point.dynamics, 1., 1e-12);
+    LawEvaluation<2> evaluation(problem, *point.delassus, 1., 1e-12);
     evaluation.update(P);
     EXPECT_LE(evaluation.error, 1e-13);
     EXPECT_FALSE(evaluation.solutions[0].damages);
@@ -251,7 +251,7 @@ namespace solver_checks::test_solvers_one_point
     problem.majorant_normal = {10. * point.W_NN};
     point.set_free_velocity(0.3 * d_0 / h, 0.);
     const Vector intact{-w * h * C * d_0, 0.}, none{0., 0.};
-    LawEvaluation<2> evaluation(problem, *point.dynamics, 1., 1e-12);
+    LawEvaluation<2> evaluation(problem, *point.delassus, 1., 1e-12);
     evaluation.update(intact);
     EXPECT_TRUE(evaluation.solutions[0].damages);
     evaluation.update(none);
@@ -260,9 +260,9 @@ namespace solver_checks::test_solvers_one_point
     for (const std::string name : {"dual newton", "gauss seidel"}) {
       const auto solver = SolverRegistry<2>::instance().create(name);
       Vector P(intact);
-      LawEvaluation<2> own(problem, *point.dynamics, 1., 1e-12);
+      LawEvaluation<2> own(problem, *point.delassus, 1., 1e-12);
       const auto report =
-          solver->solve(problem, *point.dynamics, 1., SolverControl(), P, own);
+          solver->solve(problem, *point.delassus, 1., SolverControl(), P, own);
       EXPECT_TRUE(report.converged) << name;
       EXPECT_NEAR(P[0], 0., 1e-10) << name;
     }

@@ -121,18 +121,19 @@ end
   void check_matrix(const std::string &input)
   {
     Parts<dim> parts(input);
-    const auto &dynamics = *parts.scene.dynamics;
-    const std::size_t n = dynamics.bodies().n_dofs();
+    const auto &delassus = *parts.scene.delassus;
+    const std::size_t n = delassus.bodies().n_dofs();
     const Vector x = random_vector(n, 5);
     Vector expected(n), y(n), jump(parts.k.size());
-    dynamics.relative_velocity(x.data(), jump.data());
+    delassus.relative_velocity(x.data(), jump.data());
     for (std::size_t i = 0; i < jump.size(); ++i)
       jump[i] *= parts.k[i];
-    dynamics.generalised_impulse(jump.data(), expected.data());
-    dynamics.apply(Dynamics<dim>::Operator::mass, x.data(), y.data());
+    delassus.generalised_impulse(jump.data(), expected.data());
+    delassus.apply(DelassusOperator<dim>::Operator::mass, x.data(), y.data());
     for (std::size_t i = 0; i < n; ++i)
       expected[i] += y[i];
-    dynamics.apply(Dynamics<dim>::Operator::stiffness, x.data(), y.data());
+    delassus.apply(DelassusOperator<dim>::Operator::stiffness, x.data(),
+                   y.data());
     double size = 0.;
     for (std::size_t i = 0; i < n; ++i) {
       expected[i] += parts.s * y[i];
@@ -275,7 +276,7 @@ end
       parts.k[i] = face.boundary ? 0. : 1e12 * parts.k[i];
     }
     const auto &communicator = parts.scene.communicator;
-    const auto &dynamics = *parts.scene.dynamics;
+    const auto &delassus = *parts.scene.delassus;
     auto &assembly = parts.assembly;
     ConformingSpace joined(communicator, dim, assembly.unknowns(),
                            assembly.node_pairs());
@@ -284,10 +285,10 @@ end
     const std::size_t n = first.back();
     const auto add_bodies = [&](const double *x, double *y) {
       Vector z(n);
-      dynamics.apply(Dynamics<dim>::Operator::mass, x, z.data());
+      delassus.apply(DelassusOperator<dim>::Operator::mass, x, z.data());
       for (std::size_t i = 0; i < n; ++i)
         y[i] += z[i];
-      dynamics.apply(Dynamics<dim>::Operator::stiffness, x, z.data());
+      delassus.apply(DelassusOperator<dim>::Operator::stiffness, x, z.data());
       for (std::size_t i = 0; i < n; ++i)
         y[i] += parts.s * z[i];
     };
@@ -300,7 +301,7 @@ end
     Vector t(n, 0.), b(n), rest(n), coarse(n);
     for (std::size_t i = 0; i < n; i += dim)
       t[i] = 1.;
-    dynamics.apply(Dynamics<dim>::Operator::mass, t.data(), b.data());
+    delassus.apply(DelassusOperator<dim>::Operator::mass, t.data(), b.data());
     EXPECT_LE(
         solver->solve_parts(b.data(), n, rest.data(), coarse.data(), 1e-10),
         70);
@@ -309,7 +310,7 @@ end
       ASSERT_NEAR(rest[i] + coarse[i], t[i], 1e-8);
     // what pulls at the springs is known apart from the translation
     Vector jump(parts.k.size());
-    dynamics.relative_velocity(rest.data(), jump.data());
+    delassus.relative_velocity(rest.data(), jump.data());
     for (std::size_t i = 0; i < jump.size(); ++i)
       if (parts.k[i] > 0.) {
         ASSERT_NEAR(jump[i], 0., 1e-15);

@@ -27,10 +27,10 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  BodySystem<dim>::BodySystem(const Dynamics<dim> &dynamics,
+  BodySystem<dim>::BodySystem(const DelassusOperator<dim> &delassus,
                               const double time_step, const double theta,
                               const long long largest_factor)
-      : dynamics_(dynamics), largest_factor_(largest_factor)
+      : delassus_(delassus), largest_factor_(largest_factor)
   {
     find_faces();
     find_pattern();
@@ -42,7 +42,7 @@ namespace nsfd
   {
     time_step_ = time_step;
     theta_ = theta;
-    shares_ = dynamics_.shares(time_step, theta);
+    shares_ = delassus_.shares(time_step, theta);
     fill_bodies();
     find_impedance();
   }
@@ -51,8 +51,8 @@ namespace nsfd
   template <int dim>
   void BodySystem<dim>::find_faces()
   {
-    const auto &points = dynamics_.points();
-    const auto &bodies = dynamics_.bodies();
+    const auto &points = delassus_.points();
+    const auto &bodies = delassus_.bodies();
     // (body, slot, sign) of every side of every point
     struct Side {
       std::size_t body, slot;
@@ -115,7 +115,7 @@ namespace nsfd
   template <int dim>
   void BodySystem<dim>::find_pattern()
   {
-    const auto &bodies = dynamics_.bodies();
+    const auto &bodies = delassus_.bodies();
     std::vector<std::vector<int>> column(bodies.n_dofs());
     for (std::size_t b = 0; b < bodies.size(); ++b)
       for (std::size_t j = bodies.first_dof[b]; j < bodies.first_dof[b + 1];
@@ -155,7 +155,7 @@ namespace nsfd
   template <int dim>
   void BodySystem<dim>::fill_bodies()
   {
-    const auto &bodies = dynamics_.bodies();
+    const auto &bodies = delassus_.bodies();
     bodies_.assign(matrix_.column.size(), 0.);
     std::size_t next = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -169,8 +169,8 @@ namespace nsfd
   template <int dim>
   void BodySystem<dim>::find_impedance()
   {
-    const auto &points = dynamics_.points();
-    const auto &bodies = dynamics_.bodies();
+    const auto &points = delassus_.points();
+    const auto &bodies = delassus_.bodies();
     impedance_.assign(points.n_points * dim, 0.);
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const FaceRows &face = faces_[f];
@@ -202,7 +202,7 @@ namespace nsfd
   template <int dim>
   void BodySystem<dim>::assemble(const Vector &S)
   {
-    const auto &points = dynamics_.points();
+    const auto &points = delassus_.points();
     matrix_.value = bodies_;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const FaceRows &face = faces_[f];
@@ -250,7 +250,7 @@ namespace nsfd
     means_ = Means::iteration;
     if (!iteration_)
       iteration_ = std::make_unique<BodyKrylov>(
-          dim, dynamics_.bodies().first_dof, faces_);
+          dim, delassus_.bodies().first_dof, faces_);
     assemble(iteration_->cap(S, impedance_));
     return iteration_->prepare(matrix_, bodies_);
   }
@@ -284,7 +284,7 @@ namespace nsfd
   {
     const bool is_new = !cholesky_;
     if (is_new)
-      cholesky_ = make_cholesky_solver(dynamics_.communicator());
+      cholesky_ = make_cholesky_solver(delassus_.communicator());
     try {
       cholesky_->prepare(matrix_, CoarseSpace(), is_new);
     } catch (const std::runtime_error &) {
@@ -304,7 +304,7 @@ namespace nsfd
     else if (means_ == Means::factor)
       factor_->solve(b.data(), x.data());
     else {
-      const Vector none(dynamics_.points().n_points * dim, 0.);
+      const Vector none(delassus_.points().n_points * dim, 0.);
       Vector dP;
       const auto count = iteration_->solve(b, none, tolerance, x, dP);
       return iterates_in_vain(count) ? count + solve(b, x, tolerance) : count;
@@ -323,15 +323,15 @@ namespace nsfd
       const auto count = iteration_->solve(b, change, tolerance, x, dP);
       if (iterates_in_vain(count))
         return count + respond(b, change, x, dU, dP, tolerance);
-      dynamics_.relative_velocity(x.data(), dU.data());
+      delassus_.relative_velocity(x.data(), dU.data());
       return count;
     }
     work_.resize(b.size());
-    dynamics_.generalised_impulse(change.data(), work_.data());
+    delassus_.generalised_impulse(change.data(), work_.data());
     for (std::size_t k = 0; k < b.size(); ++k)
       work_[k] += b[k];
     const auto count = solve(work_, x);
-    dynamics_.relative_velocity(x.data(), dU.data());
+    delassus_.relative_velocity(x.data(), dU.data());
     dP = change;
     for (std::size_t j = 0; j < dP.size(); ++j)
       for (unsigned int c = 0; c < dim; ++c)
@@ -344,13 +344,15 @@ namespace nsfd
   {
     y.resize(x.size());
     work_.resize(x.size());
-    dynamics_.apply(Dynamics<dim>::Operator::mass, x.data(), y.data());
-    dynamics_.apply(Dynamics<dim>::Operator::stiffness, x.data(), work_.data());
+    delassus_.apply(DelassusOperator<dim>::Operator::mass, x.data(), y.data());
+    delassus_.apply(DelassusOperator<dim>::Operator::stiffness, x.data(),
+                    work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)
       y[k] += shares_.stiffness * work_[k];
-    if (dynamics_.viscous_theta() == 0.)
+    if (delassus_.viscous_theta() == 0.)
       return;
-    dynamics_.apply(Dynamics<dim>::Operator::damping, x.data(), work_.data());
+    delassus_.apply(DelassusOperator<dim>::Operator::damping, x.data(),
+                    work_.data());
     for (std::size_t k = 0; k < x.size(); ++k)
       y[k] += shares_.damping * work_[k];
   }

@@ -5,7 +5,7 @@
 
 #include "linear_algebra/factor_limits.h"
 
-#include "delassus/dynamics.h"
+#include "delassus/delassus_operator.h"
 #include "linear_algebra/spd_solver.h"
 
 #include <memory>
@@ -32,7 +32,8 @@ namespace nsfd
   public:
     using Vector = std::vector<double>;
 
-    BodySystem(const Dynamics<dim> &dynamics, double time_step, double theta,
+    BodySystem(const DelassusOperator<dim> &delassus, double time_step,
+               double theta,
                long long largest_factor = nsfd::largest_factor<dim>);
 
     /** Other values on the same pattern, for another step. */
@@ -90,7 +91,7 @@ namespace nsfd
     bool factorise_general();
     bool iterates_in_vain(unsigned int iterations);
 
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     double time_step_, theta_;
     StepShares shares_ = {0.};
     const long long largest_factor_;

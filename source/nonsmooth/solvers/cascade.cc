@@ -29,20 +29,21 @@ namespace nsfd
       }
 
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics, const double energy_scale,
+                         DelassusOperator<dim> &delassus,
+                         const double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
         // the interior points know the bodies' own matrices only
-        const Communicator &all = dynamics.communicator();
-        if (!dynamics.bodies_are_apart() || !all.any(may_touch(problem)))
-          return newton_->solve(problem, dynamics, energy_scale, control,
+        const Communicator &all = delassus.communicator();
+        if (!delassus.bodies_are_apart() || !all.any(may_touch(problem)))
+          return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
         if (!path_)
           path_ = SolverRegistry<dim>::instance().create("interior point");
         const bool rubs = all.any(may_rub(problem)),
-                   lasts = is_long(problem, dynamics);
+                   lasts = is_long(problem, delassus);
         auto *first = newton_.get(), *second = path_.get();
         const char *second_name = "interior point";
         if (rubs && lasts) {
@@ -50,21 +51,21 @@ namespace nsfd
           second_name = "dual newton";
         }
         // a Newton step costs such a factor here, as one of the path does
-        const auto n = all.sum_integer(dynamics.bodies().n_dofs());
+        const auto n = all.sum_integer(delassus.bodies().n_dofs());
         const bool brief =
             lasts && !rubs && static_cast<long long>(n) <= largest_factor<dim>;
         SolverControl part = control;
         if (brief)
           part.maximum_iterations = std::min(part.iterations_or(200), 10u);
         const std::vector<double> start(impulse);
-        SolverReport report = first->solve(problem, dynamics, energy_scale,
+        SolverReport report = first->solve(problem, delassus, energy_scale,
                                            part, impulse, evaluation);
         const auto go_on = [&](NonsmoothSolver<dim> &solver, const char *name,
                                const bool from_start) {
           const std::vector<double> best(impulse);
           if (from_start)
             impulse = start;
-          add(solver.solve(problem, dynamics, energy_scale, control, impulse,
+          add(solver.solve(problem, delassus, energy_scale, control, impulse,
                            evaluation),
               name, report);
           if (evaluation.error > report.residual) {
@@ -145,23 +146,23 @@ namespace nsfd
        * the diagonal of the bodies, in the mean.
        */
       static bool is_long(const OneStepProblem<dim> &problem,
-                          const Dynamics<dim> &dynamics)
+                          const DelassusOperator<dim> &delassus)
       {
-        const double theta = dynamics.bulk_theta();
+        const double theta = delassus.bulk_theta();
         const double factor =
             problem.time_step * problem.time_step * theta * theta;
         std::vector<double> ratio;
         unsigned long long count = 0;
-        for (const auto &body : dynamics.bodies().classes)
+        for (const auto &body : delassus.bodies().classes)
           if (!body.rigid)
             for (unsigned int k = 0; k < body.n_dofs; ++k) {
               ratio.push_back(factor * body.stiffness(k, k) / body.mass(k, k) *
                               double(body.bodies.size()));
               count += body.bodies.size();
             }
-        count = dynamics.communicator().sum_integer(count);
+        count = delassus.communicator().sum_integer(count);
         return count > 0 &&
-               dynamics.communicator().sum(ratio) > 50. * double(count);
+               delassus.communicator().sum(ratio) > 50. * double(count);
       }
 
       std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;

@@ -86,7 +86,7 @@ namespace nsfd
 
     /** W between components: a column is an application of W. */
     template <int dim>
-    std::vector<double> dense_delassus(const Dynamics<dim> &dynamics,
+    std::vector<double> dense_delassus(const DelassusOperator<dim> &delassus,
                                        const std::size_t n_components,
                                        const std::vector<std::size_t> &index)
     {
@@ -94,7 +94,7 @@ namespace nsfd
       std::vector<double> W(n * n), unit(n_components), U(n_components);
       for (std::size_t j = 0; j < n; ++j) {
         unit[index[j]] = 1.;
-        dynamics.apply_delassus(unit.data(), U.data());
+        delassus.apply_delassus(unit.data(), U.data());
         unit[index[j]] = 0.;
         for (std::size_t i = 0; i < n; ++i)
           W[j * n + i] = U[index[i]];
@@ -119,7 +119,7 @@ namespace nsfd
 
   template <int dim>
   ContactProblem condense_contacts(const OneStepProblem<dim> &problem,
-                                   const Dynamics<dim> &dynamics,
+                                   const DelassusOperator<dim> &delassus,
                                    const LawEvaluation<dim> &evaluation,
                                    const std::size_t largest)
   {
@@ -128,7 +128,7 @@ namespace nsfd
     const Parts parts = split<dim>(problem, evaluation);
     const std::size_t n_c = parts.contacts.size() * dim,
                       n_s = parts.rows.size(), n = n_c + n_s;
-    if (n_c == 0 || n > largest || dynamics.communicator().size() > 1)
+    if (n_c == 0 || n > largest || delassus.communicator().size() > 1)
       return contact;
 
     std::vector<std::size_t> index;
@@ -138,7 +138,7 @@ namespace nsfd
     for (const Row &row : parts.rows)
       index.push_back(row.component);
     const std::vector<double> W =
-        dense_delassus<dim>(dynamics, problem.n_points * dim, index);
+        dense_delassus<dim>(delassus, problem.n_points * dim, index);
 
     // columns of -(U_free,s + a / D) and -W_sc, solved at once
     std::vector<double> S(n_s * n_s), B(n_s * (n_c + 1));
@@ -201,11 +201,11 @@ namespace nsfd
   }
 
   template ContactProblem condense_contacts<2>(const OneStepProblem<2> &,
-                                               const Dynamics<2> &,
+                                               const DelassusOperator<2> &,
                                                const LawEvaluation<2> &,
                                                std::size_t);
   template ContactProblem condense_contacts<3>(const OneStepProblem<3> &,
-                                               const Dynamics<3> &,
+                                               const DelassusOperator<3> &,
                                                const LawEvaluation<3> &,
                                                std::size_t);
 } // namespace nsfd

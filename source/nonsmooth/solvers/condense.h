@@ -23,7 +23,7 @@ namespace nsfd
    */
   template <int dim>
   ContactProblem condense_contacts(const OneStepProblem<dim> &problem,
-                                   const Dynamics<dim> &dynamics,
+                                   const DelassusOperator<dim> &delassus,
                                    const LawEvaluation<dim> &evaluation,
                                    std::size_t largest = 3000);
 } // namespace nsfd

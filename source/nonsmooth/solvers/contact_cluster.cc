@@ -11,7 +11,7 @@ namespace nsfd
   template <int dim>
   bool ContactPath<dim>::newton(const unsigned int patience)
   {
-    nsfd::newton_refinement<dim>(problem_, system_, dynamics_,
+    nsfd::newton_refinement<dim>(problem_, system_, delassus_,
                                  control_.tolerance, patience, softening_,
                                  impulse_, evaluation_, report_);
     return judge();
@@ -45,7 +45,7 @@ namespace nsfd
   {
     constexpr std::size_t most_bad = 60, most = 160;
     const std::size_t n = problem_.n_points;
-    const auto &points = dynamics_.points();
+    const auto &points = delassus_.points();
     std::vector<std::pair<double, std::size_t>> share(n);
     double sum = 0.;
     for (std::size_t i = 0; i < n; ++i) {
@@ -59,7 +59,7 @@ namespace nsfd
     std::sort(share.rbegin(), share.rend());
     const double rest =
         sum * springs::square(0.3 * control_.tolerance / evaluation_.error);
-    std::vector<std::vector<unsigned int>> faces_of(dynamics_.bodies().size());
+    std::vector<std::vector<unsigned int>> faces_of(delassus_.bodies().size());
     for (unsigned int f = 0; f < points.faces.size(); ++f)
       for (const int body : points.faces[f].bodies)
         if (body >= 0)

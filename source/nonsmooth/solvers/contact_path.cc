@@ -12,12 +12,12 @@ namespace nsfd
 {
   template <int dim>
   ContactPath<dim>::ContactPath(const OneStepProblem<dim> &problem,
-                                const Dynamics<dim> &dynamics,
+                                const DelassusOperator<dim> &delassus,
                                 BodySystem<dim> &system,
                                 const SolverControl &control, Vector &impulse,
                                 LawEvaluation<dim> &evaluation,
                                 SolverReport &report)
-      : problem_(problem), dynamics_(dynamics), system_(system),
+      : problem_(problem), delassus_(delassus), system_(system),
         control_(control), impulse_(impulse), evaluation_(evaluation),
         report_(report), frozen_(problem.n_points),
         is_candidate_(problem.n_points, 0), others_(problem.n_points, 1)
@@ -28,7 +28,7 @@ namespace nsfd
         is_candidate_[i] = 1;
         others_[i] = 0;
       }
-    at_.y.assign(dynamics.bodies().n_dofs(), 0.);
+    at_.y.assign(delassus.bodies().n_dofs(), 0.);
     b_ = residual_ = direction_.y = at_.y;
     at_.U.assign(problem.n_points * dim, 0.);
     direction_.U = at_.U;
@@ -42,7 +42,7 @@ namespace nsfd
     evaluation_.update(impulse_);
     judge();
     std::fill(at_.y.begin(), at_.y.end(), 0.);
-    dynamics_.add_velocity_change(impulse_.data(), at_.y.data());
+    delassus_.add_velocity_change(impulse_.data(), at_.y.data());
     at_.U = evaluation_.velocity;
     at_.P = impulse_;
   }
@@ -80,7 +80,7 @@ namespace nsfd
   template <int dim>
   void ContactPath<dim>::set_imbalance(const Vector &P)
   {
-    dynamics_.generalised_impulse(P.data(), b_.data());
+    delassus_.generalised_impulse(P.data(), b_.data());
     system_.apply(at_.y, residual_);
     for (std::size_t j = 0; j < b_.size(); ++j)
       b_[j] -= residual_[j];
@@ -94,11 +94,11 @@ namespace nsfd
   void ContactPath<dim>::equilibrate(const Vector &P, const bool from_rest)
   {
     if (from_rest)
-      dynamics_.generalised_impulse(P.data(), b_.data());
+      delassus_.generalised_impulse(P.data(), b_.data());
     else
       set_imbalance(P);
     report_.krylov += system_.solve(b_, direction_.y);
-    dynamics_.relative_velocity(direction_.y.data(), direction_.U.data());
+    delassus_.relative_velocity(direction_.y.data(), direction_.U.data());
   }
 
   /** Springs that stay as they are, and joints: the same in every step. */

@@ -24,7 +24,7 @@ namespace nsfd
     using Vector = std::vector<double>;
 
     ContactPath(const OneStepProblem<dim> &problem,
-                const Dynamics<dim> &dynamics, BodySystem<dim> &system,
+                const DelassusOperator<dim> &delassus, BodySystem<dim> &system,
                 const SolverControl &control, Vector &impulse,
                 LawEvaluation<dim> &evaluation, SolverReport &report);
 
@@ -104,7 +104,7 @@ namespace nsfd
     }
 
     const OneStepProblem<dim> &problem_;
-    const Dynamics<dim> &dynamics_;
+    const DelassusOperator<dim> &delassus_;
     BodySystem<dim> &system_;
     const SolverControl &control_;
     Vector &impulse_;

@@ -27,22 +27,23 @@ namespace nsfd
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics, const double energy_scale,
+                         DelassusOperator<dim> &delassus,
+                         const double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
         SolverReport report;
-        const Communicator &all = dynamics.communicator();
-        if (all.any(!applies(problem, dynamics)))
-          return go_on(problem, dynamics, energy_scale, control, impulse,
+        const Communicator &all = delassus.communicator();
+        if (all.any(!applies(problem, delassus)))
+          return go_on(problem, delassus, energy_scale, control, impulse,
                        evaluation, report);
         evaluation.update(impulse);
         double goal = control.tolerance / 3.;
         for (unsigned int round = 0;
              evaluation.error > control.tolerance && round < 3; ++round) {
           if (round == 0)
-            assemble(problem, dynamics);
+            assemble(problem, delassus);
           solve_contacts(goal, all, impulse, report);
           evaluation.update(impulse);
           goal /= 30.; // the measures of the two differ
@@ -51,7 +52,7 @@ namespace nsfd
         report.converged = report.residual <= control.tolerance;
         if (report.converged)
           return report;
-        return go_on(problem, dynamics, energy_scale, control, impulse,
+        return go_on(problem, delassus, energy_scale, control, impulse,
                      evaluation, report);
       }
 
@@ -61,9 +62,9 @@ namespace nsfd
     private:
       /** No springs, joints or motions, and no lift by sliding. */
       static bool applies(const OneStepProblem<dim> &problem,
-                          const Dynamics<dim> &dynamics)
+                          const DelassusOperator<dim> &delassus)
       {
-        if (!problem.dilatancy.empty() || !dynamics.bodies_are_apart())
+        if (!problem.dilatancy.empty() || !delassus.bodies_are_apart())
           return false;
         for (std::size_t i = 0; i < problem.n_points; ++i)
           if (problem.kind[i] != PointKind::free)
@@ -71,16 +72,15 @@ namespace nsfd
         return true;
       }
 
-      SolverReport go_on(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics, const double energy_scale,
-                         const SolverControl &control,
-                         std::vector<double> &impulse,
-                         LawEvaluation<dim> &evaluation,
-                         SolverReport report) const
+      SolverReport
+      go_on(const OneStepProblem<dim> &problem, DelassusOperator<dim> &delassus,
+            const double energy_scale, const SolverControl &control,
+            std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
+            SolverReport report) const
       {
         const auto cascade = SolverRegistry<dim>::instance().create("cascade");
         const SolverReport next = cascade->solve(
-            problem, dynamics, energy_scale, control, impulse, evaluation);
+            problem, delassus, energy_scale, control, impulse, evaluation);
         report.switches.push_back("chain"); // as summary.json counts it
         report.go_on_with(next);
         return report;
@@ -113,15 +113,15 @@ namespace nsfd
 
       /** U = W P + U_free of the points that may touch, in their frames. */
       void assemble(const OneStepProblem<dim> &problem,
-                    const Dynamics<dim> &dynamics)
+                    const DelassusOperator<dim> &delassus)
       {
-        const Communicator &all = dynamics.communicator();
+        const Communicator &all = delassus.communicator();
         points_.clear();
         for (std::size_t i = 0; i < problem.n_points; ++i)
           if (problem.contact[i])
             points_.push_back(i);
-        gather_contacts(all, problem, dynamics.points());
-        const auto parts = gather(all, parts_of_bodies(problem, dynamics));
+        gather_contacts(all, problem, delassus.points());
+        const auto parts = gather(all, parts_of_bodies(problem, delassus));
         if (!all.is_root())
           return;
         std::vector<std::map<unsigned int, Square>> rows(
@@ -180,14 +180,15 @@ namespace nsfd
           number_of_seen_.push_back(number_.at({contact.face, contact.number}));
       }
 
-      std::vector<Part> parts_of_bodies(const OneStepProblem<dim> &problem,
-                                        const Dynamics<dim> &dynamics) const
+      std::vector<Part>
+      parts_of_bodies(const OneStepProblem<dim> &problem,
+                      const DelassusOperator<dim> &delassus) const
       {
         std::vector<Part> parts;
-        const Bodies &bodies = dynamics.bodies();
-        const auto &points = dynamics.points();
+        const Bodies &bodies = delassus.bodies();
+        const auto &points = delassus.points();
         for (std::size_t b = 0; b < bodies.size(); ++b) {
-          const Block &W = dynamics.class_blocks()[bodies.class_of[b]].delassus;
+          const Block &W = delassus.class_blocks()[bodies.class_of[b]].delassus;
           const auto touches = [&](const std::size_t slot) {
             const std::size_t i = bodies.slot_point[slot];
             return i < problem.n_points && problem.contact[i];

@@ -29,7 +29,7 @@ namespace nsfd
                                     Vector &impulse)
   {
     const auto &problem = work.problem;
-    const auto &communicator = work.dynamics.communicator();
+    const auto &communicator = work.delassus.communicator();
     std::vector<FrozenPoint> frozen(problem.n_points);
     Vector start(work.n), d(work.n), Wd(work.n), U(work.n), moved(work.n);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
@@ -40,7 +40,7 @@ namespace nsfd
     // U at P + dP, then its local solutions
     for (std::size_t k = 0; k < work.n; ++k)
       moved[k] = impulse[k] + direction[k];
-    work.dynamics.apply_delassus(moved.data(), U.data());
+    work.delassus.apply_delassus(moved.data(), U.data());
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       std::array<double, dim> local;
       for (unsigned int c = 0; c < dim; ++c) {
@@ -54,8 +54,8 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         d[i * dim + c] = solution.impulse[c] - start[i * dim + c];
     }
-    work.dynamics.apply_delassus(d.data(), Wd.data());
-    work.dynamics.apply_delassus(start.data(), U.data());
+    work.delassus.apply_delassus(d.data(), Wd.data());
+    work.delassus.apply_delassus(start.data(), U.data());
     for (std::size_t k = 0; k < work.n; ++k)
       U[k] += problem.free_velocity[k];
 
@@ -117,7 +117,8 @@ namespace nsfd
 
   template <int dim>
   SolverReport DualNewton<dim>::solve(const OneStepProblem<dim> &problem,
-                                      Dynamics<dim> &dynamics, const double,
+                                      DelassusOperator<dim> &delassus,
+                                      const double,
                                       const SolverControl &control,
                                       std::vector<double> &impulse,
                                       LawEvaluation<dim> &evaluation)
@@ -125,11 +126,11 @@ namespace nsfd
     SolverReport report;
     // small problems are solved to round-off where one step does it
     auto *const inner =
-        dynamics.communicator().sum_integer(problem.n_owned) > 1000
-            ? dynamic_cast<InnerSolver *>(&dynamics)
+        delassus.communicator().sum_integer(problem.n_owned) > 1000
+            ? dynamic_cast<InnerSolver *>(&delassus)
             : nullptr;
     const Work work{problem,
-                    dynamics,
+                    delassus,
                     control,
                     evaluation,
                     report,
@@ -141,7 +142,7 @@ namespace nsfd
     evaluation.update(impulse);
     // a solve that may not go on idly has a majorant that is not one of W
     const bool may_sweep =
-        dynamics.bodies_are_apart() && control.idle_rounds > 1;
+        delassus.bodies_are_apart() && control.idle_rounds > 1;
     unsigned int stalled = 0, sweeps = 10, idle_rounds = 0;
     double best_error = std::numeric_limits<double>::infinity(),
            best_of_round = best_error, shift = 0.;
@@ -213,7 +214,7 @@ namespace nsfd
       // shorter step does, at once where points soften.
       idle_rounds = best_error < 0.5 * best_of_round ? 0 : idle_rounds + 1;
       best_of_round = best_error;
-      const bool soft = dynamics.communicator().any(softens(evaluation));
+      const bool soft = delassus.communicator().any(softens(evaluation));
       if (idle_rounds > control.idle_rounds / (soft ? 4 : 1) ||
           report.sweeps >= 5 * most)
         break;
@@ -226,12 +227,12 @@ namespace nsfd
         continue;
       }
       if (colours_.empty())
-        colours_ = colour_faces(dynamics);
+        colours_ = colour_faces(delassus);
       if (report.sweeps == 0)
         report.switches.push_back("gauss seidel");
       if (best_error < 0.5 * evaluation.error)
         impulse = best;
-      gauss_seidel(problem, dynamics, colours_, sweeps, impulse);
+      gauss_seidel(problem, delassus, colours_, sweeps, impulse);
       report.sweeps += sweeps;
       sweeps = std::min(80u, sweeps * 2);
       evaluation.update(impulse);

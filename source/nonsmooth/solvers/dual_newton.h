@@ -24,7 +24,7 @@ namespace nsfd
    * reduce is tried in shares, then by the convex step with the thresholds
    * frozen. Without them, sweeps of Gauss-Seidel take over what round-off
    * stops; all is judged by the natural map.
-   * Newton systems are solved in single precision where the dynamics can.
+   * Newton systems are solved in single precision where the operator can.
    */
   template <int dim>
   class DualNewton final : public NonsmoothSolver<dim>,
@@ -32,8 +32,8 @@ namespace nsfd
   {
   public:
     SolverReport solve(const OneStepProblem<dim> &problem,
-                       Dynamics<dim> &dynamics, const double energy_scale,
-                       const SolverControl &control,
+                       DelassusOperator<dim> &delassus,
+                       const double energy_scale, const SolverControl &control,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation) override;
 
@@ -43,7 +43,7 @@ namespace nsfd
     using Vector = std::vector<double>;
     struct Work {
       const OneStepProblem<dim> &problem;
-      Dynamics<dim> &dynamics;
+      DelassusOperator<dim> &delassus;
       const SolverControl &control;
       LawEvaluation<dim> &evaluation;
       SolverReport &report;

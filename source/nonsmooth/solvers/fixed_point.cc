@@ -34,7 +34,7 @@ namespace nsfd
       }
 
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics, double energy_scale,
+                         DelassusOperator<dim> &delassus, double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override;
@@ -54,7 +54,7 @@ namespace nsfd
     template <int dim>
     struct FixedPoint<dim>::Round {
       const OneStepProblem<dim> &problem;
-      Dynamics<dim> &dynamics;
+      DelassusOperator<dim> &delassus;
       const SolverControl &control;
       NonsmoothSolver<dim> &inner;
       double energy_scale;
@@ -122,7 +122,7 @@ namespace nsfd
         part.tolerance = std::max(0.1 * control.tolerance,
                                   std::min(1e-2, 1e-3 * evaluation.error));
         evaluation.freeze(&frozen);
-        const SolverReport round = inner.solve(problem, dynamics, energy_scale,
+        const SolverReport round = inner.solve(problem, delassus, energy_scale,
                                                part, impulse, evaluation);
         for (std::size_t i = 0; i < problem.n_points; ++i) {
           const auto &solution = evaluation.solutions[i];
@@ -145,9 +145,9 @@ namespace nsfd
         Vector first = x, second = x;
         first.resize(stride * (problem.n_points + 1));
         second.resize(first.size());
-        dynamics.exchange({{first.data(), second.data()}}, stride);
+        delassus.exchange({{first.data(), second.data()}}, stride);
         // what came in is on the side that this rank does not compute
-        for (const auto &neighbor : dynamics.points().neighbors)
+        for (const auto &neighbor : delassus.points().neighbors)
           for (std::size_t j = 0; j < neighbor.points.size(); ++j)
             if (const std::size_t i = neighbor.points[j]; i >= problem.n_owned)
               for (std::size_t c = stride * i; c < stride * (i + 1); ++c)
@@ -156,14 +156,15 @@ namespace nsfd
     };
 
     template <int dim>
-    SolverReport
-    FixedPoint<dim>::solve(const OneStepProblem<dim> &problem,
-                           Dynamics<dim> &dynamics, const double energy_scale,
-                           const SolverControl &control, Vector &impulse,
-                           LawEvaluation<dim> &evaluation)
+    SolverReport FixedPoint<dim>::solve(const OneStepProblem<dim> &problem,
+                                        DelassusOperator<dim> &delassus,
+                                        const double energy_scale,
+                                        const SolverControl &control,
+                                        Vector &impulse,
+                                        LawEvaluation<dim> &evaluation)
     {
       SolverReport report;
-      Round round{problem,      dynamics, control,    *inner_,
+      Round round{problem,      delassus, control,    *inner_,
                   energy_scale, impulse,  evaluation, report};
       round.frozen.resize(problem.n_points);
       round.length.assign(problem.n_points, 1.);
@@ -174,7 +175,7 @@ namespace nsfd
           round.length[i] = law.toughness() / law.strength();
         }
       evaluation.update(impulse);
-      const auto &communicator = dynamics.communicator();
+      const auto &communicator = delassus.communicator();
       for (const auto &solution : evaluation.solutions)
         round.scale = std::max(round.scale, solution.frozen.threshold);
       for (const double P : impulse)

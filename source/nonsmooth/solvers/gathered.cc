@@ -124,13 +124,13 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  Gathered<dim>::Gathered(const Dynamics<dim> &dynamics)
-      : communicator_(dynamics.communicator()),
-        n_points_(dynamics.points().n_points),
-        n_owned_(dynamics.points().n_owned),
-        viscous_theta_(dynamics.viscous_theta()), alone_(MPI_COMM_SELF)
+  Gathered<dim>::Gathered(const DelassusOperator<dim> &delassus)
+      : communicator_(delassus.communicator()),
+        n_points_(delassus.points().n_points),
+        n_owned_(delassus.points().n_owned),
+        viscous_theta_(delassus.viscous_theta()), alone_(MPI_COMM_SELF)
   {
-    const auto mine = pack<dim>(dynamics.bodies(), dynamics.points());
+    const auto mine = pack<dim>(delassus.bodies(), delassus.points());
     const Counts bytes(communicator_, mine.size());
     std::vector<char> all(std::size_t(bytes.first.back()));
     MPI_Gatherv(mine.data(), int(mine.size()), MPI_CHAR, all.data(),
@@ -143,8 +143,8 @@ namespace nsfd
       packages.emplace_back(all.begin() + bytes.first[r],
                             all.begin() + bytes.first[r + 1]);
     build(packages);
-    dynamics_ = make_elementwise_dynamics<dim>(alone_, bodies_, points_);
-    dynamics_->set_viscous_theta(viscous_theta_);
+    delassus_ = make_local_delassus<dim>(alone_, bodies_, points_);
+    delassus_->set_viscous_theta(viscous_theta_);
   }
 
   template <int dim>

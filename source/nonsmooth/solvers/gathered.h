@@ -16,10 +16,10 @@ namespace nsfd
   class Gathered
   {
   public:
-    explicit Gathered(const Dynamics<dim> &dynamics);
+    explicit Gathered(const DelassusOperator<dim> &delassus);
 
     /** The bodies of all ranks, on this one alone; null on the others. */
-    Dynamics<dim> *dynamics() const { return dynamics_.get(); }
+    DelassusOperator<dim> *delassus() const { return delassus_.get(); }
 
     /** The problem of all points. */
     OneStepProblem<dim> gather(const OneStepProblem<dim> &problem) const;
@@ -44,6 +44,6 @@ namespace nsfd
     Communicator alone_;
     Bodies bodies_;
     InterfacePoints<dim> points_;
-    std::unique_ptr<Dynamics<dim>> dynamics_;
+    std::unique_ptr<DelassusOperator<dim>> delassus_;
   };
 } // namespace nsfd

@@ -14,15 +14,15 @@ namespace nsfd
     /** Words of 64 bits for the colours of a body: a face never needs more than
         its two bodies have faces. */
     template <int dim>
-    unsigned int words_of_colours(const Dynamics<dim> &dynamics)
+    unsigned int words_of_colours(const DelassusOperator<dim> &delassus)
     {
-      std::vector<unsigned int> n_faces(dynamics.bodies().size(), 0);
+      std::vector<unsigned int> n_faces(delassus.bodies().size(), 0);
       unsigned int most = 0;
-      for (const auto &face : dynamics.points().faces)
+      for (const auto &face : delassus.points().faces)
         for (const int b : face.bodies)
           if (b >= 0)
             most = std::max(most, ++n_faces[b]);
-      return unsigned(dynamics.communicator().max(most)) * 2 / 64 + 1;
+      return unsigned(delassus.communicator().max(most)) * 2 / 64 + 1;
     }
   } // namespace
 
@@ -34,12 +34,12 @@ namespace nsfd
    */
   template <int dim>
   std::vector<std::vector<unsigned int>>
-  colour_faces(const Dynamics<dim> &dynamics)
+  colour_faces(const DelassusOperator<dim> &delassus)
   {
-    const auto &points = dynamics.points();
-    const std::size_t n_bodies = dynamics.bodies().size();
+    const auto &points = delassus.points();
+    const std::size_t n_bodies = delassus.bodies().size();
     std::vector<int> colour(points.faces.size(), -1);
-    const unsigned int n_words = words_of_colours(dynamics);
+    const unsigned int n_words = words_of_colours(delassus);
     std::vector<std::uint64_t> used(n_bodies * n_words, 0);
     // A body's largest open key, and per point of shared faces what the other
     // rank knows: key halves (exact as doubles) and used colours.
@@ -48,7 +48,7 @@ namespace nsfd
     for (auto &s : side)
       s.assign((points.n_points + 1) * stride, 0.);
     bool open = true;
-    while (dynamics.communicator().any(open)) {
+    while (delassus.communicator().any(open)) {
       std::vector<std::uint64_t> top(n_bodies, 0);
       for (std::size_t f = 0; f < points.faces.size(); ++f)
         if (colour[f] < 0)
@@ -68,7 +68,7 @@ namespace nsfd
               out[3 + 2 * w] = double(word & 0xffffffffu);
             }
           }
-      dynamics.exchange({{side[0].data(), side[1].data()}}, stride);
+      delassus.exchange({{side[0].data(), side[1].data()}}, stride);
       const auto join = [](const double high, const double low) {
         return (std::uint64_t(high) << 32) | std::uint64_t(low);
       };
@@ -107,7 +107,7 @@ namespace nsfd
       }
     }
     const int n_colours =
-        int(dynamics.communicator().max(
+        int(delassus.communicator().max(
             colour.empty() ? -1.
                            : *std::max_element(colour.begin(), colour.end()))) +
         1;
@@ -119,13 +119,13 @@ namespace nsfd
 
   template <int dim>
   void gauss_seidel(const OneStepProblem<dim> &problem,
-                    const Dynamics<dim> &dynamics,
+                    const DelassusOperator<dim> &delassus,
                     const std::vector<std::vector<unsigned int>> &colours,
                     const unsigned int count, std::vector<double> &impulse)
   {
-    const auto &points = dynamics.points();
-    const auto &bodies = dynamics.bodies();
-    const auto &blocks = dynamics.class_blocks();
+    const auto &points = delassus.points();
+    const auto &bodies = delassus.bodies();
+    const auto &blocks = delassus.class_blocks();
 
     const Charge charge(Cost::sweeps);
     // where in its bodies a point sits
@@ -133,7 +133,7 @@ namespace nsfd
 
     // Cartesian velocity at every point from each side
     std::array<std::vector<double>, 2> side;
-    dynamics.delassus_sides(impulse.data(), side);
+    delassus.delassus_sides(impulse.data(), side);
     const auto add = [&](const std::size_t i, const double *change) {
       const double *Q = points.frame.data() + i * dim * dim;
       for (unsigned int s = 0; s < 2; ++s) {
@@ -171,7 +171,7 @@ namespace nsfd
     unsigned int largest = 0;
     for (const auto &face : points.faces)
       largest = std::max(largest, face.count);
-    largest = unsigned(dynamics.communicator().max(largest));
+    largest = unsigned(delassus.communicator().max(largest));
 
     std::vector<Reach> reach(problem.n_points);
     for (std::size_t i = 0; i < problem.n_points; ++i)
@@ -212,7 +212,7 @@ namespace nsfd
           for (const unsigned int f : faces)
             if (q < points.faces[f].count)
               solve(points.faces[f].first + q);
-          dynamics.exchange({{side[0].data(), side[1].data()}}, dim);
+          delassus.exchange({{side[0].data(), side[1].data()}}, dim);
         }
   }
 
@@ -226,19 +226,19 @@ namespace nsfd
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics, double,
+                         DelassusOperator<dim> &delassus, double,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
         if (colours_.empty())
-          colours_ = colour_faces(dynamics);
+          colours_ = colour_faces(delassus);
         SolverReport report;
         evaluation.update(impulse);
         unsigned int batch = 5;
         while (evaluation.error > control.tolerance &&
                report.sweeps < 100 * control.iterations_or(200)) {
-          gauss_seidel(problem, dynamics, colours_, batch, impulse);
+          gauss_seidel(problem, delassus, colours_, batch, impulse);
           report.sweeps += batch;
           batch = std::min(100u, batch * 2);
           evaluation.update(impulse);
@@ -267,13 +267,15 @@ namespace nsfd
   } // namespace
 
   template std::vector<std::vector<unsigned int>>
-  colour_faces<2>(const Dynamics<2> &);
+  colour_faces<2>(const DelassusOperator<2> &);
   template std::vector<std::vector<unsigned int>>
-  colour_faces<3>(const Dynamics<3> &);
-  template void gauss_seidel<2>(const OneStepProblem<2> &, const Dynamics<2> &,
+  colour_faces<3>(const DelassusOperator<3> &);
+  template void gauss_seidel<2>(const OneStepProblem<2> &,
+                                const DelassusOperator<2> &,
                                 const std::vector<std::vector<unsigned int>> &,
                                 unsigned int, std::vector<double> &);
-  template void gauss_seidel<3>(const OneStepProblem<3> &, const Dynamics<3> &,
+  template void gauss_seidel<3>(const OneStepProblem<3> &,
+                                const DelassusOperator<3> &,
                                 const std::vector<std::vector<unsigned int>> &,
                                 unsigned int, std::vector<double> &);
 } // namespace nsfd

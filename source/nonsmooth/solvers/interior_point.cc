@@ -21,7 +21,8 @@ namespace nsfd
     {
     public:
       SolverReport solve(const OneStepProblem<dim> &problem,
-                         Dynamics<dim> &dynamics, const double energy_scale,
+                         DelassusOperator<dim> &delassus,
+                         const double energy_scale,
                          const SolverControl &control,
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
@@ -29,10 +30,10 @@ namespace nsfd
         SolverReport report;
         evaluation.update(impulse);
         if (evaluation.error > control.tolerance) {
-          if (dynamics.communicator().size() == 1)
-            follow(problem, dynamics, control, impulse, evaluation, report);
+          if (delassus.communicator().size() == 1)
+            follow(problem, delassus, control, impulse, evaluation, report);
           else
-            follow_gathered(problem, dynamics, energy_scale, control, impulse,
+            follow_gathered(problem, delassus, energy_scale, control, impulse,
                             evaluation, report);
         }
         report.residual = evaluation.error;
@@ -54,19 +55,19 @@ namespace nsfd
       using Stage = typename ContactPath<dim>::Stage;
 
       void follow(const OneStepProblem<dim> &problem,
-                  const Dynamics<dim> &dynamics, const SolverControl &control,
-                  std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
-                  SolverReport &report)
+                  const DelassusOperator<dim> &delassus,
+                  const SolverControl &control, std::vector<double> &impulse,
+                  LawEvaluation<dim> &evaluation, SolverReport &report)
       {
         if (!system_) {
           system_ = std::make_unique<BodySystem<dim>>(
-              dynamics, problem.time_step, dynamics.bulk_theta());
+              delassus, problem.time_step, delassus.bulk_theta());
           if (!iterates_)
             system_->forbid_iterations();
         } else if (system_->time_step() != problem.time_step ||
-                   system_->theta() != dynamics.bulk_theta())
-          system_->reinit(problem.time_step, dynamics.bulk_theta());
-        ContactPath<dim> path(problem, dynamics, *system_, control, impulse,
+                   system_->theta() != delassus.bulk_theta())
+          system_->reinit(problem.time_step, delassus.bulk_theta());
+        ContactPath<dim> path(problem, delassus, *system_, control, impulse,
                               evaluation, report);
         run(path);
         path.restore();
@@ -74,24 +75,24 @@ namespace nsfd
 
       /** On the first rank, with the bodies of all. */
       void follow_gathered(const OneStepProblem<dim> &problem,
-                           const Dynamics<dim> &dynamics,
+                           const DelassusOperator<dim> &delassus,
                            const double energy_scale,
                            const SolverControl &control,
                            std::vector<double> &impulse,
                            LawEvaluation<dim> &evaluation, SolverReport &report)
       {
         if (!gathered_)
-          gathered_ = std::make_unique<Gathered<dim>>(dynamics);
+          gathered_ = std::make_unique<Gathered<dim>>(delassus);
         const auto whole = gathered_->gather(problem);
         auto all = gathered_->gather(impulse);
-        if (auto *bodies = gathered_->dynamics()) {
-          bodies->reinit(problem.time_step, dynamics.bulk_theta());
+        if (auto *bodies = gathered_->delassus()) {
+          bodies->reinit(problem.time_step, delassus.bulk_theta());
           LawEvaluation<dim> laws(whole, *bodies, energy_scale,
                                   control.tolerance);
           follow(whole, *bodies, control, all, laws, report);
         }
         unsigned int counts[2] = {report.newton, report.krylov};
-        MPI_Bcast(counts, 2, MPI_UNSIGNED, 0, dynamics.communicator().mpi());
+        MPI_Bcast(counts, 2, MPI_UNSIGNED, 0, delassus.communicator().mpi());
         report.newton = counts[0];
         report.krylov = counts[1];
         gathered_->scatter(all, impulse);

@@ -126,7 +126,8 @@ namespace nsfd
 
   template <int dim>
   bool newton_refinement(const OneStepProblem<dim> &problem,
-                         BodySystem<dim> &system, const Dynamics<dim> &dynamics,
+                         BodySystem<dim> &system,
+                         const DelassusOperator<dim> &delassus,
                          const double tolerance, const unsigned int patience,
                          double &softening, std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation, SolverReport &report)
@@ -134,7 +135,7 @@ namespace nsfd
     const std::size_t n = impulse.size();
     LinearisedLaws<dim> laws;
     laws.softening = softening;
-    const std::vector<double> at_rest(dynamics.bodies().n_dofs(), 0.);
+    const std::vector<double> at_rest(delassus.bodies().n_dofs(), 0.);
     std::vector<double> dy, dU, dP, best(impulse);
     double best_error = evaluation.error;
     unsigned int idle = 0, still = 0;
@@ -181,11 +182,13 @@ namespace nsfd
   template class LinearisedLaws<2>;
   template class LinearisedLaws<3>;
   template bool newton_refinement<2>(const OneStepProblem<2> &, BodySystem<2> &,
-                                     const Dynamics<2> &, double, unsigned int,
-                                     double &, std::vector<double> &,
-                                     LawEvaluation<2> &, SolverReport &);
+                                     const DelassusOperator<2> &, double,
+                                     unsigned int, double &,
+                                     std::vector<double> &, LawEvaluation<2> &,
+                                     SolverReport &);
   template bool newton_refinement<3>(const OneStepProblem<3> &, BodySystem<3> &,
-                                     const Dynamics<3> &, double, unsigned int,
-                                     double &, std::vector<double> &,
-                                     LawEvaluation<3> &, SolverReport &);
+                                     const DelassusOperator<3> &, double,
+                                     unsigned int, double &,
+                                     std::vector<double> &, LawEvaluation<3> &,
+                                     SolverReport &);
 } // namespace nsfd

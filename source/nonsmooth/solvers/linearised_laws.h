@@ -54,7 +54,8 @@ namespace nsfd
    */
   template <int dim>
   bool newton_refinement(const OneStepProblem<dim> &problem,
-                         BodySystem<dim> &system, const Dynamics<dim> &dynamics,
+                         BodySystem<dim> &system,
+                         const DelassusOperator<dim> &delassus,
                          double tolerance, unsigned int patience,
                          double &softening, std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation, SolverReport &report);

@@ -63,7 +63,7 @@ namespace nsfd
       if (const auto *law = work.evaluation.linear(k / dim))
         if (const LinearSpring spring(problem, *law, k); spring.stiffness > 0.)
           compliance_[k] = spring.compliance();
-    const bool anywhere = work.dynamics.communicator().any(any);
+    const bool anywhere = work.delassus.communicator().any(any);
     if (anywhere)
       jacobian_.resize(work.n * dim);
     return anywhere;
@@ -78,9 +78,9 @@ namespace nsfd
                                          Vector &dP)
   {
     const auto &problem = work.problem;
-    const auto &communicator = work.dynamics.communicator();
+    const auto &communicator = work.delassus.communicator();
     const Vector &P = *work.impulse, &U = work.evaluation.velocity;
-    work.dynamics.prepare_preconditioner(compliance_);
+    work.delassus.prepare_preconditioner(compliance_);
     // r - U of the laws at hand; that of a linear one is known without the
     // present P and U, whose round-off its stiffness would raise. One such step
     // solves linear laws, a second one what its iterations have left; what is
@@ -108,11 +108,11 @@ namespace nsfd
     ratio = communicator.min(ratio);
     // as far as an error of the velocities is, as jumps of the next step, not
     // more than the impulses themselves
-    if (!communicator.any(!linear) && work.dynamics.inverts())
+    if (!communicator.any(!linear) && work.delassus.inverts())
       tolerance =
           std::min(tolerance, 0.1 * std::min(work.control.tolerance, ratio) /
                                   work.evaluation.error);
-    if (!work.dynamics.solve_springs(P.data(), nullptr, rhs_.data(), tolerance,
+    if (!work.delassus.solve_springs(P.data(), nullptr, rhs_.data(), tolerance,
                                      dP.data())) {
       dP.assign(work.n, 0.);
       return false;
@@ -125,7 +125,7 @@ namespace nsfd
           cg_.z[k] = r[k] * r[k] / majorant(work, k);
       return std::sqrt(communicator.sum(cg_.z.data(), work.n_owned));
     };
-    if (!work.dynamics.inverts()) {
+    if (!work.delassus.inverts()) {
       for (std::size_t k = 0; k < work.n; ++k)
         if (compliance_[k] >= 0.)
           rhs_[k] =
@@ -133,7 +133,7 @@ namespace nsfd
       const double goal = tolerance * size(rhs_);
       for (unsigned int round = 0; round < 5; ++round) {
         cg_.q.resize(work.n);
-        work.dynamics.apply_delassus(dP.data(), cg_.q.data());
+        work.delassus.apply_delassus(dP.data(), cg_.q.data());
         cg_.r = rhs_;
         for (std::size_t k = 0; k < work.n; ++k) {
           cg_.q[k] += work.problem.free_velocity[k];
@@ -144,7 +144,7 @@ namespace nsfd
           break;
         ++work.report.krylov;
         cg_.p = dP;
-        work.dynamics.solve_springs(cg_.p.data(), cg_.q.data(), cg_.r.data(),
+        work.delassus.solve_springs(cg_.p.data(), cg_.q.data(), cg_.r.data(),
                                     0.1, dP.data());
       }
     }
@@ -158,7 +158,7 @@ namespace nsfd
   void DualNewton<dim>::symmetric_direction(const Work &work,
                                             const double tolerance, Vector &dP)
   {
-    const auto &communicator = work.dynamics.communicator();
+    const auto &communicator = work.delassus.communicator();
     const Vector &defect = work.evaluation.defect;
     dP.assign(work.n, 0.);
     if (!work.inner && spring_direction(work, tolerance, dP))
@@ -172,7 +172,7 @@ namespace nsfd
       }
     cg_.q.assign(work.n, 0.);
     if (communicator.any(moved))
-      work.dynamics.apply_delassus(dP.data(), cg_.q.data());
+      work.delassus.apply_delassus(dP.data(), cg_.q.data());
     for (std::size_t k = 0; k < work.n; ++k)
       if (compliance_[k] >= 0.)
         rhs_[k] = -(compliance_[k] + majorant(work, k)) * defect[k] - cg_.q[k];
@@ -185,16 +185,16 @@ namespace nsfd
         dP[k] += cg_.z[k];
       return;
     }
-    work.dynamics.prepare_preconditioner(compliance_);
+    work.delassus.prepare_preconditioner(compliance_);
     cg_.r = rhs_;
     cg_.z.assign(work.n, 0.);
     const auto product = [&](const Vector &in, Vector &out) {
-      work.dynamics.apply_delassus(in.data(), out.data());
+      work.delassus.apply_delassus(in.data(), out.data());
       for (std::size_t k = 0; k < work.n; ++k)
         out[k] = compliance_[k] >= 0. ? out[k] + compliance_[k] * in[k] : 0.;
     };
     const auto precondition = [&](const Vector &in, Vector &out) {
-      work.dynamics.precondition(in.data(), out.data());
+      work.delassus.precondition(in.data(), out.data());
     };
     const auto dot = [&](const Vector &a, const Vector &b) {
       return communicator.dot(a.data(), b.data(), work.n_owned);
@@ -216,7 +216,7 @@ namespace nsfd
                                           const double tolerance,
                                           const double shift, Vector &dP)
   {
-    const auto &communicator = work.dynamics.communicator();
+    const auto &communicator = work.delassus.communicator();
     if (work.inner) {
       for (std::size_t i = 0; i < coupled_.size(); ++i)
         if (!coupled_[i])
@@ -236,14 +236,14 @@ namespace nsfd
           dP);
       return;
     }
-    work.dynamics.prepare_preconditioner(compliance_);
+    work.delassus.prepare_preconditioner(compliance_);
     const auto precondition = [&](const Vector &in, Vector &out) {
       cg_.r.assign(work.n, 0.);
       for (std::size_t k = 0; k < work.n; ++k)
         if (compliance_[k] >= 0.)
           cg_.r[k] = (compliance_[k] + majorant(work, k)) * in[k];
       out.assign(work.n, 0.);
-      work.dynamics.precondition(cg_.r.data(), out.data());
+      work.delassus.precondition(cg_.r.data(), out.data());
       for (std::size_t k = 0; k < work.n; ++k)
         if (compliance_[k] < 0.)
           out[k] = in[k];
@@ -251,7 +251,7 @@ namespace nsfd
     const auto matrix = [&](const Vector &in, Vector &out) {
       out.resize(work.n);
       cg_.q.resize(work.n);
-      work.dynamics.apply_delassus(in.data(), cg_.q.data());
+      work.delassus.apply_delassus(in.data(), cg_.q.data());
       for (std::size_t k = 0; k < work.n; ++k)
         cg_.q[k] -= (1. - shift) * majorant(work, k) * in[k];
       for (std::size_t i = 0; i < coupled_.size(); ++i)

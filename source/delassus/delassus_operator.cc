@@ -1,4 +1,4 @@
-#include "dynamics.h"
+#include "delassus_operator.h"
 
 #include "block_inverse.h"
 #include "body_loops.h"
@@ -12,15 +12,15 @@
 namespace nsfd
 {
   template <int dim>
-  Dynamics<dim>::Dynamics(const Communicator &communicator,
-                          const Bodies &bodies,
-                          const InterfacePoints<dim> &points)
+  DelassusOperator<dim>::DelassusOperator(const Communicator &communicator,
+                                          const Bodies &bodies,
+                                          const InterfacePoints<dim> &points)
       : FaceTraces<dim>(communicator, bodies, points)
   {
   }
 
   template <int dim>
-  void Dynamics<dim>::renew(const double time_step, const double theta)
+  void DelassusOperator<dim>::renew(const double time_step, const double theta)
   {
     this->reset_traces();
     time_step_ = theta_ = 0.;
@@ -28,7 +28,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::reinit(const double time_step, const double theta)
+  void DelassusOperator<dim>::reinit(const double time_step, const double theta)
   {
     if (time_step == time_step_ && theta == theta_)
       return;
@@ -54,7 +54,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::serialize(Archive &archive)
+  void DelassusOperator<dim>::serialize(Archive &archive)
   {
     double h = time_step_, theta = theta_;
     archive.numbers("step", h, theta);
@@ -63,8 +63,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::apply_delassus(const double *impulse,
-                                     double *velocity) const
+  void DelassusOperator<dim>::apply_delassus(const double *impulse,
+                                             double *velocity) const
   {
     const Charge charge(Cost::delassus);
     ++counters_.delassus;
@@ -79,9 +79,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void
-  Dynamics<dim>::delassus_sides(const double *impulse,
-                                std::array<std::vector<double>, 2> &side) const
+  void DelassusOperator<dim>::delassus_sides(
+      const double *impulse, std::array<std::vector<double>, 2> &side) const
   {
     std::vector<double> sum(points_.n_points * dim);
     apply_delassus(impulse, sum.data());
@@ -89,8 +88,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::add_velocity_change(const double *impulse,
-                                          double *velocity) const
+  void DelassusOperator<dim>::add_velocity_change(const double *impulse,
+                                                  double *velocity) const
   {
     this->to_cartesian(impulse);
     for_all_bodies(
@@ -103,7 +102,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::apply(const Operator op, const double *x, double *y) const
+  void DelassusOperator<dim>::apply(const Operator op, const double *x,
+                                    double *y) const
   {
     if (op == Operator::stiffness || op == Operator::damping)
       std::fill(y, y + bodies_.n_dofs(), 0.);
@@ -119,7 +119,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void Dynamics<dim>::build_face_blocks()
+  void DelassusOperator<dim>::build_face_blocks()
   {
     // Cartesian blocks of both sides, row by row of a point of the face, so
     // that shared faces can be completed by the point exchange.
@@ -182,6 +182,6 @@ namespace nsfd
     }
   }
 
-  template class Dynamics<2>;
-  template class Dynamics<3>;
+  template class DelassusOperator<2>;
+  template class DelassusOperator<3>;
 } // namespace nsfd

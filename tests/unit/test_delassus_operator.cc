@@ -1,6 +1,6 @@
 #include "small_meshes.h"
 
-namespace small_meshes::test_dynamics
+namespace small_meshes::test_delassus_operator
 {
   template <int dim>
   void check_operator(const std::string &text)
@@ -8,7 +8,7 @@ namespace small_meshes::test_dynamics
     Scene<dim> scene(text);
     if (scene.communicator.size() > 1)
       GTEST_SKIP() << "compares columns of one rank";
-    const auto &dynamics = *scene.dynamics;
+    const auto &delassus = *scene.delassus;
     const std::size_t n = scene.discretization->points().n_points * dim,
                       m = scene.discretization->bodies().n_dofs();
     ASSERT_GT(n, 20u);
@@ -26,7 +26,7 @@ namespace small_meshes::test_dynamics
         ASSERT_NEAR(W[i][j], W[j][i], 1e-14 * size) << i << ", " << j;
 
     for (unsigned int seed = 0; seed < 20; ++seed) {
-      const Vector P = random_vector(n, seed), U = delassus(dynamics, P);
+      const Vector P = random_vector(n, seed), U = delassus(delassus, P);
 
       // the operator is linear in its columns
       Vector columns(n, 0.);
@@ -38,13 +38,14 @@ namespace small_meshes::test_dynamics
 
       // and the product of its three factors
       Vector r(m), v(m), product(n);
-      dynamics.generalised_impulse(P.data(), r.data());
-      dynamics.apply(Dynamics<dim>::Operator::inverse, r.data(), v.data());
-      dynamics.relative_velocity(v.data(), product.data());
+      delassus.generalised_impulse(P.data(), r.data());
+      delassus.apply(DelassusOperator<dim>::Operator::inverse, r.data(),
+                     v.data());
+      delassus.relative_velocity(v.data(), product.data());
       for (std::size_t i = 0; i < n; ++i)
         ASSERT_NEAR(U[i], product[i], 1e-13 * largest(U));
       Vector change(m, 0.);
-      dynamics.add_velocity_change(P.data(), change.data());
+      delassus.add_velocity_change(P.data(), change.data());
       for (std::size_t i = 0; i < m; ++i)
         ASSERT_NEAR(change[i], v[i], 1e-13 * largest(v));
 
@@ -55,7 +56,7 @@ namespace small_meshes::test_dynamics
       // H^T is the transpose of H
       const Vector velocity = random_vector(m, 100 + seed);
       Vector jump(n);
-      dynamics.relative_velocity(velocity.data(), jump.data());
+      delassus.relative_velocity(velocity.data(), jump.data());
       double terms = 0.;
       for (std::size_t i = 0; i < m; ++i)
         terms += std::abs(velocity[i] * r[i]);
@@ -64,8 +65,10 @@ namespace small_meshes::test_dynamics
       // M_hat M_hat^{-1} = 1, M_hat = M + h^2 theta^2 K
       const double factor = std::pow(scene.time_step * 0.6, 2);
       Vector Mv(m), Kv(m);
-      dynamics.apply(Dynamics<dim>::Operator::mass, v.data(), Mv.data());
-      dynamics.apply(Dynamics<dim>::Operator::stiffness, v.data(), Kv.data());
+      delassus.apply(DelassusOperator<dim>::Operator::mass, v.data(),
+                     Mv.data());
+      delassus.apply(DelassusOperator<dim>::Operator::stiffness, v.data(),
+                     Kv.data());
       for (std::size_t i = 0; i < m; ++i)
         ASSERT_NEAR(Mv[i] + factor * Kv[i], r[i], 1e-11 * largest(r))
             << "condition of a cell's block: a few hundred";
@@ -83,14 +86,14 @@ namespace small_meshes::test_dynamics
     }
     Vector P = random_vector(n, 77);
     for (unsigned int k = 0; k < 2000; ++k) {
-      const Vector U = delassus(dynamics, P);
+      const Vector U = delassus(delassus, P);
       for (std::size_t i = 0; i < n; ++i)
         P[i] -= U[i] / norm;
       const double length = std::sqrt(dot(P, P));
       for (double &value : P)
         value /= length;
     }
-    EXPECT_GE(dot(P, delassus(dynamics, P)), -1e-14 * norm);
+    EXPECT_GE(dot(P, delassus(delassus, P)), -1e-14 * norm);
 
     // diagonal blocks of the faces
     const auto &faces = scene.discretization->points().faces;
@@ -99,16 +102,16 @@ namespace small_meshes::test_dynamics
       const std::size_t first = std::size_t(faces[f].first) * dim;
       for (unsigned int i = 0; i < count; ++i)
         for (unsigned int j = 0; j < count; ++j)
-          ASSERT_NEAR(dynamics.face_block(f)[i * count + j],
+          ASSERT_NEAR(delassus.face_block(f)[i * count + j],
                       W[first + j][first + i], 1e-13 * size);
     }
   }
 
-  TEST(Dynamics, Quads) { check_operator<2>(quads); }
-  TEST(Dynamics, Triangles) { check_operator<2>(triangles); }
-  TEST(Dynamics, Hexes) { check_operator<3>(hexes); }
-  TEST(Dynamics, Tetrahedra) { check_operator<3>(tets); }
-  TEST(Dynamics, RigidAndDeformable)
+  TEST(DelassusOperator, Quads) { check_operator<2>(quads); }
+  TEST(DelassusOperator, Triangles) { check_operator<2>(triangles); }
+  TEST(DelassusOperator, Hexes) { check_operator<3>(hexes); }
+  TEST(DelassusOperator, Tetrahedra) { check_operator<3>(tets); }
+  TEST(DelassusOperator, RigidAndDeformable)
   {
     check_operator<2>(mixed);
     const Scene<2> scene(mixed);
@@ -136,7 +139,7 @@ namespace small_meshes::test_dynamics
     ASSERT_EQ(v.size(), bodies.n_dofs());
     const std::size_t n = discretization.points().n_points;
     Vector U(n * dim);
-    scene.dynamics->relative_velocity(v.data(), U.data());
+    scene.delassus->relative_velocity(v.data(), U.data());
     for (std::size_t i = 0; i < n; ++i) {
       double size = 0.;
       for (unsigned int c = 0; c < dim; ++c)
@@ -152,7 +155,7 @@ namespace small_meshes::test_dynamics
     }
   }
 
-  TEST(Dynamics, TranslationOpensNothing)
+  TEST(DelassusOperator, TranslationOpensNothing)
   {
     check_translation<2>(quads);
     check_translation<2>(triangles);
@@ -161,23 +164,23 @@ namespace small_meshes::test_dynamics
     check_translation<2>(mixed);
   }
 
-  TEST(Dynamics, ReinitFollowsTheStep)
+  TEST(DelassusOperator, ReinitFollowsTheStep)
   {
     Scene<2> scene(quads);
     const std::size_t n = scene.discretization->points().n_points * 2;
     const Vector P = random_vector(n, 1);
-    const Vector at_step = delassus(*scene.dynamics, P);
-    const auto count = scene.dynamics->counters().factorisations;
-    scene.dynamics->reinit(scene.time_step, 0.6);
-    EXPECT_EQ(scene.dynamics->counters().factorisations, count)
+    const Vector at_step = delassus(*scene.delassus, P);
+    const auto count = scene.delassus->counters().factorisations;
+    scene.delassus->reinit(scene.time_step, 0.6);
+    EXPECT_EQ(scene.delassus->counters().factorisations, count)
         << "nothing has changed";
-    scene.dynamics->reinit(scene.time_step / 2., 0.6);
-    EXPECT_GT(scene.dynamics->counters().factorisations, count);
-    const Vector half = delassus(*scene.dynamics, P);
+    scene.delassus->reinit(scene.time_step / 2., 0.6);
+    EXPECT_GT(scene.delassus->counters().factorisations, count);
+    const Vector half = delassus(*scene.delassus, P);
     EXPECT_GT(dot(P, half), dot(P, at_step) * (1. + 1e-6))
         << "a shorter step leaves less stiffness in M_hat";
-    scene.dynamics->reinit(scene.time_step, 0.6);
-    EXPECT_EQ(delassus(*scene.dynamics, P), at_step);
+    scene.delassus->reinit(scene.time_step, 0.6);
+    EXPECT_EQ(delassus(*scene.delassus, P), at_step);
   }
 
   // A^{-1} M R = R for the rigid motions R, and A^{-1} K q -> q / f for the
@@ -242,4 +245,4 @@ namespace small_meshes::test_dynamics
     check_inverse<3>(hexes);
     check_inverse<3>(tets);
   }
-} // namespace small_meshes::test_dynamics
+} // namespace small_meshes::test_delassus_operator

@@ -22,12 +22,12 @@ namespace nsfd
    * (Woodbury).
    */
   template <int dim>
-  class Dynamics : public FaceTraces<dim>
+  class DelassusOperator : public FaceTraces<dim>
   {
   public:
-    Dynamics(const Communicator &communicator, const Bodies &bodies,
-             const InterfacePoints<dim> &points);
-    virtual ~Dynamics() = default;
+    DelassusOperator(const Communicator &communicator, const Bodies &bodies,
+                     const InterfacePoints<dim> &points);
+    virtual ~DelassusOperator() = default;
 
     /** Build what depends on the step; nothing if it has not changed. */
     virtual void reinit(double time_step, double theta);
@@ -219,16 +219,15 @@ namespace nsfd
    * nothing is kept in another form.
    */
   template <int dim>
-  std::unique_ptr<Dynamics<dim>>
-  make_moving_dynamics(const Communicator &communicator, const Bodies &bodies,
+  std::unique_ptr<DelassusOperator<dim>>
+  make_moving_delassus(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points);
 
   /** Preconditioned by the face blocks of W: for Courant numbers up to some. */
   template <int dim>
-  std::unique_ptr<Dynamics<dim>>
-  make_elementwise_dynamics(const Communicator &communicator,
-                            const Bodies &bodies,
-                            const InterfacePoints<dim> &points);
+  std::unique_ptr<DelassusOperator<dim>>
+  make_local_delassus(const Communicator &communicator, const Bodies &bodies,
+                      const InterfacePoints<dim> &points);
 
   /**
    * Preconditioned by the sparse matrix A of all bodies: for long steps.
@@ -239,9 +238,8 @@ namespace nsfd
    * nodes at the same place on a face can be joined. Empty: nothing is joined.
    */
   template <int dim>
-  std::unique_ptr<Dynamics<dim>>
-  make_sparse_dynamics(const Communicator &communicator, const Bodies &bodies,
-                       const InterfacePoints<dim> &points,
-                       const std::string &solver,
-                       const std::vector<double> &coordinates = {});
+  std::unique_ptr<DelassusOperator<dim>> make_assembled_delassus(
+      const Communicator &communicator, const Bodies &bodies,
+      const InterfacePoints<dim> &points, const std::string &solver,
+      const std::vector<double> &coordinates = {});
 } // namespace nsfd

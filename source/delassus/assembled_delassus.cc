@@ -3,7 +3,7 @@
 #include "sparse_assembly.h"
 
 #include "core/cost.h"
-#include "dynamics.h"
+#include "delassus_operator.h"
 #include "nsfd/core/archive.h"
 
 #include <algorithm>
@@ -31,13 +31,13 @@ namespace nsfd
      * stiffer one lets round-off grow along impulses that W does not see.)
      */
     template <int dim>
-    class SparseDynamics final : public Dynamics<dim>
+    class AssembledDelassus final : public DelassusOperator<dim>
     {
     public:
-      SparseDynamics(const Communicator &communicator, const Bodies &bodies,
-                     const InterfacePoints<dim> &points,
-                     const std::string &solver,
-                     const std::vector<double> &coordinates);
+      AssembledDelassus(const Communicator &communicator, const Bodies &bodies,
+                        const InterfacePoints<dim> &points,
+                        const std::string &solver,
+                        const std::vector<double> &coordinates);
 
       void reinit(double time_step, double theta) override;
       void prepare_preconditioner(const std::vector<double> &D) override;
@@ -79,12 +79,11 @@ namespace nsfd
     };
 
     template <int dim>
-    SparseDynamics<dim>::SparseDynamics(const Communicator &communicator,
-                                        const Bodies &bodies,
-                                        const InterfacePoints<dim> &points,
-                                        const std::string &solver,
-                                        const std::vector<double> &coordinates)
-        : Dynamics<dim>(communicator, bodies, points),
+    AssembledDelassus<dim>::AssembledDelassus(
+        const Communicator &communicator, const Bodies &bodies,
+        const InterfacePoints<dim> &points, const std::string &solver,
+        const std::vector<double> &coordinates)
+        : DelassusOperator<dim>(communicator, bodies, points),
           assembly_(communicator, bodies, points, coordinates),
           conforming_(communicator, dim, assembly_.unknowns(),
                       assembly_.node_pairs())
@@ -102,7 +101,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::use_cg()
+    void AssembledDelassus<dim>::use_cg()
     {
       direct_ = prepared_ = coarse_valid_ = false;
       solver_ = make_two_level_cg(this->communicator_, this->bodies_.first_dof,
@@ -110,15 +109,16 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::reinit(const double time_step, const double theta)
+    void AssembledDelassus<dim>::reinit(const double time_step,
+                                        const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
         valid_ = coarse_valid_ = false;
-      Dynamics<dim>::reinit(time_step, theta);
+      DelassusOperator<dim>::reinit(time_step, theta);
     }
 
     template <int dim>
-    void SparseDynamics<dim>::set_body_stiffness()
+    void AssembledDelassus<dim>::set_body_stiffness()
     {
       auto sides = assembly_.own_stiffness(share());
       this->exchange({{sides[0].data(), sides[1].data()}}, 1);
@@ -129,7 +129,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::set_springs(const std::vector<double> &D)
+    void AssembledDelassus<dim>::set_springs(const std::vector<double> &D)
     {
       const auto &points = this->points_;
       inverse_D_.assign(D.size(), 0.);
@@ -164,7 +164,7 @@ namespace nsfd
      * small against the inertia of the bodies does not count.
      */
     template <int dim>
-    bool SparseDynamics<dim>::loose_springs_changed(
+    bool AssembledDelassus<dim>::loose_springs_changed(
         const std::vector<char> &joined) const
     {
       const auto &points = this->points_;
@@ -187,7 +187,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::conform(const std::vector<char> &faces)
+    void AssembledDelassus<dim>::conform(const std::vector<char> &faces)
     {
       const auto before = conforming_.space().version;
       conforming_.conform(faces);
@@ -202,7 +202,7 @@ namespace nsfd
 
     template <int dim>
     void
-    SparseDynamics<dim>::prepare_preconditioner(const std::vector<double> &D)
+    AssembledDelassus<dim>::prepare_preconditioner(const std::vector<double> &D)
     {
       const Charge charge(Cost::preconditioner);
       // all is good as long as the step and D stay what they were
@@ -232,7 +232,7 @@ namespace nsfd
      * beside them, their round-off would leave nothing.
      */
     template <int dim>
-    void SparseDynamics<dim>::prepare_cg()
+    void AssembledDelassus<dim>::prepare_cg()
     {
       conform(assembly_.carrying(share(), inverse_D_));
       const auto &points = this->points_;
@@ -257,7 +257,7 @@ namespace nsfd
 
     /** y += M_hat x. */
     template <int dim>
-    void SparseDynamics<dim>::add_bodies(const double *x, double *y) const
+    void AssembledDelassus<dim>::add_bodies(const double *x, double *y) const
     {
       const auto &bodies = this->bodies_;
       for_all_bodies(
@@ -289,7 +289,7 @@ namespace nsfd
 
     /** y += A x for x in the joined space. */
     template <int dim>
-    void SparseDynamics<dim>::add_smooth(const double *x, double *y) const
+    void AssembledDelassus<dim>::add_smooth(const double *x, double *y) const
     {
       add_bodies(x, y);
       if (all_without_jump_)
@@ -305,7 +305,7 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::precondition(const double *r, double *z) const
+    void AssembledDelassus<dim>::precondition(const double *r, double *z) const
     {
       const Charge charge(Cost::precondition);
       const std::size_t n = inverse_D_.size(), m = this->bodies_.n_dofs();
@@ -324,8 +324,8 @@ namespace nsfd
     }
 
     template <int dim>
-    void SparseDynamics<dim>::add_jump(const std::vector<double> &change,
-                                       double *next)
+    void AssembledDelassus<dim>::add_jump(const std::vector<double> &change,
+                                          double *next)
     {
       for (std::size_t k = 0; k < change.size(); ++k) {
         jump_[k] += change[k];
@@ -335,10 +335,10 @@ namespace nsfd
     }
 
     template <int dim>
-    bool SparseDynamics<dim>::solve_springs(const double *P, const double *U,
-                                            const double *r,
-                                            const double tolerance,
-                                            double *next)
+    bool AssembledDelassus<dim>::solve_springs(const double *P, const double *U,
+                                               const double *r,
+                                               const double tolerance,
+                                               double *next)
     {
       const std::size_t n = inverse_D_.size(), m = this->bodies_.n_dofs();
       if (!this->free_velocity_ || this->free_velocity_->size() != m)
@@ -381,9 +381,9 @@ namespace nsfd
      * with, and whether factors have failed for good.
      */
     template <int dim>
-    void SparseDynamics<dim>::serialize(Archive &archive)
+    void AssembledDelassus<dim>::serialize(Archive &archive)
     {
-      Dynamics<dim>::serialize(archive);
+      DelassusOperator<dim>::serialize(archive);
       bool direct = direct_;
       archive.numbers("solver", direct, valid_, inverts_);
       archive.bodies("velocity", velocity_);
@@ -402,7 +402,7 @@ namespace nsfd
 
     /** Factors and joined space as they were when D_ was prepared. */
     template <int dim>
-    void SparseDynamics<dim>::prepare_again()
+    void AssembledDelassus<dim>::prepare_again()
     {
       set_body_stiffness();
       if (direct_) {
@@ -420,22 +420,21 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::unique_ptr<Dynamics<dim>>
-  make_sparse_dynamics(const Communicator &communicator, const Bodies &bodies,
-                       const InterfacePoints<dim> &points,
-                       const std::string &solver,
-                       const std::vector<double> &coordinates)
+  std::unique_ptr<DelassusOperator<dim>> make_assembled_delassus(
+      const Communicator &communicator, const Bodies &bodies,
+      const InterfacePoints<dim> &points, const std::string &solver,
+      const std::vector<double> &coordinates)
   {
-    return std::make_unique<SparseDynamics<dim>>(communicator, bodies, points,
-                                                 solver, coordinates);
+    return std::make_unique<AssembledDelassus<dim>>(
+        communicator, bodies, points, solver, coordinates);
   }
 
-  template std::unique_ptr<Dynamics<2>>
-  make_sparse_dynamics<2>(const Communicator &, const Bodies &,
-                          const InterfacePoints<2> &, const std::string &,
-                          const std::vector<double> &);
-  template std::unique_ptr<Dynamics<3>>
-  make_sparse_dynamics<3>(const Communicator &, const Bodies &,
-                          const InterfacePoints<3> &, const std::string &,
-                          const std::vector<double> &);
+  template std::unique_ptr<DelassusOperator<2>>
+  make_assembled_delassus<2>(const Communicator &, const Bodies &,
+                             const InterfacePoints<2> &, const std::string &,
+                             const std::vector<double> &);
+  template std::unique_ptr<DelassusOperator<3>>
+  make_assembled_delassus<3>(const Communicator &, const Bodies &,
+                             const InterfacePoints<3> &, const std::string &,
+                             const std::vector<double> &);
 } // namespace nsfd

@@ -16,8 +16,8 @@ namespace nsfd
   {
     /**
      * Block Jacobi by face: the inverses of W_ff + D_f on the components that
-     * take part, zero on the others. @p Base is Dynamics, or BondedDynamics
-     * with explicit bodies.
+     * take part, zero on the others. @p Base is DelassusOperator, or
+     * BondedDelassus with explicit bodies.
      */
     template <int dim, typename Base>
     class FaceBlocks : public Base
@@ -141,7 +141,7 @@ namespace nsfd
 
     /** With Newton systems in single precision, in batches of bodies. */
     template <int dim, typename Base>
-    class BatchedDynamics : public FaceBlocks<dim, Base>, public InnerSolver
+    class BatchedDelassus : public FaceBlocks<dim, Base>, public InnerSolver
     {
     public:
       using FaceBlocks<dim, Base>::FaceBlocks;
@@ -173,19 +173,19 @@ namespace nsfd
     };
 
     template <int dim, typename Base>
-    class ElementwiseDynamics final : public BatchedDynamics<dim, Base>
+    class LocalDelassus final : public BatchedDelassus<dim, Base>
     {
     public:
-      using BatchedDynamics<dim, Base>::BatchedDynamics;
+      using BatchedDelassus<dim, Base>::BatchedDelassus;
 
       void reinit(const double time_step, const double theta) override
       {
         const bool changes =
             time_step != this->time_step_ || theta != this->theta_;
-        Dynamics<dim>::reinit(time_step, theta);
+        DelassusOperator<dim>::reinit(time_step, theta);
         if (!changes)
           return;
-        if (theta != 0. && std::is_base_of_v<BondedDynamics<dim>, Base>)
+        if (theta != 0. && std::is_base_of_v<BondedDelassus<dim>, Base>)
           throw std::logic_error("bodies with explicit bonds are explicit");
         const Charge charge(Cost::blocks);
         this->set_batched();
@@ -194,63 +194,63 @@ namespace nsfd
 
     /** Every step has bodies and points of its own. */
     template <int dim>
-    class MovingDynamics final : public BatchedDynamics<dim, Dynamics<dim>>
+    class MovingDelassus final
+        : public BatchedDelassus<dim, DelassusOperator<dim>>
     {
     public:
-      using BatchedDynamics<dim, Dynamics<dim>>::BatchedDynamics;
+      using BatchedDelassus<dim, DelassusOperator<dim>>::BatchedDelassus;
 
       void reinit(const double time_step, const double theta) override
       {
-        Dynamics<dim>::reinit(time_step, theta);
+        DelassusOperator<dim>::reinit(time_step, theta);
         this->batched_.reset();
       }
     };
   } // namespace
 
   template <int dim>
-  std::unique_ptr<Dynamics<dim>>
-  make_moving_dynamics(const Communicator &communicator, const Bodies &bodies,
+  std::unique_ptr<DelassusOperator<dim>>
+  make_moving_delassus(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points)
   {
-    return std::make_unique<MovingDynamics<dim>>(communicator, bodies, points);
+    return std::make_unique<MovingDelassus<dim>>(communicator, bodies, points);
   }
 
   template <int dim>
-  std::unique_ptr<Dynamics<dim>>
-  make_elementwise_dynamics(const Communicator &communicator,
-                            const Bodies &bodies,
-                            const InterfacePoints<dim> &points)
+  std::unique_ptr<DelassusOperator<dim>>
+  make_local_delassus(const Communicator &communicator, const Bodies &bodies,
+                      const InterfacePoints<dim> &points)
   {
-    return std::make_unique<ElementwiseDynamics<dim, Dynamics<dim>>>(
+    return std::make_unique<LocalDelassus<dim, DelassusOperator<dim>>>(
         communicator, bodies, points);
   }
 
   template <int dim>
-  std::unique_ptr<BondedDynamics<dim>>
-  make_explicit_bonded_dynamics(const Communicator &communicator,
+  std::unique_ptr<BondedDelassus<dim>>
+  make_explicit_bonded_delassus(const Communicator &communicator,
                                 const Bodies &bodies,
                                 const InterfacePoints<dim> &points)
   {
-    return std::make_unique<ElementwiseDynamics<dim, BondedDynamics<dim>>>(
+    return std::make_unique<LocalDelassus<dim, BondedDelassus<dim>>>(
         communicator, bodies, points);
   }
 
-  template std::unique_ptr<Dynamics<2>>
-  make_moving_dynamics<2>(const Communicator &, const Bodies &,
+  template std::unique_ptr<DelassusOperator<2>>
+  make_moving_delassus<2>(const Communicator &, const Bodies &,
                           const InterfacePoints<2> &);
-  template std::unique_ptr<Dynamics<3>>
-  make_moving_dynamics<3>(const Communicator &, const Bodies &,
+  template std::unique_ptr<DelassusOperator<3>>
+  make_moving_delassus<3>(const Communicator &, const Bodies &,
                           const InterfacePoints<3> &);
-  template std::unique_ptr<Dynamics<2>>
-  make_elementwise_dynamics<2>(const Communicator &, const Bodies &,
-                               const InterfacePoints<2> &);
-  template std::unique_ptr<Dynamics<3>>
-  make_elementwise_dynamics<3>(const Communicator &, const Bodies &,
-                               const InterfacePoints<3> &);
-  template std::unique_ptr<BondedDynamics<2>>
-  make_explicit_bonded_dynamics<2>(const Communicator &, const Bodies &,
+  template std::unique_ptr<DelassusOperator<2>>
+  make_local_delassus<2>(const Communicator &, const Bodies &,
+                         const InterfacePoints<2> &);
+  template std::unique_ptr<DelassusOperator<3>>
+  make_local_delassus<3>(const Communicator &, const Bodies &,
+                         const InterfacePoints<3> &);
+  template std::unique_ptr<BondedDelassus<2>>
+  make_explicit_bonded_delassus<2>(const Communicator &, const Bodies &,
                                    const InterfacePoints<2> &);
-  template std::unique_ptr<BondedDynamics<3>>
-  make_explicit_bonded_dynamics<3>(const Communicator &, const Bodies &,
+  template std::unique_ptr<BondedDelassus<3>>
+  make_explicit_bonded_delassus<3>(const Communicator &, const Bodies &,
                                    const InterfacePoints<3> &);
 } // namespace nsfd
