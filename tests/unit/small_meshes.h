@@ -130,7 +130,7 @@ end
   }
 
   template <int dim>
-  Vector delassus(const DelassusOperator<dim> &delassus, const Vector &P)
+  Vector product_with_W(const DelassusOperator<dim> &delassus, const Vector &P)
   {
     Vector U(P.size());
     delassus.apply_delassus(P.data(), U.data());
@@ -146,7 +146,7 @@ end
     for (std::size_t k = 0; k < n; ++k) {
       Vector P(n, 0.);
       P[k] = 1.;
-      W.push_back(delassus(*scene.delassus, P));
+      W.push_back(product_with_W(*scene.delassus, P));
     }
     return W;
   }

@@ -103,13 +103,14 @@ namespace test_checkpoint
     EXPECT_THROW(checkpoint_file::put("/nowhere", sealed(1.)),
                  std::runtime_error);
     const Folder folder;
-    checkpoint_file::put(folder.path(), sealed(1.));
+    const auto first = sealed(1.); // HDF5 writes the second of its making
+    checkpoint_file::put(folder.path(), first);
     // in its way, with something in it
     fs::create_directories(folder.path() / "checkpoint.h5.part" / "kept");
     EXPECT_THROW(checkpoint_file::put(folder.path(), sealed(2.)),
                  std::runtime_error);
     EXPECT_TRUE(checkpoint_file::read(folder.path() / "checkpoint.h5") ==
-                sealed(1.));
+                first);
   }
 
   TEST(Checkpoint, NamesChangedParameters)

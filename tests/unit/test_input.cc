@@ -248,7 +248,7 @@ end
                                 "Constants/unused=3 um"});
     ASSERT_NE(first, nullptr);
     for (const char *line :
-         {"# small - the least that runs", "set dimension = 2",
+         {"# small - the least that runs", "set dimension  = 2",
           "set theta              = 0.5", "  set degree               = 3",
           "  set velocity x       = 2 m/s * cos(t)", "subsection Solver",
           "  # set pressure"})

@@ -167,7 +167,7 @@ namespace small_meshes::test_preconditioners
         r[k] = D[k] >= 0. ? r[k] * root[k] : 0.;
       EXPECT_GT(inner->solve_inner({D, 1e-6, 1000, nullptr, nullptr, 0.}, r, x),
                 0u);
-      Vector residual = delassus(delassus, x);
+      Vector residual = product_with_W(delassus, x);
       for (std::size_t k = 0; k < n; ++k)
         if (D[k] < 0.) {
           EXPECT_EQ(x[k], 0.) << "does not take part";
@@ -195,7 +195,7 @@ namespace small_meshes::test_preconditioners
         }
       }
       EXPECT_GT(inner->solve_inner({D, 1e-6, 400, &J, &R, shift}, f, y), 0u);
-      Vector Wy = delassus(delassus, y), result(y), inverse(n);
+      Vector Wy = product_with_W(delassus, y), result(y), inverse(n);
       for (std::size_t k = 0; k < n; ++k) {
         inverse[k] = 1. / root[k];
         Wy[k] -= (1. - shift) * R[k] * y[k];

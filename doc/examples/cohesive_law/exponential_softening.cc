@@ -1,6 +1,7 @@
 #include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/parameters/section_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -44,7 +45,10 @@ namespace nsfd
     }
     double energy_increment(const double d0, const double d1) const override
     {
-      return toughness_ * beta(d0) * -std::expm1(-(d1 - d0) / length());
+      // seen from the smaller one: of a far one nothing is left
+      const double change = toughness_ * beta(std::min(d0, d1)) *
+                            -std::expm1(-std::abs(d1 - d0) / length());
+      return d1 < d0 ? -change : change;
     }
 
     double elastic_limit() const override { return 0.; }
