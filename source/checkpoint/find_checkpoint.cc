@@ -54,8 +54,8 @@ namespace nsfd
           if (one.name == name)
             now = &one;
         if (!now)
-          refused +=
-              fmt::format("  {0} is not loaded: --plug-in PATH/{0}.so\n", name);
+          refused += fmt::format(
+              "  `{0}` is not loaded: --plug-in PATH/{0}.so\n", name);
         else if (now->checksum != checksum)
           refused += fmt::format("  {} is another file now: checksum {}, was "
                                  "{}\n",

@@ -123,11 +123,17 @@ namespace nsfd
         return "it cannot be loaded: " + text;
       const std::string symbol = text.substr(undefined.size());
       int status = 0;
-      const std::unique_ptr<char, decltype(&std::free)> name(
+      const std::unique_ptr<char, decltype(&std::free)> demangled(
           abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status),
           std::free);
+      const std::string name = demangled ? demangled.get() : symbol;
+      const std::string vtable = "vtable for ";
+      if (name.compare(0, vtable.size(), vtable) == 0)
+        return fmt::format("a virtual function of `{}` is declared and not "
+                           "defined",
+                           name.substr(vtable.size()));
       return fmt::format("it needs `{}`, which neither it nor this program has",
-                         name ? name.get() : symbol);
+                         name);
     }
 
     void run_its_code(Loading &now)

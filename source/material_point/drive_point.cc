@@ -237,7 +237,8 @@ namespace nsfd
     const auto is_gone = [&](const double d) {
       return law.energy(d) >= 0.99 * law.toughness();
     };
-    while (!is_gone(high))
+    // a law that never takes its toughness breaks its contract, which says so
+    for (unsigned int i = 0; i < 60 && !is_gone(high); ++i)
       low = high, high *= 2.;
     while (high - low > 1e-12 * high)
       (is_gone((low + high) / 2.) ? high : low) = (low + high) / 2.;
