@@ -142,9 +142,9 @@ namespace nsfd
       scene->file = name;
       read_opening(file, *scene);
       read_constants(file, errors);
+      read_top(file, errors, *scene);
       if (!read_plug_ins(file, errors, "nsfd", name))
         return nullptr;
-      read_top(file, errors, *scene);
       read_mesh(file, errors, *scene);
       read_discretization(file, errors, *scene);
       read_materials(file, errors, *scene);
