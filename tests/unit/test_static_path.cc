@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iostream>
 #include <string>
 
 // Bars that are too soft for the faces in them: what a step of the load must
@@ -108,42 +110,63 @@ end
       return result;
     }
 
-    // The bar is elastic up to R_max. With r = R_max^2 L/(2 E G) it stores r G
-    // then. The middle face breaks; the two others have 1.05 R_max.
+    /**
+     * The bar is elastic up to R_max. With r = R_max^2 L/(2 E G) it stores r G
+     * then. The middle face breaks; the two others have 1.05 R_max. False if
+     * the run was refused: what it refused has not been wrong so far.
+     */
+    bool breaks_at_its_strength(const std::string &name,
+                                const std::string &entries, const double r,
+                                const double n_steps)
+    {
+      const auto made = test::make_law(name, test::entries_of(entries));
+      const CohesiveLaw &law = *made;
+      const double R_max = law.strength();
+      const double young = R_max * R_max * length / (2. * law.toughness() * r);
+      const double at_peak = R_max * length / young + 3. * law.peak_opening();
+      const Pull broken =
+          pull(bar(name, entries, law.extrinsic(), young, 1.6 * at_peak),
+               1. / n_steps);
+      const std::string what =
+          fmt::format("{}: {}, r = {}, {} steps", name, entries, r, n_steps);
+      EXPECT_LT(broken.peak / (R_max * height), 1.01) << what;
+      if (!broken.refused) {
+        EXPECT_GT(broken.peak / (R_max * height), 0.99) << what;
+      }
+      EXPECT_LE(broken.missing, 0.) << what;
+      EXPECT_LT(broken.defect, 1e-9) << what;
+      return !broken.refused;
+    }
+
+    constexpr double ratios[] = {1.01, 1.5, 5., 30., 1000.};
+
     TEST(StaticPath, SoftBarsBreakAtTheirStrength)
     {
-      unsigned int refused = 0;
+      unsigned int refused = 0, step = 0;
       for (const auto &[name, entry] :
-           CohesiveLawRegistry::instance().entries()) {
-        const std::string &entries = entry.examples.front();
-        const auto made = test::make_law(name, test::entries_of(entries));
-        const CohesiveLaw &law = *made;
-        const double R_max = law.strength();
-        unsigned int step = 0;
-        for (const double r : {1.01, 1.5, 5., 30., 1000.}) {
-          const double young =
-              R_max * R_max * length / (2. * law.toughness() * r);
-          const double at_peak =
-              R_max * length / young + 3. * law.peak_opening();
+           CohesiveLawRegistry::instance().entries())
+        for (const double r : ratios) {
           constexpr double steps[] = {2., 7., 50.};
-          const double n = steps[step++ % 3];
-          const Pull broken =
-              pull(bar(name, entries, law.extrinsic(), young, 1.6 * at_peak),
-                   1. / n);
-          const std::string what =
-              fmt::format("{}: {}, r = {}, {} steps", name, entries, r, n);
-          // what is refused has not been wrong so far
-          EXPECT_LT(broken.peak / (R_max * height), 1.01) << what;
-          if (!broken.refused) {
-            EXPECT_GT(broken.peak / (R_max * height), 0.99) << what;
-          }
-          refused += broken.refused;
-          EXPECT_LE(broken.missing, 0.) << what;
-          EXPECT_LT(broken.defect, 1e-9) << what;
+          refused += !breaks_at_its_strength(name, entry.examples.front(), r,
+                                             steps[step++ % 3]);
         }
-      }
       // five bars of each law; a run that refuses most of them is of no use
       EXPECT_LE(refused, CohesiveLawRegistry::instance().names().size());
+    }
+
+    // All examples of all laws by as many load steps as NSFD_LOAD_STEPS says.
+    TEST(StaticPath, SoftBarsBreakAtTheirStrengthInManySteps)
+    {
+      const char *const steps = std::getenv("NSFD_LOAD_STEPS");
+      if (steps == nullptr)
+        GTEST_SKIP() << "NSFD_LOAD_STEPS is not set";
+      for (const auto &[name, entry] :
+           CohesiveLawRegistry::instance().entries())
+        for (const std::string &entries : entry.examples)
+          for (const double r : ratios)
+            if (!breaks_at_its_strength(name, entries, r, std::stod(steps)))
+              std::cout << name << ": " << entries << ", r = " << r
+                        << ": refused\n";
     }
   } // namespace
 } // namespace nsfd::test_static_path
