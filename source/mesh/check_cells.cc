@@ -184,12 +184,14 @@ namespace nsfd
     void check_corners(const NamedMesh &mesh,
                        std::vector<std::string> &problems)
     {
-      Counted bad("cells are inverted or degenerate", problems);
+      Counted bad("cells are inverted or degenerate", problems),
+          long_ones("cells are too long for their width", problems);
       for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
         const unsigned int *v = mesh.cells.begin(c);
         const auto *shape =
             find_cell_shape(mesh.dimension, mesh.cells.n_vertices(c));
         double smallest = std::numeric_limits<double>::max();
+        double shortest = smallest, longest = 0.;
         for (unsigned int i = 0; i < shape->n_corners; ++i) {
           const MeshVector origin = position(mesh, v[i]);
           std::array<MeshVector, 3> edge = {
@@ -197,7 +199,10 @@ namespace nsfd
           double lengths = 1.;
           for (unsigned int d = 0; d < mesh.dimension; ++d) {
             edge[d] = position(mesh, v[shape->edges[i][d]]) - origin;
-            lengths *= norm(edge[d]);
+            const double length = norm(edge[d]);
+            lengths *= length;
+            shortest = std::min(shortest, length);
+            longest = std::max(longest, length);
           }
           const double volume = dot(cross(edge[0], edge[1]), edge[2]);
           smallest = std::min(smallest, lengths > 0. ? volume / lengths : 0.);
@@ -211,6 +216,16 @@ namespace nsfd
                                cell_text(mesh, c),
                                smallest < -rounding ? "inverted" : "degenerate",
                                smallest);
+          });
+        // shapes are rounded to 2^-42 of their size: places on a face must
+        // agree with those of the cell behind it
+        constexpr double largest_ratio = 1e6;
+        if (longest > largest_ratio * shortest)
+          long_ones.add([&] {
+            return fmt::format("{} has edges of {:.3g} and of {:.3g}, and none "
+                               "may be longer than {:g} times another",
+                               cell_text(mesh, c), longest, shortest,
+                               largest_ratio);
           });
       }
     }

@@ -147,6 +147,19 @@ namespace test_bad_meshes
         "bad.msh");
   }
 
+  TEST(BadMeshes, CellsOfAnyLengthButNotOfAnyWidth)
+  {
+    const auto errors_of_length = [](const std::string &x) {
+      return errors_of_mesh(
+          2, {{"0 0 0", "1 0 0", "1 1 0", "0 1 0", x + " 0 0", x + " 1 0"},
+              {"3 2 1 1 1 2 3 4", "3 2 1 1 2 5 6 3"}});
+    };
+    EXPECT_EQ(errors_of_length("900001"), "");
+    expect_error(errors_of_length("4294967296"),
+                 "has edges of 4.29e+09 and of 1, and none may be longer than "
+                 "1e+06 times another");
+  }
+
   TEST(BadMeshes, WhatBreaksGmshIsSaid)
   {
     // a list that no memory holds
