@@ -12,7 +12,9 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/nsfd
         TYPE INCLUDE FILES_MATCHING PATTERN *.h)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/prm ${CMAKE_SOURCE_DIR}/doc/examples
         DESTINATION ${CMAKE_INSTALL_DATADIR}/nsfd)
-install(FILES README.md LICENSE CITATION.cff CHANGELOG.md TYPE DOC)
+# the documents link to each other by their places in the checkout
+install(FILES README.md CONTRIBUTING.md LICENSE CITATION.cff CHANGELOG.md TYPE DOC)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/doc TYPE DOC)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/nsfd)
 configure_package_config_file(
