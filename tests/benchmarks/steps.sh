@@ -69,6 +69,9 @@ for folder; do
       runs=$((runs + 1))
       case $status in
         0 | 1 | 3 | 4) ;;
+        143) # the signal came before the first step
+          grep -q "nothing had been computed" "$scratch/log" ||
+            { bad=$((bad + 1)); echo "$scene, step $step: ended by TERM"; } ;;
         *) bad=$((bad + 1)); echo "$scene, step $step: exit code $status" ;;
       esac
       if [ -f "$out/summary.json" ] &&
