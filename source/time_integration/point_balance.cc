@@ -232,16 +232,10 @@ namespace nsfd
     if (next_.two_sided[i] || old_.kind[i] == PointKind::bonded)
       return;
     const double h = problem_.time_step;
-    const auto depth_in = [i](const State &state) {
-      return (state.dilated.empty() ? 0. : state.dilated[i] - state.worn[i]) -
-             state.jump[i * dim];
-    };
-    const double depth = depth_in(next_);
+    const double depth =
+        (next_.dilated.empty() ? 0. : next_.dilated[i] - next_.worn[i]) -
+        next_.jump[i * dim];
     double &released = next_.released_overlap[i], &approach = next_.approach[i];
-    // it was open: what came before does not count; surfaces of large motions
-    // keep theirs by place
-    if (depth_in(old_) < 0. && old_.surface_contact.empty())
-      released = approach = 0.;
     if (old_.two_sided[i])
       released = std::max(released, depth);
     if (problem_.contact[i]) {
