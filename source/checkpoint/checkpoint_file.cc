@@ -28,14 +28,8 @@ namespace nsfd::checkpoint_file
     /** Of everything after the head. */
     std::uint64_t checksum(const std::vector<char> &bytes)
     {
-      std::uint64_t sum = bytes.size();
-      for (std::size_t i = head_size; i < bytes.size(); i += 8) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, &bytes[i],
-                    std::min<std::size_t>(8, bytes.size() - i));
-        sum = mixed(sum ^ word);
-      }
-      return sum;
+      const std::size_t head = std::min<std::size_t>(head_size, bytes.size());
+      return mixed(bytes.size(), bytes.data() + head, bytes.size() - head);
     }
 
     /** A file that is open for writing, removed unless it is kept. */

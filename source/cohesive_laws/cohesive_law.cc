@@ -1,6 +1,7 @@
 #include "nsfd/cohesive_laws/cohesive_law.h"
 
 #include "gauss.h"
+#include "nsfd/cohesive_laws/law_point.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +22,8 @@ namespace nsfd
 
   bool CohesiveLaw::has_potential() const
   {
-    // equal up to the round-off of reading the two from the input
-    return mixed() == nullptr && std::abs(stiffness_ratio() - shear_weight()) <=
-                                     1e-12 * shear_weight();
+    return mixed() == nullptr &&
+           nsfd::has_potential(stiffness_ratio(), shear_weight());
   }
 
   std::vector<double> CohesiveLaw::kinks() const

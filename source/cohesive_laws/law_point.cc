@@ -155,8 +155,7 @@ namespace nsfd
     const double d_m = from.history.opening, d_top = to.history.opening;
     const double damage = std::max(
         0., released(d_m, d_top) - (half_stored(d_top) - half_stored(d_m)));
-    const bool potential =
-        std::abs(stiffness_ratio_ - shear_weight_) <= 1e-12 * shear_weight_;
+    const bool potential = has_potential(stiffness_ratio_, shear_weight_);
     if (plateau_ || (potential && !law_.rate_dependent()))
       return {damage, 0.};
     const double loss = lost_energy(from, to, damage);

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -53,14 +52,8 @@ namespace nsfd
 
     std::string checksum(const std::string &bytes)
     {
-      std::uint64_t sum = bytes.size();
-      for (std::size_t i = 0; i < bytes.size(); i += 8) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, &bytes[i],
-                    std::min<std::size_t>(8, bytes.size() - i));
-        sum = mixed(sum ^ word);
-      }
-      return fmt::format("{:016x}", sum);
+      return fmt::format("{:016x}",
+                         mixed(bytes.size(), bytes.data(), bytes.size()));
     }
 
     const char *const how_to_build =

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 namespace nsfd
 {
@@ -11,5 +13,17 @@ namespace nsfd
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
+  }
+
+  /** @p sum mixed with @p size bytes, eight by eight: a checksum. */
+  inline std::uint64_t mixed(std::uint64_t sum, const char *bytes,
+                             const std::size_t size)
+  {
+    for (std::size_t i = 0; i < size; i += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes + i, std::min<std::size_t>(8, size - i));
+      sum = mixed(sum ^ word);
+    }
+    return sum;
   }
 } // namespace nsfd

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 
 namespace nsfd
@@ -15,12 +14,8 @@ namespace nsfd
     /** Splits "0.6 courant" into "0.6" and "courant". */
     std::pair<SourceText, std::string> split_last_word(const SourceText &value)
     {
-      const std::string &text = value.text();
-      std::size_t begin = text.size();
-      while (begin > 0 &&
-             std::isalpha(static_cast<unsigned char>(text[begin - 1])))
-        --begin;
-      return {value.part(0, begin), text.substr(begin)};
+      const std::size_t begin = begin_of_last_word(value.text());
+      return {value.part(0, begin), value.text().substr(begin)};
     }
 
     void read_step(SectionReader &reader, const std::string &name,

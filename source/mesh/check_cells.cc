@@ -207,7 +207,7 @@ namespace nsfd
           const double volume = dot(cross(edge[0], edge[1]), edge[2]);
           smallest = std::min(smallest, lengths > 0. ? volume / lengths : 0.);
         }
-        // slivers of any thinness are cells; what rounding leaves is not
+        // slivers of any angle are cells; what rounding leaves is not
         constexpr double rounding = 1e-14;
         if (!(smallest > rounding))
           bad.add([&] {

@@ -22,17 +22,16 @@ namespace nsfd
           return &word;
       return nullptr;
     }
-
-    /** Where the last word of a value begins. */
-    std::size_t begin_of_last_word(const std::string &value)
-    {
-      std::size_t begin = value.size();
-      while (begin > 0 &&
-             std::isalpha(static_cast<unsigned char>(value[begin - 1])))
-        --begin;
-      return begin;
-    }
   } // namespace
+
+  std::size_t begin_of_last_word(const std::string &value)
+  {
+    std::size_t begin = value.size();
+    while (begin > 0 &&
+           std::isalpha(static_cast<unsigned char>(value[begin - 1])))
+      --begin;
+    return begin;
+  }
 
   const std::vector<FormerWord> &former_words()
   {

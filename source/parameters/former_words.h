@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ namespace nsfd
   std::vector<const FormerWord *> renew_words(const std::string &section_kind,
                                               std::string &name,
                                               std::string &value);
+
+  /** Where the last word of a value begins, letters only: "0.6 courant". */
+  std::size_t begin_of_last_word(const std::string &value);
 
   /** Today's word for a unit, @p unit itself if it is none of them. */
   std::string current_unit(const std::string &unit);

@@ -58,6 +58,16 @@ namespace nsfd
     double total() const { return damage + viscous; }
   };
 
+  /**
+   * One damage scalar has a potential where C_T / C_N is r^2, equal up to the
+   * round-off of reading the two from the input.
+   */
+  inline bool has_potential(const double stiffness_ratio,
+                            const double shear_weight)
+  {
+    return std::abs(stiffness_ratio - shear_weight) <= 1e-12 * shear_weight;
+  }
+
   /** A step from the history @p history that ends at @p end damages. */
   inline bool grows(const Reach &history, const Reach &end)
   {
@@ -243,10 +253,9 @@ namespace nsfd
     /** s^2: the strength in shear over that in opening, squared. */
     double strength_weight() const
     {
-      const bool potential =
-          std::abs(stiffness_ratio_ - shear_weight_) <= 1e-12 * shear_weight_;
-      return potential ? shear_weight_
-                       : stiffness_ratio_ * stiffness_ratio_ / shear_weight_;
+      return has_potential(stiffness_ratio_, shear_weight_)
+                 ? shear_weight_
+                 : stiffness_ratio_ * stiffness_ratio_ / shear_weight_;
     }
   };
 
