@@ -159,8 +159,9 @@ namespace nsfd
     }
 
     unsigned int read_interface_points(SectionReader &reader,
-                                       const DiscretizationInput &input)
+                                       const SceneInput &scene)
     {
+      const DiscretizationInput &input = scene.discretization;
       const std::string text = "of the quadrature, per direction of a face: "
                                "`degree + 1` or a number";
       const auto raw =
@@ -176,13 +177,26 @@ namespace nsfd
                                text);
 
       const std::string &rule = input.interface_quadrature;
-      if (rule == "quarter points" && n_points != 2)
+      const bool on_triangles = scene.dimension == 3 && has_simplices(scene);
+      if (on_triangles && rule == "quarter points")
+        reader.error("interface quadrature",
+                     "interface quadrature = quarter points has no points on "
+                     "the triangular faces of tetrahedra",
+                     "write gauss or gauss lobatto");
+      else if (on_triangles && rule == "gauss lobatto" && n_points != 2)
+        reader.error("interface points",
+                     fmt::format("interface points = {}: on the faces of "
+                                 "tetrahedra the rule `gauss lobatto` has 2 "
+                                 "per direction, the three vertices",
+                                 n_points),
+                     "write 2, or interface quadrature = gauss");
+      else if (rule == "quarter points" && n_points != 2)
         reader.error("interface points",
                      fmt::format("interface points = {}: the rule `quarter "
                                  "points` has 2 per direction",
                                  n_points),
                      "write 2, or interface quadrature = gauss");
-      if (rule == "gauss lobatto" && n_points < 2)
+      else if (rule == "gauss lobatto" && n_points < 2)
         reader.error("interface points",
                      "interface points = 1: the rule `gauss lobatto` has at "
                      "least 2 per direction",
@@ -208,10 +222,11 @@ namespace nsfd
                    "mass = lumped with degree = 2 on triangles or tetrahedra "
                    "would leave vertices without mass",
                    "write consistent, or degree = 1");
-    input.interface_quadrature =
-        reader.choice("interface quadrature", "gauss",
-                      {"gauss", "gauss lobatto", "quarter points"},
-                      "gauss, gauss lobatto or quarter points");
-    input.interface_points = read_interface_points(reader, input);
+    input.interface_quadrature = reader.choice(
+        "interface quadrature", "gauss",
+        {"gauss", "gauss lobatto", "quarter points"},
+        "gauss, gauss lobatto (tetrahedra: vertices of a face) or quarter "
+        "points");
+    input.interface_points = read_interface_points(reader, scene);
   }
 } // namespace nsfd
