@@ -1,6 +1,7 @@
 #include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/parameters/section_reader.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace nsfd
@@ -55,6 +56,16 @@ namespace nsfd
       if (d >= critical_opening_)
         return toughness();
       return strength_ * d * (1. - 0.5 * d / critical_opening_);
+    }
+
+    double energy_increment(const double d0, const double d1) const override
+    {
+      // the way itself, and not what is left of it, keeps its digits
+      const double a = std::min(d0, critical_opening_),
+                   b = std::min(d1, critical_opening_);
+      return strength_ * (b - a) *
+             ((critical_opening_ - a) + (critical_opening_ - b)) /
+             (2. * critical_opening_);
     }
 
     double elastic_limit() const override { return 0.; }

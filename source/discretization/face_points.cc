@@ -410,8 +410,8 @@ namespace nsfd
     const auto n = unsigned(points.n_points);
     bodies.slot_point.assign(bodies.first_slot.back(), n);
     bodies.slot_sign.assign(bodies.first_slot.back(), 1);
-    // the nearest one; where faces of the cell meet, that of the face of the
-    // point if it is a triangle, else a free one
+    // the nearest one on the face of the point; a free one where there are
+    // several
     const auto slot_of = [&](const std::size_t b, const unsigned int i) {
       const auto &shape = cells.shape(b);
       const double tolerance = 1e-7 * shape.corners.back().norm();
@@ -434,7 +434,7 @@ namespace nsfd
                            points.position[i * dim + c];
           d += x * x;
         }
-        if (dim == 3 && shape.reference.is_simplex() && !is_on_face(s))
+        if (!is_on_face(s))
           continue;
         const bool taken = bodies.slot_point[bodies.first_slot[b] + s] < n;
         if (d < distance - tolerance * tolerance ||

@@ -203,6 +203,32 @@ namespace nsfd
                      "write 2, or interface quadrature = gauss");
       return n_points;
     }
+    /** What joined cells of the explicit scheme need. */
+    void check_nodes(SectionReader &reader, const SceneInput &scene)
+    {
+      const DiscretizationInput &input = scene.discretization;
+      const std::string reason =
+          "scheme = leapfrog has masses and points at the nodes of the cells";
+      if (!input.lumped_mass)
+        reader.error("mass", "mass = consistent: " + reason, "write lumped");
+      if (input.interface_quadrature != "gauss lobatto")
+        reader.error("interface quadrature",
+                     fmt::format("interface quadrature = {}: {}",
+                                 input.interface_quadrature, reason),
+                     "write gauss lobatto");
+      else if (input.interface_points != input.degree + 1)
+        reader.error("interface points",
+                     fmt::format("interface points = {}: {}",
+                                 input.interface_points, reason),
+                     "write degree + 1");
+      if (has_simplices(scene) && input.degree > 1)
+        reader.error(
+            "degree",
+            fmt::format("degree = {} on triangles or tetrahedra: their "
+                        "nodes have no positive lumped mass",
+                        input.degree),
+            "write 1, or take scheme = moreau-jean");
+    }
   } // namespace
 
   void read_discretization(ParameterFile &file, InputErrors &errors,
@@ -214,8 +240,10 @@ namespace nsfd
     input.degree = reader.integer("degree", "1", 1, absurd_degree,
                                   "of the polynomials in a cell");
     check_degree(reader, scene);
+    const bool at_nodes = scene.time.scheme == Scheme::leapfrog;
     input.lumped_mass =
-        reader.choice("mass", "consistent", {"consistent", "lumped"},
+        reader.choice("mass", at_nodes ? "lumped" : "consistent",
+                      {"consistent", "lumped"},
                       "consistent or lumped") == "lumped";
     if (input.lumped_mass && has_simplices(scene) && input.degree == 2)
       reader.error("mass",
@@ -223,10 +251,12 @@ namespace nsfd
                    "would leave vertices without mass",
                    "write consistent, or degree = 1");
     input.interface_quadrature = reader.choice(
-        "interface quadrature", "gauss",
+        "interface quadrature", at_nodes ? "gauss lobatto" : "gauss",
         {"gauss", "gauss lobatto", "quarter points"},
         "gauss, gauss lobatto (tetrahedra: vertices of a face) or quarter "
         "points");
     input.interface_points = read_interface_points(reader, scene);
+    if (at_nodes)
+      check_nodes(reader, scene);
   }
 } // namespace nsfd

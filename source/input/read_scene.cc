@@ -145,6 +145,7 @@ namespace nsfd
       read_top(file, errors, *scene);
       if (!read_plug_ins(file, errors, "nsfd", name))
         return nullptr;
+      look_at_scheme(file, *scene);
       read_mesh(file, errors, *scene);
       read_discretization(file, errors, *scene);
       read_materials(file, errors, *scene);

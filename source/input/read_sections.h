@@ -43,6 +43,14 @@ namespace nsfd
   void read_discretization(ParameterFile &file, InputErrors &errors,
                            SceneInput &scene);
 
+  /**
+   * The scheme of section `Time` where other sections have defaults of their
+   * own for it; read_time() reads it, and reports what is wrong with it.
+   */
+  void look_at_scheme(const ParameterFile &file, SceneInput &scene);
+  /** Entries of section `Time` with scheme = leapfrog, and what it refuses. */
+  void read_leapfrog(SectionReader &reader, SceneInput &scene);
+
   void read_materials(ParameterFile &file, InputErrors &errors,
                       SceneInput &scene);
   void read_interfaces(ParameterFile &file, InputErrors &errors,

@@ -358,15 +358,24 @@ namespace nsfd
     }
   } // namespace
 
+  void look_at_scheme(const ParameterFile &file, SceneInput &scene)
+  {
+    const ParameterSection *section = file.find("Time");
+    const ParameterEntry *entry = section ? section->find("scheme") : nullptr;
+    if (entry && entry->value.text() == "leapfrog")
+      scene.time.scheme = Scheme::leapfrog;
+  }
+
   void read_time(ParameterFile &file, InputErrors &errors, SceneInput &scene)
   {
     SectionReader reader(file.open("Time"), errors);
     TimeInput &time = scene.time;
     time.end = reader.number("end", "", units::time, Range::positive(), "s");
-    const std::string scheme =
-        reader.choice("scheme", "moreau-jean",
-                      {"moreau-jean", "explicit", "arkode", "quasi-static"},
-                      "moreau-jean, explicit, arkode or quasi-static");
+    const std::string scheme = reader.choice(
+        "scheme", "moreau-jean",
+        {"moreau-jean", "leapfrog", "explicit", "arkode", "quasi-static"},
+        "moreau-jean, leapfrog, explicit, arkode or "
+        "quasi-static");
     if (refuse_scheme(reader, scene, scheme))
       return;
     check_viscosity(reader, scene, scheme);
@@ -390,6 +399,9 @@ namespace nsfd
     }
     if (scheme == "arkode")
       return read_smooth(reader, scene);
+    if (scheme == "leapfrog")
+      return read_leapfrog(reader, scene);
+    reader.refuse({"front viscosity"}, "it belongs to scheme = leapfrog");
     reader.refuse({"pairs", "order", "integration tolerance"},
                   "it belongs to scheme = arkode");
     if (scheme == "explicit") {

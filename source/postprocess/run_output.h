@@ -77,8 +77,10 @@ namespace nsfd
     /** CPU seconds spent on fields and pictures. */
     double cpu() const { return cpu_; }
 
-  private:
+    /** It is a time for fields and pictures. */
     bool is_due(const State &state) const;
+
+  private:
     void keep(const HistoryRow &row);
     void write_descriptions() const;
     void serialize_history(Archive &archive);

@@ -13,6 +13,19 @@ namespace nsfd
            std::any_of(input.contacts.begin(), input.contacts.end(), lifts);
   }
 
+  double SceneInput::front_viscosity() const
+  {
+    // tension behind a compressive front is then at most 4 % of its amplitude
+    constexpr double automatic = 0.2;
+    if (time.front_viscosity)
+      return *time.front_viscosity;
+    return std::any_of(
+               interfaces.begin(), interfaces.end(),
+               [](const InterfaceInput &block) { return bool(block.law); })
+               ? automatic
+               : 0.;
+  }
+
   bool has_opening_viscosity(const SceneInput &input)
   {
     return std::any_of(input.interfaces.begin(), input.interfaces.end(),

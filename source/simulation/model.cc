@@ -60,7 +60,8 @@ namespace nsfd
     charge_memory("bodies and points");
     choose_path(input);
     build_delassus(input, communicator);
-    if (input.time.scheme == Scheme::explicit_moreau_jean)
+    if (input.time.scheme == Scheme::explicit_moreau_jean ||
+        input.time.scheme == Scheme::leapfrog)
       check_stability(input, communicator, problems);
     if (!problems.empty())
       return problems;
@@ -72,6 +73,19 @@ namespace nsfd
     if (input.time.scheme == Scheme::arkode)
       smooth_motion = std::make_unique<SmoothMotion<dim>>(
           input, *discretization, *delassus);
+    if (input.time.scheme == Scheme::leapfrog) {
+      method = "node by node";
+      if (communicator.size() > 1)
+        problems.push_back("scheme = leapfrog runs on one rank so far: leave "
+                           "out mpirun, or write scheme = explicit");
+      else
+        try {
+          leapfrog = std::make_unique<Leapfrog<dim>>(
+              input, *discretization, communicator, stepper->problem());
+        } catch (const std::runtime_error &error) {
+          problems.push_back(error.what());
+        }
+    }
     if (input.statics)
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
@@ -105,6 +119,8 @@ namespace nsfd
       all.push_back(equilibria.get());
     if (smooth_motion)
       all.push_back(smooth_motion.get());
+    else if (leapfrog)
+      all.push_back(leapfrog.get());
     else
       all.push_back(stepper.get());
     return all;
@@ -169,6 +185,8 @@ namespace nsfd
     const double crossing = discretization->crossing_time();
     if (input.iterates())
       path = "local";
+    else if (input.time.scheme == Scheme::leapfrog)
+      path = "nodes";
     else if (input.has_bonded_faces())
       path = input.time.scheme == Scheme::explicit_moreau_jean ? "local"
                                                                : "assembled";
@@ -204,6 +222,10 @@ namespace nsfd
           make_explicit_bonded_delassus<dim>(communicator, bodies, points);
       bonded = joined.get();
       delassus = std::move(joined);
+      return;
+    }
+    if (input.time.scheme == Scheme::leapfrog) {
+      delassus = make_local_delassus<dim>(communicator, bodies, points);
       return;
     }
     if (input.has_bonded_faces()) {

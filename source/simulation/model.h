@@ -5,6 +5,7 @@
 #include "delassus/bonded.h"
 #include "mesh/mesh_builder.h"
 #include "nsfd/scene/scene_input.h"
+#include "time_integration/leapfrog.h"
 #include "time_integration/moreau_jean.h"
 #include "time_integration/quasi_static.h"
 #include "time_integration/smooth_motion.h"
@@ -26,7 +27,8 @@ namespace nsfd
     std::unique_ptr<MeshGroups<dim>> groups;
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<StepControl> control;
-    std::string path; ///< of the linear algebra: local or assembled
+    double explicit_limit = 0.; ///< of steps on joined cells, s
+    std::string path;           ///< of the linear algebra: local or assembled
     std::unique_ptr<DelassusOperator<dim>> delassus;
     BondedDelassus<dim> *bonded = nullptr; ///< the same, if faces are bonded
     std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
@@ -37,6 +39,7 @@ namespace nsfd
     std::unique_ptr<NonsmoothSolver<dim>> solver;
     std::unique_ptr<MoreauJean<dim>> stepper;
     std::unique_ptr<SmoothMotion<dim>> smooth_motion; ///< in its place, or null
+    std::unique_ptr<Leapfrog<dim>> leapfrog;          ///< in its place, or null
     std::unique_ptr<QuasiStatic<dim>> equilibria;     ///< before it, or null
 
     /** What takes the steps of a run, one after the other. */

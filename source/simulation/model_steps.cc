@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "joined/front_viscosity.h"
 #include "time_integration/stable_step.h"
 
 #include <deal.II/grid/tria.h>
@@ -24,6 +25,9 @@ namespace nsfd
                          "crosses a cell; write the step as a time");
       return;
     }
+    if (input.time.scheme == Scheme::leapfrog)
+      explicit_limit = stable_step(discretization->bodies()) *
+                       step_share(input.front_viscosity());
     const bool quasi_static = input.statics && input.statics->steps;
     // more are a slip of the pen, and are counted in 32 bits
     constexpr double most_steps = 1e9;
@@ -67,6 +71,8 @@ namespace nsfd
                                   const Communicator &communicator,
                                   const double enough)
   {
+    if (input.time.scheme == Scheme::leapfrog)
+      return explicit_limit;
     if (!bonded)
       return communicator.min(stable_step(discretization->bodies()));
     join_all(input);
@@ -104,6 +110,9 @@ namespace nsfd
   template <int dim>
   double Model<dim>::dynamic_step(const SceneInput &input) const
   {
+    if (input.time.scheme == Scheme::leapfrog &&
+        input.time.step_kind == StepKind::automatic)
+      return 0.9 * explicit_limit;
     return input.time.step * (input.time.step_kind == StepKind::time
                                   ? 1.
                                   : discretization->crossing_time());

@@ -123,12 +123,17 @@ namespace nsfd
   }
 
   template <int dim>
-  void RunRecorder<dim>::record(const State &previous, const State &state,
+  void RunRecorder<dim>::record(const State &previous, State &state,
                                 const StepReport &report,
                                 const double time_step)
   {
     last_step_ = time_step;
-    fragments_->update(state);
+    const bool is_shown =
+        !steps_.integrator().keeps_motion() || looks_at(state, report);
+    if (is_shown)
+      steps_.integrator().show(state);
+    if (is_shown && report.separates)
+      fragments_->update(state);
     tally_.add(report);
     HistoryRow row;
     row.step = state.step;
@@ -144,9 +149,20 @@ namespace nsfd
     row.residual = report.solver.residual;
     row.reactions = steps_.integrator().reactions();
     output_->record(row);
-    say(extremes_->observe(previous, state));
+    if (is_shown)
+      say(extremes_->observe(previous, state));
     observe(state, &previous, row);
     write_if_due(state);
+  }
+
+  /** Of an integrator that keeps the motion: somebody needs it now. */
+  template <int dim>
+  bool RunRecorder<dim>::looks_at(const State &state,
+                                  const StepReport &report) const
+  {
+    constexpr unsigned int interval = 64; // of Extremes, in short steps
+    return observers_ || observer_ || report.separates ||
+           state.step % interval == 0 || output_->is_due(state);
   }
 
   template <int dim>
@@ -230,10 +246,12 @@ namespace nsfd
   }
 
   template <int dim>
-  bool RunRecorder<dim>::finish(const State &state, const std::string &failure,
+  bool RunRecorder<dim>::finish(State &state, const std::string &failure,
                                 const unsigned int failed_checkpoints,
                                 std::map<std::string, double> more_counters)
   {
+    steps_.integrator().show(state);
+    fragments_->update(state);
     write_if_due(state, true);
     say(extremes_->finish(state));
     output_->end_progress();

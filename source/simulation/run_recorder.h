@@ -45,8 +45,8 @@ namespace nsfd
     void start(const State &state);
 
     /** An accepted step from @p previous. Collective. */
-    void record(const State &previous, const State &state,
-                const StepReport &report, double time_step);
+    void record(const State &previous, State &state, const StepReport &report,
+                double time_step);
 
     /** Bodies and points are others now. Collective. */
     void change_mesh(const State &state);
@@ -58,7 +58,7 @@ namespace nsfd
      * The last fields and the summary, of a run that failed if there is a
      * @p failure. Returns whether its certificate is ok. Collective.
      */
-    bool finish(const State &state, const std::string &failure,
+    bool finish(State &state, const std::string &failure,
                 unsigned int failed_checkpoints,
                 std::map<std::string, double> more_counters);
 
@@ -76,6 +76,7 @@ namespace nsfd
     void observe(const State &state, const State *previous,
                  const HistoryRow &row);
     void write_if_due(const State &state, bool last = false);
+    bool looks_at(const State &state, const StepReport &report) const;
     void say(const std::vector<std::string> &sentences);
     void fill_summary(const State &state, const std::string &failure);
 

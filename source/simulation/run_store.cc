@@ -74,6 +74,7 @@ namespace nsfd
     const Charge charge(Cost::output);
     stored_at_ = parts_.state.step;
     has_solvers_ = with_solvers;
+    parts_.steps.integrator().show(parts_.state);
     const std::string failure = checkpoints_.write([&](Archive &archive) {
       serialize_state(archive);
       serialize_parts(archive, with_solvers);

@@ -129,7 +129,9 @@ namespace nsfd
     template <int dim>
     bool Simulation<dim>::set_state(const std::optional<FoundCheckpoint> &found)
     {
-      model_.delassus->reinit(model_.control->step(), input_.time.bulk_theta());
+      if (!model_.leapfrog)
+        model_.delassus->reinit(model_.control->step(),
+                                input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
       if (!input_.adaptivity) {
         state_ = model_.stepper->initial_state();

@@ -1,8 +1,6 @@
 #include "stable_step.h"
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/lapack_full_matrix.h>
-#include <deal.II/lac/vector.h>
+#include "discretization/body_frequency.h"
 
 #include <algorithm>
 #include <array>
@@ -13,31 +11,6 @@ namespace nsfd
 {
   namespace
   {
-    /** Largest eigenvalue of a symmetric matrix and its last component. */
-    std::array<double, 2> largest_eigenpair(const Block &A)
-    {
-      const unsigned int n = A.rows;
-      dealii::LAPACKFullMatrix<double> matrix(n);
-      double bound = 0.;
-      for (unsigned int i = 0; i < n; ++i) {
-        double row = 0.;
-        for (unsigned int j = 0; j < n; ++j) {
-          matrix(i, j) = (A(i, j) + A(j, i)) / 2.;
-          row += std::abs(matrix(i, j));
-        }
-        bound = std::max(bound, row);
-      }
-      dealii::Vector<double> values;
-      dealii::FullMatrix<double> vectors;
-      matrix.compute_eigenvalues_symmetric(-bound, 1.1 * bound, 0., values,
-                                           vectors);
-      unsigned int at = 0;
-      for (unsigned int k = 1; k < values.size(); ++k)
-        if (values[k] > values[at])
-          at = k;
-      return {{values[at], vectors(n - 1, at)}};
-    }
-
     double step_of(const double largest) // omega^2
     {
       return largest > 0. ? 2. / std::sqrt(largest)
@@ -47,17 +20,10 @@ namespace nsfd
 
   double stable_step(const Bodies &bodies)
   {
-    double largest = 0.; // omega^2
-    for (const BodyClass &body : bodies.classes) {
-      if (body.rigid)
-        continue;
-      // of L^{-1} K L^{-T}, M = L L^T
-      const Block L = cholesky(body.mass);
-      const Block A =
-          forward_solve(L, forward_solve(L, body.stiffness).transposed());
-      largest = std::max(largest, largest_eigenpair(A)[0]);
-    }
-    return step_of(largest);
+    double largest = 0.;
+    for (const BodyClass &body : bodies.classes)
+      largest = std::max(largest, highest_frequency(body));
+    return step_of(largest * largest);
   }
 
   /** Orthonormal with respect to M. */

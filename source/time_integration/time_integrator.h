@@ -65,7 +65,8 @@ namespace nsfd
     unsigned int released = 0;    ///< points that leave their bond
     double overshoot = 0.; ///< their largest traction over the strength, less 1
     double share = 1.; ///< of the step at which the first of them reached it
-    std::string note;  ///< for the user, where there is something to say
+    bool separates = true; ///< a face may have lost its last hold
+    std::string note;      ///< for the user, where there is something to say
   };
 
   /**
@@ -113,6 +114,14 @@ namespace nsfd
     {
       (void)state, (void)time_step;
     }
+
+    /**
+     * True if it keeps bodies and points by itself, and those of a state are up
+     * to date only after show().
+     */
+    virtual bool keeps_motion() const { return false; }
+    /** Brings them up to date in @p state, the last one. */
+    virtual void show(State &state) const { (void)state; }
 
     /** What `step = auto` takes from @p state, at most @p time_step (s). */
     virtual double automatic_step(const State &state, double time_step) const

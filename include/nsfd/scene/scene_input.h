@@ -73,6 +73,8 @@ namespace nsfd
           return true;
       return false;
     }
+    /** Share of critical damping of fronts in explicit steps. */
+    double front_viscosity() const;
     /** Materials that keep how they were strained. */
     bool has_history() const
     {

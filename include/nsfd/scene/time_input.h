@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 namespace nsfd
 {
   enum class CohesionRule { exact, end_point, end_velocity };
@@ -15,7 +17,8 @@ namespace nsfd
   enum class Scheme {
     moreau_jean,
     explicit_moreau_jean, ///< with the forces of the bodies at t_k
-    arkode                ///< smooth scenes, by SUNDIALS
+    leapfrog, ///< explicit, joined cells share nodes with lumped mass
+    arkode    ///< smooth scenes, by SUNDIALS
   };
 
   struct TimeInput {
@@ -33,6 +36,8 @@ namespace nsfd
     double largest_overshoot = 0.05; ///< of the strength of a bonded point
     /// of scheme = arkode: implicit (SDIRK) or explicit Runge-Kutta pairs,
     /// their order and the error per step relative to the largest motion
+    /// of scheme = leapfrog: nothing is `auto`
+    std::optional<double> front_viscosity;
     bool implicit_pairs = false;
     unsigned int order = 5;
     double tolerance = 1e-9;

@@ -1,0 +1,161 @@
+#include "block_forces.h"
+
+#include "constant_strain.h"
+
+#include "discretization/cells.h"
+#include "discretization/point_places.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  BlockForces<dim>::BlockForces(const Discretization<dim> &discretization,
+                                const JoinedMesh<dim> &mesh,
+                                FrontViscosity front)
+      : CellForces<dim>(std::move(front)), discretization_(discretization),
+        mesh_(mesh), forces_(mesh.n_corners() * dim)
+  {
+    for (const BodyShape<dim> &shape : discretization.cells().shapes) {
+      auto &mean = divergence_.emplace_back(shape.n_nodes * dim, 0.);
+      for (unsigned int q = 0; q < shape.JxW.size(); ++q)
+        for (unsigned int j = 0; j < mean.size(); ++j)
+          mean[j] += shape.JxW[q] / shape.volume *
+                     shape.gradients[q * shape.n_nodes + j / dim][j % dim];
+    }
+    const Bodies &bodies = discretization.bodies();
+    const std::size_t n = discretization.points().n_points;
+    first_traction_.push_back(0);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      first_traction_.push_back(
+          first_traction_.back() +
+          bodies.classes[bodies.class_of[b]].traction.rows);
+    tractions_.assign(first_traction_.back(), 0.);
+    place_.assign(n, {{0, 0}});
+    for_all_places(bodies, n,
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t point, const unsigned int side) {
+                     place_[point][side] = first_traction_[body] + slot * dim;
+                   });
+  }
+
+  template <int dim>
+  void BlockForces<dim>::set_forces(CornerGroups<dim> &groups,
+                                    const double time_step)
+  {
+    const Bodies &bodies = discretization_.bodies();
+    std::vector<double> x, y, t;
+    for (const BodyClass &body : bodies.classes) {
+      const bool has_tractions = body.traction.rows > 0;
+      x.assign(std::size_t(body.n_dofs) * lanes, 0.);
+      y.resize(std::size_t(padded(body.n_dofs)) * lanes);
+      t.resize(std::size_t(padded(body.traction.rows)) * lanes);
+      for (std::size_t first = 0; first < body.bodies.size(); first += lanes) {
+        const auto count =
+            unsigned(std::min<std::size_t>(lanes, body.bodies.size() - first));
+        for (unsigned int l = 0; l < count; ++l) {
+          const std::size_t dof = bodies.first_dof[body.bodies[first + l]];
+          for (unsigned int j = 0; j < body.n_dofs; ++j)
+            x[j * lanes + l] =
+                groups.displacement[groups.of((dof + j) / dim) * dim + j % dim];
+        }
+        multiply_lanes(body.stiffness.values.data(), body.n_dofs, body.n_dofs,
+                       x.data(), y.data());
+        if (has_tractions)
+          multiply_lanes(body.traction.values.data(), body.traction.rows,
+                         body.n_dofs, x.data(), t.data());
+        for (unsigned int l = 0; l < count; ++l) {
+          const unsigned int b = body.bodies[first + l];
+          for (unsigned int j = 0; j < body.n_dofs; ++j)
+            forces_[bodies.first_dof[b] + j] = y[j * lanes + l];
+          if (this->front_.acts()) {
+            const auto &mean = divergence_[bodies.class_of[b]];
+            const double volume = discretization_.cells().shape(b).volume;
+            double now = 0.;
+            for (unsigned int j = 0; j < body.n_dofs; ++j)
+              now += mean[j] * x[j * lanes + l];
+            this->front_.update(b, now, time_step, volume);
+            for (unsigned int j = 0; j < body.n_dofs; ++j)
+              forces_[bodies.first_dof[b] + j] +=
+                  volume * this->front_.tension[b] * mean[j];
+          }
+          for (unsigned int j = 0; j < body.traction.rows; ++j)
+            tractions_[first_traction_[b] + j] = t[j * lanes + l];
+        }
+      }
+    }
+    std::fill(groups.force.begin(), groups.force.end(), 0.);
+    for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        groups.force[groups.of(i) * dim + c] -= forces_[i * dim + c];
+  }
+
+  template <int dim>
+  std::array<double, dim>
+  BlockForces<dim>::corner_force(const std::size_t corner,
+                                 const CornerGroups<dim> &) const
+  {
+    std::array<double, dim> force;
+    for (unsigned int c = 0; c < dim; ++c)
+      force[c] = -forces_[corner * dim + c];
+    return force;
+  }
+
+  template <int dim>
+  std::array<double, dim>
+  BlockForces<dim>::traction(const StrengthSites &sites,
+                             const std::size_t site) const
+  {
+    const auto &weight = discretization_.points().weight;
+    std::array<double, dim> result{};
+    const unsigned int first = sites.first_point[site],
+                       last = first + sites.n_points[site];
+    double length = 0.;
+    for (unsigned int i = first; i < last; ++i)
+      length += weight[i];
+    for (unsigned int i = first; i < last; ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        result[c] +=
+            weight[i] / length *
+            (tractions_[place_[i][0] + c] - tractions_[place_[i][1] + c]) / 2.;
+    return result;
+  }
+
+  template <int dim>
+  void BlockForces<dim>::squared_tractions(const StrengthSites &sites,
+                                           std::vector<double> &squares) const
+  {
+    squares.resize(sites.size());
+    for (std::size_t k = 0; k < sites.size(); ++k) {
+      const auto t = traction(sites, k);
+      double square = 0., pull = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        square += t[c] * t[c];
+        pull += t[c] * sites.normal[k * dim + c];
+      }
+      squares[k] = (pull > 0. ? pull * pull : 0.) +
+                   sites.shear_weight[k] * (square - pull * pull);
+    }
+  }
+
+  template <int dim>
+  std::unique_ptr<CellForces<dim>>
+  make_cell_forces(const Discretization<dim> &discretization,
+                   const JoinedMesh<dim> &mesh, FrontViscosity front)
+  {
+    if (ConstantStrainForces<dim>::fits(discretization))
+      return std::make_unique<ConstantStrainForces<dim>>(discretization,
+                                                         std::move(front));
+    return std::make_unique<BlockForces<dim>>(discretization, mesh,
+                                              std::move(front));
+  }
+
+  template class BlockForces<2>;
+  template class BlockForces<3>;
+  template std::unique_ptr<CellForces<2>>
+  make_cell_forces(const Discretization<2> &, const JoinedMesh<2> &,
+                   FrontViscosity);
+  template std::unique_ptr<CellForces<3>>
+  make_cell_forces(const Discretization<3> &, const JoinedMesh<3> &,
+                   FrontViscosity);
+} // namespace nsfd

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "corner_groups.h"
+#include "front_viscosity.h"
+
+#include <memory>
+
+namespace nsfd
+{
+  /**
+   * Faces that may let go: where the mean traction of both sides is compared
+   * with a strength. A site is a face (its points let go together, the traction
+   * is averaged along it), or a point of cells of higher degree.
+   */
+  struct StrengthSites {
+    std::vector<unsigned int> first_point, n_points;
+    std::vector<std::array<unsigned int, 2>> cells;
+    /// unit normal from body 1 to body 2, dim components
+    std::vector<double> normal;
+    /// of |t_T|^2 beside <t_N>_+^2, and the square of the strength, Pa^2
+    std::vector<double> shear_weight, limit;
+
+    std::size_t size() const { return cells.size(); }
+  };
+
+  /** Elastic forces of cells on the groups of their corners. */
+  template <int dim>
+  class CellForces
+  {
+  public:
+    explicit CellForces(FrontViscosity front) : front_(std::move(front)) {}
+    virtual ~CellForces() = default;
+
+    /**
+     * f = -K q on all groups, and the forces of the front viscosity, after a
+     * step of @p time_step (0: none). front() is to be finished then.
+     */
+    virtual void set_forces(CornerGroups<dim> &groups, double time_step) = 0;
+    /** The part of a corner in the last forces, N. */
+    virtual std::array<double, dim>
+    corner_force(std::size_t corner, const CornerGroups<dim> &groups) const = 0;
+
+    /**
+     * <t_N>_+^2 + shear_weight |t_T|^2 of the mean traction at every site, of
+     * the displacements of the last forces, Pa^2.
+     */
+    virtual void squared_tractions(const StrengthSites &sites,
+                                   std::vector<double> &squares) const = 0;
+    /** {sigma n} at a site in the axes x, y, z, Pa. */
+    virtual std::array<double, dim> traction(const StrengthSites &sites,
+                                             std::size_t site) const = 0;
+
+    FrontViscosity &front() { return front_; }
+
+  protected:
+    FrontViscosity front_;
+  };
+
+  /**
+   * Constant strain on simplices of degree 1 if all materials are isotropic,
+   * the blocks of the bodies else.
+   */
+  template <int dim>
+  std::unique_ptr<CellForces<dim>>
+  make_cell_forces(const Discretization<dim> &discretization,
+                   const JoinedMesh<dim> &mesh, FrontViscosity front);
+} // namespace nsfd

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "cell_forces.h"
+
+namespace nsfd
+{
+  /** Isotropic simplices of degree 1, `lanes` of them at a time. */
+  template <int dim>
+  class ConstantStrainForces final : public CellForces<dim>
+  {
+  public:
+    ConstantStrainForces(const Discretization<dim> &discretization,
+                         FrontViscosity front);
+
+    void set_forces(CornerGroups<dim> &groups, double time_step) override;
+    std::array<double, dim>
+    corner_force(std::size_t corner,
+                 const CornerGroups<dim> &groups) const override;
+    void squared_tractions(const StrengthSites &sites,
+                           std::vector<double> &squares) const override;
+    std::array<double, dim> traction(const StrengthSites &sites,
+                                     std::size_t site) const override;
+
+    /** All cells are such. */
+    static bool fits(const Discretization<dim> &discretization);
+
+  private:
+    static constexpr unsigned int n_stresses = dim * (dim + 1) / 2;
+
+    std::size_t n_cells_;
+    /// by block of lanes: gradients of the shape functions 1 to dim, volume,
+    /// lambda and mu
+    std::vector<double> cells_;
+    /// by block: sigma_xx, yy(, zz), xy(, xz, yz), Pa
+    std::vector<double> stresses_;
+  };
+} // namespace nsfd

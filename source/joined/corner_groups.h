@@ -1,0 +1,51 @@
+#pragma once
+
+#include "joined_mesh.h"
+
+namespace nsfd
+{
+  /**
+   * Corners of a node that hang together through intact links are one group:
+   * one position, one velocity, the sum of their masses. An intact body is an
+   * ordinary finite element mesh; nodes split as their links let go.
+   */
+  template <int dim>
+  class CornerGroups
+  {
+  public:
+    /** @p intact by point. */
+    CornerGroups(const JoinedMesh<dim> &mesh,
+                 const std::vector<std::uint8_t> &intact);
+
+    std::size_t size() const { return mass.size(); }
+    unsigned int of(const std::size_t corner) const { return of_[corner]; }
+    /** By corner. */
+    const std::vector<unsigned int> &of_corners() const { return of_; }
+
+    /**
+     * After links of @p node have let go: what does not hang together any more
+     * gets groups of its own, behind all others, at the same place and speed.
+     * False if nothing was cut. Forces are to be set anew.
+     */
+    bool split(std::size_t node, const std::vector<std::uint8_t> &intact);
+
+    /** Mass-weighted means of what the corners have, dim values each. */
+    void gather(const std::vector<double> &of_corners,
+                std::vector<double> &of_groups) const;
+    /** To every corner that of its group. */
+    void scatter(const std::vector<double> &of_groups,
+                 std::vector<double> &of_corners) const;
+
+    std::vector<double> mass; ///< kg, or kg/m in the plane
+    /// dim components per group: m, m/s and N
+    std::vector<double> displacement, velocity, force;
+
+  private:
+    const std::vector<unsigned int> &
+    components(std::size_t node, const std::vector<std::uint8_t> &intact);
+
+    const JoinedMesh<dim> &mesh_;
+    std::vector<unsigned int> of_;
+    std::vector<unsigned int> component_; ///< of the corners of a node
+  };
+} // namespace nsfd

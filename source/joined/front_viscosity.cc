@@ -1,0 +1,110 @@
+#include "front_viscosity.h"
+
+#include "discretization/body_frequency.h"
+#include "discretization/cells.h"
+#include "nsfd/core/archive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace nsfd
+{
+  namespace
+  {
+    /// jump of the rate from which a front is sharp: that of waves of 8 cells
+    constexpr double sharp = 0.15;
+  } // namespace
+
+  double step_share(const double b) { return std::sqrt(1. + b * b) - b; }
+
+  template <int dim>
+  FrontViscosity::FrontViscosity(const Discretization<dim> &discretization,
+                                 const double share)
+  {
+    if (share == 0.)
+      return;
+    const Cells<dim> &cells = discretization.cells();
+    std::vector<double> of_class;
+    for (std::size_t k = 0; k < cells.shapes.size(); ++k) {
+      const BodyShape<dim> &shape = cells.shapes[k];
+      const double omega = highest_frequency(cells.bodies.classes[k]);
+      double bulk = 0.;
+      for (const auto &local : shape.elasticity)
+        bulk = std::max(bulk, local.lambda + 2. * local.mu / dim);
+      of_class.push_back(omega > 0. ? 2. * share * bulk / omega : 0.);
+    }
+    const std::size_t n = cells.bodies.size();
+    for (std::size_t b = 0; b < n; ++b)
+      eta_.push_back(of_class[cells.bodies.class_of[b]]);
+    tension.assign(n, 0.);
+    dilatation = rate = viscosity = tension;
+    terms_.assign(3 * n, 0.);
+
+    std::vector<std::array<int, 2>> pairs;
+    for (const auto &face : discretization.points().faces)
+      if (!face.boundary && face.bodies[0] >= 0 && face.bodies[1] >= 0)
+        pairs.push_back(face.bodies);
+    first_neighbor_.assign(n + 1, 0);
+    for (const auto &pair : pairs)
+      for (const int b : pair)
+        ++first_neighbor_[std::size_t(b) + 1];
+    std::partial_sum(first_neighbor_.begin(), first_neighbor_.end(),
+                     first_neighbor_.begin());
+    neighbor_.resize(first_neighbor_.back());
+    auto next = first_neighbor_;
+    for (const auto &pair : pairs)
+      for (unsigned int side = 0; side < 2; ++side)
+        neighbor_[next[std::size_t(pair[side])]++] = unsigned(pair[1 - side]);
+  }
+
+  FrontViscosity::Powers
+  FrontViscosity::finish(const Communicator &communicator)
+  {
+    const std::size_t n = eta_.size();
+    for (std::size_t b = 0; b < n; ++b) {
+      double jump = 0., size = 0.;
+      for (std::size_t k = first_neighbor_[b]; k < first_neighbor_[b + 1];
+           ++k) {
+        const double other = rate[neighbor_[k]];
+        jump += other - rate[b];
+        size += std::abs(other) + std::abs(rate[b]);
+      }
+      const double ratio = size > 0. ? jump / size : 0.;
+      const double share = std::min(1., std::abs(ratio) / sharp);
+      viscosity[b] = eta_[b] * share * share * share;
+    }
+    // at an end there is no second difference
+    for (std::size_t b = 0; b < n; ++b)
+      if (first_neighbor_[b] + 1 == first_neighbor_[b + 1]) {
+        const unsigned int other = neighbor_[first_neighbor_[b]];
+        viscosity[b] =
+            eta_[other] > 0. ? viscosity[other] / eta_[other] * eta_[b] : 0.;
+      }
+    const auto sums = communicator.sums(terms_.data(), 3, n);
+    return {sums[0], sums[1], sums[2]};
+  }
+
+  void FrontViscosity::serialize(Archive &archive,
+                                 const std::vector<std::size_t> &first_dof)
+  {
+    if (!acts())
+      return;
+    std::vector<double> all(first_dof.back(), 0.);
+    const auto copy = [&](const bool reads) {
+      for (std::size_t b = 0; b < eta_.size(); ++b) {
+        double *mine = all.data() + first_dof[b];
+        double *const values[3] = {&tension[b], &rate[b], &viscosity[b]};
+        for (unsigned int k = 0; k < 3; ++k)
+          (reads ? *values[k] : mine[k]) = reads ? mine[k] : *values[k];
+      }
+    };
+    copy(false);
+    archive.bodies("front_viscosity", all);
+    if (archive.reads())
+      copy(true);
+  }
+
+  template FrontViscosity::FrontViscosity(const Discretization<2> &, double);
+  template FrontViscosity::FrontViscosity(const Discretization<3> &, double);
+} // namespace nsfd

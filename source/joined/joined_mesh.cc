@@ -1,0 +1,131 @@
+#include "joined_mesh.h"
+
+#include "discretization/cells.h"
+#include "discretization/point_places.h"
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace nsfd
+{
+  namespace
+  {
+    /** The node of a cell that a row of its trace is the value at, or -1. */
+    int node_of_row(const BodyClass &body, const unsigned int row,
+                    const unsigned int dim)
+    {
+      int found = -1;
+      for (unsigned int j = 0; j < body.n_dofs; j += dim) {
+        const double share = body.trace(row, j);
+        if (std::abs(share) < 1e-10)
+          continue;
+        if (found >= 0 || std::abs(share - 1.) > 1e-10)
+          return -1;
+        found = int(j / dim);
+      }
+      return found;
+    }
+  } // namespace
+
+  template <int dim>
+  JoinedMesh<dim>::JoinedMesh(const Discretization<dim> &discretization)
+  {
+    const Cells<dim> &cells = discretization.cells();
+    node_.resize(cells.first_node.back());
+    mass_.resize(node_.size());
+    for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+      const BodyClass &body = cells.body_class(b);
+      for (std::size_t i = cells.first_node[b]; i < cells.first_node[b + 1];
+           ++i) {
+        const auto row = unsigned(i - cells.first_node[b]) * dim;
+        mass_[i] = body.mass(row, row);
+      }
+    }
+    find_corners(discretization);
+    find_nodes();
+    sort_links();
+  }
+
+  template <int dim>
+  void JoinedMesh<dim>::find_corners(const Discretization<dim> &discretization)
+  {
+    const Cells<dim> &cells = discretization.cells();
+    const std::size_t n = discretization.points().n_points;
+    corners_.assign(n, {{none, none}});
+    // the node of every slot of a class, found once
+    std::vector<std::vector<int>> nodes(cells.bodies.classes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const BodyClass &body = cells.bodies.classes[k];
+      for (unsigned int s = 0; s < body.n_slots; ++s)
+        nodes[k].push_back(body.rigid ? -1 : node_of_row(body, s * dim, dim));
+    }
+    bool at_nodes = true;
+    for_all_places(cells.bodies, n,
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t point, const unsigned int side) {
+                     const int i = nodes[cells.bodies.class_of[body]][slot];
+                     at_nodes = at_nodes && i >= 0;
+                     corners_[point][side] =
+                         unsigned(cells.first_node[body] + std::size_t(i));
+                   });
+    if (!at_nodes)
+      throw std::runtime_error(
+          "joined cells share nodes, and some points of faces are at none: "
+          "they need `interface quadrature = gauss lobatto` with one point "
+          "more than the degree, and cells that meet face to face");
+  }
+
+  /** Corners that links connect, numbered by their first one. */
+  template <int dim>
+  void JoinedMesh<dim>::find_nodes()
+  {
+    std::vector<unsigned int> parent(n_corners());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](unsigned int i) {
+      while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+      return i;
+    };
+    for (const auto &sides : corners_) {
+      if (sides[0] == none || sides[1] == none)
+        continue;
+      const unsigned int a = root(sides[0]), b = root(sides[1]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+    unsigned int n = 0;
+    for (unsigned int i = 0; i < n_corners(); ++i)
+      node_[i] = root(i) == i ? n++ : node_[root(i)];
+    first_corner_.assign(n + 1, 0);
+    for (const unsigned int node : node_)
+      ++first_corner_[node + 1];
+    std::partial_sum(first_corner_.begin(), first_corner_.end(),
+                     first_corner_.begin());
+    corner_.resize(n_corners());
+    auto next = first_corner_;
+    for (unsigned int i = 0; i < n_corners(); ++i)
+      corner_[next[node_[i]]++] = i;
+  }
+
+  template <int dim>
+  void JoinedMesh<dim>::sort_links()
+  {
+    first_link_.assign(n_nodes() + 1, 0);
+    const auto is_link = [&](const std::size_t i) {
+      return corners_[i][0] != none && corners_[i][1] != none;
+    };
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      if (is_link(i))
+        ++first_link_[node_of_point(i) + 1];
+    std::partial_sum(first_link_.begin(), first_link_.end(),
+                     first_link_.begin());
+    link_.resize(first_link_.back());
+    auto next = first_link_;
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      if (is_link(i))
+        link_[next[node_of_point(i)]++] = unsigned(i);
+  }
+
+  template class JoinedMesh<2>;
+  template class JoinedMesh<3>;
+} // namespace nsfd

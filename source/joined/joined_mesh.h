@@ -1,0 +1,75 @@
+#pragma once
+
+#include "discretization/discretization.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The nodes of cells that may hang together. A corner is a node of one cell;
+   * the points of a face sit at its nodes and link the corners of its two
+   * cells. Corners that links connect, intact or not, are one node of the mesh.
+   */
+  template <int dim>
+  class JoinedMesh
+  {
+  public:
+    static constexpr unsigned int none = unsigned(-1);
+
+    /**
+     * @throws std::runtime_error where a point is not at a node of its cells:
+     * faces between cells of two sizes, other interface quadratures.
+     */
+    explicit JoinedMesh(const Discretization<dim> &discretization);
+
+    std::size_t n_corners() const { return node_.size(); }
+    std::size_t n_nodes() const { return first_corner_.size() - 1; }
+
+    unsigned int node(const std::size_t corner) const { return node_[corner]; }
+    /** Lumped, kg, or kg/m in the plane. */
+    double mass(const std::size_t corner) const { return mass_[corner]; }
+    /** Of body 1 and of body 2 of a point; none where there is no such body. */
+    const std::array<unsigned int, 2> &corners(const std::size_t point) const
+    {
+      return corners_[point];
+    }
+    unsigned int node_of_point(const std::size_t point) const
+    {
+      const auto &sides = corners_[point];
+      return node_[sides[0] != none ? sides[0] : sides[1]];
+    }
+
+    struct Range {
+      const unsigned int *first, *last;
+      const unsigned int *begin() const { return first; }
+      const unsigned int *end() const { return last; }
+      std::size_t size() const { return std::size_t(last - first); }
+    };
+    /** In the order of the cells. */
+    Range corners_of_node(const std::size_t node) const
+    {
+      return {corner_.data() + first_corner_[node],
+              corner_.data() + first_corner_[node + 1]};
+    }
+    /** Points between two corners of the node. */
+    Range links_of_node(const std::size_t node) const
+    {
+      return {link_.data() + first_link_[node],
+              link_.data() + first_link_[node + 1]};
+    }
+
+  private:
+    void find_corners(const Discretization<dim> &discretization);
+    void find_nodes();
+    void sort_links();
+
+    std::vector<unsigned int> node_;
+    std::vector<double> mass_;
+    std::vector<std::array<unsigned int, 2>> corners_;
+    std::vector<std::size_t> first_corner_, first_link_; ///< size n + 1
+    std::vector<unsigned int> corner_, link_;
+  };
+} // namespace nsfd

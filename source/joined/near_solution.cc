@@ -1,0 +1,85 @@
+#include "near_solution.h"
+
+#include "nonsmooth/local_problem.h"
+
+namespace nsfd
+{
+  using namespace local;
+
+  template <int dim>
+  bool solve_near(const OneStepProblem<dim> &problem, const std::size_t i,
+                  const std::array<double, dim> &local, const double R,
+                  const Reach &end, LocalSolution<dim> &solution)
+  {
+    const PointKind kind = problem.kind[i];
+    if (kind != PointKind::cohesive && kind != PointKind::rigid)
+      return false;
+    const Interaction &interaction =
+        problem.interactions[problem.interaction[i]];
+    LocalProblem<dim> here{problem, i, local, R, R};
+    if (interaction.plateau || interaction.law->mixed() || here.lifts())
+      return false;
+    const PointDamage<dim> damage(problem, i);
+    const double low = damage.history().opening;
+    double x = end.opening;
+    if (!(x > (1. + 1e-9) * low) || damage.drops())
+      return false;
+    if (kind == PointKind::rigid) {
+      double pull[dim];
+      for (unsigned int c = 0; c < dim; ++c)
+        pull[c] = -local[c] / R;
+      pull[0] = -pull[0];
+      if (damage.effective_traction(pull[0], pull + 1) <=
+          (1. + 1e-9) * problem.weight[i] * problem.time_step *
+              damage.strength())
+        return false;
+    }
+    // Against a nearly rigid law every end is a little short of itself: only
+    // with a slope is a small distance one to the root. And after a short way
+    // the impulse hangs on the last digits of the end: left to the search.
+    double last_x = 0., last = 0., slope = 0.;
+    std::array<double, dim> last_P{};
+    const auto is_steep = [&] {
+      double change = 0., size = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        change += std::abs(here.solution.impulse[c] - last_P[c]);
+        size += std::abs(last_P[c]);
+      }
+      return !(change * x <= 100. * size * std::abs(x - last_x));
+    };
+    for (unsigned int k = 0; k < 6; ++k) {
+      here.solve_end(damage, {x, 0.});
+      const double distance = here.solution.reach.opening - x;
+      if (k > 0 && std::abs(x - last_x) > 1e-9 * x) {
+        slope = (distance - last) / (x - last_x);
+        if (is_steep())
+          return false;
+      }
+      if (k > 0 && !(slope < -0.2))
+        return false;
+      if (k > 0 && std::abs(distance) <= 2e-15 * x) {
+        solution = here.solution;
+        solution.reach = {x, 0.};
+        solution.damages = solution.coupled = true;
+        return true;
+      }
+      last_x = x;
+      last = distance;
+      last_P = here.solution.impulse;
+      if (k > 0)
+        x -= distance / slope;
+      else
+        x = std::abs(distance) > 1e-7 * x ? x + distance : x * (1. + 1e-7);
+      if (!(x > (1. + 1e-9) * low))
+        return false;
+    }
+    return false;
+  }
+
+  template bool solve_near<2>(const OneStepProblem<2> &, std::size_t,
+                              const std::array<double, 2> &, double,
+                              const Reach &, LocalSolution<2> &);
+  template bool solve_near<3>(const OneStepProblem<3> &, std::size_t,
+                              const std::array<double, 3> &, double,
+                              const Reach &, LocalSolution<3> &);
+} // namespace nsfd

@@ -1,0 +1,156 @@
+#include "node_solver.h"
+
+#include "nonsmooth/natural_map.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  namespace
+  {
+    /// of W beside points that hold: above the round-off of all that is refined
+    constexpr double least_softening = 1e-12;
+    constexpr unsigned int most_starts = 60;
+    constexpr unsigned int most_flat_moves = 100;
+  } // namespace
+
+  template <int dim>
+  double NodeSolver<dim>::evaluate()
+  {
+    ++report_.evaluations;
+    return system_.evaluate();
+  }
+
+  /** Also of velocities without the round-off of what led here. */
+  template <int dim>
+  bool NodeSolver<dim>::is_solved()
+  {
+    if (error_ > aim * system_.scale())
+      return false;
+    if (report_.newton > 2) {
+      system_.refresh_velocity();
+      error_ = evaluate();
+    }
+    return error_ <= control * system_.scale();
+  }
+
+  /** Along the direction; a flat move keeps the error. */
+  template <int dim>
+  bool NodeSolver<dim>::accepts(const double length, const bool first)
+  {
+    system_.move(length);
+    const double next = evaluate();
+    const bool falls =
+        next <= aim * system_.scale() || next < (1. - 0.2 * length) * error_;
+    const bool flat = (!first || flat_moves_ > 0) && next <= 1.01 * error_ &&
+                      flat_moves_ < most_flat_moves;
+    if (!falls && !flat)
+      return false;
+    flat_moves_ += !falls;
+    error_ = next;
+    return true;
+  }
+
+  /** One Newton step, softened until it does not make things worse. */
+  template <int dim>
+  bool NodeSolver<dim>::improve()
+  {
+    system_.linearise();
+    system_.keep(0);
+    const bool nearly = error_ <= control * system_.scale();
+    for (bool first = true; soft_ <= 2.; first = false) {
+      ++report_.newton;
+      if (system_.find_direction(soft_, soft_ <= least_softening)) {
+        double length = 1.;
+        const unsigned int n = !first ? 2 : report_.starts > 0 ? 6 : 3;
+        for (unsigned int k = 0; k < n; ++k, length *= 0.5)
+          if (accepts(length, first)) {
+            const double less = flat_moves_ == 0 ? 0.01 : first ? 0.1 : 0.3;
+            soft_ = std::max(least_softening, less * soft_);
+            return true;
+          }
+      }
+      system_.restore(0);
+      if (nearly && !first)
+        break;
+      soft_ = std::max(1e-10, (flat_moves_ == 0 ? 100. : 10.) * soft_);
+    }
+    return false;
+  }
+
+  template <int dim>
+  void NodeSolver<dim>::start_again()
+  {
+    if (report_.starts == 0 || error_ < best_) {
+      best_ = error_;
+      system_.keep(1);
+    }
+    const unsigned int k = ++report_.starts;
+    if (k > 3) {
+      system_.scatter(k, k % 3 == 0 ? 0. : k % 3 == 1 ? 1. : 4.);
+      flat_moves_ = 0;
+    }
+    soft_ = k % 2 == 0 ? 1e-4 : least_softening;
+    const unsigned int n = k % 4 == 0 ? 300 : k % 2 == 0 ? 2 : 20;
+    for (unsigned int s = 0; s < n; ++s) {
+      ++report_.sweeps;
+      if (system_.sweep() <= 0.1 * aim * system_.scale())
+        break;
+    }
+    system_.refresh_velocity();
+    error_ = evaluate();
+  }
+
+  template <int dim>
+  bool NodeSolver<dim>::run()
+  {
+    error_ = evaluate();
+    soft_ = least_softening;
+    flat_moves_ = 0;
+    for (unsigned int k = 0; k < 1000; ++k) {
+      if (is_solved())
+        return true;
+      if (improve())
+        continue;
+      if (error_ <= control * system_.scale()) {
+        system_.refresh_velocity();
+        error_ = evaluate();
+        if (error_ <= control * system_.scale())
+          return true;
+      }
+      if (report_.starts == most_starts)
+        break;
+      start_again();
+    }
+    if (best_ < error_) {
+      system_.restore(1);
+      error_ = best_;
+    }
+    return error_ <= control * system_.scale();
+  }
+
+  template <int dim>
+  NodeReport NodeSolver<dim>::solve(const OneStepProblem<dim> &problem,
+                                    const std::vector<double> &frames,
+                                    NodeProblem<dim> &node,
+                                    std::vector<double> &impulses,
+                                    std::vector<LocalSolution<dim>> &solutions)
+  {
+    report_ = {};
+    system_.reinit(problem, frames, node, impulses, solutions);
+    if (system_.n_points() == 0)
+      return report_;
+    if (system_.is_single()) {
+      ++report_.evaluations;
+      system_.solve_single();
+    } else {
+      report_.converged = run();
+      report_.residual = relative_natural_map(error_, system_.scale());
+    }
+    system_.store(report_.residual <= 1e-14, node, impulses, solutions);
+    return report_;
+  }
+
+  template class NodeSolver<2>;
+  template class NodeSolver<3>;
+} // namespace nsfd

@@ -1,0 +1,498 @@
+#include "node_system.h"
+
+#include "core/mix_bits.h"
+#include "linear_algebra/small_matrix.h"
+#include "near_solution.h"
+#include "nonsmooth/local_problem.h"
+#include "point_slopes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  template <int dim>
+  Reach NodeSystem<dim>::history(const std::size_t index) const
+  {
+    return {problem_->opening_max[index],
+            problem_->slip_max.empty() ? 0. : problem_->slip_max[index]};
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::reinit(const OneStepProblem<dim> &problem,
+                               const std::vector<double> &frames,
+                               const NodeProblem<dim> &node,
+                               std::vector<double> &impulses,
+                               std::vector<LocalSolution<dim>> &solutions)
+  {
+    problem_ = &problem;
+    inverse_mass_ = &node.inverse_mass;
+    n_ = 0;
+    free_ = node.velocity;
+    velocity_ = node.velocity;
+    floor_ = 0.;
+    for (const auto &point : node.points) {
+      const std::size_t i = point.point;
+      if (problem.kind[i] == PointKind::free && !problem.contact[i]) {
+        std::fill_n(&impulses[i * dim], dim, 0.);
+        solutions[i] = {};
+        continue;
+      }
+      add(point, frames);
+      std::copy_n(&impulses[i * dim], dim, points_[n_ - 1].impulse.begin());
+    }
+    floor_ = std::sqrt(floor_);
+    for (std::size_t k = 0; k < n_; ++k)
+      push(points_[k], points_[k].impulse, velocity_);
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::add(const typename NodeProblem<dim>::Point &point,
+                            const std::vector<double> &frames)
+  {
+    const std::size_t i = point.point;
+    if (n_ == points_.size())
+      points_.emplace_back();
+    Point &added = points_[n_++];
+    added.index = i;
+    added.frame = &frames[i * dim * dim];
+    added.groups = point.groups;
+    added.solution.reach = history(i);
+    added.solution.damages = false;
+    added.is_new = true;
+    Vector sum{};
+    double speed = 0.;
+    for (const int g : point.groups)
+      for (unsigned int c = 0; c < dim && g >= 0; ++c) {
+        sum[c] += (*inverse_mass_)[g][c];
+        speed += std::abs(free_[g][c]);
+      }
+    // springs compute velocities from jumps
+    if (problem_->kind[i] != PointKind::free)
+      for (unsigned int c = 0; c < dim; ++c)
+        speed += std::abs(problem_->jump_free[i * dim + c]) /
+                 (problem_->time_step * problem_->theta);
+    added.speed = speed;
+    const auto range = std::minmax_element(sum.begin(), sum.end());
+    added.R = *range.second;
+    added.scalar = *range.first == added.R && added.R > 0.;
+    if (added.R == 0.) // prescribed on both sides: any number serves
+      for (const auto &group : *inverse_mass_)
+        added.R =
+            std::max(added.R, *std::max_element(group.begin(), group.end()));
+    if (added.R == 0.)
+      added.R = 1.;
+    floor_ += 1.6e-5 * speed * speed / added.R;
+  }
+
+  /** H v */
+  template <int dim>
+  auto NodeSystem<dim>::relative(const Point &point,
+                                 const std::vector<Vector> &velocity) const
+      -> Vector
+  {
+    const auto [a, b] = point.groups;
+    Vector v = b >= 0 ? velocity[b] : Vector{}, U{};
+    if (a >= 0)
+      for (unsigned int c = 0; c < dim; ++c)
+        v[c] -= velocity[a][c];
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        U[r] += point.frame[r * dim + c] * v[c];
+    return U;
+  }
+
+  /** v += M^-1 H^T P */
+  template <int dim>
+  void NodeSystem<dim>::push(const Point &point, const Vector &impulse,
+                             std::vector<Vector> &velocity) const
+  {
+    Vector P{};
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        P[c] += point.frame[r * dim + c] * impulse[r];
+    const auto [a, b] = point.groups;
+    for (unsigned int c = 0; c < dim; ++c) {
+      if (a >= 0)
+        velocity[a][c] -= (*inverse_mass_)[a][c] * P[c];
+      if (b >= 0)
+        velocity[b][c] += (*inverse_mass_)[b][c] * P[c];
+    }
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::answer(Point &point) const
+  {
+    const Vector U = relative(point, velocity_);
+    for (unsigned int c = 0; c < dim; ++c)
+      point.local[c] = U[c] - point.R * point.impulse[c];
+    LocalSolution<dim> &solution = point.solution;
+    const std::size_t i = point.index;
+    point.carries = problem_->kind[i] != PointKind::free ||
+                    point.local[0] < problem_->target[i];
+    if (!point.carries) {
+      const Reach reach = solution.reach;
+      solution = {};
+      solution.reach = reach;
+      solution.velocity = point.local;
+      return;
+    }
+    const Reach near = solution.damages ? solution.reach
+                       : point.is_new && problem_->kind[i] != PointKind::free
+                           ? local::end_reach<dim>(*problem_, i, U)
+                           : Reach();
+    point.is_new = false;
+    if (near.opening > 0. &&
+        solve_near<dim>(*problem_, i, point.local, point.R, near, solution))
+      return;
+    solution = solve_point<dim>(*problem_, i, point.local, point.R, point.R,
+                                solution.reach);
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::solve_single()
+  {
+    Point &point = points_[0];
+    velocity_ = free_;
+    point.impulse.fill(0.);
+    point.is_new = false; // the same bits as solve_point()
+    answer(point);
+    point.impulse = point.solution.impulse;
+  }
+
+  template <int dim>
+  double NodeSystem<dim>::evaluate()
+  {
+    double error = 0., size = floor_ * floor_;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      answer(point);
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double P = point.impulse[c], d = point.solution.impulse[c] - P;
+        error += point.R * d * d;
+        size += point.R * P * P;
+      }
+    }
+    scale_ = std::sqrt(size);
+    return std::sqrt(error);
+  }
+
+  template <int dim>
+  double NodeSystem<dim>::sweep()
+  {
+    double error = 0., size = floor_ * floor_;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      answer(point);
+      Vector change;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double P = point.solution.impulse[c];
+        change[c] = P - point.impulse[c];
+        error += point.R * change[c] * change[c];
+        size += point.R * P * P;
+      }
+      point.impulse = point.solution.impulse;
+      push(point, change, velocity_);
+    }
+    scale_ = std::sqrt(size);
+    return std::sqrt(error);
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::linearise()
+  {
+    unknown_.assign(velocity_.size(), -1);
+    root_mass_.resize(velocity_.size());
+    n_unknowns_ = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      if (!point.carries)
+        continue;
+      point_slopes<dim>(*problem_, point.index, point.local, point.R,
+                        point.solution, point.slopes);
+      for (const int g : point.groups)
+        if (g >= 0 && unknown_[g] < 0) {
+          unknown_[g] = n_unknowns_;
+          n_unknowns_ += dim;
+          for (unsigned int c = 0; c < dim; ++c)
+            root_mass_[g][c] = std::sqrt((*inverse_mass_)[g][c]);
+        }
+    }
+  }
+
+  template <int dim>
+  bool NodeSystem<dim>::invert_slopes(Point &point, const double soft,
+                                      double &stiffest) const
+  {
+    Matrix compliance;
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        compliance[r * dim + c] =
+            (r == c ? 1. : 0.) -
+            (1. - soft) * point.R * point.slopes[r * dim + c];
+    double b[dim * dim] = {};
+    for (unsigned int c = 0; c < dim; ++c)
+      b[c * (dim + 1)] = 1.;
+    Matrix &a = compliance;
+    for (int k = 0; k < dim; ++k) {
+      int p = k;
+      for (int i = k + 1; i < dim; ++i)
+        if (std::abs(a[i * dim + k]) > std::abs(a[p * dim + k]))
+          p = i;
+      if (!(std::abs(a[p * dim + k]) > 0.))
+        return false;
+      const double factor = 1. / a[p * dim + k];
+      for (int j = 0; j < dim; ++j) {
+        std::swap(a[k * dim + j], a[p * dim + j]);
+        std::swap(b[k * dim + j], b[p * dim + j]);
+        a[k * dim + j] *= factor;
+        b[k * dim + j] *= factor;
+      }
+      for (int i = 0; i < dim; ++i)
+        if (i != k) {
+          const double f = a[i * dim + k];
+          for (int j = 0; j < dim; ++j) {
+            a[i * dim + j] -= f * a[k * dim + j];
+            b[i * dim + j] -= f * b[k * dim + j];
+          }
+        }
+    }
+    std::copy_n(b, dim * dim, point.inverse.begin());
+    stored::multiply<dim>(b, point.slopes.data(), point.stiffness.data());
+    for (unsigned int c = 0; c < dim; ++c)
+      stiffest = std::max(stiffest,
+                          point.R * std::abs(point.stiffness[c * (dim + 1)]));
+    return true;
+  }
+
+  /** 1 + M^-1/2 H^T K H M^-1/2 */
+  template <int dim>
+  void NodeSystem<dim>::assemble()
+  {
+    matrix_.reinit(n_unknowns_);
+    for (int i = 0; i < n_unknowns_; ++i)
+      matrix_.row(i)[i] = 1.;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const Point &point = points_[k];
+      if (!point.carries)
+        continue;
+      Matrix KF, K{}; // in the axes of space
+      stored::multiply<dim>(point.stiffness.data(), point.frame, KF.data());
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int j = 0; j < dim; ++j)
+            K[r * dim + c] += point.frame[j * dim + r] * KF[j * dim + c];
+      for (const int g : point.groups)
+        for (const int f : point.groups) {
+          if (g < 0 || f < 0)
+            continue;
+          const double sign = g == f ? 1. : -1.;
+          for (unsigned int r = 0; r < dim; ++r) {
+            double *row = matrix_.row(unknown_[g] + r) + unknown_[f];
+            for (unsigned int c = 0; c < dim; ++c)
+              row[c] +=
+                  sign * root_mass_[g][r] * K[r * dim + c] * root_mass_[f][c];
+          }
+        }
+    }
+  }
+
+  /**
+   * What is missing of (1 - (1 - soft) R D) dP + D H dv = S - P, and once more
+   * solved for it. @return the size of the correction over that of dP.
+   */
+  template <int dim>
+  double NodeSystem<dim>::correct(const double soft)
+  {
+    right_side_.assign(n_unknowns_, 0.);
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      Vector &q = point.residual;
+      if (!point.carries) {
+        for (unsigned int c = 0; c < dim; ++c)
+          q[c] = -point.impulse[c] - point.direction[c];
+      } else {
+        const Vector dU = relative(point, change_);
+        for (unsigned int r = 0; r < dim; ++r) {
+          q[r] = -point.direction[r];
+          for (unsigned int c = 0; c < dim; ++c)
+            q[r] += point.inverse[r * dim + c] *
+                        (point.solution.impulse[c] - point.impulse[c]) +
+                    point.stiffness[r * dim + c] *
+                        (soft * point.R * point.direction[c] - dU[c]);
+        }
+      }
+      Vector p{};
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          p[c] += point.frame[r * dim + c] * q[r];
+      for (unsigned int s = 0; s < 2; ++s) {
+        const int g = point.groups[s];
+        if (g >= 0 && unknown_[g] >= 0)
+          for (unsigned int c = 0; c < dim; ++c)
+            right_side_[unknown_[g] + c] +=
+                (s == 0 ? -1. : 1.) * root_mass_[g][c] * p[c];
+      }
+    }
+    matrix_.solve(right_side_.data());
+    double change = 0., size = 0.;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      Vector step = point.residual;
+      if (point.carries) {
+        Vector v{};
+        for (unsigned int s = 0; s < 2; ++s) {
+          const int g = point.groups[s];
+          if (g >= 0)
+            for (unsigned int c = 0; c < dim; ++c)
+              v[c] += (s == 0 ? -1. : 1.) * root_mass_[g][c] *
+                      right_side_[unknown_[g] + c];
+        }
+        double U[dim];
+        stored::multiply_vector<dim>(point.frame, v.data(), U);
+        stored::subtract_vector<dim>(point.stiffness.data(), U, step.data());
+      }
+      for (unsigned int c = 0; c < dim; ++c) {
+        point.direction[c] += step[c];
+        change += point.R * step[c] * step[c];
+        size += point.R * point.direction[c] * point.direction[c];
+      }
+    }
+    std::fill(change_.begin(), change_.end(), Vector{});
+    for (std::size_t k = 0; k < n_; ++k)
+      push(points_[k], points_[k].direction, change_);
+    return size > 0. ? std::sqrt(change / size) : 0.;
+  }
+
+  template <int dim>
+  bool NodeSystem<dim>::find_direction(const double soft, const bool refine)
+  {
+    double stiffest = 0.;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      point.direction.fill(0.);
+      if (point.carries && !invert_slopes(point, soft, stiffest))
+        return false;
+    }
+    assemble();
+    if (!matrix_.factorise())
+      return false;
+    change_.assign(velocity_.size(), Vector{});
+    // springs stiffer by far than W take digits, which come back
+    const double left = refine ? soft : 0.;
+    double last = correct(left);
+    for (unsigned int k = 0; k < 5 && stiffest > 1e3 && last > 1e-10; ++k) {
+      const double next = correct(left);
+      if (k > 0 && next > 0.5 * last)
+        break;
+      last = next;
+    }
+    return std::isfinite(last);
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::move(const double length)
+  {
+    const Kept &start = kept_[0];
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      point.solution.reach = start.points[k].solution.reach;
+      point.solution.damages = start.points[k].solution.damages;
+      for (unsigned int c = 0; c < dim; ++c)
+        point.impulse[c] =
+            start.points[k].impulse[c] + length * point.direction[c];
+    }
+    for (std::size_t g = 0; g < velocity_.size(); ++g)
+      for (unsigned int c = 0; c < dim; ++c)
+        velocity_[g][c] = start.velocity[g][c] + length * change_[g][c];
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::keep(const unsigned int slot)
+  {
+    Kept &kept = kept_[slot];
+    kept.points.resize(std::max(n_, kept.points.size()));
+    std::copy_n(points_.begin(), n_, kept.points.begin());
+    kept.velocity = velocity_;
+    kept.scale = scale_;
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::restore(const unsigned int slot)
+  {
+    const Kept &kept = kept_[slot];
+    for (std::size_t k = 0; k < n_; ++k)
+      static_cast<State &>(points_[k]) = kept.points[k];
+    velocity_ = kept.velocity;
+    scale_ = kept.scale;
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::scatter(std::uint64_t seed, const double spread)
+  {
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      for (double &P : point.impulse) {
+        seed = mixed(seed);
+        P *= spread * double(seed >> 11) * 0x1p-53;
+      }
+      point.solution.reach = history(point.index);
+      point.solution.damages = false;
+    }
+    refresh_velocity();
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::refresh_velocity()
+  {
+    velocity_ = free_;
+    for (std::size_t k = 0; k < n_; ++k)
+      push(points_[k], points_[k].impulse, velocity_);
+  }
+
+  /**
+   * At the strength beside points that hold, a point opens by round-off. To
+   * give it a history would leave a nearly rigid spring behind.
+   */
+  template <int dim>
+  bool NodeSystem<dim>::held_by_round_off(const Point &point) const
+  {
+    if (problem_->kind[point.index] != PointKind::rigid ||
+        !point.solution.damages)
+      return false;
+    double speed = point.speed;
+    for (const double P : point.impulse)
+      speed += point.R * std::abs(P);
+    return point.solution.reach.opening <=
+           1e-12 * problem_->time_step * problem_->theta * speed;
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::store(const bool exact, NodeProblem<dim> &node,
+                              std::vector<double> &impulses,
+                              std::vector<LocalSolution<dim>> &solutions)
+  {
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      LocalSolution<dim> &solution = point.solution;
+      if (held_by_round_off(point)) {
+        solution = {};
+        solution.impulse = point.impulse;
+        solution.frozen.secant = Secant::rigid();
+        solution.status = PointStatus::prescribed;
+      }
+      for (unsigned int c = 0; c < dim; ++c) {
+        double &P = point.impulse[c];
+        if (exact || solution.impulse[c] == 0.)
+          P = solution.impulse[c];
+        impulses[point.index * dim + c] = P;
+      }
+      solutions[point.index] = solution;
+    }
+    refresh_velocity();
+    node.velocity = velocity_;
+  }
+
+  template class NodeSystem<2>;
+  template class NodeSystem<3>;
+} // namespace nsfd

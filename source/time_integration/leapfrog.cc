@@ -1,0 +1,396 @@
+#include "leapfrog.h"
+
+#include "initial_state.h"
+#include "point_name.h"
+
+#include "core/cost.h"
+#include "discretization/loads.h"
+#include "nsfd/core/archive.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    bool is_interface(const PointOrigin &origin)
+    {
+      return origin.kind == PointOrigin::Kind::interface;
+    }
+
+    /** Before anything has let go: what is joined. */
+    bool is_joined(const PointKind kind)
+    {
+      return kind == PointKind::bonded || kind == PointKind::rigid ||
+             kind == PointKind::prescribed;
+    }
+  } // namespace
+
+  template <int dim>
+  Leapfrog<dim>::Leapfrog(const SceneInput &input,
+                          const Discretization<dim> &discretization,
+                          const Communicator &communicator,
+                          const OneStepProblem<dim> &all)
+      : input_(input), discretization_(discretization),
+        communicator_(communicator), mesh_(discretization),
+        forces_(make_cell_forces(
+            discretization, mesh_,
+            FrontViscosity(discretization, input.front_viscosity()))),
+        faces_(discretization, mesh_, all),
+        supports_(input, discretization, mesh_),
+        points_(discretization, mesh_, all),
+        check_(input, [this](const std::size_t i) {
+          return name_of_point<dim>(input_, discretization_.origins(),
+                                    discretization_.points().position, i);
+        })
+  {
+  }
+
+  template <int dim>
+  Leapfrog<dim>::~Leapfrog() = default;
+
+  /** The motion and the points of @p state. */
+  template <int dim>
+  void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact)
+  {
+    const auto &origins = discretization_.origins();
+    for (std::size_t i = 0; i < intact.size(); ++i)
+      if (!intact[i] && origins[i].kind != PointOrigin::Kind::motion)
+        points_.add(unsigned(i), faces_.factors(unsigned(i)), state);
+    groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
+    faces_.start(std::move(intact));
+    groups_->gather(state.displacement, groups_->displacement);
+    groups_->gather(state.velocity, groups_->velocity);
+    supports_.find(*groups_);
+    if (discretization_.loads().any()) {
+      corner_loads_.assign(mesh_.n_corners() * dim, 0.);
+      loads_time_ = state.time;
+      discretization_.add_loads(loads_time_, corner_loads_);
+    }
+    forces_->set_forces(*groups_, 0.);
+    front_ = forces_->front().finish(communicator_);
+    loads_.assign(corner_loads_.empty() ? 0 : groups_->force.size(), 0.);
+    for (std::size_t i = 0; i < mesh_.n_corners() && !loads_.empty(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        loads_[groups_->of(i) * dim + c] += corner_loads_[i * dim + c];
+  }
+
+  template <int dim>
+  State Leapfrog<dim>::start_from(const State &given)
+  {
+    const auto &origins = discretization_.origins();
+    State state = given;
+    std::vector<std::uint8_t> intact(origins.size());
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      intact[i] = is_interface(origins[i]) && is_joined(given.kind[i]);
+      if (intact[i])
+        state.kind[i] = PointKind::bonded;
+    }
+    take(state, std::move(intact));
+    state.bond_traction.assign(state.jump.size(), 0.);
+    show(state);
+    const auto &g = *groups_;
+    terms_.resize(g.force.size());
+    for (std::size_t k = 0; k < terms_.size(); ++k)
+      terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
+    state.energy.kinetic = communicator_.sum(terms_);
+    state.energy.elastic =
+        -communicator_.dot(g.force.data(), g.displacement.data(),
+                           g.force.size()) /
+        2.;
+    begin_balance(state);
+    return state;
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::resume_from(const State &state)
+  {
+    const auto &origins = discretization_.origins();
+    std::vector<std::uint8_t> intact(origins.size());
+    for (std::size_t i = 0; i < origins.size(); ++i)
+      intact[i] =
+          is_interface(origins[i]) && state.kind[i] == PointKind::bonded;
+    take(state, std::move(intact));
+  }
+
+  /** Loads at @p time by corner and by group. */
+  template <int dim>
+  void Leapfrog<dim>::set_loads(const double time)
+  {
+    if (corner_loads_.empty() || !discretization_.loads().depend_on_time() ||
+        time == loads_time_)
+      return;
+    loads_time_ = time;
+    std::fill(corner_loads_.begin(), corner_loads_.end(), 0.);
+    discretization_.add_loads(time, corner_loads_);
+    std::fill(loads_.begin(), loads_.end(), 0.);
+    for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        loads_[groups_->of(i) * dim + c] += corner_loads_[i * dim + c];
+  }
+
+  /** Forces and loads on the groups of a node that has split. */
+  template <int dim>
+  void Leapfrog<dim>::gather(const std::size_t node)
+  {
+    auto &g = *groups_;
+    loads_.resize(corner_loads_.empty() ? 0 : g.force.size());
+    for (const unsigned int corner : mesh_.corners_of_node(node))
+      for (unsigned int c = 0; c < dim; ++c) {
+        g.force[g.of(corner) * dim + c] = 0.;
+        if (!loads_.empty())
+          loads_[g.of(corner) * dim + c] = 0.;
+      }
+    for (const unsigned int corner : mesh_.corners_of_node(node)) {
+      const auto force = forces_->corner_force(corner, g);
+      for (unsigned int c = 0; c < dim; ++c) {
+        g.force[g.of(corner) * dim + c] += force[c];
+        if (!loads_.empty())
+          loads_[g.of(corner) * dim + c] += corner_loads_[corner * dim + c];
+      }
+    }
+  }
+
+  /** Points that let go: nodes fall apart where they are cut. */
+  template <int dim>
+  void Leapfrog<dim>::release(const std::vector<unsigned int> &points)
+  {
+    bool cut_support = false;
+    for (const unsigned int point : points)
+      points_.release(point, faces_.factors(point));
+    for (const unsigned int point : points) {
+      const std::size_t node = mesh_.node_of_point(point);
+      if (!groups_->split(node, faces_.intact()))
+        continue;
+      gather(node);
+      for (const unsigned int corner : mesh_.corners_of_node(node))
+        cut_support |= groups_->of(corner) < supports_.mask().size() &&
+                       supports_.mask()[groups_->of(corner)] != 0;
+    }
+    if (cut_support)
+      supports_.find(*groups_);
+    supports_.resize(groups_->size());
+  }
+
+  template <int dim>
+  unsigned int Leapfrog<dim>::let_go()
+  {
+    auto released = faces_.reached(*forces_, excess_);
+    release(released);
+    const auto n = unsigned(released.size());
+    released = faces_.reached_at_ends(*forces_, *groups_, points_,
+                                      corner_loads_, supports_.mask(), excess_);
+    release(released);
+    return n + unsigned(released.size());
+  }
+
+  /** Without points: v- + k (f + F)/m, or what is prescribed. */
+  template <int dim>
+  void Leapfrog<dim>::move_freely(const double kick, const double time,
+                                  const double h)
+  {
+    auto &g = *groups_;
+    old_velocity_.swap(g.velocity);
+    const std::size_t n = g.force.size();
+    g.velocity.resize(n);
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      const double share = kick / g.mass[i];
+      for (unsigned int c = 0; c < dim; ++c)
+        g.velocity[i * dim + c] =
+            old_velocity_[i * dim + c] + share * g.force[i * dim + c];
+    }
+    if (!loads_.empty())
+      for (std::size_t i = 0; i < g.size(); ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          g.velocity[i * dim + c] += kick / g.mass[i] * loads_[i * dim + c];
+    supports_.set_velocities(time, h, kick, g.force, loads_, g);
+  }
+
+  template <int dim>
+  StepReport Leapfrog<dim>::advance(const State &old, const double h,
+                                    State &next, const unsigned int)
+  {
+    StepReport report;
+    const double last = old.last_step, kick = (h + last) / 2.;
+    auto &g = *groups_;
+    {
+      const Charge charge(Cost::laws);
+      report.released = let_go();
+    }
+    double of_change = 0.;
+    {
+      const Charge charge(Cost::free_motion);
+      set_loads(old.time);
+      move_freely(kick, old.time, h);
+    }
+    const double *f = g.force.data();
+    const std::size_t n = g.force.size();
+    typename LeapfrogPoints<dim>::Outcome outcome;
+    {
+      const Charge charge(Cost::solver);
+      outcome = points_.solve(h, last, supports_.mask(), g);
+    }
+    counters_.problems += outcome.problems;
+    counters_.sweeps += outcome.sweeps;
+    counters_.newton += outcome.newton;
+    counters_.released += report.released;
+    report.solver.converged = !communicator_.any(!outcome.converged);
+    report.solver.residual = communicator_.max(outcome.residual);
+    report.solver.newton = outcome.newton;
+    report.solver.sweeps = outcome.sweeps;
+    if (!report.solver.converged) {
+      old_velocity_.swap(g.velocity);
+      check_.check_solution(h, old.time, report.solver, outcome.worst);
+    }
+    const Charge charge(Cost::energy_balance);
+    Energies energies;
+    if (h != last)
+      of_change = (last - h) / 4. *
+                  (communicator_.dot(f, g.velocity.data(), n) -
+                   communicator_.dot(f, old_velocity_.data(), n));
+    energies.numerical = -of_change;
+    energies.stored = -communicator_.dot(f, g.displacement.data(), n) / 2.;
+    energies.power = communicator_.dot(f, g.velocity.data(), n);
+    if (!loads_.empty())
+      energies.work =
+          kick / 2. *
+          (communicator_.dot(loads_.data(), g.velocity.data(), n) +
+           communicator_.dot(loads_.data(), old_velocity_.data(), n));
+    std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
+    points_.add_impulses(supports_.row_of_group(), g, supports_.rows());
+    energies.work += supports_.work(communicator_, kick, old_velocity_, g);
+    terms_.resize(n);
+    for (std::size_t k = 0; k < n; ++k)
+      terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
+    energies.kinetic = communicator_.sum(terms_);
+    {
+      const Charge moving(Cost::update);
+      old_displacement_.swap(g.displacement);
+      g.displacement.resize(n);
+      for (std::size_t k = 0; k < n; ++k)
+        g.displacement[k] = old_displacement_[k] + h * g.velocity[k];
+      forces_->set_forces(g, h);
+    }
+    const auto front = forces_->front().finish(communicator_);
+    energies.numerical += (last - h) / 4. * (front_.after - front.before);
+    energies.stored -= front_.stored / 2.;
+    energies.power += front.before;
+    energies.viscous = kick / 2. * (front.before + front_.after);
+    energies.power_after =
+        communicator_.dot(f, g.velocity.data(), n) + front.after;
+    front_ = front;
+    try {
+      book(old, h, energies, next, report);
+    } catch (const StepRejected &rejected) {
+      // the state before it is what the run can still show
+      old_displacement_.swap(g.displacement);
+      old_velocity_.swap(g.velocity);
+      throw StepRejected(rejected.what(), StepRejected::Cure::none);
+    }
+    points_.accept();
+    return report;
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::book(const State &old, const double h,
+                           const Energies &bodies, State &next,
+                           StepReport &report)
+  {
+    const auto balance = points_.account(communicator_);
+    next.step = old.step + 1;
+    next.time = old.time + h;
+    next.last_step = h;
+    EnergyLines &energy = next.energy;
+    energy = old.energy;
+    // h^2 v.K v / 8
+    const double share = h / 8. * (bodies.power - bodies.power_after);
+    energy.kinetic = bodies.kinetic - share;
+    energy.elastic = bodies.stored - h / 2. * bodies.power + share;
+    energy.cohesive += balance.stored;
+    energy.damage += balance.damage;
+    energy.friction += balance.friction;
+    energy.impact += balance.impact;
+    energy.viscous += balance.viscous + bodies.viscous;
+    energy.numerical += balance.numerical + bodies.numerical;
+    energy.work += bodies.work;
+    next.broken_area = old.broken_area + balance.broken;
+    next.positive_friction_work =
+        old.positive_friction_work + balance.positive_friction;
+    next.initial_energy = old.initial_energy;
+    next.penetration = std::max(old.penetration, balance.penetration);
+    next.penetration_excess =
+        std::max(old.penetration_excess,
+                 balance.penetration - 1e-12 * discretization_.extent());
+    next.rigid_drift = old.rigid_drift;
+    next.viscous_traction = old.viscous_traction;
+    next.pressure_work = old.pressure_work;
+    report.active = balance.active;
+    report.separates = communicator_.any(balance.separates);
+    report.beyond_unique = balance.beyond_unique;
+    report.changes = balance.changes;
+    report.changes.taken[std::size_t(WatchedLine::scheme)] =
+        energy.numerical - old.energy.numerical;
+    close_balance(old, next, report);
+    const double scale = 4. * std::abs(energy.kinetic);
+    const TakenStep step{old, next, h, scale, 0};
+    check_.check_balance(step, report);
+    check_.watch_energy(step, report);
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::show(State &state) const
+  {
+    groups_->scatter(groups_->displacement, state.displacement);
+    groups_->scatter(groups_->velocity, state.velocity);
+    points_.show(state);
+    const auto &origins = discretization_.origins();
+    faces_.show(*forces_, state.bond_traction);
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      if (origins[i].kind != PointOrigin::Kind::motion)
+        continue;
+      const auto &corners = mesh_.corners(i);
+      const unsigned int group = groups_->of(
+          corners[1] != JoinedMesh<dim>::none ? corners[1] : corners[0]);
+      for (unsigned int c = 0; c < dim; ++c) { // its axes are x, y, z
+        state.jump[i * dim + c] = groups_->displacement[group * dim + c];
+        state.relative_velocity[i * dim + c] =
+            groups_->velocity[group * dim + c];
+      }
+    }
+  }
+
+  template <int dim>
+  void
+  Leapfrog<dim>::fill_counters(std::map<std::string, double> &counters) const
+  {
+    counters["node_problems"] = double(counters_.problems);
+    counters["gauss_seidel_sweeps"] = double(counters_.sweeps);
+    counters["newton"] = double(counters_.newton);
+    counters["released_points"] = double(counters_.released);
+    counters["active_points"] = double(points_.size());
+    counters["groups"] = double(groups_ ? groups_->size() : 0);
+    counters["worst_excess_over_strength"] = excess_;
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::serialize(Archive &archive)
+  {
+    const Archive::Part part(archive, "leapfrog");
+    archive.numbers("excess", excess_);
+    points_.serialize(archive);
+    auto &front = forces_->front();
+    front.serialize(archive, discretization_.bodies().first_dof);
+    if (archive.reads() && front.acts()) {
+      front.holds = true;
+      forces_->set_forces(*groups_, 0.);
+      front.holds = false;
+    }
+    archive.numbers("front", front_.before, front_.after, front_.stored);
+    archive.common("reactions", supports_.reactions());
+  }
+
+  template class Leapfrog<2>;
+  template class Leapfrog<3>;
+} // namespace nsfd

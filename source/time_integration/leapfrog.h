@@ -1,0 +1,95 @@
+#pragma once
+
+#include "face_release.h"
+#include "leapfrog_points.h"
+#include "prescribed_groups.h"
+#include "step_check.h"
+#include "time_integrator.h"
+
+#include "joined/cell_forces.h"
+
+#include <memory>
+
+namespace nsfd
+{
+  struct SceneInput;
+
+  /**
+   * The explicit scheme on joined cells with lumped mass,
+   *
+   *   M (v_{k+1/2} - v_{k-1/2}) = k f(q_k) + P,   q_{k+1} = q_k + h v_{k+1/2},
+   *
+   * k = (h_last + h)/2. Faces whose mean traction has reached the strength let
+   * go before the forces of a step act; their points, contact and friction are
+   * implicit in small problems at the nodes, so that only the free cells bound
+   * the step. For any loads and any impulses,
+   *
+   *   E_{k+1/2} = v.M v/2 + U(q_k) - (h/2) f.v
+   *             = v.(M - h^2 K/4) v/2 + U(q_k + h v/2)
+   *
+   * changes by the sum of P.(v+ + v-)/2; the two parts on the right are the
+   * kinetic and elastic energy of the state. Where h changes, (h_last - h)/4
+   * f.(v+ - v-) is numerical.
+   */
+  template <int dim>
+  class Leapfrog final : public TimeIntegrator<dim>
+  {
+  public:
+    /** @p all are the constant data of the points of the mesh.
+     *  @throws std::runtime_error with a sentence for the user. */
+    Leapfrog(const SceneInput &input, const Discretization<dim> &discretization,
+             const Communicator &communicator, const OneStepProblem<dim> &all);
+    ~Leapfrog() override;
+
+    State start_from(const State &given) override;
+    void resume_from(const State &state) override;
+    StepReport advance(const State &old, double time_step, State &next,
+                       unsigned int idle_rounds) override;
+    void show(State &state) const override;
+    bool keeps_motion() const override { return true; }
+
+    const std::vector<double> &reactions() const override
+    {
+      return supports_.reactions();
+    }
+    void fill_counters(std::map<std::string, double> &counters) const override;
+    void serialize(Archive &archive) override;
+
+  private:
+    /** Of the bodies in a step, J; `power` is f.v+, W. */
+    struct Energies {
+      double kinetic = 0., stored = 0., work = 0., numerical = 0.;
+      double power = 0., power_after = 0.; ///< of the elastic forces
+      double viscous = 0.;
+    };
+
+    void take(const State &state, std::vector<std::uint8_t> intact);
+    void set_loads(double time);
+    void gather(std::size_t node);
+    void release(const std::vector<unsigned int> &points);
+    unsigned int let_go();
+    void move_freely(double kick, double time, double h);
+    void book(const State &old, double h, const Energies &bodies, State &next,
+              StepReport &report);
+
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    const Communicator &communicator_;
+    const JoinedMesh<dim> mesh_;
+    const std::unique_ptr<CellForces<dim>> forces_;
+    FaceRelease<dim> faces_;
+    PrescribedGroups<dim> supports_;
+    LeapfrogPoints<dim> points_;
+    StepCheck check_;
+    std::unique_ptr<CornerGroups<dim>> groups_;
+    std::vector<double> corner_loads_, loads_; ///< N; empty: none
+    double loads_time_ = 0.;
+
+    std::vector<double> old_velocity_, old_displacement_, terms_;
+    FrontViscosity::Powers front_;
+    double excess_ = 0.; ///< of a traction over the strength, less 1
+    struct Counters {
+      unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0;
+    } counters_;
+  };
+} // namespace nsfd

@@ -1,0 +1,210 @@
+#include "leapfrog_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+// What the points did in a step, and what they keep of it.
+
+namespace nsfd
+{
+  namespace
+  {
+    enum Row {
+      stored,
+      damage,
+      friction,
+      positive_friction,
+      impact,
+      numerical,
+      viscous,
+      broken,
+      n_rows
+    };
+
+    /// where the second chain of a point starts that the first one has opened,
+    /// as a share of toughness over strength
+    constexpr double share_at_start = 1e-9;
+  } // namespace
+
+  template <int dim>
+  void LeapfrogPoints<dim>::account_point(const unsigned int a,
+                                          const std::size_t row,
+                                          Balance &balance)
+  {
+    const OneStepProblem<dim> &p = chains_.problem;
+    const std::size_t n = moved_.size();
+    const auto put = [&](const Row line, const double value) {
+      terms_[line * n + row] += value;
+    };
+    const double w = p.weight[a], wH = w * p.time_step;
+    const double *P = &chains_.impulse[a * dim];
+    const auto &solution = chains_.solution[a];
+    std::array<double, dim> U, mean, contact;
+    for (unsigned int c = 0; c < dim; ++c) {
+      U[c] = chains_.velocity[a * dim + c];
+      mean[c] = (U[c] + chains_.old_velocity[a * dim + c]) / 2.;
+    }
+    if (p.kind[a] == PointKind::free && P[0] == 0.) {
+      chains_.closed[a] = 0; // apart: nothing acts
+      return;
+    }
+    const auto &energies = energies_[row] =
+        point_energies<dim>(p, a, U, solution.frozen);
+    double cohesive_work = 0., residual = 0.;
+    for (unsigned int c = 0; c < dim; ++c) {
+      const double pull = wH * energies.cohesive_traction[c];
+      cohesive_work -= pull * mean[c];
+      contact[c] = P[c] + pull;
+    }
+    if (p.kind[a] == PointKind::rigid && !solution.damages) {
+      for (unsigned int c = 0; c < dim; ++c)
+        residual += contact[c] * mean[c];
+      chains_.closed[a] = 0;
+    } else {
+      chains_.closed[a] = solution.contact_impulse > 0.;
+      if (chains_.closed[a])
+        put(impact, -contact[0] * mean[0]);
+      else
+        residual += contact[0] * mean[0];
+      double rubbing = 0.;
+      for (unsigned int c = 1; c < dim; ++c)
+        rubbing += contact[c] * mean[c];
+      if (solution.frozen.threshold > 0.) {
+        put(friction, -rubbing);
+        put(positive_friction, std::max(0., rubbing));
+      } else
+        residual += rubbing;
+      balance.active += chains_.closed[a] || solution.damages;
+    }
+    put(stored, w * (energies.stored - energies.stored_old));
+    put(damage, w * energies.damage);
+    double spent =
+        w * (energies.stored + energies.overlap_released - energies.stored_old);
+    if (energies.viscous > 0.) {
+      put(viscous, w * energies.viscous);
+      spent += w * energies.viscous;
+    }
+    put(numerical, w * energies.overlap_released - residual - cohesive_work -
+                       spent - w * energies.damage);
+    if (energies.beta < 1e-3 && chains_.beta[a] >= 1e-3) {
+      put(broken, w);
+      balance.separates |=
+          hold_of_face_[discretization_.points().face_of[chains_.point[a]]] ==
+          1;
+    }
+    if (p.compression_stiffness[a] == 0.)
+      balance.penetration =
+          std::max(balance.penetration,
+                   -(p.jump_free[a * dim] + p.time_step * p.theta * U[0]) -
+                       chains_.released[a]);
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::keep_jump(const unsigned int a)
+  {
+    const double h = chains_.problem.time_step * chains_.problem.theta;
+    for (unsigned int c = 0; c < dim; ++c)
+      chains_.problem.jump_old[a * dim + c] =
+          chains_.problem.jump_free[a * dim + c] +
+          h * chains_.velocity[a * dim + c];
+  }
+
+  /** Jump and history of the chain at the end of the step. */
+  template <int dim>
+  void LeapfrogPoints<dim>::keep(const unsigned int a,
+                                 const PointEnergies<dim> &energies)
+  {
+    OneStepProblem<dim> &p = chains_.problem;
+    keep_jump(a);
+    if (p.theta > 0.5 && p.theta < 1. && p.compression_stiffness[a] == 0.)
+      chains_.released[a] = std::max(chains_.released[a], -p.jump_old[a * dim]);
+    const double *P = &chains_.impulse[a * dim];
+    if (p.kind[a] == PointKind::free && P[0] == 0.)
+      return;
+    if (chains_.closed[a]) {
+      double square = 0.;
+      for (unsigned int c = 1; c < dim; ++c)
+        square += chains_.velocity[a * dim + c] * chains_.velocity[a * dim + c];
+      chains_.slip[a] += p.time_step * p.theta * std::sqrt(square);
+    }
+    if (energies.beta < 1e-3 && chains_.beta[a] >= 1e-3)
+      --hold_of_face_[discretization_.points().face_of[chains_.point[a]]];
+    p.opening_max[a] = energies.history.opening;
+    if (!p.slip_max.empty())
+      p.slip_max[a] = energies.history.slip;
+    const auto &interaction = p.interactions[p.interaction[a]];
+    if (p.kind[a] == PointKind::rigid && chains_.solution[a].damages) {
+      p.kind[a] = PointKind::cohesive;
+      if (chains_.other.kind[a] == PointKind::rigid) {
+        chains_.other.kind[a] = PointKind::cohesive;
+        chains_.other.opening_max[a] =
+            share_at_start * interaction.law->toughness() /
+            interaction.law->strength() / p.opening_factor[a];
+      }
+    }
+    if (p.kind[a] != PointKind::cohesive)
+      return;
+    chains_.beta[a] = std::min(chains_.beta[a], energies.beta);
+    if (energies.beta < 1. && p.compression_stiffness[a] > 0.) {
+      p.compression_stiffness[a] = 0.; // its overlap is in the energies
+      chains_.released[a] = std::max(
+          {chains_.released[a], -p.jump_old[a * dim], -p.jump_free[a * dim]});
+    }
+    if (chains_.beta[a] <= 0.)
+      p.kind[a] = PointKind::free;
+  }
+
+  template <int dim>
+  auto LeapfrogPoints<dim>::account(const Communicator &communicator) -> Balance
+  {
+    Balance balance;
+    const std::size_t n = moved_.size();
+    terms_.assign(n_rows * n, 0.);
+    energies_.resize(n);
+    for (std::size_t k = 0; k < n; ++k)
+      account_point(moved_[k], k, balance);
+    const auto sums = communicator.sums(terms_.data(), n_rows, n);
+    balance.stored = sums[stored];
+    balance.damage = sums[damage];
+    balance.friction = sums[friction];
+    balance.positive_friction = sums[positive_friction];
+    balance.impact = sums[impact];
+    balance.numerical = sums[numerical];
+    balance.viscous = sums[viscous];
+    balance.broken = sums[broken];
+    balance.penetration = communicator.max(balance.penetration);
+    balance.active = unsigned(communicator.sum_integer(balance.active));
+    const auto set = [&](const WatchedLine line, const Row row) {
+      balance.changes.taken[std::size_t(line)] = sums[row];
+      const auto first = terms_.begin() + long(row * n);
+      const auto least = std::min_element(first, first + long(n));
+      balance.changes.worst[std::size_t(line)] =
+          n > 0 && *least < 0.
+              ? chains_.point[moved_[std::size_t(least - first)]]
+              : LineChanges::no_point;
+    };
+    set(WatchedLine::friction, friction);
+    set(WatchedLine::damage, damage);
+    set(WatchedLine::impact, impact);
+    set(WatchedLine::scheme, numerical);
+    return balance;
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::accept()
+  {
+    for (std::size_t k = 0; k < moved_.size(); ++k) {
+      keep(moved_[k], energies_[k]);
+      std::copy_n(&chains_.velocity[moved_[k] * dim], dim,
+                  &chains_.old_velocity[moved_[k] * dim]);
+    }
+    chains_.swap();
+  }
+
+  template typename LeapfrogPoints<2>::Balance
+  LeapfrogPoints<2>::account(const Communicator &);
+  template typename LeapfrogPoints<3>::Balance
+  LeapfrogPoints<3>::account(const Communicator &);
+  template void LeapfrogPoints<2>::accept();
+  template void LeapfrogPoints<3>::accept();
+} // namespace nsfd

@@ -1,0 +1,288 @@
+#include "leapfrog_points.h"
+
+#include "discretization/discretization.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  template <int dim>
+  LeapfrogPoints<dim>::LeapfrogPoints(const Discretization<dim> &discretization,
+                                      const JoinedMesh<dim> &mesh,
+                                      const OneStepProblem<dim> &all)
+      : discretization_(discretization), mesh_(mesh), all_(all), chains_(all),
+        node_index_(mesh.n_nodes(), -1)
+  {
+    for (const auto &face : discretization.points().faces)
+      hold_of_face_.push_back(2 * face.count);
+  }
+
+  /** The last point is one of its node, in the order of the mesh. */
+  template <int dim>
+  void LeapfrogPoints<dim>::put_into_node()
+  {
+    const auto a = unsigned(chains_.size() - 1);
+    const unsigned int point = chains_.point[a];
+    const std::size_t node = mesh_.node_of_point(point);
+    if (node_index_[node] < 0) {
+      node_index_[node] = int(nodes_.size());
+      nodes_.push_back({node, {}});
+    }
+    auto &points = nodes_[std::size_t(node_index_[node])].points;
+    points.insert(std::lower_bound(
+                      points.begin(), points.end(), a,
+                      [this](const unsigned int one, const unsigned int two) {
+                        return chains_.point[one] < chains_.point[two];
+                      }),
+                  a);
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::add(const unsigned int point,
+                                const Factors &factors, const State &state)
+  {
+    const auto &points = discretization_.points();
+    chains_.add(point, &points.frame[std::size_t(point) * dim * dim], factors,
+                state);
+    if (state.beta[point] < 1e-3)
+      hold_of_face_[points.face_of[point]] -= 2;
+    put_into_node();
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::release(const unsigned int point,
+                                    const Factors &factors)
+  {
+    const double *frame =
+        &discretization_.points().frame[std::size_t(point) * dim * dim];
+    chains_.release(point, frame, factors);
+    put_into_node();
+  }
+
+  template <int dim>
+  std::array<double, dim>
+  LeapfrogPoints<dim>::relative(const unsigned int a,
+                                const CornerGroups<dim> &groups) const
+  {
+    const auto &corners = mesh_.corners(chains_.point[a]);
+    std::array<double, dim> v{}, U{};
+    for (unsigned int side = 0; side < 2; ++side)
+      if (corners[side] != JoinedMesh<dim>::none)
+        for (unsigned int c = 0; c < dim; ++c)
+          v[c] += (side == 0 ? -1. : 1.) *
+                  groups.velocity[groups.of(corners[side]) * dim + c];
+    const double *frame = &chains_.frame[std::size_t(a) * dim * dim];
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        U[r] += frame[r * dim + c] * v[c];
+    return U;
+  }
+
+  /** Of the step that comes: contact. */
+  template <int dim>
+  void LeapfrogPoints<dim>::set_point(const unsigned int a)
+  {
+    OneStepProblem<dim> &p = chains_.problem;
+    const double h = p.time_step * p.theta;
+    p.contact[a] = p.compression_stiffness[a] == 0.;
+    const double u = p.jump_free[a * dim], U = chains_.old_velocity[a * dim];
+    chains_.turned[a] = 0;
+    p.target[a] = -(u + chains_.released[a]) / h;
+    // a longer step than the last one: no overlap would cost energy
+    if (p.theta > 0.5 && p.theta < 1. && U > 0.)
+      p.target[a] = std::min(p.target[a], -U);
+    const double e = p.kind[a] == PointKind::free
+                         ? p.interactions[p.interaction[a]].restitution
+                         : 0.;
+    if (e > 0. && U < 0. && u + h * U <= 0.)
+      p.target[a] = std::max(p.target[a], -e * U);
+    std::fill_n(&p.sliding_offset[a * dim], dim, 0.);
+    if (!p.viscosity.empty())
+      p.viscosity[a] =
+          chains_.beta[a] > 0. ? all_.viscosity[chains_.point[a]] : 0.;
+  }
+
+  /** The problem of a node; false if none of its points is between two groups.
+   */
+  template <int dim>
+  bool LeapfrogPoints<dim>::collect(const Node &node,
+                                    const std::vector<std::uint8_t> &prescribed,
+                                    CornerGroups<dim> &groups)
+  {
+    local_.clear();
+    local_groups_.clear();
+    const auto local = [&](const unsigned int corner) {
+      if (corner == JoinedMesh<dim>::none)
+        return -1;
+      const unsigned int group = groups.of(corner);
+      const auto found =
+          std::find(local_groups_.begin(), local_groups_.end(), group);
+      const auto at = int(found - local_groups_.begin());
+      if (found == local_groups_.end()) {
+        local_groups_.push_back(group);
+        std::array<double, dim> inverse, v;
+        for (unsigned int c = 0; c < dim; ++c) {
+          inverse[c] =
+              prescribed[group] & (1u << c) ? 0. : 1. / groups.mass[group];
+          v[c] = groups.velocity[group * dim + c];
+        }
+        local_.inverse_mass.push_back(inverse);
+        local_.velocity.push_back(v);
+      }
+      return at;
+    };
+    for (const unsigned int a : node.points) {
+      const auto &corners = mesh_.corners(chains_.point[a]);
+      if (corners[0] != JoinedMesh<dim>::none &&
+          corners[1] != JoinedMesh<dim>::none &&
+          groups.of(corners[0]) == groups.of(corners[1]))
+        continue;
+      const int one = local(corners[0]), two = local(corners[1]);
+      local_.points.push_back({a, {{one, two}}});
+    }
+    return !local_.points.empty();
+  }
+
+  /** Of the solved node, whose points are the last ones of `moved_`. */
+  template <int dim>
+  void LeapfrogPoints<dim>::take_velocities(const std::size_t first,
+                                            CornerGroups<dim> &groups)
+  {
+    for (std::size_t k = 0; k < local_groups_.size(); ++k)
+      std::copy_n(local_.velocity[k].begin(), dim,
+                  &groups.velocity[local_groups_[k] * dim]);
+    for (std::size_t k = first; k < moved_.size(); ++k) {
+      const auto U = relative(moved_[k], groups);
+      std::copy(U.begin(), U.end(), &chains_.velocity[moved_[k] * dim]);
+    }
+  }
+
+  /**
+   * Friction that opposes the velocity of the end of a step gives energy where
+   * sliding turns round in it: such points oppose the mean from then on. True
+   * if there are new ones.
+   */
+  template <int dim>
+  bool LeapfrogPoints<dim>::turn_friction(const std::size_t first)
+  {
+    OneStepProblem<dim> &p = chains_.problem;
+    bool turned = false;
+    for (std::size_t k = first; k < moved_.size(); ++k) {
+      const unsigned int a = moved_[k];
+      if (chains_.solution[a].frozen.threshold <= 0. || chains_.turned[a])
+        continue;
+      std::array<double, dim> U;
+      std::copy_n(&chains_.velocity[a * dim], dim, U.begin());
+      const auto energies =
+          point_energies<dim>(p, a, U, chains_.solution[a].frozen);
+      double work = 0., size = 0.;
+      for (unsigned int c = 1; c < dim; ++c) {
+        const double rub =
+            chains_.impulse[a * dim + c] +
+            p.weight[a] * p.time_step * energies.cohesive_traction[c];
+        work += rub * (U[c] + chains_.old_velocity[a * dim + c]) / 2.;
+        size += std::abs(rub * U[c]);
+      }
+      if (work <= 1e-12 * size)
+        continue;
+      turned = true;
+      chains_.turned[a] = 1;
+      for (unsigned int c = 1; c < dim; ++c)
+        p.sliding_offset[a * dim + c] = chains_.old_velocity[a * dim + c];
+    }
+    return turned;
+  }
+
+  template <int dim>
+  auto LeapfrogPoints<dim>::solve(const double h, const double last,
+                                  const std::vector<std::uint8_t> &prescribed,
+                                  CornerGroups<dim> &groups) -> Outcome
+  {
+    Outcome outcome;
+    chains_.problem.time_step = h + last;
+    chains_.problem.theta = h / chains_.problem.time_step;
+    moved_.clear();
+    for (const Node &node : nodes_) {
+      if (!collect(node, prescribed, groups))
+        continue;
+      const std::size_t first = moved_.size();
+      for (const auto &x : local_.points) {
+        set_point(unsigned(x.point));
+        moved_.push_back(unsigned(x.point));
+      }
+      free_ = local_.velocity;
+      do {
+        local_.velocity = free_;
+        const NodeReport report =
+            solver_.solve(chains_.problem, chains_.frame, local_,
+                          chains_.impulse, chains_.solution);
+        outcome.sweeps += report.sweeps;
+        outcome.newton += report.newton;
+        ++outcome.problems;
+        if (!(report.residual <= outcome.residual)) {
+          outcome.residual = report.residual;
+          outcome.worst = chains_.point[moved_[first]];
+        }
+        outcome.converged = outcome.converged && report.converged;
+        take_velocities(first, groups);
+      } while (turn_friction(first));
+    }
+    return outcome;
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::add_impulses(const std::vector<int> &row_of_group,
+                                         const CornerGroups<dim> &groups,
+                                         std::vector<double> &rows) const
+  {
+    for (const unsigned int a : moved_) {
+      const auto &corners = mesh_.corners(chains_.point[a]);
+      for (unsigned int side = 0; side < 2; ++side) {
+        if (corners[side] == JoinedMesh<dim>::none)
+          continue;
+        const int row = row_of_group[groups.of(corners[side])];
+        if (row < 0)
+          continue;
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c)
+            rows[std::size_t(row) * dim + c] +=
+                (side == 0 ? -1. : 1.) * chains_.impulse[a * dim + r] *
+                chains_.frame[(std::size_t(a) * dim + r) * dim + c];
+      }
+    }
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::add_forces(
+      const std::size_t node, const CornerGroups<dim> &groups,
+      std::vector<std::array<double, dim>> &forces) const
+  {
+    if (node_index_[node] < 0 || chains_.problem.time_step == 0.)
+      return;
+    const auto corners = mesh_.corners_of_node(node);
+    for (const unsigned int a : nodes_[std::size_t(node_index_[node])].points) {
+      const auto &sides = mesh_.corners(chains_.point[a]);
+      if (sides[0] != JoinedMesh<dim>::none &&
+          sides[1] != JoinedMesh<dim>::none &&
+          groups.of(sides[0]) == groups.of(sides[1]))
+        continue;
+      for (unsigned int side = 0; side < 2; ++side) {
+        if (sides[side] == JoinedMesh<dim>::none)
+          continue;
+        auto &force = forces[std::size_t(
+            std::lower_bound(corners.begin(), corners.end(), sides[side]) -
+            corners.begin())];
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c)
+            force[c] += (side == 0 ? -2. : 2.) / chains_.problem.time_step *
+                        chains_.impulse[a * dim + r] *
+                        chains_.frame[(std::size_t(a) * dim + r) * dim + c];
+      }
+    }
+  }
+
+  template class LeapfrogPoints<2>;
+  template class LeapfrogPoints<3>;
+} // namespace nsfd

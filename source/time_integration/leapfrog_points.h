@@ -1,0 +1,129 @@
+#pragma once
+
+#include "common_balance.h"
+#include "leapfrog_chains.h"
+
+#include "joined/corner_groups.h"
+#include "joined/node_solver.h"
+#include "nonsmooth/one_step_problem.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace nsfd
+{
+  class Archive;
+  struct SceneInput;
+
+  /**
+   * The points of faces that have let go, and of obstacles, in the steps of
+   * Leapfrog.
+   *
+   * For solve_point() the step of a chain has the length H = h_last + h and
+   * theta = h / H. Contact holds at position level: u_N,k+1 >= 0, which takes
+   * no energy and does not drift; at velocity level where there is restitution.
+   */
+  template <int dim>
+  class LeapfrogPoints
+  {
+  public:
+    /** @p all are the constant data of the points of the mesh. */
+    LeapfrogPoints(const Discretization<dim> &discretization,
+                   const JoinedMesh<dim> &mesh, const OneStepProblem<dim> &all);
+
+    std::size_t size() const { return chains_.size(); }
+
+    using Factors = typename LeapfrogChains<dim>::Factors;
+    /** See LeapfrogChains. */
+    void add(unsigned int point, const Factors &factors, const State &state);
+    void release(unsigned int point, const Factors &factors);
+
+    struct Outcome {
+      bool converged = true;
+      double residual = 0.;
+      unsigned int sweeps = 0, newton = 0, problems = 0;
+      std::size_t worst = 0; ///< point of the mesh
+    };
+    /**
+     * The problems of all nodes, from the velocities of the groups without
+     * impulses to those with them. @p last is the length of the step before,
+     * 0 if there was none; @p prescribed: bit c of a group, component c.
+     */
+    Outcome solve(double time_step, double last,
+                  const std::vector<std::uint8_t> &prescribed,
+                  CornerGroups<dim> &groups);
+
+    /** What the points did in the step that was solved: sums over them, J. */
+    struct Balance {
+      double stored = 0.; ///< change
+      double damage = 0., friction = 0., positive_friction = 0., impact = 0.,
+             numerical = 0., viscous = 0.;
+      double broken = 0.;      ///< area, m^2 or m
+      double penetration = 0.; ///< beyond overlaps of springs that let go, m
+      unsigned int active = 0;
+      bool beyond_unique = false;
+      bool separates = false; ///< a face has lost its last hold
+      LineChanges changes;    ///< of friction, damage, impact, numerical
+    };
+    /** Books the step; what the points keep does not change. Collective. */
+    Balance account(const Communicator &communicator);
+    /** The booked step is taken: jumps and histories move on. */
+    void accept();
+
+    /** Impulse of @p groups beside a prescribed motion: all that points gave in
+        the last solve, x, y, z. */
+    void add_impulses(const std::vector<int> &row_of_group,
+                      const CornerGroups<dim> &groups,
+                      std::vector<double> &rows) const;
+
+    /**
+     * Adds the forces of the last step on the corners of @p node, in N, in
+     * their order.
+     */
+    void add_forces(std::size_t node, const CornerGroups<dim> &groups,
+                    std::vector<std::array<double, dim>> &forces) const;
+
+    void show(State &state) const { chains_.show(state); }
+    /** The chain that is not shown, of points that have been add()ed. */
+    void serialize(Archive &archive)
+    {
+      chains_.serialize(archive, discretization_.points().n_points);
+    }
+
+  private:
+    struct Node {
+      std::size_t node;
+      std::vector<unsigned int> points; ///< all active ones here
+    };
+
+    void put_into_node();
+    void set_point(unsigned int a);
+    bool collect(const Node &node, const std::vector<std::uint8_t> &prescribed,
+                 CornerGroups<dim> &groups);
+    bool turn_friction(std::size_t first);
+    void take_velocities(std::size_t first, CornerGroups<dim> &groups);
+    void account_point(unsigned int a, std::size_t row, Balance &balance);
+    void keep_jump(unsigned int a);
+    void keep(unsigned int a, const PointEnergies<dim> &energies);
+    std::array<double, dim> relative(unsigned int a,
+                                     const CornerGroups<dim> &groups) const;
+
+    const Discretization<dim> &discretization_;
+    const JoinedMesh<dim> &mesh_;
+    const OneStepProblem<dim> &all_;
+
+    LeapfrogChains<dim> chains_;
+    /// by face: chains of its points that are not broken
+    std::vector<unsigned int> hold_of_face_;
+
+    std::vector<Node> nodes_;
+    std::vector<int> node_index_;     ///< by node of the mesh, -1: none here
+    std::vector<unsigned int> moved_; ///< points of the step, nodes in order
+    NodeSolver<dim> solver_;
+    NodeProblem<dim> local_;
+    std::vector<unsigned int> local_groups_;
+    std::vector<std::array<double, dim>> free_; ///< of the groups
+    std::vector<double> terms_;
+    std::vector<PointEnergies<dim>> energies_; ///< of the step, as `moved_`
+  };
+} // namespace nsfd

@@ -1,0 +1,103 @@
+#include "prescribed_groups.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  PrescribedGroups<dim>::PrescribedGroups(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      const JoinedMesh<dim> &mesh)
+      : discretization_(discretization), mesh_(mesh),
+        motion_(input, discretization),
+        reactions_(discretization.driven_boundaries().size() * dim, 0.)
+  {
+  }
+
+  /** Each component once, by the first point that says it. */
+  template <int dim>
+  void PrescribedGroups<dim>::find(const CornerGroups<dim> &groups)
+  {
+    const auto &origins = discretization_.origins();
+    mask_.assign(groups.size(), 0);
+    row_of_group_.assign(groups.size(), -1);
+    all_.clear();
+    int n_rows = 0;
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      if (origins[i].kind != PointOrigin::Kind::motion)
+        continue;
+      const auto &corners = mesh_.corners(i);
+      const unsigned int group = groups.of(
+          corners[1] != JoinedMesh<dim>::none ? corners[1] : corners[0]);
+      for (unsigned int c = 0; c < dim; ++c) {
+        if ((!motion_.velocity(i, c) && !motion_.displacement(i, c)) ||
+            (mask_[group] & (1u << c)))
+          continue;
+        mask_[group] |= std::uint8_t(1u << c);
+        if (row_of_group_[group] < 0)
+          row_of_group_[group] = n_rows++;
+        all_.push_back({group, c, i});
+      }
+    }
+    rows_.assign(std::size_t(n_rows) * dim, 0.);
+  }
+
+  template <int dim>
+  void PrescribedGroups<dim>::resize(const std::size_t n_groups)
+  {
+    mask_.resize(n_groups, 0);
+    row_of_group_.resize(n_groups, -1);
+  }
+
+  template <int dim>
+  void PrescribedGroups<dim>::set_velocities(const double time, const double h,
+                                             const double kick,
+                                             const std::vector<double> &forces,
+                                             const std::vector<double> &loads,
+                                             CornerGroups<dim> &groups)
+  {
+    for (Row &row : all_) {
+      const std::size_t k = std::size_t(row.group) * dim + row.component;
+      row.given = kick * (forces[k] + (loads.empty() ? 0. : loads[k]));
+      if (const auto *velocity = motion_.velocity(row.point, row.component))
+        groups.velocity[k] = motion_.at(*velocity, row.point, time + h / 2.);
+      else
+        groups.velocity[k] =
+            (motion_.at(*motion_.displacement(row.point, row.component),
+                        row.point, time + h) -
+             groups.displacement[k]) /
+            h;
+    }
+  }
+
+  template <int dim>
+  double PrescribedGroups<dim>::work(const Communicator &communicator,
+                                     const double kick,
+                                     const std::vector<double> &before,
+                                     const CornerGroups<dim> &groups)
+  {
+    const auto &driven = discretization_.driven_boundaries();
+    const std::size_t n = all_.size(), n_reactions = reactions_.size();
+    terms_.assign((n_reactions + 1) * n, 0.);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Row &row = all_[k];
+      const std::size_t at = std::size_t(row.group) * dim + row.component;
+      const double impulse =
+          groups.mass[row.group] * (groups.velocity[at] - before[at]) -
+          row.given -
+          rows_[std::size_t(row_of_group_[row.group]) * dim + row.component];
+      terms_[k] = impulse * (groups.velocity[at] + before[at]) / 2.;
+      const auto d =
+          std::size_t(std::find(driven.begin(), driven.end(),
+                                discretization_.origins()[row.point].block) -
+                      driven.begin());
+      terms_[(1 + d * dim + row.component) * n + k] = impulse / kick;
+    }
+    const auto sums = communicator.sums(terms_.data(), n_reactions + 1, n);
+    std::copy(sums.begin() + 1, sums.end(), reactions_.begin());
+    return sums[0];
+  }
+
+  template class PrescribedGroups<2>;
+  template class PrescribedGroups<3>;
+} // namespace nsfd

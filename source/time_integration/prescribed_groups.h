@@ -1,0 +1,75 @@
+#pragma once
+
+#include "driven_motion.h"
+
+#include "core/communicator.h"
+#include "joined/corner_groups.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace nsfd
+{
+  struct SceneInput;
+
+  /** Components of groups of corners whose motion is prescribed. */
+  template <int dim>
+  class PrescribedGroups
+  {
+  public:
+    PrescribedGroups(const SceneInput &input,
+                     const Discretization<dim> &discretization,
+                     const JoinedMesh<dim> &mesh);
+
+    /** Groups are others now, or more. */
+    void find(const CornerGroups<dim> &groups);
+    /** Groups behind the old ones are not among them. */
+    void resize(std::size_t n_groups);
+
+    /** Bit c of a group: component c. */
+    const std::vector<std::uint8_t> &mask() const { return mask_; }
+
+    /**
+     * Sets their velocities in the step from @p time over @p h: that of its
+     * middle, or what leads to the given place. @p forces are elastic and given
+     * ones on the groups, of which the step takes @p kick (s).
+     */
+    void set_velocities(double time, double h, double kick,
+                        const std::vector<double> &forces,
+                        const std::vector<double> &loads,
+                        CornerGroups<dim> &groups);
+
+    /** By place in rows(): impulses of points on the groups, to be set. */
+    std::vector<double> &rows() { return rows_; }
+    /** By group, -1: none. */
+    const std::vector<int> &row_of_group() const { return row_of_group_; }
+
+    /**
+     * Work of the impulses that the motions ask for, J, when all velocities are
+     * those after the step; @p before are those before it. Sets reactions().
+     * Collective.
+     */
+    double work(const Communicator &communicator, double kick,
+                const std::vector<double> &before,
+                const CornerGroups<dim> &groups);
+
+    /** Force on each driven boundary, N, dim per boundary. */
+    std::vector<double> &reactions() { return reactions_; }
+    const std::vector<double> &reactions() const { return reactions_; }
+
+  private:
+    struct Row {
+      unsigned int group, component;
+      std::size_t point; ///< of the mesh, whose boundary it is
+      double given = 0.; ///< impulse of the forces in the step, N s
+    };
+
+    const Discretization<dim> &discretization_;
+    const JoinedMesh<dim> &mesh_;
+    const DrivenMotion<dim> motion_;
+    std::vector<Row> all_;
+    std::vector<std::uint8_t> mask_;
+    std::vector<int> row_of_group_;
+    std::vector<double> rows_, reactions_, terms_;
+  };
+} // namespace nsfd

@@ -1,0 +1,364 @@
+#include "make_scene.h"
+
+#include "discretization/body_frequency.h"
+#include "discretization/cells.h"
+#include "joined/corner_groups.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace nsfd::test_leapfrog
+{
+  namespace
+  {
+    const std::string square = R"(
+set dimension = 2
+subsection Mesh
+  set type         = crossed triangles
+  set upper corner = 10 um, 10 um
+  set cells        = 6, 6
+end
+subsection Material: bulk
+  set Young modulus = 135 GPa
+  set Poisson ratio = 0.32
+  set density       = 7800 kg/m^3
+end
+subsection Interface: all
+  set law              = camacho-ortiz
+  set strength         = 300 MPa
+  set toughness        = 0.5 J/m^2
+  set strength scatter = 0.1
+  set friction         = 0.3
+end
+subsection Boundary: left
+  set velocity x = if(t < 12 ns, -2 m/s, 2 m/s)
+end
+subsection Boundary: right
+  set velocity x = if(t < 12 ns, 2 m/s, -2 m/s)
+end
+subsection Time
+  set end    = 24 ns
+  set step   = auto
+  set scheme = leapfrog
+end
+)";
+
+    const std::vector<std::string> quads = {"Mesh/type=rectangle"};
+    const std::vector<std::string> hexes = {
+        "dimension=3", "Mesh/type=brick", "Mesh/lower corner=0, 0, 0",
+        "Mesh/upper corner=10 um, 10 um, 10 um", "Mesh/cells=3, 3, 3"};
+    const std::vector<std::string> tetrahedra = {
+        "dimension=3", "Mesh/type=tetrahedra", "Mesh/lower corner=0, 0, 0",
+        "Mesh/upper corner=10 um, 10 um, 10 um", "Mesh/cells=2, 2, 2"};
+
+    template <int dim>
+    class Steps : public test::Scene<dim>
+    {
+    public:
+      explicit Steps(const std::string &text,
+                     const std::vector<std::string> &overrides = {})
+          : test::Scene<dim>(text, overrides)
+      {
+        this->state = this->leapfrog->start_from(this->state);
+        this->next = this->state;
+      }
+
+      StepReport step(const double share = 1.)
+      {
+        StepReport report;
+        for (double h = share * this->time_step;; h /= 2.)
+          try {
+            report = this->leapfrog->advance(this->state, h, this->next, 2);
+            break;
+          } catch (const StepRejected &rejected) {
+            if (h < 1e-3 * this->time_step ||
+                rejected.cure() == StepRejected::Cure::none)
+              throw;
+          }
+        std::swap(this->state, this->next);
+        return report;
+      }
+
+      std::array<double, dim> momentum()
+      {
+        this->leapfrog->show(this->state);
+        std::array<double, dim> sum{};
+        const auto &cells = this->discretization->cells();
+        for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+          const std::size_t first = cells.bodies.first_dof[b];
+          for (unsigned int j = 0; j < cells.body_class(b).n_dofs; ++j)
+            sum[j % dim] += cells.body_class(b).mass(j, j) *
+                            this->state.velocity[first + j];
+        }
+        return sum;
+      }
+    };
+
+    /** Every line of the balance, step by step, until everything has broken and
+        been pushed together again. */
+    template <int dim>
+    void expect_balance(const std::vector<std::string> &overrides)
+    {
+      Steps<dim> run(square, overrides);
+      double residual = 0., worst_gift = 0.;
+      while (run.state.time < run.input->time.end) {
+        const EnergyLines before = run.state.energy;
+        const StepReport report = run.step();
+        const EnergyLines &after = run.state.energy;
+        residual = std::max(residual, report.balance_residual);
+        for (const auto line : {&EnergyLines::damage, &EnergyLines::friction,
+                                &EnergyLines::impact})
+          worst_gift = std::max(worst_gift, before.*line - after.*line);
+        ASSERT_GE(after.kinetic, 0.);
+        ASSERT_GE(after.elastic, 0.);
+      }
+      const EnergyLines &e = run.state.energy;
+      EXPECT_GT(e.damage, 0.05 * e.work); // it did break, rub and collide
+      EXPECT_GT(e.friction, 0.);
+      EXPECT_LT(residual, 1e-12);
+      EXPECT_LT(worst_gift, 1e-13 * e.work);
+      EXPECT_LT(std::abs(e.numerical), 1e-3 * e.damage);
+      EXPECT_LT(run.state.penetration, 1e-18); // m, of 10 um
+    }
+
+    TEST(Leapfrog, BalanceClosesLineByLineOnTriangles)
+    {
+      expect_balance<2>({});
+    }
+    TEST(Leapfrog, BalanceClosesLineByLineOnQuads) { expect_balance<2>(quads); }
+    TEST(Leapfrog, BalanceClosesLineByLineOnTetrahedra)
+    {
+      expect_balance<3>(tetrahedra);
+    }
+
+    // A free body that breaks by its own motion.
+    template <int dim>
+    void expect_momentum(std::vector<std::string> overrides)
+    {
+      const std::string held = "subsection Boundary";
+      const std::string free_body =
+          square.substr(0, square.find(held)) +
+          square.substr(square.find("subsection Time"));
+      overrides.insert(
+          overrides.end(),
+          {"Material: bulk/initial velocity x=4e6 1/s * (x - 5 um) + 3 m/s",
+           "Material: bulk/initial velocity y=2 m/s"});
+      Steps<dim> run(free_body, overrides);
+      const auto before = run.momentum();
+      while (run.state.time < run.input->time.end)
+        run.step();
+      const auto after = run.momentum();
+      EXPECT_GT(run.state.energy.damage, 0.);
+      for (unsigned int c = 0; c < dim; ++c)
+        EXPECT_NEAR(after[c], before[c], 1e-12 * std::abs(before[0])) << c;
+    }
+
+    TEST(Leapfrog, KeepsMomentum)
+    {
+      expect_momentum<2>({});
+      expect_momentum<2>(quads);
+      expect_momentum<3>(hexes);
+      expect_momentum<3>(tetrahedra);
+    }
+
+    // One plane breaks: toughness times its area, whatever the step.
+    TEST(Leapfrog, TakesTheToughnessAtAnyStep)
+    {
+      const std::string plane =
+          square + "subsection Interface: others\n  set law = rigid\nend\n";
+      for (const double share : {1., 0.5, 0.25}) {
+        Steps<2> run(plane,
+                     {"Interface: all/where=abs(x - 5 um) < 1 nm",
+                      "Interface: all/strength scatter=0", "Mesh/cells=10, 10",
+                      "Mesh/type=rectangle", "Time/end=9 ns"});
+        while (run.state.time < run.input->time.end)
+          run.step(share);
+        // the second chain of a point starts at 1e-9 of its law
+        EXPECT_NEAR(run.state.energy.damage, 0.5 * 10e-6, 1e-9 * 0.5 * 10e-6)
+            << share;
+      }
+    }
+
+    // Of steps whose length changes while it is pulled, with and without front
+    // viscosity.
+    TEST(Leapfrog, BalanceClosesWhereStepsChange)
+    {
+      for (const char *viscosity : {"0", "0.3"}) {
+        Steps<2> run(square,
+                     {std::string("Time/front viscosity=") + viscosity});
+        double residual = 0.;
+        for (unsigned int k = 0; k < 110; ++k)
+          residual = std::max(
+              residual, run.step(k % 7 == 3 ? 0.25 : 1.).balance_residual);
+        EXPECT_GT(run.state.energy.damage, 0.);
+        EXPECT_LT(residual, 1e-12);
+      }
+    }
+
+    // A standing wave, n cells to its wavelength; quads, order 2 in space.
+    double frequency_error(const unsigned int n, const char *viscosity)
+    {
+      const std::string cells = std::to_string(n / 2);
+      Steps<2> run(
+          R"(
+set dimension = 2
+subsection Mesh
+  set upper corner = 1, 0.1
+end
+subsection Material: bar
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+  set initial velocity x = cos(pi * x)
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Time
+  set end    = 4
+  set step   = auto
+  set scheme = leapfrog
+end
+)",
+          {"Mesh/cells=" + cells + ", 1",
+           std::string("Time/front viscosity=") + viscosity});
+      double last = 0., zero = 0.;
+      while (zero == 0.) {
+        const double t = run.state.time;
+        run.step();
+        run.leapfrog->show(run.state);
+        const double u = run.state.displacement[0];
+        if (t > 0.5 && last > 0. && u <= 0.)
+          zero = t + run.state.last_step * last / (last - u);
+        last = u;
+      }
+      return std::abs(zero - 1.); // half a period
+    }
+
+    TEST(Leapfrog, WavesAreOfSecondOrder)
+    {
+      const double coarse = frequency_error(16, "0"),
+                   fine = frequency_error(32, "0");
+      EXPECT_LT(fine, 2e-3);
+      EXPECT_GT(std::log2(coarse / fine), 1.8);
+    }
+
+    // 20 cells per wavelength: less than 0.1 % of the energy in a period.
+    TEST(Leapfrog, FrontViscosityLeavesSmoothWavesAlone)
+    {
+      const double period = 2.;
+      Steps<2> run(R"(
+set dimension = 2
+subsection Mesh
+  set upper corner = 1, 0.1
+  set cells        = 10, 1
+end
+subsection Material: bar
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+  set initial velocity x = cos(pi * x)
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Time
+  set end             = 2
+  set step            = auto
+  set scheme          = leapfrog
+  set front viscosity = 0.2
+end
+)");
+      while (run.state.time < period)
+        run.step();
+      const EnergyLines &e = run.state.energy;
+      EXPECT_GT(e.viscous, 0.);
+      EXPECT_LT(e.viscous, 1e-3 * run.state.initial_energy);
+    }
+
+    // A bar pushed at one end: the largest tension behind the front over its
+    // amplitude.
+    double tension_behind_front(const char *viscosity)
+    {
+      Steps<2> run(R"(
+set dimension = 2
+subsection Mesh
+  set upper corner = 1, 0.01
+  set cells        = 100, 1
+end
+subsection Material: bar
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+end
+subsection Interface: all
+  set law       = camacho-ortiz
+  set strength  = 1e9
+  set toughness = 1e9
+end
+subsection Boundary: left
+  set velocity x = if(t < 0.2, 1e-3, 0)
+end
+subsection Time
+  set end    = 0.9
+  set step   = auto
+  set scheme = leapfrog
+end
+)",
+                   {std::string("Time/front viscosity=") + viscosity});
+      double tension = 0.;
+      while (run.state.time < 0.9) {
+        run.step();
+        run.leapfrog->show(run.state);
+        const auto &t = run.state.bond_traction;
+        for (std::size_t i = 0; i < t.size(); i += 2)
+          tension = std::max(tension, t[i]);
+      }
+      return tension / 1e-3;
+    }
+
+    TEST(Leapfrog, FrontsLeaveLittleTension)
+    {
+      EXPECT_GT(tension_behind_front("0"), 0.15);
+      EXPECT_LT(tension_behind_front("auto"), 0.05);
+    }
+
+    // Two quads side by side: eight corners at six nodes.
+    TEST(CornerGroups, SplitWhereLinksLetGo)
+    {
+      const test::Scene<2> scene(square,
+                                 {"Mesh/type=rectangle", "Mesh/cells=2, 1"});
+      const JoinedMesh<2> mesh(*scene.discretization);
+      EXPECT_EQ(mesh.n_corners(), 8u);
+      EXPECT_EQ(mesh.n_nodes(), 6u);
+      std::vector<std::uint8_t> intact(scene.discretization->points().n_points);
+      const auto &origins = scene.discretization->origins();
+      for (std::size_t i = 0; i < intact.size(); ++i)
+        intact[i] = origins[i].kind == PointOrigin::Kind::interface;
+      CornerGroups<2> groups(mesh, intact);
+      EXPECT_EQ(groups.size(), 6u);
+      const double total = 7800. * 10e-6 * 10e-6;
+      const auto sum = [&] {
+        double mass = 0.;
+        for (const double m : groups.mass)
+          mass += m;
+        return mass;
+      };
+      EXPECT_NEAR(sum(), total, 1e-11 * total);
+      unsigned int n_groups = 6;
+      for (std::size_t i = 0; i < intact.size(); ++i) {
+        if (!intact[i])
+          continue;
+        intact[i] = 0;
+        EXPECT_TRUE(groups.split(mesh.node_of_point(i), intact));
+        EXPECT_FALSE(groups.split(mesh.node_of_point(i), intact));
+        EXPECT_EQ(groups.size(), ++n_groups);
+        EXPECT_NEAR(sum(), total, 1e-11 * total);
+      }
+      EXPECT_EQ(n_groups, 8u);
+    }
+  } // namespace
+} // namespace nsfd::test_leapfrog
