@@ -19,6 +19,8 @@ namespace nsfd
       double n = type ? type->n_cells(mesh, dimension) : 1.;
       if (mesh.split_simplices)
         n *= dimension + 1;
+      if (mesh.split_barycentric)
+        n *= 6.;
       return n * refined;
     }
 

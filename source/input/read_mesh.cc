@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -55,6 +56,67 @@ namespace nsfd
       return "";
     }
 
+    bool has_simplex_cells(const MeshInput &mesh)
+    {
+      if (mesh.split_simplices)
+        return false;
+      const auto type = find_mesh_type(mesh.type);
+      return type && type->has_simplices(mesh);
+    }
+
+    /** Why there are no triangles to cut, and what to write; empty: there are.
+     */
+    std::array<std::string, 2> no_triangles(const MeshInput &mesh,
+                                            const unsigned int dimension)
+    {
+      if (mesh.type == "bodies")
+        return {{"the cells are those of the bodies",
+                 "write it in the blocks `Body` whose cells are triangles"}};
+      if (mesh.split_simplices)
+        return {{"`split simplices = true` has made quads and hexes of them",
+                 "write one of the two"}};
+      if (dimension == 3)
+        return {{has_simplex_cells(mesh) ? "the cells are tetrahedra"
+                                         : "the cells are hexahedra",
+                 has_simplex_cells(mesh)
+                     ? "write split simplices = true, for hexes, or "
+                       "refinements = 1"
+                     : "write refinements = 1"}};
+      if (has_simplex_cells(mesh))
+        return {};
+      return {{"the cells are quads",
+               mesh.type == "file"
+                   ? "mesh the file with triangles (geometries: cell shape = "
+                     "triangles), or remove this line"
+               : mesh.type == "voronoi"
+                   ? "mesh the grains with triangles in a file "
+                     "(prm/meshes/polycrystal.geo), or remove this line"
+                   : "take type = crossed triangles or diagonal triangles, or "
+                     "remove this line"}};
+    }
+
+    /** Entry `split`: of meshes of triangles. */
+    bool read_barycentric(SectionReader &reader, const MeshInput &mesh,
+                          const unsigned int dimension)
+    {
+      // a file that cannot be read has its own error
+      const bool is_unread = (mesh.type == "file" || mesh.type == "voronoi") &&
+                             mesh.named == nullptr;
+      const auto [reason, advice] = is_unread ? std::array<std::string, 2>()
+                                              : no_triangles(mesh, dimension);
+      if (!reason.empty() && !reader.has("split"))
+        return false;
+      const bool is_wanted =
+          reader.choice("split", "none", {"none", "barycentric"},
+                        "none, or barycentric: every triangle into six, at "
+                        "its midpoints and centroid") == "barycentric";
+      if (is_wanted && !reason.empty())
+        reader.error("split",
+                     "split = barycentric cuts triangles, but " + reason,
+                     advice);
+      return is_wanted;
+    }
+
     MeshInput read_one_mesh(SectionReader &reader, const unsigned int dimension,
                             const bool is_body)
     {
@@ -66,6 +128,7 @@ namespace nsfd
       mesh.refinements = reader.integer("refinements", "0", 0, 20,
                                         "times every cell is halved");
       find_mesh_type(mesh.type)->read(reader, dimension, mesh);
+      mesh.split_barycentric = read_barycentric(reader, mesh, dimension);
       mesh.distortion = reader.number(
           "distortion", "0", units::none, {0., 0.5, false, true},
           "share of the cell size by which interior vertices move");
@@ -73,14 +136,6 @@ namespace nsfd
                                  std::numeric_limits<unsigned int>::max(),
                                  "of the distortion");
       return mesh;
-    }
-
-    bool has_simplex_cells(const MeshInput &mesh)
-    {
-      if (mesh.split_simplices)
-        return false;
-      const auto type = find_mesh_type(mesh.type);
-      return type && type->has_simplices(mesh);
     }
   } // namespace
 

@@ -57,6 +57,12 @@ namespace nsfd
   template <int dim>
   CoarseMesh<dim> split_at_midpoints(const CoarseMesh<dim> &mesh);
 
+  /**
+   * Cut every triangle into six, by the lines from its centroid to its corners
+   * and to the midpoints of its edges; ids of cells and faces are inherited.
+   */
+  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh);
+
   /** Empty mesh, stray values, inverted and degenerate cells, glued faces. */
   template <int dim>
   void check(const CoarseMesh<dim> &mesh, std::vector<std::string> &problems);

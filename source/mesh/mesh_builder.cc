@@ -48,6 +48,9 @@ namespace nsfd
         mesh = split_at_midpoints(mesh);
       if (problems.empty() && input.distortion > 0.)
         distort(mesh, input.distortion, input.seed);
+      if constexpr (dim == 2)
+        if (problems.empty() && input.split_barycentric)
+          mesh = split_at_centroids(mesh);
       return mesh;
     }
 

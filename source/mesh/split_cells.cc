@@ -179,6 +179,29 @@ namespace nsfd
     return result;
   }
 
+  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh)
+  {
+    CoarseMesh<2> result;
+    result.vertices = mesh.vertices;
+    Middles<2> middles(result.vertices);
+    for (const auto &cell : mesh.cells) {
+      const unsigned int centre = middles.of_cell(cell.vertices);
+      for (unsigned int v = 0; v < 3; ++v) {
+        const unsigned int a = cell.vertices[v], b = cell.vertices[(v + 1) % 3];
+        const unsigned int middle = middles.of({a, b});
+        CellData<2> part = cell;
+        for (const auto &corners :
+             {std::array{a, middle, centre}, std::array{middle, b, centre}}) {
+          part.vertices.assign(corners.begin(), corners.end());
+          result.cells.push_back(part);
+        }
+      }
+    }
+    split_faces(mesh.boundary.boundary_lines, middles,
+                result.boundary.boundary_lines);
+    return result;
+  }
+
   template CoarseMesh<2> coarse_mesh(const NamedMesh &);
   template CoarseMesh<3> coarse_mesh(const NamedMesh &);
   template CoarseMesh<2> split_at_midpoints(const CoarseMesh<2> &);

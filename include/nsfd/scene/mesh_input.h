@@ -28,6 +28,8 @@ namespace nsfd
     std::shared_ptr<const NamedMesh> named;
     /// triangles into three quads, tetrahedra into four hexes, at the midpoints
     bool split_simplices = false;
+    /// triangles into six triangles, at midpoints and centroid
+    bool split_barycentric = false;
   };
 
   /** One of several bodies in a mesh of type `bodies`. */
