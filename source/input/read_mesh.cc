@@ -131,7 +131,7 @@ namespace nsfd
       mesh.split_barycentric = read_barycentric(reader, mesh, dimension);
       mesh.distortion = reader.number(
           "distortion", "0", units::none, {0., 0.5, false, true},
-          "share of the cell size by which interior vertices move");
+          "share of the shortest edge by which interior vertices move");
       mesh.seed = reader.integer("seed", "1", 0,
                                  std::numeric_limits<unsigned int>::max(),
                                  "of the distortion");

@@ -1,5 +1,6 @@
 #include "coarse_mesh.h"
 
+#include "cell_shapes.h"
 #include "mesh_topology.h"
 
 #include <deal.II/grid/grid_tools.h>
@@ -81,6 +82,8 @@ namespace nsfd
   std::vector<std::vector<unsigned int>>
   cell_faces(const unsigned int n_corners)
   {
+    if (n_corners != dim + 1 && n_corners != 1u << dim)
+      return find_cell_shape(dim, n_corners)->faces;
     std::vector<std::vector<unsigned int>> faces;
     if (n_corners == dim + 1)
       for (unsigned int left_out = 0; left_out <= dim; ++left_out) {

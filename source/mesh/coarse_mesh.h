@@ -29,7 +29,10 @@ namespace nsfd
 
   /**
    * Move every interior vertex by less than @p share of its shortest edge; the
-   * way depends on seed and position in the mesh only.
+   * way depends on seed and position in the mesh only. What lies on a face
+   * between cells of different material ids, or on one of the listed faces,
+   * stays. Moves are halved at cells that would lose nine tenths of the volume
+   * at a corner. Cells may be of several shapes.
    */
   template <int dim>
   void distort(CoarseMesh<dim> &mesh, double share, unsigned int seed);

@@ -43,11 +43,11 @@ namespace nsfd
                                        input.type, type->dimension(), dim));
       else
         mesh = type->build<dim>(input, refinements, problems);
+      if (problems.empty() && input.distortion > 0.)
+        distort(mesh, input.distortion, input.seed);
       // a mesh of one shape without simplices has been split, or need not be
       if (problems.empty() && input.split_simplices && has_simplices(mesh))
         mesh = split_at_midpoints(mesh);
-      if (problems.empty() && input.distortion > 0.)
-        distort(mesh, input.distortion, input.seed);
       if constexpr (dim == 2)
         if (problems.empty() && input.split_barycentric)
           mesh = split_at_centroids(mesh);

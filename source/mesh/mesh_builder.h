@@ -122,6 +122,9 @@ namespace nsfd
     /// Jacobian at the corners over the product of the edge lengths: 1 for
     /// bricks and for equilateral simplices, 0 if degenerate
     double smallest_scaled_jacobian = 0.;
+    /// dim times the inscribed over the circumscribed radius of simplices: 1
+    /// if equilateral; 0 where cells are quads or hexes
+    double smallest_radius_ratio = 0.;
     double volume = 0., inner_face_area = 0.;
     /// inner_face_area / volume: Z of the added compliance
     double interface_density = 0.;

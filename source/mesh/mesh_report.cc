@@ -37,6 +37,26 @@ namespace nsfd
         }
       return sum;
     }
+    double circumscribed_radius(const std::vector<Point<2>> &triangle,
+                                const double volume)
+    {
+      return area({triangle[0], triangle[1]}) *
+             area({triangle[1], triangle[2]}) *
+             area({triangle[2], triangle[0]}) / (4. * volume);
+    }
+
+    double circumscribed_radius(const std::vector<Point<3>> &tetrahedron,
+                                const double volume)
+    {
+      const Tensor<1, 3> a = tetrahedron[1] - tetrahedron[0],
+                         b = tetrahedron[2] - tetrahedron[0],
+                         c = tetrahedron[3] - tetrahedron[0];
+      return (a.norm_square() * cross_product_3d(b, c) +
+              b.norm_square() * cross_product_3d(c, a) +
+              c.norm_square() * cross_product_3d(a, b))
+                 .norm() /
+             (12. * volume);
+    }
   } // namespace
 
   template <int dim>
@@ -44,8 +64,9 @@ namespace nsfd
   {
     const Communicator communicator(triangulation.get_communicator());
     constexpr double huge = std::numeric_limits<double>::max();
-    // smallest edge, height, angle, Jacobian and minus largest edge, angle
-    std::array<double, 6> least;
+    // smallest edge, height, angle, Jacobian, ratio of radii and minus largest
+    // edge, angle
+    std::array<double, 7> least;
     least.fill(huge);
     std::vector<double> volumes, inner_areas;
     std::vector<Point<dim>> corners, face_corners;
@@ -55,7 +76,7 @@ namespace nsfd
       corners.clear();
       for (const unsigned int v : cell->vertex_indices())
         corners.push_back(cell->vertex(v));
-      double largest_face = 0.;
+      double largest_face = 0., surface = 0.;
       for (const unsigned int f : cell->face_indices()) {
         const auto face = cell->face(f);
         face_corners.clear();
@@ -63,6 +84,7 @@ namespace nsfd
           face_corners.push_back(face->vertex(v));
         const double face_area = area(face_corners);
         largest_face = std::max(largest_face, face_area);
+        surface += face_area;
         // half of a face between two cells; the finer side of a hanging one
         if (!face->at_boundary() && !face->has_children())
           inner_areas.push_back(cell->neighbor_is_coarser(f) ? face_area
@@ -72,10 +94,15 @@ namespace nsfd
       volumes.push_back(volume);
       const bool simplex = corners.size() == dim + 1;
       const CellShape shape = cell_shape(corners);
-      const std::array<double, 6> values = {
+      // the inscribed radius is dim * volume / surface
+      const double radius_ratio =
+          simplex ? dim * dim * volume / surface /
+                        circumscribed_radius(corners, volume)
+                  : 0.;
+      const std::array<double, 7> values = {
           {shape.shortest_edge, (simplex ? dim : 1) * volume / largest_face,
-           shape.smallest_angle, shape.scaled_jacobian, -shape.longest_edge,
-           -shape.largest_angle}};
+           shape.smallest_angle, shape.scaled_jacobian, radius_ratio,
+           -shape.longest_edge, -shape.largest_angle}};
       for (unsigned int i = 0; i < values.size(); ++i)
         least[i] = std::min(least[i], values[i]);
     }
@@ -87,8 +114,9 @@ namespace nsfd
     report.smallest_height = least[1];
     report.smallest_angle = least[2];
     report.smallest_scaled_jacobian = least[3];
-    report.largest_edge = -least[4];
-    report.largest_angle = -least[5];
+    report.smallest_radius_ratio = least[4];
+    report.largest_edge = -least[5];
+    report.largest_angle = -least[6];
     report.volume = communicator.sum(volumes);
     report.inner_face_area = communicator.sum(inner_areas);
     report.interface_density = report.inner_face_area / report.volume;

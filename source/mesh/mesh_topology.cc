@@ -1,5 +1,7 @@
 #include "mesh_topology.h"
 
+#include "cell_shapes.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -48,6 +50,11 @@ namespace nsfd
                                            const unsigned int v)
   {
     std::array<unsigned int, dim> result{};
+    if (n_corners != dim + 1 && n_corners != 1u << dim) {
+      const auto &edges = find_cell_shape(dim, n_corners)->edges[v];
+      std::copy(edges.begin(), edges.end(), result.begin());
+      return result;
+    }
     for (unsigned int d = 0; d < dim; ++d)
       result[d] =
           n_corners == dim + 1 ? (v + 1 + d) % (dim + 1) : v ^ (1u << d);

@@ -350,11 +350,17 @@ namespace nsfd
       auto &out = std::cout;
       out << fmt::format(
           "  mesh       {} cells, edges {} to {}, angles {:.3g} to {:.3g} "
-          "degrees, {} {:.6g} {}\n",
+          "degrees, {} {:.6g} {},\n             lowest height {}{}\n",
           mesh.n_cells, engineering(mesh.smallest_edge, "m", 4),
           engineering(mesh.largest_edge, "m", 4), mesh.smallest_angle,
           mesh.largest_angle, dim == 3 ? "volume" : "area", mesh.volume,
-          dim == 3 ? "m³" : "m²");
+          dim == 3 ? "m³" : "m²", engineering(mesh.smallest_height, "m", 4),
+          mesh.smallest_radius_ratio > 0.
+              ? fmt::format(", inscribed over circumscribed radius at least "
+                            "{:.3g} of an equilateral {}",
+                            mesh.smallest_radius_ratio,
+                            dim == 3 ? "tetrahedron" : "triangle")
+              : "");
       for (const auto &[keyword, sentence] : group_report(input))
         out << fmt::format("  {:<10} {}\n", keyword, sentence);
       out << fmt::format("  bodies     {} of {} different shapes, {} unknowns, "
