@@ -270,6 +270,10 @@ subsection Time
 end
 END
 
+# Explicit steps on joined cells.
+sed -e '/quasi-static/d; s/set step .*/set step = auto\n  set scheme = leapfrog/' \
+  "$scratch/static.prm" >"$scratch/leapfrog.prm"
+
 # Section Path of `nsfd law`, with options.
 path_of() {
   law_section Path "$@"
@@ -437,6 +441,8 @@ END
 
 END
   sections "$scratch/static.prm" 'Time'
+  printf '\n## Time, with explicit steps on joined cells\n\n'
+  sections "$scratch/leapfrog.prm" 'Discretization|Time'
 
   cat <<'END'
 

@@ -13,10 +13,6 @@ namespace nsfd
   namespace
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-
-    /// share of the strength below which no face of a node can be held by more
-    /// than its strength: a node takes from few faces only
-    constexpr double quiet = 0.2;
   } // namespace
 
   template <int dim>
@@ -66,6 +62,8 @@ namespace nsfd
         // the surface of two scalars is within the norm of its two ends only
         sites_.limit.push_back((block.law->mixed() ? 0.5 : 1.) *
                                here.strength() * here.strength());
+        weakest_.push_back(here.strength() / std::max(1., of_shear) *
+                           (block.law->mixed() ? std::sqrt(0.5) : 1.));
       }
     }
   }
@@ -102,10 +100,7 @@ namespace nsfd
         continue;
       sites_.limit[k] = infinity;
       for (unsigned int i = first; i < first + sites_.n_points[k]; ++i)
-        if (const std::size_t node = mesh_.node_of_point(i); !is_end_[node]) {
-          is_end_[node] = 1;
-          ends_.push_back(unsigned(node));
-        }
+        add_end(mesh_.node_of_point(i));
     }
   }
 
@@ -118,12 +113,38 @@ namespace nsfd
     for (unsigned int i = first; i < first + sites_.n_points[site]; ++i) {
       intact_[i] = 0;
       released.push_back(i);
-      const std::size_t node = mesh_.node_of_point(i);
-      if (is_end_[node])
-        continue;
-      is_end_[node] = 1;
-      ends_.push_back(unsigned(node));
+      add_end(mesh_.node_of_point(i));
     }
+  }
+
+  template <int dim>
+  void FaceRelease<dim>::add_end(const std::size_t node)
+  {
+    if (is_end_[node])
+      return;
+    is_end_[node] = 1;
+    End end;
+    end.node = unsigned(node);
+    const auto corners = mesh_.corners_of_node(node);
+    const auto place = [&](const unsigned int corner) {
+      return static_cast<unsigned short>(
+          std::lower_bound(corners.begin(), corners.end(), corner) -
+          corners.begin());
+    };
+    for (const unsigned int i : mesh_.links_of_node(node)) {
+      const auto &sides = mesh_.corners(i);
+      end.links.push_back({i, {{place(sides[0]), place(sides[1])}}});
+    }
+    ends_.push_back(std::move(end));
+  }
+
+  template <int dim>
+  bool FaceRelease<dim>::is_finished(const End &end) const
+  {
+    return std::none_of(
+        end.links.begin(), end.links.end(), [this](const auto &link) {
+          return site_of_[link.point] >= 0 && intact_[link.point];
+        });
   }
 
   template <int dim>
@@ -166,36 +187,46 @@ namespace nsfd
     return released;
   }
 
-  /** Some face of the node that can still let go carries something. */
+  /**
+   * The weakest face of a node that can still let go: half of the sum of the
+   * sizes of all pulls bounds what holds any part of it.
+   */
   template <int dim>
-  bool FaceRelease<dim>::is_loaded(const std::size_t node) const
+  bool FaceRelease<dim>::may_let_go(const End &end) const
   {
-    for (const unsigned int i : mesh_.links_of_node(node))
-      if (const int k = site_of_[i];
-          k >= 0 && intact_[i] &&
-          squares_[std::size_t(k)] >=
-              quiet * quiet * sites_.limit[std::size_t(k)])
-        return true;
-    return false;
+    double weakest = infinity;
+    for (const auto &link : end.links)
+      if (site_of_[link.point] >= 0 && intact_[link.point])
+        weakest =
+            std::min(weakest, discretization_.points().weight[link.point] *
+                                  weakest_[std::size_t(site_of_[link.point])]);
+    double pulls = 0.;
+    for (const auto &pull : pulls_) {
+      double square = 0.;
+      for (const double x : pull)
+        square += x * x;
+      pulls += std::sqrt(square);
+    }
+    return pulls / 2. >= weakest;
   }
 
   /** What pulls the corners of a node away from its groups. */
   template <int dim>
-  void FaceRelease<dim>::set_pulls(const std::size_t node,
+  void FaceRelease<dim>::set_pulls(const End &end,
                                    const CellForces<dim> &forces,
                                    const CornerGroups<dim> &groups,
                                    const LeapfrogPoints<dim> &points,
                                    const std::vector<double> &corner_loads,
                                    const std::vector<std::uint8_t> &prescribed)
   {
-    const auto corners = mesh_.corners_of_node(node);
+    const auto corners = mesh_.corners_of_node(end.node);
     pulls_.resize(corners.size());
     for (std::size_t k = 0; k < corners.size(); ++k) {
       pulls_[k] = forces.corner_force(corners.first[k], groups);
       for (unsigned int c = 0; c < dim && !corner_loads.empty(); ++c)
         pulls_[k][c] += corner_loads[corners.first[k] * dim + c];
     }
-    points.add_forces(node, groups, pulls_);
+    points.add_forces(end.node, groups, pulls_);
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const unsigned int group = groups.of(corners.first[k]);
       std::array<double, dim> sum{};
@@ -219,89 +250,72 @@ namespace nsfd
   }
 
   /**
-   * Without @p link its group falls apart: `side_` is 1 for the corners that
+   * Without the link its group falls apart: `side_` is 1 for the corners that
    * stay with that of body 1.
    */
   template <int dim>
-  bool FaceRelease<dim>::cuts(const std::size_t node, const unsigned int link,
+  bool FaceRelease<dim>::cuts(const End &end, const std::size_t link,
                               const CornerGroups<dim> &groups)
   {
-    const auto corners = mesh_.corners_of_node(node);
-    const auto place = [&](const unsigned int corner) {
-      return std::size_t(
-          std::lower_bound(corners.begin(), corners.end(), corner) -
-          corners.begin());
-    };
-    const auto &ends = mesh_.corners(link);
-    if (groups.of(ends[0]) != groups.of(ends[1]))
+    const auto &points = mesh_.corners(end.links[link].point);
+    if (groups.of(points[0]) != groups.of(points[1]))
       return false;
-    side_.assign(corners.size(), 0);
-    side_[place(ends[0])] = 1;
+    const auto &ends = end.links[link].corners;
+    side_.assign(pulls_.size(), 0);
+    side_[ends[0]] = 1;
     for (bool grows = true; grows;) {
       grows = false;
-      for (const unsigned int i : mesh_.links_of_node(node)) {
-        if (!intact_[i] || i == link)
-          continue;
-        const auto &sides = mesh_.corners(i);
-        char &a = side_[place(sides[0])], &b = side_[place(sides[1])];
-        if (a == b)
+      for (std::size_t k = 0; k < end.links.size(); ++k) {
+        const auto &one = end.links[k];
+        char &a = side_[one.corners[0]], &b = side_[one.corners[1]];
+        if (a == b || k == link || !intact_[one.point])
           continue;
         a = b = 1;
         grows = true;
+        if (side_[ends[1]])
+          return false;
       }
     }
-    return side_[place(ends[1])] == 0;
+    return true;
   }
 
+  /** Of the worst face of the cut that has been found, over its strength. */
   template <int dim>
-  void FaceRelease<dim>::look_at(const std::size_t node,
-                                 const CornerGroups<dim> &groups,
-                                 double &excess,
-                                 std::vector<unsigned int> &released)
+  double
+  FaceRelease<dim>::share_of_strength(const End &end,
+                                      const typename End::Link &link,
+                                      const CornerGroups<dim> &groups) const
   {
-    const auto corners = mesh_.corners_of_node(node);
     const auto &weight = discretization_.points().weight;
-    const auto side_of = [&](const unsigned int corner) {
-      return side_[std::size_t(
-          std::lower_bound(corners.begin(), corners.end(), corner) -
-          corners.begin())];
+    const unsigned int group = groups.of(mesh_.corners(link.point)[0]);
+    std::array<double, dim> holding{}; // on body 1
+    for (std::size_t k = 0; k < pulls_.size(); ++k)
+      if (side_[k])
+        for (unsigned int c = 0; c < dim; ++c)
+          holding[c] -= pulls_[k][c];
+    const auto crosses = [&](const typename End::Link &one) {
+      const auto &sides = mesh_.corners(one.point);
+      return side_[one.corners[0]] != side_[one.corners[1]] &&
+             groups.of(sides[0]) == group && groups.of(sides[1]) == group;
     };
-    for (const unsigned int link : mesh_.links_of_node(node)) {
-      if (!intact_[link] || site_of_[link] < 0 || !cuts(node, link, groups))
+    double area = 0.;
+    for (const auto &one : end.links)
+      if (crosses(one))
+        area += weight[one.point];
+    double share = 0.;
+    for (const auto &one : end.links) {
+      if (site_of_[one.point] < 0 || !crosses(one))
         continue;
-      const unsigned int group = groups.of(mesh_.corners(link)[0]);
-      std::array<double, dim> holding{}; // on body 1
-      for (std::size_t k = 0; k < corners.size(); ++k)
-        if (side_[k])
-          for (unsigned int c = 0; c < dim; ++c)
-            holding[c] -= pulls_[k][c];
-      const auto crosses = [&](const unsigned int i) {
-        const auto &sides = mesh_.corners(i);
-        return groups.of(sides[0]) == group && groups.of(sides[1]) == group &&
-               side_of(sides[0]) != side_of(sides[1]);
-      };
-      double area = 0.;
-      for (const unsigned int i : mesh_.links_of_node(node))
-        if (crosses(i))
-          area += weight[i];
-      double share = 0.;
-      for (const unsigned int i : mesh_.links_of_node(node)) {
-        if (!crosses(i) || site_of_[i] < 0)
-          continue;
-        auto t = holding;
-        for (double &value : t)
-          value *= (side_of(mesh_.corners(i)[0]) ? 1. : -1.) / area;
-        const auto local = in_frame(i, t);
-        const LawPoint here = law(std::size_t(site_of_[i]));
-        share = std::max(
-            share, here.template effective_traction<dim>(local[0], &local[1]) /
-                       here.strength());
-      }
-      if (share < 1.)
-        continue;
-      excess = std::max(excess, share - 1.);
-      let_go(std::size_t(site_of_[link]), released);
+      auto t = holding;
+      for (double &value : t)
+        value *= (side_[one.corners[0]] ? 1. : -1.) / area;
+      const auto local = in_frame(one.point, t);
+      const LawPoint here = law(std::size_t(site_of_[one.point]));
+      share = std::max(
+          share, here.template effective_traction<dim>(local[0], &local[1]) /
+                     here.strength());
     }
+    return share;
   }
 
   template <int dim>
@@ -314,12 +328,27 @@ namespace nsfd
                                     double &excess) -> std::vector<unsigned int>
   {
     std::vector<unsigned int> released;
+    ends_.erase(
+        std::remove_if(ends_.begin(), ends_.end(),
+                       [this](const End &end) { return is_finished(end); }),
+        ends_.end());
     const std::size_t n = ends_.size(); // new ones: in the next step
-    for (std::size_t k = 0; k < n; ++k)
-      if (is_loaded(ends_[k])) {
-        set_pulls(ends_[k], forces, groups, points, corner_loads, prescribed);
-        look_at(ends_[k], groups, excess, released);
+    for (std::size_t e = 0; e < n; ++e) {
+      set_pulls(ends_[e], forces, groups, points, corner_loads, prescribed);
+      if (!may_let_go(ends_[e]))
+        continue;
+      for (std::size_t k = 0; k < ends_[e].links.size(); ++k) {
+        const auto link = ends_[e].links[k];
+        if (!intact_[link.point] || site_of_[link.point] < 0 ||
+            !cuts(ends_[e], k, groups))
+          continue;
+        const double share = share_of_strength(ends_[e], link, groups);
+        if (share < 1.)
+          continue;
+        excess = std::max(excess, share - 1.);
+        let_go(std::size_t(site_of_[link.point]), released);
       }
+    }
     return released;
   }
 

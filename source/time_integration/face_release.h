@@ -65,16 +65,27 @@ namespace nsfd
     std::array<double, dim> in_frame(std::size_t point,
                                      const std::array<double, dim> &t) const;
     void let_go(std::size_t site, std::vector<unsigned int> &released);
-    bool is_loaded(std::size_t node) const;
-    void look_at(std::size_t node, const CornerGroups<dim> &groups,
-                 double &excess, std::vector<unsigned int> &released);
-    void set_pulls(std::size_t node, const CellForces<dim> &forces,
+    /** A node where a face has let go, and its links that have not. */
+    struct End {
+      unsigned int node;
+      struct Link {
+        unsigned int point;
+        std::array<unsigned short, 2> corners; ///< among those of the node
+      };
+      std::vector<Link> links; ///< of all its faces
+    };
+    void add_end(std::size_t node);
+    bool is_finished(const End &end) const;
+    void set_pulls(const End &end, const CellForces<dim> &forces,
                    const CornerGroups<dim> &groups,
                    const LeapfrogPoints<dim> &points,
                    const std::vector<double> &corner_loads,
                    const std::vector<std::uint8_t> &prescribed);
-    bool cuts(std::size_t node, unsigned int link,
+    bool may_let_go(const End &end) const;
+    bool cuts(const End &end, std::size_t link,
               const CornerGroups<dim> &groups);
+    double share_of_strength(const End &end, const typename End::Link &link,
+                             const CornerGroups<dim> &groups) const;
 
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
@@ -83,8 +94,9 @@ namespace nsfd
     std::vector<int> site_of_; ///< by point, -1: it never lets go
     std::vector<double> squares_;
     std::vector<std::uint8_t> intact_; ///< by point
-    std::vector<unsigned int> ends_;   ///< nodes where a face has let go
-    std::vector<char> is_end_;         ///< by node
+    std::vector<End> ends_;
+    std::vector<char> is_end_;    ///< by node
+    std::vector<double> weakest_; ///< traction of any direction, by site, Pa
     // of one node
     std::vector<std::array<double, dim>> pulls_; ///< f - m a by corner, N
     std::vector<char> side_;                     ///< 1: with the first corner
