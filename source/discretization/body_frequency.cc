@@ -1,11 +1,15 @@
 #include "body_frequency.h"
 
+#include "cells.h"
+
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nsfd
 {
@@ -43,4 +47,108 @@ namespace nsfd
         forward_solve(L, forward_solve(L, body.stiffness).transposed());
     return std::sqrt(std::max(0., largest_eigenpair(A)[0]));
   }
+
+  namespace
+  {
+    /** Components a, b of strain number @p k: xx, yy(, zz), xy(, xz, yz). */
+    template <int dim>
+    std::array<unsigned int, 2> pair_of(const unsigned int k)
+    {
+      constexpr std::array<std::array<unsigned int, 2>, 3> shear = {
+          {{{0, 1}}, {{0, 2}}, {{1, 2}}}};
+      return k < dim ? std::array<unsigned int, 2>{{k, k}} : shear[k - dim];
+    }
+  } // namespace
+
+  /** Of L^T (V/m) B B^T L, C = L L^T: strains instead of displacements. */
+  template <int dim>
+  double highest_frequency(const BodyShape<dim> &shape)
+  {
+    constexpr unsigned int n = dim * (dim + 1) / 2;
+    const double lambda = shape.elasticity[0].lambda,
+                 mu = shape.elasticity[0].mu;
+    // in sqrt(2) e_ab off the diagonal, so that sigma : e is a product
+    Block C(n, n), S(n, n);
+    for (unsigned int k = 0; k < n; ++k)
+      for (unsigned int l = 0; l < n; ++l) {
+        C(k, l) = (k == l ? 2. * mu : 0.) + (k < dim && l < dim ? lambda : 0.);
+        const auto [a, b] = pair_of<dim>(k);
+        const auto [c, d] = pair_of<dim>(l);
+        const double scale =
+            (k < dim ? 1. : std::sqrt(0.5)) * (l < dim ? 1. : std::sqrt(0.5));
+        double sum = 0.;
+        for (unsigned int i = 0; i <= dim; ++i) {
+          const auto &g = shape.gradients[i];
+          const auto row = [&](const unsigned int p, const unsigned int q,
+                               const unsigned int e) {
+            return (p == e ? g[q] : 0.) + (q == e && p != q ? g[p] : 0.);
+          };
+          for (unsigned int e = 0; e < dim; ++e)
+            sum += row(a, b, e) * row(c, d, e);
+        }
+        S(k, l) = scale * sum;
+      }
+    const Block L = cholesky(C);
+    const Block A = product(L.transposed(), product(S, L));
+    return std::sqrt(largest_eigenpair(A)[0] * shape.volume /
+                     lumped_mass(shape, 0));
+  }
+
+  template <int dim>
+  double frequency_bound(const BodyShape<dim> &shape)
+  {
+    dealii::SymmetricTensor<2, dim> gram;
+    for (unsigned int i = 0; i <= dim; ++i)
+      gram += dealii::symmetrize(
+          dealii::outer_product(shape.gradients[i], shape.gradients[i]));
+    const double lambda = shape.elasticity[0].lambda,
+                 mu = shape.elasticity[0].mu;
+    return std::sqrt(dealii::eigenvalues(gram)[0] *
+                     std::max(2. * mu, dim * lambda + 2. * mu) * shape.volume /
+                     lumped_mass(shape, 0));
+  }
+
+  template <int dim>
+  std::vector<double> frequencies_of_classes(const Cells<dim> &cells)
+  {
+    std::vector<double> result;
+    for (std::size_t k = 0; k < cells.shapes.size(); ++k) {
+      const BodyClass &body = cells.bodies.classes[k];
+      result.push_back(!body.rigid && body.stiffness.rows == 0
+                           ? frequency_bound(cells.shapes[k])
+                           : highest_frequency(body));
+    }
+    return result;
+  }
+
+  template <int dim>
+  double highest_frequency(const Cells<dim> &cells)
+  {
+    const auto bounds = frequencies_of_classes(cells);
+    std::vector<unsigned int> order(bounds.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](const unsigned int a, const unsigned int b) {
+                return bounds[a] > bounds[b];
+              });
+    double highest = 0.;
+    for (const unsigned int k : order) {
+      if (bounds[k] <= highest)
+        break;
+      const BodyClass &body = cells.bodies.classes[k];
+      highest = std::max(highest, !body.rigid && body.stiffness.rows == 0
+                                      ? highest_frequency(cells.shapes[k])
+                                      : bounds[k]);
+    }
+    return highest;
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template double highest_frequency(const BodyShape<dim> &);                   \
+  template double frequency_bound(const BodyShape<dim> &);                     \
+  template std::vector<double> frequencies_of_classes(const Cells<dim> &);     \
+  template double highest_frequency(const Cells<dim> &)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
 } // namespace nsfd

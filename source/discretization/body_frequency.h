@@ -1,14 +1,36 @@
 #pragma once
 
-#include "bodies.h"
+#include "body_shape.h"
 
 #include <array>
+#include <vector>
 
 namespace nsfd
 {
+  template <int dim>
+  struct Cells;
+
   /** Largest eigenvalue of a symmetric matrix and its last component. */
   std::array<double, 2> largest_eigenpair(const Block &A);
 
-  /** omega_max of a free body, rad/s; 0 of a rigid one. */
+  /** omega_max of a free body from its blocks, rad/s; 0 of a rigid one. */
   double highest_frequency(const BodyClass &body);
+
+  /** The same of a simplex of constant strain with lumped mass. */
+  template <int dim>
+  double highest_frequency(const BodyShape<dim> &shape);
+
+  /** Not less than that, without an eigenvalue problem of its size. */
+  template <int dim>
+  double frequency_bound(const BodyShape<dim> &shape);
+
+  /**
+   * By class: omega_max from blocks, or its bound for simplices without any.
+   */
+  template <int dim>
+  std::vector<double> frequencies_of_classes(const Cells<dim> &cells);
+
+  /** omega_max over all classes of this rank. */
+  template <int dim>
+  double highest_frequency(const Cells<dim> &cells);
 } // namespace nsfd

@@ -117,6 +117,12 @@ namespace nsfd
     set_elasticity(shape, material);
     body.material = material;
     body.rigid = input.rigid && !input_.large_motion;
+    if (has_no_blocks(shape, input)) {
+      trace(shape); // for its places
+      body.n_slots = unsigned(shape.slot_positions.size());
+      body.n_dofs = shape.n_nodes * dim;
+      return;
+    }
     body.mass = mass(shape);
     body.trace = trace(shape);
     body.n_slots = unsigned(shape.slot_positions.size());
@@ -222,6 +228,17 @@ namespace nsfd
     }
     shape.centre /= shape.volume;
     shape.height = height(shape);
+  }
+
+  /** Explicit steps on joined simplices take gradients and volumes alone. */
+  template <int dim>
+  bool ClassBuilder<dim>::has_no_blocks(const BodyShape<dim> &shape,
+                                        const MaterialInput &material) const
+  {
+    return input_.time.scheme == Scheme::leapfrog &&
+           shape.reference.is_simplex() && input_.discretization.degree == 1 &&
+           !material.rigid && !material.transverse && !material.graded &&
+           !material.is_viscous();
   }
 
   template <int dim>

@@ -18,6 +18,7 @@ namespace dealii
 
 namespace nsfd
 {
+  struct MaterialInput;
   struct SceneInput;
 
   /**
@@ -59,6 +60,17 @@ namespace nsfd
   const T &at_place(const std::vector<T> &values, const std::size_t place)
   {
     return values.size() == 1 ? values[0] : values[place];
+  }
+
+  /** Lumped mass of a node, kg or kg/m: its share of the integral of rho. */
+  template <int dim>
+  double lumped_mass(const BodyShape<dim> &shape, const unsigned int node)
+  {
+    double mass = 0.;
+    for (std::size_t q = 0; q < shape.JxW.size(); ++q)
+      mass += at_place(shape.moduli, q).density * shape.JxW[q] *
+              shape.values[q * shape.n_nodes + node];
+    return mass;
   }
 
   /** From a place on the surface of a body, a billionth of the way inwards. */
@@ -103,6 +115,8 @@ namespace nsfd
                   unsigned int divided) const;
 
   private:
+    bool has_no_blocks(const BodyShape<dim> &shape,
+                       const MaterialInput &material) const;
     void set_tables(BodyShape<dim> &shape) const;
     void set_elasticity(BodyShape<dim> &shape, unsigned int material) const;
     Block mass(const BodyShape<dim> &shape) const;

@@ -410,20 +410,20 @@ namespace nsfd
     const auto n = unsigned(points.n_points);
     bodies.slot_point.assign(bodies.first_slot.back(), n);
     bodies.slot_sign.assign(bodies.first_slot.back(), 1);
-    // the nearest one on the face of the point; a free one where there are
-    // several
+    // the nearest one; where faces of the cell meet, that of the face of the
+    // point
     const auto slot_of = [&](const std::size_t b, const unsigned int i) {
       const auto &shape = cells.shape(b);
       const double tolerance = 1e-7 * shape.corners.back().norm();
       const auto &centre = points.faces[points.face_of[i]].centre;
-      const auto is_on_face = [&](const std::size_t s) {
+      // how far the face of the point is out of that of a slot
+      const auto offset = [&](const std::size_t s) {
         double height = 0.;
         for (unsigned int c = 0; c < dim; ++c)
           height +=
               shape.slot_normals[s][c] *
               (centre[c] - cells.corners[b][0][c] - shape.slot_positions[s][c]);
-        return std::abs(height) <
-               100. * tolerance * shape.slot_normals[s].norm();
+        return std::abs(height) / shape.slot_normals[s].norm();
       };
       std::size_t best = 0;
       double distance = std::numeric_limits<double>::max();
@@ -434,12 +434,9 @@ namespace nsfd
                            points.position[i * dim + c];
           d += x * x;
         }
-        if (!is_on_face(s))
-          continue;
-        const bool taken = bodies.slot_point[bodies.first_slot[b] + s] < n;
         if (d < distance - tolerance * tolerance ||
-            (d < distance + tolerance * tolerance && !taken &&
-             bodies.slot_point[bodies.first_slot[b] + best] < n)) {
+            (d < distance + tolerance * tolerance &&
+             offset(s) < offset(best) - tolerance)) {
           distance = d;
           best = s;
         }

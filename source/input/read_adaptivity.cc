@@ -39,6 +39,9 @@ namespace nsfd
       refuse(scene.statics.has_value(),
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");
+      refuse(scene.time.scheme == Scheme::leapfrog,
+             "the mesh does not change with scheme = leapfrog yet",
+             "write scheme = moreau-jean or explicit");
       refuse(scene.time.scheme == Scheme::arkode,
              "the mesh does not change with scheme = arkode",
              "write scheme = moreau-jean or explicit");

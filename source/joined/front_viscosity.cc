@@ -25,10 +25,11 @@ namespace nsfd
     if (share == 0.)
       return;
     const Cells<dim> &cells = discretization.cells();
+    const auto frequency = frequencies_of_classes(cells);
     std::vector<double> of_class;
     for (std::size_t k = 0; k < cells.shapes.size(); ++k) {
       const BodyShape<dim> &shape = cells.shapes[k];
-      const double omega = highest_frequency(cells.bodies.classes[k]);
+      const double omega = frequency[k];
       double bulk = 0.;
       for (const auto &local : shape.elasticity)
         bulk = std::max(bulk, local.lambda + 2. * local.mu / dim);

@@ -3,7 +3,6 @@
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
 
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -11,20 +10,15 @@ namespace nsfd
 {
   namespace
   {
-    /** The node of a cell that a row of its trace is the value at, or -1. */
-    int node_of_row(const BodyClass &body, const unsigned int row,
-                    const unsigned int dim)
+    /** The node of a cell at a place on its surface, or -1. */
+    template <int dim>
+    int node_at(const BodyShape<dim> &shape, const dealii::Point<dim> &place)
     {
-      int found = -1;
-      for (unsigned int j = 0; j < body.n_dofs; j += dim) {
-        const double share = body.trace(row, j);
-        if (std::abs(share) < 1e-10)
-          continue;
-        if (found >= 0 || std::abs(share - 1.) > 1e-10)
-          return -1;
-        found = int(j / dim);
-      }
-      return found;
+      const double tolerance = 1e-9 * shape.height;
+      for (std::size_t i = 0; i < shape.nodes.size(); ++i)
+        if (shape.nodes[i].distance(place) < tolerance)
+          return int(i);
+      return -1;
     }
   } // namespace
 
@@ -35,12 +29,9 @@ namespace nsfd
     node_.resize(cells.first_node.back());
     mass_.resize(node_.size());
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
-      const BodyClass &body = cells.body_class(b);
-      for (std::size_t i = cells.first_node[b]; i < cells.first_node[b + 1];
-           ++i) {
-        const auto row = unsigned(i - cells.first_node[b]) * dim;
-        mass_[i] = body.mass(row, row);
-      }
+      const std::size_t first = cells.first_node[b];
+      for (std::size_t i = first; i < cells.first_node[b + 1]; ++i)
+        mass_[i] = lumped_mass(cells.shape(b), unsigned(i - first));
     }
     find_corners(discretization);
     find_nodes();
@@ -56,9 +47,9 @@ namespace nsfd
     // the node of every slot of a class, found once
     std::vector<std::vector<int>> nodes(cells.bodies.classes.size());
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const BodyClass &body = cells.bodies.classes[k];
-      for (unsigned int s = 0; s < body.n_slots; ++s)
-        nodes[k].push_back(body.rigid ? -1 : node_of_row(body, s * dim, dim));
+      const BodyShape<dim> &shape = cells.shapes[k];
+      for (const auto &place : shape.slot_positions)
+        nodes[k].push_back(node_at(shape, place));
     }
     bool at_nodes = true;
     for_all_places(cells.bodies, n,

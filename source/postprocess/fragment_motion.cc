@@ -192,7 +192,9 @@ namespace nsfd
       const Block &nodal = body.rigid ? shape.nodal_mass : body.mass;
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         for (unsigned int j = 0; j < shape.n_nodes; ++j)
-          mass.push_back(nodal(i * dim, j * dim));
+          mass.push_back(nodal.rows > 0 ? nodal(i * dim, j * dim)
+                         : i == j       ? lumped_mass(shape, i)
+                                        : 0.);
     }
   }
 

@@ -59,9 +59,14 @@ namespace nsfd
       return problems;
     charge_memory("bodies and points");
     choose_path(input);
+    if (input.time.scheme == Scheme::leapfrog) {
+      check_stability(input, communicator, problems);
+      if (problems.empty())
+        build_leapfrog(input, communicator, problems);
+      return problems;
+    }
     build_delassus(input, communicator);
-    if (input.time.scheme == Scheme::explicit_moreau_jean ||
-        input.time.scheme == Scheme::leapfrog)
+    if (input.time.scheme == Scheme::explicit_moreau_jean)
       check_stability(input, communicator, problems);
     if (!problems.empty())
       return problems;
@@ -73,19 +78,6 @@ namespace nsfd
     if (input.time.scheme == Scheme::arkode)
       smooth_motion = std::make_unique<SmoothMotion<dim>>(
           input, *discretization, *delassus);
-    if (input.time.scheme == Scheme::leapfrog) {
-      method = "node by node";
-      if (communicator.size() > 1)
-        problems.push_back("scheme = leapfrog runs on one rank so far: leave "
-                           "out mpirun, or write scheme = explicit");
-      else
-        try {
-          leapfrog = std::make_unique<Leapfrog<dim>>(
-              input, *discretization, communicator, stepper->problem());
-        } catch (const std::runtime_error &error) {
-          problems.push_back(error.what());
-        }
-    }
     if (input.statics)
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
@@ -93,6 +85,56 @@ namespace nsfd
                                input.solver.path != "local"),
           make_solver<dim>(input, "dual newton"));
     return problems;
+  }
+
+  template <int dim>
+  void Model<dim>::build_leapfrog(const SceneInput &input,
+                                  const Communicator &communicator,
+                                  std::vector<std::string> &problems)
+  {
+    method = "node by node";
+    if (communicator.size() > 1) {
+      problems.push_back("scheme = leapfrog runs on one rank so far: leave out "
+                         "mpirun, or write scheme = explicit");
+      return;
+    }
+    try {
+      leapfrog =
+          std::make_unique<Leapfrog<dim>>(input, *discretization, communicator);
+    } catch (const std::runtime_error &error) {
+      problems.push_back(error.what());
+    }
+    charge_memory("blocks of the bodies");
+  }
+
+  template <int dim>
+  State Model<dim>::initial_state() const
+  {
+    return leapfrog ? leapfrog->initial_state() : stepper->initial_state();
+  }
+
+  template <int dim>
+  const OneStepProblem<dim> &Model<dim>::points() const
+  {
+    return leapfrog ? leapfrog->points_of_mesh() : stepper->problem();
+  }
+
+  template <int dim>
+  void Model<dim>::build_for_check(const SceneInput &input,
+                                   const Communicator &communicator)
+  {
+    if (stepper)
+      return;
+    for_check_ = std::make_unique<SceneInput>(input);
+    for_check_->time.scheme = Scheme::moreau_jean;
+    std::vector<std::string> problems, warnings;
+    const auto materials = material_indices<dim>(input, *groups, *triangulation,
+                                                 problems, warnings);
+    leapfrog.reset();
+    *discretization = Discretization<dim>(communicator, *triangulation, *groups,
+                                          materials, *for_check_);
+    build_delassus(*for_check_, communicator);
+    build_stepper(*for_check_);
   }
 
   template <int dim>

@@ -37,10 +37,18 @@ namespace nsfd
     std::string method; ///< name of the nonsmooth solver
     /// of a linear stepper; others make one for every problem
     std::unique_ptr<NonsmoothSolver<dim>> solver;
-    std::unique_ptr<MoreauJean<dim>> stepper;
+    std::unique_ptr<MoreauJean<dim>> stepper;         ///< null with `leapfrog`
     std::unique_ptr<SmoothMotion<dim>> smooth_motion; ///< in its place, or null
     std::unique_ptr<Leapfrog<dim>> leapfrog;          ///< in its place, or null
     std::unique_ptr<QuasiStatic<dim>> equilibria;     ///< before it, or null
+
+    /** At t = 0. */
+    State initial_state() const;
+    /** The constant data of the points. */
+    const OneStepProblem<dim> &points() const;
+    /** Operators and stepper that `--check` asks, where the run has none. */
+    void build_for_check(const SceneInput &input,
+                         const Communicator &communicator);
 
     /** What takes the steps of a run, one after the other. */
     std::vector<TimeIntegrator<dim> *> integrators() const;
@@ -75,6 +83,8 @@ namespace nsfd
     }
 
   private:
+    std::unique_ptr<SceneInput> for_check_; ///< with blocks of all bodies
+
     void build_mesh_parts(const SceneInput &input,
                           const Communicator &communicator,
                           std::vector<std::string> &problems);
@@ -91,5 +101,8 @@ namespace nsfd
     void build_delassus(const SceneInput &input,
                         const Communicator &communicator);
     void build_stepper(const SceneInput &input);
+    void build_leapfrog(const SceneInput &input,
+                        const Communicator &communicator,
+                        std::vector<std::string> &problems);
   };
 } // namespace nsfd

@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "discretization/body_frequency.h"
 #include "joined/front_viscosity.h"
 #include "time_integration/stable_step.h"
 
@@ -26,7 +27,7 @@ namespace nsfd
       return;
     }
     if (input.time.scheme == Scheme::leapfrog)
-      explicit_limit = stable_step(discretization->bodies()) *
+      explicit_limit = 2. / highest_frequency(discretization->cells()) *
                        step_share(input.front_viscosity());
     const bool quasi_static = input.statics && input.statics->steps;
     // more are a slip of the pen, and are counted in 32 bits

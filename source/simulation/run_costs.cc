@@ -124,10 +124,10 @@ namespace nsfd
   }
 
   template <int dim>
-  CostRecord RunCosts<dim>::finish(const DelassusOperator<dim> &delassus) const
+  CostRecord RunCosts<dim>::finish(const Communicator &communicator,
+                                   const DelassusOperator<dim> *delassus) const
   {
     CostRecord cost;
-    const Communicator &communicator = delassus.communicator();
     const MessageCounts mine = sent();
     cost.ranks = unsigned(communicator.size());
     cost.sent = {communicator.max(mine.messages),
@@ -159,8 +159,8 @@ namespace nsfd
         cost.steps = double(total_steps);
     }
     cost.memory = memory_lines();
-    if (communicator.any(cost.applications > 0.))
-      measure(delassus, cost);
+    if (delassus && communicator.any(cost.applications > 0.))
+      measure(*delassus, cost);
     return cost;
   }
 
@@ -178,7 +178,8 @@ namespace nsfd
       add(*model.smooth_motion);
     if (model.equilibria)
       add(*model.equilibria);
-    add(*model.stepper);
+    if (model.stepper)
+      add(*model.stepper);
     stages.emplace_back("output", output);
     return stages;
   }

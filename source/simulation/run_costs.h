@@ -20,7 +20,8 @@ namespace nsfd
     void record(const SolverReport &report, unsigned long long applications);
 
     /** Measures the machine if the run took more than a second. Collective. */
-    CostRecord finish(const DelassusOperator<dim> &delassus) const;
+    CostRecord finish(const Communicator &communicator,
+                      const DelassusOperator<dim> *delassus) const;
 
     void serialize(Archive &archive);
 

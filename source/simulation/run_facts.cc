@@ -194,9 +194,8 @@ namespace nsfd
     facts.overshoots =
         counter("redone_steps") + counter("shortened_load_steps");
     if (facts.softens)
-      facts.zone =
-          zone_resolution(input, *model.discretization,
-                          model.stepper->problem(), state, communicator);
+      facts.zone = zone_resolution(input, *model.discretization, model.points(),
+                                   state, communicator);
     return facts;
   }
 

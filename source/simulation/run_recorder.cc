@@ -95,8 +95,7 @@ namespace nsfd
       output_->set_fragments(std::make_unique<FragmentOutput<dim>>(
           input_.output.directory,
           FragmentMotion<dim>(*model_.discretization, communicator_,
-                              model_.moving.get(),
-                              model_.stepper->initial_state()),
+                              model_.moving.get(), model_.initial_state()),
           communicator_, options_.resume));
     if (observers_ && !options_.resume)
       observers_->start_files();
@@ -172,7 +171,7 @@ namespace nsfd
     fragments_ =
         std::make_unique<Fragments<dim>>(*model_.discretization, communicator_);
     fragments_->update(state);
-    const State at_start = model_.stepper->initial_state();
+    const State at_start = model_.initial_state();
     output_->mesh_changed(at_start);
     extremes_->mesh_changed();
     if (observer_)

@@ -19,13 +19,32 @@ namespace nsfd
   {
   }
 
+  namespace
+  {
+    template <typename Counters>
+    void fill_products(const Counters &delassus,
+                       std::map<std::string, double> &c)
+    {
+      c["delassus_applications"] = double(delassus.delassus);
+      c["block_factorisations"] = double(delassus.factorisations);
+      c["global_factorisations"] = double(delassus.global_factorisations);
+      c["coarse_spaces"] = double(delassus.coarse_spaces);
+      c["global_solves"] = double(delassus.global_solves);
+      c["inner_iterations"] = double(delassus.inner_iterations);
+      // products with W and, inside the preconditioner, with A
+      c["operator_applications"] =
+          double(delassus.delassus + delassus.inner_iterations);
+    }
+  } // namespace
+
   template <int dim>
   void RunTally<dim>::add(const StepReport &report)
   {
     beyond_unique_ += report.beyond_unique;
     released_ += report.released;
     watch_.add(report.changes);
-    costs_.record(report.solver, model_.delassus->counters().delassus);
+    costs_.record(report.solver,
+                  model_.delassus ? model_.delassus->counters().delassus : 0);
     solved_steps_.add(steps_.integrator().residual_kind(),
                       report.solver.residual);
     for (const auto &name : report.solver.switches)
@@ -40,17 +59,9 @@ namespace nsfd
   RunTally<dim>::fill_counters(const State &state,
                                std::map<std::string, double> &counters) const
   {
-    const auto &delassus = model_.delassus->counters();
     auto &c = counters;
-    c["delassus_applications"] = double(delassus.delassus);
-    c["block_factorisations"] = double(delassus.factorisations);
-    c["global_factorisations"] = double(delassus.global_factorisations);
-    c["coarse_spaces"] = double(delassus.coarse_spaces);
-    c["global_solves"] = double(delassus.global_solves);
-    c["inner_iterations"] = double(delassus.inner_iterations);
-    // products with W and, inside the preconditioner, with A
-    c["operator_applications"] =
-        double(delassus.delassus + delassus.inner_iterations);
+    if (model_.delassus)
+      fill_products(model_.delassus->counters(), c);
     if (model_.bonded)
       c["released_bonds"] = double(released_);
     c["steps_beyond_uniqueness"] = beyond_unique_;

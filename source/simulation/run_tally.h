@@ -39,7 +39,10 @@ namespace nsfd
     const SolvedSteps &solved_steps() const { return solved_steps_; }
     const EnergyWatch &watch() const { return watch_; }
     /** Collective. */
-    CostRecord costs() const { return costs_.finish(*model_.delassus); }
+    CostRecord costs() const
+    {
+      return costs_.finish(communicator_, model_.delassus.get());
+    }
 
     /** Arguments as of totals(). Collective. */
     void serialize(Archive &archive, const State &state, double output,

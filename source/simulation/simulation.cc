@@ -8,6 +8,7 @@
 #include "core/exit_code.h"
 #include "core/output_folder.h"
 #include "core/stop_request.h"
+#include "state/point_fields.h"
 
 #include <fmt/format.h>
 
@@ -106,6 +107,7 @@ namespace nsfd
     template <int dim>
     int Simulation<dim>::check()
     {
+      model_.build_for_check(input_, communicator_);
       return print_check<dim>(
           input_, *model_.triangulation, *model_.discretization,
           *model_.stepper, *model_.delassus,
@@ -134,7 +136,7 @@ namespace nsfd
                                 input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
       if (!input_.adaptivity) {
-        state_ = model_.stepper->initial_state();
+        state_ = model_.initial_state();
         return true;
       }
       parts_.adaptive =
@@ -203,7 +205,9 @@ namespace nsfd
     template <int dim>
     bool Simulation<dim>::take_steps(bool &stopped, std::string &failure)
     {
-      State next = state_;
+      State next;
+      if (!steps_.integrator().keeps_motion())
+        next = state_;
       charge_memory("state and history of the points");
       while (!steps_.finished(state_)) {
         if (communicator_.any(stop_request::requested())) {
@@ -258,6 +262,8 @@ namespace nsfd
       steps_.accept();
       next.time = model_.control->time();
       std::swap(state_, next);
+      if (steps_.integrator().keeps_motion())
+        swap_motion(state_, next); // there is one of it
       const Charge charge(Cost::output);
       recorder_.record(next, state_, report, h); // next: before the step
       store_->store_if_due();

@@ -77,7 +77,7 @@ namespace nsfd
   void TimeStepping<dim>::fill_counters(std::map<std::string, double> &c) const
   {
     controller_.fill_counters(c);
-    if (model_.smooth_motion || model_.leapfrog) // summaries have the same keys
+    if (model_.smooth_motion) // summaries have the same keys
       model_.stepper->fill_counters(c);
     for (const TimeIntegrator<dim> *one : model_.integrators())
       one->fill_counters(c);
@@ -103,7 +103,8 @@ namespace nsfd
   void TimeStepping<dim>::serialize_solvers(Archive &archive)
   {
     const Archive::Part part(archive, "solver");
-    model_.delassus->serialize(archive);
+    if (model_.delassus)
+      model_.delassus->serialize(archive);
     if (model_.solver)
       model_.solver->serialize(archive);
     for (TimeIntegrator<dim> *one : model_.integrators())

@@ -82,4 +82,15 @@ namespace nsfd
     field("point_force",       vector, step,    Use::others, &State::point_force, 0., 0.);
     // clang-format on
   }
+
+  /** What bodies and points are at a time, against each other. */
+  inline void swap_motion(State &one, State &other)
+  {
+    one.displacement.swap(other.displacement);
+    one.velocity.swap(other.velocity);
+    for_point_fields(
+        [&](const PointField &, const auto member, const auto &...) {
+          (one.*member).swap(other.*member);
+        });
+  }
 } // namespace nsfd

@@ -33,6 +33,7 @@ namespace nsfd
     const auto &bodies = discretization.bodies();
     const auto places = point_places(bodies, n);
     std::vector<double> coordinates;
+    const bool at_nodes = input.time.scheme == Scheme::leapfrog;
     first_.assign(1, 0);
     for (std::size_t i = 0; i < n; ++i) {
       if (boundary_of(input, discretization, i)) {
@@ -41,7 +42,7 @@ namespace nsfd
         const BodyClass *body =
             place.body >= 0 ? &bodies.classes[bodies.class_of[place.body]]
                             : nullptr;
-        if (body == nullptr || body->rigid)
+        if (body == nullptr || body->rigid || at_nodes)
           samples_.push_back({position_of(discretization.points(), i), 1.});
         else {
           if (coordinates.empty())
@@ -68,7 +69,10 @@ namespace nsfd
       }
       first_.push_back(samples_.size());
     }
-    choose_rows();
+    if (at_nodes)
+      chosen_.assign(n * dim, 1); // groups take each component once
+    else
+      choose_rows();
   }
 
   /** A motion that jumps across the face between two cells is each one's own.

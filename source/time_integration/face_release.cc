@@ -332,6 +332,9 @@ namespace nsfd
         std::remove_if(ends_.begin(), ends_.end(),
                        [this](const End &end) { return is_finished(end); }),
         ends_.end());
+    std::sort(ends_.begin(), ends_.end(), [](const End &one, const End &two) {
+      return one.node < two.node;
+    });
     const std::size_t n = ends_.size(); // new ones: in the next step
     for (std::size_t e = 0; e < n; ++e) {
       set_pulls(ends_[e], forces, groups, points, corner_loads, prescribed);

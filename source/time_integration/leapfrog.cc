@@ -2,6 +2,7 @@
 
 #include "initial_state.h"
 #include "point_name.h"
+#include "step_data.h"
 
 #include "core/cost.h"
 #include "discretization/loads.h"
@@ -26,21 +27,38 @@ namespace nsfd
       return kind == PointKind::bonded || kind == PointKind::rigid ||
              kind == PointKind::prescribed;
     }
+
+    /** Without what only steps of all points need. */
+    template <int dim>
+    OneStepProblem<dim> point_data(const SceneInput &input,
+                                   const Discretization<dim> &discretization)
+    {
+      auto problem = constant_data(input, discretization);
+      const auto drop = [](auto &...arrays) {
+        ((arrays = std::decay_t<decltype(arrays)>()), ...);
+      };
+      drop(problem.kind, problem.mask, problem.contact, problem.opening_max,
+           problem.compression_stiffness, problem.target, problem.free_velocity,
+           problem.given_velocity, problem.jump_old, problem.jump_free,
+           problem.sliding_offset, problem.majorant_normal,
+           problem.majorant_tangential);
+      return problem;
+    }
   } // namespace
 
   template <int dim>
   Leapfrog<dim>::Leapfrog(const SceneInput &input,
                           const Discretization<dim> &discretization,
-                          const Communicator &communicator,
-                          const OneStepProblem<dim> &all)
+                          const Communicator &communicator)
       : input_(input), discretization_(discretization),
-        communicator_(communicator), mesh_(discretization),
+        communicator_(communicator), all_(point_data(input, discretization)),
+        mesh_(discretization),
         forces_(make_cell_forces(
             discretization, mesh_,
             FrontViscosity(discretization, input.front_viscosity()))),
-        faces_(discretization, mesh_, all),
+        faces_(discretization, mesh_, all_),
         supports_(input, discretization, mesh_),
-        points_(discretization, mesh_, all),
+        points_(discretization, mesh_, all_),
         check_(input, [this](const std::size_t i) {
           return name_of_point<dim>(input_, discretization_.origins(),
                                     discretization_.points().position, i);
@@ -50,6 +68,35 @@ namespace nsfd
 
   template <int dim>
   Leapfrog<dim>::~Leapfrog() = default;
+
+  template <int dim>
+  State Leapfrog<dim>::initial_state() const
+  {
+    State state = initial_motion(input_, discretization_);
+    const auto &points = discretization_.points();
+    state.jump.assign(points.n_points * dim, 0.);
+    state.relative_velocity.assign(points.n_points * dim, 0.);
+    for (std::size_t i = 0; i < points.n_points; ++i)
+      for (unsigned int side = 0; side < 2; ++side) {
+        const unsigned int corner = mesh_.corners(i)[side];
+        if (corner == JoinedMesh<dim>::none)
+          continue;
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c) {
+            const double share =
+                (side == 0 ? -1. : 1.) * points.frame[(i * dim + r) * dim + c];
+            state.jump[i * dim + r] +=
+                share * state.displacement[corner * dim + c];
+            state.relative_velocity[i * dim + r] +=
+                share * state.velocity[corner * dim + c];
+          }
+      }
+    set_points(input_, discretization_, all_, state);
+    for (std::size_t i = 0; i < points.n_points; ++i)
+      if (!state.two_sided[i]) // contact holds where it is
+        state.released_overlap[i] = std::max(0., -state.jump[i * dim]);
+    return state;
+  }
 
   /** The motion and the points of @p state. */
   template <int dim>
@@ -100,6 +147,7 @@ namespace nsfd
         -communicator_.dot(g.force.data(), g.displacement.data(),
                            g.force.size()) /
         2.;
+    state.energy.cohesive = points_.initial_energy(communicator_);
     begin_balance(state);
     return state;
   }

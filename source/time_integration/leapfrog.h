@@ -35,11 +35,15 @@ namespace nsfd
   class Leapfrog final : public TimeIntegrator<dim>
   {
   public:
-    /** @p all are the constant data of the points of the mesh.
-     *  @throws std::runtime_error with a sentence for the user. */
+    /** @throws std::runtime_error with a sentence for the user. */
     Leapfrog(const SceneInput &input, const Discretization<dim> &discretization,
-             const Communicator &communicator, const OneStepProblem<dim> &all);
+             const Communicator &communicator);
     ~Leapfrog() override;
+
+    /** At t = 0, as the scene gives it; start_from() joins it. */
+    State initial_state() const;
+    /** Their constant data. */
+    const OneStepProblem<dim> &points_of_mesh() const { return all_; }
 
     State start_from(const State &given) override;
     void resume_from(const State &state) override;
@@ -75,6 +79,7 @@ namespace nsfd
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
+    const OneStepProblem<dim> all_;
     const JoinedMesh<dim> mesh_;
     const std::unique_ptr<CellForces<dim>> forces_;
     FaceRelease<dim> faces_;

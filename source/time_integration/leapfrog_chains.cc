@@ -71,9 +71,7 @@ namespace nsfd
       problem.compression_stiffness[a] = other.compression[a] =
           intact_stiffness<dim>(mesh_, mesh_point);
     slip[a] = state.slip[mesh_point];
-    if (!state.two_sided[mesh_point])
-      released[a] = std::max({0., -state.jump[mesh_point * dim],
-                              state.released_overlap[mesh_point]});
+    released[a] = state.released_overlap[mesh_point];
     closed[a] = state.contact[mesh_point];
     for (unsigned int c = 0; c < dim; ++c) {
       problem.jump_old[a * dim + c] = problem.jump_free[a * dim + c] =
@@ -136,6 +134,7 @@ namespace nsfd
   {
     OneStepProblem<dim> &p = problem;
     const Archive::Part part(archive, "chain");
+    archive.numbers("time_step", p.time_step);
     const auto store = [&](const char *name, std::vector<double> &values,
                            const unsigned int width) {
       std::vector<double> all(n * width, 0.);

@@ -15,8 +15,21 @@ namespace nsfd
       : discretization_(discretization), mesh_(mesh), all_(all), chains_(all),
         node_index_(mesh.n_nodes(), -1)
   {
-    for (const auto &face : discretization.points().faces)
+    count_holds();
+  }
+
+  /** Chains of the points of every face that are not broken. */
+  template <int dim>
+  void LeapfrogPoints<dim>::count_holds()
+  {
+    const auto &points = discretization_.points();
+    hold_of_face_.clear();
+    for (const auto &face : points.faces)
       hold_of_face_.push_back(2 * face.count);
+    for (std::size_t a = 0; a < size(); ++a)
+      for (const double beta : {chains_.beta[a], chains_.other.beta[a]})
+        if (beta < 1e-3)
+          --hold_of_face_[points.face_of[chains_.point[a]]];
   }
 
   /** The last point is one of its node, in the order of the mesh. */
@@ -281,6 +294,17 @@ namespace nsfd
                         chains_.frame[(std::size_t(a) * dim + r) * dim + c];
       }
     }
+  }
+
+  template <int dim>
+  double
+  LeapfrogPoints<dim>::initial_energy(const Communicator &communicator) const
+  {
+    std::vector<double> terms(size());
+    for (std::size_t a = 0; a < size(); ++a)
+      terms[a] = 2. * chains_.problem.weight[a] *
+                 stored_energy<dim>(chains_.problem, a);
+    return communicator.sum(terms);
   }
 
   template class LeapfrogPoints<2>;

@@ -38,6 +38,9 @@ namespace nsfd
     void add(unsigned int point, const Factors &factors, const State &state);
     void release(unsigned int point, const Factors &factors);
 
+    /** Stored in them at the start, J. Collective. */
+    double initial_energy(const Communicator &communicator) const;
+
     struct Outcome {
       bool converged = true;
       double residual = 0.;
@@ -88,6 +91,7 @@ namespace nsfd
     void serialize(Archive &archive)
     {
       chains_.serialize(archive, discretization_.points().n_points);
+      count_holds();
     }
 
   private:
@@ -97,6 +101,7 @@ namespace nsfd
     };
 
     void put_into_node();
+    void count_holds();
     void set_point(unsigned int a);
     bool collect(const Node &node, const std::vector<std::uint8_t> &prescribed,
                  CornerGroups<dim> &groups);

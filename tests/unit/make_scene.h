@@ -54,8 +54,9 @@ namespace nsfd
           throw std::invalid_argument(
               fmt::format("{}", fmt::join(problems, "\n")));
         time_step = this->dynamic_step(*input);
-        this->delassus->reinit(time_step, input->time.bulk_theta());
-        state = this->stepper->initial_state();
+        if (this->delassus)
+          this->delassus->reinit(time_step, input->time.bulk_theta());
+        state = this->initial_state();
         next = state;
       }
 

@@ -275,8 +275,8 @@ namespace nsfd::changed_scene::test_bad_input
          "set law = bonded\n  set friction = 0.1",
          "faces of the law `bonded` never open", "set friction = 0.1"},
         {"scheme", "set theta = 0.5", "set scheme = newmark",
-         "scheme = newmark is not one of: moreau-jean, explicit, arkode, "
-         "quasi-static",
+         "scheme = newmark is not one of: moreau-jean, leapfrog, explicit, "
+         "arkode, quasi-static",
          "set scheme = newmark"},
         {"mesh_type", "set type = rectangle", "set type = rectangel",
          "did you mean `rectangle`?", "set type = rectangel"},
