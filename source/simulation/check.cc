@@ -406,14 +406,36 @@ namespace nsfd
                "             change: `set step = 0.5 courant`, unless the "
                "motion is slow\n";
     }
+
+    /** What softening points make of the step. Collective. */
+    template <int dim>
+    void ask_stepper(const SceneInput &input,
+                     const Discretization<dim> &discretization,
+                     const MoreauJean<dim> &stepper,
+                     DelassusOperator<dim> &delassus, Advisor<dim> &advisor)
+    {
+      const State state = stepper.initial_state();
+      for (int b = 0; b < int(input.interfaces.size()); ++b) {
+        const double unique =
+            stepper.unique_step(all_softening(state, discretization, input, b));
+        advisor.unique_steps.push_back(std::isfinite(unique) ? unique : 0.);
+      }
+      const State softening = all_softening(state, discretization, input);
+      advisor.contraction = contraction_number(
+          input, stepper.problem(), softening, delassus, advisor.step);
+      if (advisor.contraction >= 1.)
+        advisor.contraction_step =
+            step_of_contraction(input, stepper.problem(), softening, delassus,
+                                advisor.step, advisor.contraction);
+    }
   } // namespace
 
   template <int dim>
   int print_check(const SceneInput &input,
                   const dealii::Triangulation<dim> &triangulation,
                   const Discretization<dim> &discretization,
-                  const MoreauJean<dim> &stepper,
-                  DelassusOperator<dim> &delassus, const double step,
+                  const MoreauJean<dim> *stepper,
+                  DelassusOperator<dim> *delassus, const double step,
                   const Communicator &communicator)
   {
     const MeshReport mesh = mesh_report<dim>(triangulation);
@@ -433,19 +455,10 @@ namespace nsfd
     std::vector<unsigned int> all(input.materials.size());
     std::iota(all.begin(), all.end(), 0u);
     advisor.choose_material(all);
-    const State state = stepper.initial_state();
-    for (int b = 0; b < int(input.interfaces.size()); ++b) {
-      const double unique =
-          stepper.unique_step(all_softening(state, discretization, input, b));
-      advisor.unique_steps.push_back(std::isfinite(unique) ? unique : 0.);
-    }
-    const State softening = all_softening(state, discretization, input);
-    advisor.contraction =
-        contraction_number(input, stepper.problem(), softening, delassus, step);
-    if (advisor.contraction >= 1.)
-      advisor.contraction_step =
-          step_of_contraction(input, stepper.problem(), softening, delassus,
-                              step, advisor.contraction);
+    if (stepper)
+      ask_stepper(input, discretization, *stepper, *delassus, advisor);
+    else
+      advisor.unique_steps.assign(input.interfaces.size(), 0.);
     if (!communicator.is_root())
       return exit_code::done;
 
@@ -462,12 +475,12 @@ namespace nsfd
 
   template int print_check<2>(const SceneInput &,
                               const dealii::Triangulation<2> &,
-                              const Discretization<2> &, const MoreauJean<2> &,
-                              DelassusOperator<2> &, double,
+                              const Discretization<2> &, const MoreauJean<2> *,
+                              DelassusOperator<2> *, double,
                               const Communicator &);
   template int print_check<3>(const SceneInput &,
                               const dealii::Triangulation<3> &,
-                              const Discretization<3> &, const MoreauJean<3> &,
-                              DelassusOperator<3> &, double,
+                              const Discretization<3> &, const MoreauJean<3> *,
+                              DelassusOperator<3> *, double,
                               const Communicator &);
 } // namespace nsfd

@@ -19,7 +19,7 @@ namespace nsfd
   int print_check(const SceneInput &input,
                   const dealii::Triangulation<dim, dim> &triangulation,
                   const Discretization<dim> &discretization,
-                  const MoreauJean<dim> &stepper,
-                  DelassusOperator<dim> &delassus, double step,
+                  const MoreauJean<dim> *stepper,
+                  DelassusOperator<dim> *delassus, double step,
                   const Communicator &communicator);
 } // namespace nsfd

@@ -192,7 +192,11 @@ namespace nsfd
         communicator_(communicator)
   {
     build_tables();
-    front_ = sharp_front(input, discretization, communicator);
+    // behind a front that front viscosity spreads there is hardly any tension
+    constexpr double enough = 0.15;
+    if (input.time.scheme != Scheme::leapfrog ||
+        input.front_viscosity() < enough)
+      front_ = sharp_front(input, discretization, communicator);
   }
 
   template <int dim>

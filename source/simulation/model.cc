@@ -120,24 +120,6 @@ namespace nsfd
   }
 
   template <int dim>
-  void Model<dim>::build_for_check(const SceneInput &input,
-                                   const Communicator &communicator)
-  {
-    if (stepper)
-      return;
-    for_check_ = std::make_unique<SceneInput>(input);
-    for_check_->time.scheme = Scheme::moreau_jean;
-    std::vector<std::string> problems, warnings;
-    const auto materials = material_indices<dim>(input, *groups, *triangulation,
-                                                 problems, warnings);
-    leapfrog.reset();
-    *discretization = Discretization<dim>(communicator, *triangulation, *groups,
-                                          materials, *for_check_);
-    build_delassus(*for_check_, communicator);
-    build_stepper(*for_check_);
-  }
-
-  template <int dim>
   void Model<dim>::build_stepper(const SceneInput &input)
   {
     if (moving)

@@ -46,10 +46,6 @@ namespace nsfd
     State initial_state() const;
     /** The constant data of the points. */
     const OneStepProblem<dim> &points() const;
-    /** Operators and stepper that `--check` asks, where the run has none. */
-    void build_for_check(const SceneInput &input,
-                         const Communicator &communicator);
-
     /** What takes the steps of a run, one after the other. */
     std::vector<TimeIntegrator<dim> *> integrators() const;
 
@@ -83,8 +79,6 @@ namespace nsfd
     }
 
   private:
-    std::unique_ptr<SceneInput> for_check_; ///< with blocks of all bodies
-
     void build_mesh_parts(const SceneInput &input,
                           const Communicator &communicator,
                           std::vector<std::string> &problems);

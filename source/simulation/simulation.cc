@@ -107,10 +107,9 @@ namespace nsfd
     template <int dim>
     int Simulation<dim>::check()
     {
-      model_.build_for_check(input_, communicator_);
       return print_check<dim>(
           input_, *model_.triangulation, *model_.discretization,
-          *model_.stepper, *model_.delassus,
+          model_.stepper.get(), model_.delassus.get(),
           model_.dynamic_control(input_, 0.)->base_step(), communicator_);
     }
 

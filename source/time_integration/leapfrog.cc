@@ -228,8 +228,9 @@ namespace nsfd
     auto released = faces_.reached(*forces_, excess_);
     release(released);
     const auto n = unsigned(released.size());
-    released = faces_.reached_at_ends(*forces_, *groups_, points_,
-                                      corner_loads_, supports_.mask(), excess_);
+    released =
+        faces_.reached_at_ends(*forces_, *groups_, points_, corner_loads_,
+                               supports_.mask(), excess_at_ends_);
     release(released);
     return n + unsigned(released.size());
   }
@@ -420,13 +421,14 @@ namespace nsfd
     counters["active_points"] = double(points_.size());
     counters["groups"] = double(groups_ ? groups_->size() : 0);
     counters["worst_excess_over_strength"] = excess_;
+    counters["worst_excess_at_crack_ends"] = excess_at_ends_;
   }
 
   template <int dim>
   void Leapfrog<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "leapfrog");
-    archive.numbers("excess", excess_);
+    archive.numbers("excess", excess_, excess_at_ends_);
     points_.serialize(archive);
     auto &front = forces_->front();
     front.serialize(archive, discretization_.bodies().first_dof);

@@ -1,0 +1,22 @@
+// Notched plate of 100 mm x 40 mm, frontal triangles of 1 mm; unit mm.
+h = 1;
+Point(1) = {0, 0, 0, h};
+Point(2) = {100, 0, 0, h};
+Point(3) = {100, 40, 0, h};
+Point(4) = {0, 40, 0, h};
+Point(5) = {0, 20, 0, h};
+Point(6) = {50, 20, 0, h};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 1};
+Line(6) = {5, 6};
+Curve Loop(1) = {1, 2, 3, 4, 5};
+Plane Surface(1) = {1};
+Curve{6} In Surface{1};
+Mesh.Algorithm = 6;
+Physical Curve("bottom") = {1};
+Physical Curve("top") = {3};
+Physical Curve("notch") = {6};
+Physical Surface("glass") = {1};
