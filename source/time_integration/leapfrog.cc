@@ -338,7 +338,7 @@ namespace nsfd
       old_velocity_.swap(g.velocity);
       throw StepRejected(rejected.what(), StepRejected::Cure::none);
     }
-    points_.accept();
+    report.separates = communicator_.any(points_.accept());
     return report;
   }
 
@@ -376,7 +376,6 @@ namespace nsfd
     next.viscous_traction = old.viscous_traction;
     next.pressure_work = old.pressure_work;
     report.active = balance.active;
-    report.separates = communicator_.any(balance.separates);
     report.beyond_unique = balance.beyond_unique;
     report.changes = balance.changes;
     report.changes.taken[std::size_t(WatchedLine::scheme)] =

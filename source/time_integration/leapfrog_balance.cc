@@ -88,9 +88,6 @@ namespace nsfd
                        spent - w * energies.damage);
     if (energies.beta < 1e-3 && chains_.beta[a] >= 1e-3) {
       put(broken, w);
-      balance.separates |=
-          hold_of_face_[discretization_.points().face_of[chains_.point[a]]] ==
-          1;
     }
     if (p.compression_stiffness[a] == 0.)
       balance.penetration =
@@ -128,7 +125,9 @@ namespace nsfd
       chains_.slip[a] += p.time_step * p.theta * std::sqrt(square);
     }
     if (energies.beta < 1e-3 && chains_.beta[a] >= 1e-3)
-      --hold_of_face_[discretization_.points().face_of[chains_.point[a]]];
+      separates_ |=
+          --hold_of_face_[discretization_.points().face_of[chains_.point[a]]] ==
+          0;
     p.opening_max[a] = energies.history.opening;
     if (!p.slip_max.empty())
       p.slip_max[a] = energies.history.slip;
@@ -191,20 +190,22 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogPoints<dim>::accept()
+  bool LeapfrogPoints<dim>::accept()
   {
+    separates_ = false;
     for (std::size_t k = 0; k < moved_.size(); ++k) {
       keep(moved_[k], energies_[k]);
       std::copy_n(&chains_.velocity[moved_[k] * dim], dim,
                   &chains_.old_velocity[moved_[k] * dim]);
     }
     chains_.swap();
+    return separates_;
   }
 
   template typename LeapfrogPoints<2>::Balance
   LeapfrogPoints<2>::account(const Communicator &);
   template typename LeapfrogPoints<3>::Balance
   LeapfrogPoints<3>::account(const Communicator &);
-  template void LeapfrogPoints<2>::accept();
-  template void LeapfrogPoints<3>::accept();
+  template bool LeapfrogPoints<2>::accept();
+  template bool LeapfrogPoints<3>::accept();
 } // namespace nsfd

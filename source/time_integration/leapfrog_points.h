@@ -65,13 +65,15 @@ namespace nsfd
       double penetration = 0.; ///< beyond overlaps of springs that let go, m
       unsigned int active = 0;
       bool beyond_unique = false;
-      bool separates = false; ///< a face has lost its last hold
-      LineChanges changes;    ///< of friction, damage, impact, numerical
+      LineChanges changes; ///< of friction, damage, impact, numerical
     };
     /** Books the step; what the points keep does not change. Collective. */
     Balance account(const Communicator &communicator);
-    /** The booked step is taken: jumps and histories move on. */
-    void accept();
+    /**
+     * The booked step is taken: jumps and histories move on. True if a face has
+     * lost its last hold.
+     */
+    bool accept();
 
     /** Impulse of @p groups beside a prescribed motion: all that points gave in
         the last solve, x, y, z. */
@@ -120,6 +122,7 @@ namespace nsfd
     LeapfrogChains<dim> chains_;
     /// by face: chains of its points that are not broken
     std::vector<unsigned int> hold_of_face_;
+    bool separates_ = false; ///< in accept()
 
     std::vector<Node> nodes_;
     std::vector<int> node_index_;     ///< by node of the mesh, -1: none here
