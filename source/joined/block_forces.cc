@@ -1,6 +1,7 @@
 #include "block_forces.h"
 
 #include "constant_strain.h"
+#include "tensor_forces.h"
 
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
@@ -146,6 +147,9 @@ namespace nsfd
     if (ConstantStrainForces<dim>::fits(discretization))
       return std::make_unique<ConstantStrainForces<dim>>(discretization,
                                                          std::move(front));
+    if (TensorForces<dim>::fits(discretization))
+      return std::make_unique<TensorForces<dim>>(discretization, mesh,
+                                                 std::move(front));
     return std::make_unique<BlockForces<dim>>(discretization, mesh,
                                               std::move(front));
   }

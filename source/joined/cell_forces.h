@@ -13,12 +13,19 @@ namespace nsfd
    * is averaged along it), or a point of cells of higher degree.
    */
   struct StrengthSites {
+    /// share of its strength below which a site is not looked at
+    static constexpr double quiet = 0.2;
+
     std::vector<unsigned int> first_point, n_points;
     std::vector<std::array<unsigned int, 2>> cells;
     /// unit normal from body 1 to body 2, dim components
     std::vector<double> normal;
     /// of |t_T|^2 beside <t_N>_+^2, and the square of the strength, Pa^2
     std::vector<double> shear_weight, limit;
+    /// first sites of the faces, and the end
+    std::vector<std::size_t> first_of_face;
+    /// by face: no smaller square of a traction reaches a limit, Pa^2
+    std::vector<double> least;
 
     std::size_t size() const { return cells.size(); }
   };
@@ -42,7 +49,8 @@ namespace nsfd
 
     /**
      * <t_N>_+^2 + shear_weight |t_T|^2 of the mean traction at every site, of
-     * the displacements of the last forces, Pa^2.
+     * the displacements of the last forces, Pa^2; 0 may stand where it is less
+     * than `quiet`^2 times the limit.
      */
     virtual void squared_tractions(const StrengthSites &sites,
                                    std::vector<double> &squares) const = 0;
@@ -57,8 +65,9 @@ namespace nsfd
   };
 
   /**
-   * Constant strain on simplices of degree 1 if all materials are isotropic,
-   * the blocks of the bodies else.
+   * If all materials are isotropic and not graded, constant strain on
+   * simplices of degree 1 and sum factorisation on quads and hexes; the blocks
+   * of the bodies else.
    */
   template <int dim>
   std::unique_ptr<CellForces<dim>>

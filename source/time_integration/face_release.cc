@@ -34,6 +34,8 @@ namespace nsfd
       const bool whole =
           cells.shape(std::size_t(face.bodies[0])).reference.is_simplex() ||
           input.discretization.degree == 1;
+      sites_.first_of_face.push_back(sites_.size());
+      double least = infinity;
       for (unsigned int k = 0; k < (whole ? 1 : face.count); ++k) {
         const unsigned int i = face.first + k;
         double strength = all.strength_factor[i],
@@ -64,8 +66,12 @@ namespace nsfd
                                here.strength() * here.strength());
         weakest_.push_back(here.strength() / std::max(1., of_shear) *
                            (block.law->mixed() ? std::sqrt(0.5) : 1.));
+        least = std::min(least, sites_.limit.back() /
+                                    std::max(1., sites_.shear_weight.back()));
       }
+      sites_.least.push_back(least);
     }
+    sites_.first_of_face.push_back(sites_.size());
   }
 
   template <int dim>

@@ -1,0 +1,275 @@
+#include "tensor_forces.h"
+
+#include "discretization/cells.h"
+#include "discretization/point_places.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <deal.II/base/polynomial.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    std::vector<double> transposed(const std::vector<double> &A,
+                                   const unsigned int n)
+    {
+      std::vector<double> B(A.size());
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          B[i * n + j] = A[j * n + i];
+      return B;
+    }
+  } // namespace
+
+  TensorLine::TensorLine(const unsigned int degree) : n(degree + 1)
+  {
+    const dealii::QGaussLobatto<1> lobatto(n);
+    const dealii::QGauss<1> gauss(n);
+    for (unsigned int i = 0; i < n; ++i) {
+      nodes.push_back(lobatto.point(i)[0]);
+      points.push_back(gauss.point(i)[0]);
+      weights.push_back(gauss.weight(i));
+    }
+    const auto of_nodes = dealii::Polynomials::generate_complete_Lagrange_basis(
+        lobatto.get_points());
+    const auto of_points =
+        dealii::Polynomials::generate_complete_Lagrange_basis(
+            gauss.get_points());
+    std::vector<double> value(2);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j) {
+        of_nodes[j].value(points[i], value);
+        values.push_back(value[0]);
+        of_points[j].value(points[i], value);
+        slopes.push_back(value[1]);
+        of_nodes[j].value(nodes[i], value);
+        node_slopes.push_back(value[1]);
+      }
+    values_transposed = transposed(values, n);
+    slopes_transposed = transposed(slopes, n);
+    for (const double x : nodes) {
+      double sum = 0.;
+      for (const auto &polynomial : of_points)
+        sum += std::abs(polynomial.value(x));
+      extrapolation = std::max(extrapolation, sum);
+    }
+  }
+
+  template <int dim>
+  bool TensorForces<dim>::fits(const Discretization<dim> &discretization)
+  {
+    const Cells<dim> &cells = discretization.cells();
+    for (std::size_t k = 0; k < cells.shapes.size(); ++k) {
+      const BodyClass &body = cells.bodies.classes[k];
+      const MaterialInput &material =
+          discretization.input().materials[body.material];
+      if (!cells.shapes[k].reference.is_hyper_cube() || body.rigid ||
+          material.transverse || material.graded || material.is_viscous())
+        return false;
+    }
+    const unsigned int degree = discretization.input().discretization.degree;
+    return degree >= 1 && degree <= 8;
+  }
+
+  template <int dim>
+  TensorForces<dim>::TensorForces(const Discretization<dim> &discretization,
+                                  const JoinedMesh<dim> &mesh,
+                                  FrontViscosity front)
+      : CellForces<dim>(std::move(front)), discretization_(discretization),
+        line_(discretization.input().discretization.degree),
+        kernels_(tensor_kernels<dim>(line_.n - 1)),
+        n_cells_(discretization.bodies().size()),
+        n_nodes_(dim == 2 ? line_.n * line_.n : line_.n * line_.n * line_.n),
+        forces_(mesh.n_corners() * dim)
+  {
+    scratch_.resize(tensor_scratch<dim>(line_.n), 0.);
+    set_blocks();
+    set_places(mesh);
+  }
+
+  /** Maps and moduli; a cell whose corners are those of a parallelepiped, as
+      far as they are known, is affine. */
+  template <int dim>
+  void TensorForces<dim>::set_blocks()
+  {
+    const Cells<dim> &cells = discretization_.cells();
+    const std::size_t n_blocks = (n_cells_ + lanes - 1) / lanes;
+    maps_.resize(n_blocks * per_map, 0.);
+    moduli_.resize(n_blocks * 2 * lanes, 0.);
+    reference_.resize(n_blocks * n_stresses * lanes, 0.);
+    affine_.assign(n_blocks, 1);
+    bound_.assign(n_blocks * lanes, HUGE_VAL);
+    tractions_of_block_.assign(n_blocks, -1);
+    volume_.resize(n_cells_);
+    for (std::size_t b = 0; b < n_blocks * lanes; ++b) {
+      const auto &shape = cells.shape(std::min(b, n_cells_ - 1));
+      const std::size_t index = b / lanes, lane = b % lanes;
+      double size = 0., curved = 0.;
+      for (unsigned int subset = 1; subset < 1u << dim; ++subset)
+        for (unsigned int c = 0; c < dim; ++c) {
+          double sum = 0.;
+          for (unsigned int v = 0; v < 1u << dim; ++v)
+            if ((v | subset) == subset)
+              sum += (__builtin_popcount(v ^ subset) % 2 ? -1. : 1.) *
+                     shape.corners[v][c];
+          maps_[index * per_map + ((subset - 1) * dim + c) * lanes + lane] =
+              sum;
+          double &largest = (subset & (subset - 1)) ? curved : size;
+          largest = std::max(largest, std::abs(sum));
+        }
+      affine_[index] = affine_[index] && curved <= 0x1p-40 * size;
+      moduli_[index * 2 * lanes + lane] = shape.elasticity[0].lambda;
+      moduli_[(index * 2 + 1) * lanes + lane] = shape.elasticity[0].mu;
+      if (b < n_cells_)
+        volume_[b] = shape.volume;
+    }
+  }
+
+  template <int dim>
+  void TensorForces<dim>::set_places(const JoinedMesh<dim> &mesh)
+  {
+    const Cells<dim> &cells = discretization_.cells();
+    const std::size_t n = discretization_.points().n_points;
+    place_.assign(n, {{0, 0}});
+    for_all_places(cells.bodies, n,
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t point, const unsigned int side) {
+                     const unsigned int face =
+                         cells.shape(body).slot_faces[slot];
+                     unsigned int node = mesh.corners(point)[side] -
+                                         unsigned(cells.first_node[body]);
+                     unsigned int in_face = 0, factor = 1;
+                     for (unsigned int d = 0; d < dim; ++d, node /= line_.n)
+                       if (d != face / 2) {
+                         in_face += factor * (node % line_.n);
+                         factor *= line_.n;
+                       }
+                     place_[point][side] =
+                         std::uint16_t(face * (n_nodes_ / line_.n) + in_face);
+                   });
+  }
+
+  template <int dim>
+  TensorBlock TensorForces<dim>::block(const std::size_t index) const
+  {
+    const std::size_t first = index * lanes;
+    return {maps_.data() + index * per_map, moduli_.data() + first * 2,
+            affine_[index] != 0,
+            groups_->of_corners().data() + first * n_nodes_,
+            unsigned(std::min<std::size_t>(lanes, n_cells_ - first))};
+  }
+
+  template <int dim>
+  void TensorForces<dim>::set_forces(CornerGroups<dim> &groups,
+                                     const double time_step)
+  {
+    groups_ = &groups;
+    for (const unsigned int index : known_)
+      tractions_of_block_[index] = -1;
+    known_.clear();
+    std::fill(groups.force.begin(), groups.force.end(), 0.);
+    for (std::size_t index = 0; index < affine_.size(); ++index) {
+      const TensorBlock cells = block(index);
+      const std::size_t first = index * lanes;
+      double dilatation[lanes], tension[lanes] = {};
+      kernels_.evaluate(line_, cells, groups.displacement.data(),
+                        scratch_.data(), dilatation,
+                        reference_.data() + first * n_stresses, &bound_[first]);
+      if (this->front_.acts())
+        for (unsigned int l = 0; l < cells.count; ++l) {
+          const std::size_t b = first + l;
+          this->front_.update(b, dilatation[l] / volume_[b], time_step,
+                              volume_[b]);
+          tension[l] = this->front_.tension[b];
+        }
+      kernels_.integrate(line_, cells, tension, scratch_.data(),
+                         &forces_[first * n_nodes_ * dim], groups.force.data());
+    }
+  }
+
+  template <int dim>
+  std::array<double, dim>
+  TensorForces<dim>::corner_force(const std::size_t corner,
+                                  const CornerGroups<dim> &) const
+  {
+    std::array<double, dim> force;
+    for (unsigned int c = 0; c < dim; ++c)
+      force[c] = -forces_[corner * dim + c];
+    return force;
+  }
+
+  template <int dim>
+  const double *TensorForces<dim>::tractions(const std::size_t cell) const
+  {
+    const std::size_t size = 2 * dim * dim * (n_nodes_ / line_.n) * lanes,
+                      index = cell / lanes;
+    int &place = tractions_of_block_[index];
+    if (place < 0) {
+      place = int(known_.size());
+      known_.push_back(unsigned(index));
+      if (tractions_.size() < known_.size() * size)
+        tractions_.resize(2 * known_.size() * size);
+      kernels_.set_tractions(line_, block(index), groups_->displacement.data(),
+                             scratch_.data(),
+                             tractions_.data() + std::size_t(place) * size);
+    }
+    return tractions_.data() + std::size_t(place) * size + cell % lanes;
+  }
+
+  template <int dim>
+  std::array<double, dim>
+  TensorForces<dim>::traction(const StrengthSites &sites,
+                              const std::size_t site) const
+  {
+    const auto &weight = discretization_.points().weight;
+    std::array<double, dim> result{};
+    const unsigned int first = sites.first_point[site],
+                       last = first + sites.n_points[site];
+    double length = 0.;
+    for (unsigned int i = first; i < last; ++i)
+      length += weight[i];
+    for (unsigned int side = 0; side < 2; ++side) {
+      const double *of_cell = tractions(sites.cells[site][side]);
+      const double sign = side == 0 ? 0.5 : -0.5;
+      for (unsigned int i = first; i < last; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          result[c] += sign * weight[i] / length *
+                       of_cell[(place_[i][side] * dim + c) * lanes];
+    }
+    return result;
+  }
+
+  template <int dim>
+  void TensorForces<dim>::squared_tractions(const StrengthSites &sites,
+                                            std::vector<double> &squares) const
+  {
+    constexpr double quiet = StrengthSites::quiet * StrengthSites::quiet;
+    squares.assign(sites.size(), 0.);
+    for (std::size_t f = 0; f < sites.least.size(); ++f) {
+      const std::size_t first = sites.first_of_face[f];
+      const auto &cells = sites.cells[first];
+      const double largest = (bound_[cells[0]] + bound_[cells[1]]) / 2.;
+      if (!(largest * largest >= quiet * sites.least[f]))
+        continue;
+      for (std::size_t k = first; k < sites.first_of_face[f + 1]; ++k) {
+        if (!(sites.limit[k] < HUGE_VAL)) // it has let go
+          continue;
+        const auto t = traction(sites, k);
+        double square = 0., pull = 0.;
+        for (unsigned int c = 0; c < dim; ++c) {
+          square += t[c] * t[c];
+          pull += t[c] * sites.normal[k * dim + c];
+        }
+        squares[k] = (pull > 0. ? pull * pull : 0.) +
+                     sites.shear_weight[k] * (square - pull * pull);
+      }
+    }
+  }
+
+  template class TensorForces<2>;
+  template class TensorForces<3>;
+} // namespace nsfd

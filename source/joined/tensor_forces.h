@@ -1,0 +1,67 @@
+#pragma once
+
+#include "cell_forces.h"
+#include "tensor_kernels.h"
+
+#include <deal.II/base/aligned_vector.h>
+
+namespace nsfd
+{
+  /**
+   * Isotropic quads and hexes of any degree, `lanes` of them at a time, by sums
+   * over one direction after the other: (degree + 1)^(dim + 1) operations and
+   * no matrix. Tractions are computed where a bound of the stress comes near
+   * the strength of a face.
+   */
+  template <int dim>
+  class TensorForces final : public CellForces<dim>
+  {
+  public:
+    TensorForces(const Discretization<dim> &discretization,
+                 const JoinedMesh<dim> &mesh, FrontViscosity front);
+
+    void set_forces(CornerGroups<dim> &groups, double time_step) override;
+    std::array<double, dim>
+    corner_force(std::size_t corner,
+                 const CornerGroups<dim> &groups) const override;
+    void squared_tractions(const StrengthSites &sites,
+                           std::vector<double> &squares) const override;
+    std::array<double, dim> traction(const StrengthSites &sites,
+                                     std::size_t site) const override;
+
+    /** All cells are such. */
+    static bool fits(const Discretization<dim> &discretization);
+
+  private:
+    using Numbers = dealii::AlignedVector<double>;
+    static constexpr unsigned int n_stresses = dim * (dim + 1) / 2;
+    static constexpr std::size_t per_map = ((1u << dim) - 1) * dim * lanes;
+
+    void set_blocks();
+    void set_places(const JoinedMesh<dim> &mesh);
+    TensorBlock block(std::size_t index) const;
+    /** Of the tractions of a cell, lane by lane. */
+    const double *tractions(std::size_t cell) const;
+
+    const Discretization<dim> &discretization_;
+    const TensorLine line_;
+    const TensorKernels kernels_;
+    std::size_t n_cells_;
+    unsigned int n_nodes_; ///< of a cell
+    Numbers maps_, moduli_;
+    std::vector<char> affine_; ///< by block
+    std::vector<double> volume_;
+    /// by point: which traction of body 1 and of body 2 it has
+    std::vector<std::array<std::uint16_t, 2>> place_;
+
+    const CornerGroups<dim> *groups_ = nullptr; ///< of the last forces
+    std::vector<double> forces_;                ///< K q by corner
+    std::vector<double> bound_; ///< of the stress at the nodes of a cell, Pa
+    Numbers reference_;         ///< stresses near those of a block
+
+    // where they have been needed since the last forces
+    mutable Numbers scratch_, tractions_;
+    mutable std::vector<int> tractions_of_block_; ///< -1: not computed
+    mutable std::vector<unsigned int> known_;     ///< blocks with tractions
+  };
+} // namespace nsfd

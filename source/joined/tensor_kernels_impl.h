@@ -1,0 +1,587 @@
+#pragma once
+
+// Only for tensor_plane.cc and tensor_space.cc. No deal.II here: plain arrays,
+// several instruction sets.
+#include "tensor_kernels.h"
+
+#include "core/instruction_sets.h"
+
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    typedef double Vector8 __attribute__((vector_size(64)));
+    static_assert(lanes == 8, "one vector for all cells of a block");
+
+    /** N nodes per direction, 0: what the line says, up to 9. */
+    template <int dim, int N>
+    struct Grid {
+      explicit Grid(const TensorLine &line) : n(N > 0 ? N : line.n) {}
+      static constexpr unsigned int most = N > 0 ? N : 9;
+      const unsigned int n;
+
+      unsigned int stride(const unsigned int d) const
+      {
+        return d == 0 ? 1 : d == 1 ? n : n * n;
+      }
+      unsigned int size() const { return dim == 2 ? n * n : n * n * n; }
+      unsigned int place(const unsigned int k, const unsigned int d) const
+      {
+        return k / stride(d) % n;
+      }
+    };
+
+    /** @p act on the first place of every line in direction @p d. */
+    template <int d, int dim, int N, typename Act>
+    NSFD_INLINE void for_lines(const Grid<dim, N> &grid, const Act &act)
+    {
+      const unsigned int stride = grid.stride(d), size = grid.size();
+      for (unsigned int outer = 0; outer < size; outer += stride * grid.n)
+        for (unsigned int inner = 0; inner < stride; ++inner)
+          act(outer + inner);
+    }
+
+    /** y = A x */
+    template <int dim, int N>
+    NSFD_INLINE void multiply(const Grid<dim, N> &grid, const double *A,
+                              const Vector8 *x, Vector8 *y)
+    {
+      const unsigned int n = grid.n;
+#pragma GCC unroll 9
+      for (unsigned int i = 0; i < n; ++i) {
+        Vector8 sum = A[i * n] * x[0];
+#pragma GCC unroll 9
+        for (unsigned int j = 1; j < n; ++j)
+          sum += A[i * n + j] * x[j];
+        y[i] = sum;
+      }
+    }
+
+    template <int dim, int N>
+    NSFD_INLINE void load(const Grid<dim, N> &grid, const Vector8 *from,
+                          const unsigned int stride, Vector8 *x)
+    {
+#pragma GCC unroll 9
+      for (unsigned int i = 0; i < grid.n; ++i)
+        x[i] = from[std::size_t(i) * stride];
+    }
+
+    template <int dim, int N>
+    NSFD_INLINE void store(const Grid<dim, N> &grid, const Vector8 *x,
+                           const unsigned int stride, Vector8 *to)
+    {
+#pragma GCC unroll 9
+      for (unsigned int i = 0; i < grid.n; ++i)
+        to[std::size_t(i) * stride] = x[i];
+    }
+
+    /** det J and its product with the inverse: C[d][c] = det dxi_d/dx_c. */
+    template <int dim>
+    NSFD_INLINE Vector8 cofactors(const Vector8 (&J)[dim][dim],
+                                  Vector8 (&C)[dim][dim])
+    {
+      if constexpr (dim == 2) {
+        C[0][0] = J[1][1];
+        C[0][1] = -J[0][1];
+        C[1][0] = -J[1][0];
+        C[1][1] = J[0][0];
+      } else {
+#pragma GCC unroll 3
+        for (unsigned int d = 0; d < 3; ++d)
+#pragma GCC unroll 3
+          for (unsigned int c = 0; c < 3; ++c) {
+            const unsigned int c1 = (c + 1) % 3, c2 = (c + 2) % 3,
+                               d1 = (d + 1) % 3, d2 = (d + 2) % 3;
+            C[d][c] = J[c1][d1] * J[c2][d2] - J[c1][d2] * J[c2][d1];
+          }
+      }
+      Vector8 det = J[0][0] * C[0][0];
+#pragma GCC unroll 3
+      for (unsigned int d = 1; d < dim; ++d)
+        det += J[0][d] * C[d][0];
+      return det;
+    }
+
+    /** dx_c/dxi_d at a place of the reference cell. */
+    template <int dim, bool affine>
+    NSFD_INLINE void set_jacobian(const Vector8 *map, const double *xi,
+                                  Vector8 (&J)[dim][dim])
+    {
+#pragma GCC unroll 3
+      for (unsigned int c = 0; c < dim; ++c) {
+        const auto a = [&](const unsigned int subset) {
+          return map[(subset - 1) * dim + c];
+        };
+#pragma GCC unroll 3
+        for (unsigned int d = 0; d < dim; ++d) {
+          J[c][d] = a(1u << d);
+          if constexpr (!affine) {
+            const unsigned int e = (d + 1) % dim;
+            J[c][d] += a((1u << d) | (1u << e)) * xi[e];
+            if constexpr (dim == 3) {
+              const unsigned int f = (d + 2) % dim;
+              J[c][d] +=
+                  a((1u << d) | (1u << f)) * xi[f] + a(7) * (xi[e] * xi[f]);
+            }
+          }
+        }
+      }
+    }
+
+    /** The values of the corners: (component, node). */
+    template <int dim, int N>
+    NSFD_INLINE void gather(const Grid<dim, N> &grid, const TensorBlock &block,
+                            const double *q, Vector8 *u)
+    {
+      const unsigned int size = grid.size();
+      auto *scalars = reinterpret_cast<double *>(u);
+      const unsigned int *groups[lanes];
+      for (unsigned int l = 0; l < lanes; ++l) // beyond the last cell: that one
+        groups[l] = block.groups +
+                    std::size_t(l < block.count ? l : block.count - 1) * size;
+      for (unsigned int i = 0; i < size; ++i)
+#pragma GCC unroll 8
+        for (unsigned int l = 0; l < lanes; ++l) {
+          const double *value = q + std::size_t(groups[l][i]) * dim;
+#pragma GCC unroll 3
+          for (unsigned int c = 0; c < dim; ++c)
+            scalars[(c * size + i) * lanes + l] = value[c];
+        }
+    }
+
+    /** Index of sigma_ab among xx, yy(, zz), xy(, xz, yz). */
+    constexpr unsigned int stress_at(const unsigned int dim,
+                                     const unsigned int a, const unsigned int b)
+    {
+      return a == b ? a : dim == 2 ? 2u : a + b + 2u;
+    }
+
+    /** sigma from dxi_d/dx_c and du_a/dxi_d; tr eps. */
+    template <int dim>
+    NSFD_INLINE Vector8 set_stress(const Vector8 (&K)[dim][dim],
+                                   const Vector8 (&G)[dim][dim],
+                                   const Vector8 lambda, const Vector8 mu,
+                                   Vector8 *sigma)
+    {
+      Vector8 H[dim][dim];
+#pragma GCC unroll 3
+      for (unsigned int a = 0; a < dim; ++a)
+#pragma GCC unroll 3
+        for (unsigned int b = 0; b < dim; ++b) {
+          H[a][b] = G[a][0] * K[0][b];
+#pragma GCC unroll 3
+          for (unsigned int d = 1; d < dim; ++d)
+            H[a][b] += G[a][d] * K[d][b];
+        }
+      Vector8 trace = H[0][0];
+#pragma GCC unroll 3
+      for (unsigned int a = 1; a < dim; ++a)
+        trace += H[a][a];
+      const Vector8 pressure = lambda * trace;
+#pragma GCC unroll 3
+      for (unsigned int a = 0; a < dim; ++a)
+#pragma GCC unroll 3
+        for (unsigned int b = a; b < dim; ++b)
+          sigma[stress_at(dim, a, b)] =
+              a == b ? pressure + 2. * mu * H[a][a] : mu * (H[a][b] + H[b][a]);
+      return trace;
+    }
+
+    /** Squared Frobenius norm. */
+    template <int dim>
+    NSFD_INLINE Vector8 square(const Vector8 *sigma)
+    {
+      constexpr unsigned int n = dim * (dim + 1) / 2;
+      Vector8 sum = sigma[0] * sigma[0];
+#pragma GCC unroll 6
+      for (unsigned int s = 1; s < n; ++s)
+        sum += (s < dim ? 1. : 2.) * sigma[s] * sigma[s];
+      return sum;
+    }
+
+    /**
+     * At every point, in place: from du_a/dxi_d the flux, sigma_ab times
+     * weight C[d][b]. Behind it, where cells are not affine, weight C.
+     */
+    template <int dim, int N, bool affine>
+    NSFD_INLINE void
+    set_fluxes(const Grid<dim, N> &grid, const TensorLine &line,
+               const TensorBlock &block, Vector8 *gradients, Vector8 *weighted,
+               double *dilatation, double *reference, double *bound)
+    {
+      constexpr unsigned int n_stresses = dim * (dim + 1) / 2;
+      const unsigned int size = grid.size(), n = grid.n;
+      const auto *map = reinterpret_cast<const Vector8 *>(block.map);
+      const auto *moduli = reinterpret_cast<const Vector8 *>(block.moduli);
+      auto *around = reinterpret_cast<Vector8 *>(reference);
+      const Vector8 lambda = moduli[0], mu = moduli[1];
+      Vector8 J[dim][dim], C[dim][dim], K[dim][dim], det;
+      const auto set_map = [&](const double *xi) {
+        set_jacobian<dim, affine>(map, xi, J);
+        det = cofactors<dim>(J, C);
+        const Vector8 inverse = 1. / det;
+#pragma GCC unroll 3
+        for (unsigned int d = 0; d < dim; ++d)
+#pragma GCC unroll 3
+          for (unsigned int c = 0; c < dim; ++c)
+            K[d][c] = C[d][c] * inverse;
+      };
+      double xi[3] = {};
+      if (affine)
+        set_map(xi);
+      Vector8 mean[n_stresses] = {}, all = {}, farthest = {};
+      unsigned int q = 0;
+      for (unsigned int z = 0; z < (dim == 3 ? n : 1); ++z)
+        for (unsigned int y = 0; y < n; ++y)
+          for (unsigned int x = 0; x < n; ++x, ++q) {
+            double weight = line.weights[x] * line.weights[y];
+            if (dim == 3)
+              weight *= line.weights[z];
+            if constexpr (!affine) {
+              xi[0] = line.points[x];
+              xi[1] = line.points[y];
+              xi[2] = line.points[z];
+              set_map(xi);
+            }
+            Vector8 G[dim][dim];
+#pragma GCC unroll 3
+            for (unsigned int a = 0; a < dim; ++a)
+#pragma GCC unroll 3
+              for (unsigned int d = 0; d < dim; ++d)
+                G[a][d] = gradients[(a * dim + d) * size + q];
+            Vector8 sigma[n_stresses];
+            const Vector8 trace = set_stress<dim>(K, G, lambda, mu, sigma);
+            all += weight * det * trace;
+            if constexpr (affine) {
+              Vector8 off[n_stresses];
+#pragma GCC unroll 6
+              for (unsigned int s = 0; s < n_stresses; ++s) {
+                mean[s] += sigma[s];
+                off[s] = sigma[s] - around[s];
+              }
+              const Vector8 distance = square<dim>(off);
+              farthest = distance > farthest ? distance : farthest;
+            }
+#pragma GCC unroll 3
+            for (unsigned int d = 0; d < dim; ++d) {
+              Vector8 shares[dim];
+#pragma GCC unroll 3
+              for (unsigned int b = 0; b < dim; ++b) {
+                shares[b] = weight * C[d][b];
+                if constexpr (!affine)
+                  weighted[(d * dim + b) * size + q] = shares[b];
+              }
+#pragma GCC unroll 3
+              for (unsigned int a = 0; a < dim; ++a) {
+                Vector8 flux = sigma[stress_at(dim, 0, a)] * shares[0];
+#pragma GCC unroll 3
+                for (unsigned int b = 1; b < dim; ++b)
+                  flux += sigma[stress_at(dim, a < b ? a : b, a < b ? b : a)] *
+                          shares[b];
+                gradients[(a * dim + d) * size + q] = flux;
+              }
+            }
+          }
+      if constexpr (affine) {
+#pragma GCC unroll 3
+        for (unsigned int d = 0; d < dim; ++d)
+#pragma GCC unroll 3
+          for (unsigned int b = 0; b < dim; ++b)
+            weighted[d * dim + b] = C[d][b];
+        const Vector8 centre = square<dim>(around);
+        for (unsigned int l = 0; l < lanes; ++l)
+          bound[l] =
+              (1. + 1e-10) *
+              (std::sqrt(centre[l]) +
+               (dim == 2 ? 1. : line.extrapolation) * line.extrapolation *
+                   line.extrapolation * std::sqrt(farthest[l]));
+        for (unsigned int s = 0; s < n_stresses; ++s)
+          around[s] = mean[s] / double(size);
+      } else
+        for (unsigned int l = 0; l < lanes; ++l)
+          bound[l] = HUGE_VAL;
+      for (unsigned int l = 0; l < lanes; ++l)
+        dilatation[l] = all[l];
+    }
+
+    template <int dim, int N, bool affine>
+    NSFD_INLINE void evaluate(const TensorLine &line, const TensorBlock &block,
+                              const double *q, double *scratch,
+                              double *dilatation, double *reference,
+                              double *bound)
+    {
+      const Grid<dim, N> grid(line);
+      const unsigned int size = grid.size();
+      auto *u = reinterpret_cast<Vector8 *>(scratch);
+      Vector8 *gradients = u + dim * size;
+      gather(grid, block, q, u);
+      const double *values = line.values.data(), *slopes = line.slopes.data();
+      Vector8 x[Grid<dim, N>::most], y[Grid<dim, N>::most];
+      for (unsigned int c = 0; c < dim; ++c) {
+        Vector8 *mine = u + c * size, *G = gradients + c * dim * size;
+        for_lines<0>(grid, [&](const unsigned int k) {
+          load(grid, mine + k, 1, x);
+          multiply(grid, values, x, y);
+          store(grid, y, 1, mine + k);
+        });
+        if constexpr (dim == 3) {
+          const unsigned int stride = grid.stride(1);
+          for_lines<1>(grid, [&](const unsigned int k) {
+            load(grid, mine + k, stride, x);
+            multiply(grid, values, x, y);
+            store(grid, y, stride, mine + k);
+          });
+        }
+        const unsigned int last = grid.stride(dim - 1);
+        for_lines<dim - 1>(grid, [&](const unsigned int k) {
+          load(grid, mine + k, last, x);
+          multiply(grid, values, x, y);
+          store(grid, y, last, mine + k);
+          multiply(grid, slopes, y, x);
+          store(grid, x, last, G + (dim - 1) * size + k);
+        });
+        for_lines<0>(grid, [&](const unsigned int k) {
+          load(grid, mine + k, 1, x);
+          multiply(grid, slopes, x, y);
+          store(grid, y, 1, G + k);
+        });
+        if constexpr (dim == 3) {
+          const unsigned int stride = grid.stride(1);
+          for_lines<1>(grid, [&](const unsigned int k) {
+            load(grid, mine + k, stride, x);
+            multiply(grid, slopes, x, y);
+            store(grid, y, stride, G + size + k);
+          });
+        }
+      }
+      set_fluxes<dim, N, affine>(grid, line, block, gradients,
+                                 gradients + dim * dim * size, dilatation,
+                                 reference, bound);
+    }
+
+    template <int dim, int N, bool affine>
+    NSFD_INLINE void integrate(const TensorLine &line, const TensorBlock &block,
+                               const double *tension, double *scratch,
+                               double *corner_forces, double *forces)
+    {
+      const Grid<dim, N> grid(line);
+      const unsigned int size = grid.size(), n = grid.n;
+      auto *u = reinterpret_cast<Vector8 *>(scratch);
+      const Vector8 *fluxes = u + dim * size,
+                    *weighted = fluxes + dim * dim * size;
+      const double *values = line.values_transposed.data(),
+                   *slopes = line.slopes_transposed.data(),
+                   *weights = line.weights.data();
+      Vector8 pull;
+      for (unsigned int l = 0; l < lanes; ++l)
+        pull[l] = tension[l];
+      Vector8 x[Grid<dim, N>::most], y[Grid<dim, N>::most];
+      for (unsigned int a = 0; a < dim; ++a) {
+        Vector8 *mine = u + a * size;
+        // fluxes and those of the tension, along a line in direction d
+        const auto load_flux = [&](const unsigned int d, const unsigned int k) {
+          const unsigned int stride = grid.stride(d);
+          const Vector8 *flux = fluxes + (a * dim + d) * size + k;
+          load(grid, flux, stride, x);
+          if constexpr (affine) {
+            double across = 1.;
+#pragma GCC unroll 3
+            for (unsigned int e = 0; e < dim; ++e)
+              if (e != d)
+                across *= weights[grid.place(k, e)];
+            const Vector8 share = pull * weighted[d * dim + a] * across;
+#pragma GCC unroll 9
+            for (unsigned int i = 0; i < n; ++i)
+              x[i] += share * weights[i];
+          } else {
+            const Vector8 *shares = weighted + (d * dim + a) * size + k;
+#pragma GCC unroll 9
+            for (unsigned int i = 0; i < n; ++i)
+              x[i] += pull * shares[std::size_t(i) * stride];
+          }
+        };
+        for_lines<0>(grid, [&](const unsigned int k) {
+          load_flux(0, k);
+          multiply(grid, slopes, x, y);
+          store(grid, y, 1, mine + k);
+        });
+        if constexpr (dim == 3) {
+          const unsigned int stride = grid.stride(1);
+          for_lines<1>(grid, [&](const unsigned int k) {
+            load_flux(1, k);
+            multiply(grid, slopes, x, y);
+#pragma GCC unroll 9
+            for (unsigned int i = 0; i < n; ++i)
+              mine[k + std::size_t(i) * stride] += y[i];
+          });
+        }
+        const unsigned int last = grid.stride(dim - 1);
+        for_lines<dim - 1>(grid, [&](const unsigned int k) {
+          load_flux(dim - 1, k);
+          multiply(grid, slopes, x, y);
+#pragma GCC unroll 9
+          for (unsigned int i = 0; i < n; ++i)
+            y[i] += mine[k + std::size_t(i) * last];
+          multiply(grid, values, y, x);
+          store(grid, x, last, mine + k);
+        });
+        if constexpr (dim == 3) {
+          const unsigned int stride = grid.stride(1);
+          for_lines<1>(grid, [&](const unsigned int k) {
+            load(grid, mine + k, stride, x);
+            multiply(grid, values, x, y);
+            store(grid, y, stride, mine + k);
+          });
+        }
+        for_lines<0>(grid, [&](const unsigned int k) {
+          load(grid, mine + k, 1, x);
+          multiply(grid, values, x, y);
+          store(grid, y, 1, mine + k);
+        });
+      }
+      const auto *scalars = reinterpret_cast<const double *>(u);
+      for (unsigned int l = 0; l < block.count; ++l) {
+        const unsigned int *groups = block.groups + std::size_t(l) * size;
+        double *mine = corner_forces + std::size_t(l) * size * dim;
+        for (unsigned int i = 0; i < size; ++i) {
+          double *force = forces + std::size_t(groups[i]) * dim;
+#pragma GCC unroll 3
+          for (unsigned int c = 0; c < dim; ++c) {
+            const double value = scalars[(c * size + i) * lanes + l];
+            mine[i * dim + c] = value;
+            force[c] -= value;
+          }
+        }
+      }
+    }
+
+    template <int dim, int N, bool affine>
+    NSFD_INLINE void set_tractions(const TensorLine &line,
+                                   const TensorBlock &block, const double *q,
+                                   double *scratch, double *tractions)
+    {
+      const Grid<dim, N> grid(line);
+      const unsigned int size = grid.size(), n = grid.n;
+      auto *u = reinterpret_cast<Vector8 *>(scratch);
+      auto *t = reinterpret_cast<Vector8 *>(tractions);
+      gather(grid, block, q, u);
+      const auto *map = reinterpret_cast<const Vector8 *>(block.map);
+      const auto *moduli = reinterpret_cast<const Vector8 *>(block.moduli);
+      const double *slopes = line.node_slopes.data();
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int side = 0; side < 2; ++side)
+          for (unsigned int k = 0; k < size / n; ++k, t += dim) {
+            unsigned int at[3] = {};
+            const unsigned int d1 = d == 0 ? 1 : 0, d2 = d == 2 ? 1 : 2;
+            at[d] = side ? n - 1 : 0;
+            at[d1] = k % n;
+            if (dim == 3)
+              at[d2] = k / n;
+            const double xi[3] = {line.nodes[at[0]], line.nodes[at[1]],
+                                  line.nodes[at[2]]};
+            Vector8 J[dim][dim], C[dim][dim], K[dim][dim], G[dim][dim];
+            set_jacobian<dim, affine>(map, xi, J);
+            const Vector8 inverse = 1. / cofactors<dim>(J, C);
+            unsigned int node = 0;
+            for (unsigned int e = 0; e < dim; ++e)
+              node += at[e] * grid.stride(e);
+            for (unsigned int e = 0; e < dim; ++e) {
+              const unsigned int stride = grid.stride(e);
+              const unsigned int first = node - at[e] * stride;
+              for (unsigned int a = 0; a < dim; ++a) {
+                Vector8 sum = {};
+                for (unsigned int j = 0; j < n; ++j)
+                  sum +=
+                      slopes[at[e] * n + j] * u[a * size + first + j * stride];
+                G[a][e] = sum;
+                K[e][a] = C[e][a] * inverse;
+              }
+            }
+            Vector8 sigma[dim * (dim + 1) / 2];
+            set_stress<dim>(K, G, moduli[0], moduli[1], sigma);
+            Vector8 normal[dim], length = {};
+            for (unsigned int c = 0; c < dim; ++c) {
+              normal[c] = side ? K[d][c] : -K[d][c];
+              length += normal[c] * normal[c];
+            }
+            for (unsigned int l = 0; l < lanes; ++l)
+              length[l] = std::sqrt(length[l]);
+            for (unsigned int a = 0; a < dim; ++a) {
+              Vector8 sum = {};
+              for (unsigned int b = 0; b < dim; ++b)
+                sum += sigma[stress_at(dim, a < b ? a : b, a < b ? b : a)] *
+                       normal[b];
+              t[a] = sum / length;
+            }
+          }
+    }
+  } // namespace
+} // namespace nsfd
+
+/** The kernels of @p N nodes per direction, 0: of any number up to 9. */
+#define NSFD_TENSOR_KERNELS(dim, N)                                            \
+  NSFD_CLONES void evaluate_##N(                                               \
+      const TensorLine &line, const TensorBlock &block, const double *q,       \
+      double *scratch, double *dilatation, double *reference, double *bound)   \
+  {                                                                            \
+    if (block.affine)                                                          \
+      evaluate<dim, N, true>(line, block, q, scratch, dilatation, reference,   \
+                             bound);                                           \
+    else                                                                       \
+      evaluate<dim, N, false>(line, block, q, scratch, dilatation, reference,  \
+                              bound);                                          \
+  }                                                                            \
+  NSFD_CLONES void integrate_##N(                                              \
+      const TensorLine &line, const TensorBlock &block, const double *tension, \
+      double *scratch, double *corner_forces, double *forces)                  \
+  {                                                                            \
+    if (block.affine)                                                          \
+      integrate<dim, N, true>(line, block, tension, scratch, corner_forces,    \
+                              forces);                                         \
+    else                                                                       \
+      integrate<dim, N, false>(line, block, tension, scratch, corner_forces,   \
+                               forces);                                        \
+  }                                                                            \
+  NSFD_CLONES void set_tractions_##N(                                          \
+      const TensorLine &line, const TensorBlock &block, const double *q,       \
+      double *scratch, double *tractions)                                      \
+  {                                                                            \
+    if (block.affine)                                                          \
+      set_tractions<dim, N, true>(line, block, q, scratch, tractions);         \
+    else                                                                       \
+      set_tractions<dim, N, false>(line, block, q, scratch, tractions);        \
+  }
+
+#define NSFD_TENSOR_CASE(N)                                                    \
+  case N:                                                                      \
+    return { evaluate_##N, integrate_##N, set_tractions_##N }
+
+/** All of a dimension, and the function that chooses. */
+#define NSFD_TENSOR_DIMENSION(dim)                                             \
+  namespace                                                                    \
+  {                                                                            \
+    NSFD_TENSOR_KERNELS(dim, 0)                                                \
+    NSFD_TENSOR_KERNELS(dim, 2)                                                \
+    NSFD_TENSOR_KERNELS(dim, 3)                                                \
+    NSFD_TENSOR_KERNELS(dim, 4)                                                \
+    NSFD_TENSOR_KERNELS(dim, 5)                                                \
+    NSFD_TENSOR_KERNELS(dim, 6)                                                \
+    NSFD_TENSOR_KERNELS(dim, 7)                                                \
+  }                                                                            \
+                                                                               \
+  template <>                                                                  \
+  TensorKernels tensor_kernels<dim>(const unsigned int degree)                 \
+  {                                                                            \
+    switch (degree + 1) {                                                      \
+      NSFD_TENSOR_CASE(2);                                                     \
+      NSFD_TENSOR_CASE(3);                                                     \
+      NSFD_TENSOR_CASE(4);                                                     \
+      NSFD_TENSOR_CASE(5);                                                     \
+      NSFD_TENSOR_CASE(6);                                                     \
+      NSFD_TENSOR_CASE(7);                                                     \
+    default:                                                                   \
+      return {evaluate_0, integrate_0, set_tractions_0};                       \
+    }                                                                          \
+  }
