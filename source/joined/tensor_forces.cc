@@ -1,11 +1,13 @@
 #include "tensor_forces.h"
 
+#include "discretization/cell_geometry.h"
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <deal.II/base/polynomial.h>
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/symmetric_tensor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -99,14 +101,18 @@ namespace nsfd
     const Cells<dim> &cells = discretization_.cells();
     const std::size_t n_blocks = (n_cells_ + lanes - 1) / lanes;
     maps_.resize(n_blocks * per_map, 0.);
-    moduli_.resize(n_blocks * 2 * lanes, 0.);
-    reference_.resize(n_blocks * n_stresses * lanes, 0.);
+    moduli_.resize(n_blocks * 3 * lanes, 0.);
+    reference_.resize(n_blocks * dim * dim * lanes, 0.);
     affine_.assign(n_blocks, 1);
-    bound_.assign(n_blocks * lanes, HUGE_VAL);
+    bound_.assign(n_blocks * lanes, 0.);
     tractions_of_block_.assign(n_blocks, -1);
     volume_.resize(n_cells_);
+    std::vector<double> of_class;
+    for (const auto &shape : cells.shapes)
+      of_class.push_back(distortion(shape));
     for (std::size_t b = 0; b < n_blocks * lanes; ++b) {
-      const auto &shape = cells.shape(std::min(b, n_cells_ - 1));
+      const std::size_t cell = std::min(b, n_cells_ - 1);
+      const auto &shape = cells.shape(cell);
       const std::size_t index = b / lanes, lane = b % lanes;
       double size = 0., curved = 0.;
       for (unsigned int subset = 1; subset < 1u << dim; ++subset)
@@ -122,11 +128,43 @@ namespace nsfd
           largest = std::max(largest, std::abs(sum));
         }
       affine_[index] = affine_[index] && curved <= 0x1p-40 * size;
-      moduli_[index * 2 * lanes + lane] = shape.elasticity[0].lambda;
-      moduli_[(index * 2 + 1) * lanes + lane] = shape.elasticity[0].mu;
+      double *moduli = moduli_.data() + index * 3 * lanes + lane;
+      const auto &law = shape.elasticity[0];
+      moduli[0] = law.lambda;
+      moduli[lanes] = law.mu;
+      const double norm = std::max(2. * law.mu, dim * law.lambda + 2. * law.mu);
+      moduli[2 * lanes] = norm * of_class[cells.bodies.class_of[cell]];
       if (b < n_cells_)
         volume_[b] = shape.volume;
     }
+  }
+
+  /** The largest |J(xi) J(x)^{-1} - 1|, x a node of a face: J is linear along
+      every line, so xi is a corner. */
+  template <int dim>
+  double TensorForces<dim>::distortion(const BodyShape<dim> &shape) const
+  {
+    std::vector<dealii::Tensor<2, dim>> at_corners;
+    for (unsigned int v = 0; v < shape.corners.size(); ++v)
+      at_corners.push_back(jacobian(shape.reference, shape.corners,
+                                    shape.reference.template vertex<dim>(v)));
+    double largest = 0.;
+    for (unsigned int i = 0; i < n_nodes_; ++i) {
+      dealii::Point<dim> x;
+      bool on_face = false;
+      for (unsigned int d = 0, k = i; d < dim; ++d, k /= line_.n) {
+        x[d] = line_.nodes[k % line_.n];
+        on_face = on_face || k % line_.n == 0 || k % line_.n == line_.n - 1;
+      }
+      if (!on_face)
+        continue;
+      const auto inverse = invert(jacobian(shape.reference, shape.corners, x));
+      for (const auto &J : at_corners)
+        largest = std::max(
+            largest,
+            (J * inverse - dealii::unit_symmetric_tensor<dim>()).norm());
+    }
+    return largest;
   }
 
   template <int dim>
@@ -157,7 +195,7 @@ namespace nsfd
   TensorBlock TensorForces<dim>::block(const std::size_t index) const
   {
     const std::size_t first = index * lanes;
-    return {maps_.data() + index * per_map, moduli_.data() + first * 2,
+    return {maps_.data() + index * per_map, moduli_.data() + first * 3,
             affine_[index] != 0,
             groups_->of_corners().data() + first * n_nodes_,
             unsigned(std::min<std::size_t>(lanes, n_cells_ - first))};
@@ -178,7 +216,7 @@ namespace nsfd
       double dilatation[lanes], tension[lanes] = {};
       kernels_.evaluate(line_, cells, groups.displacement.data(),
                         scratch_.data(), dilatation,
-                        reference_.data() + first * n_stresses, &bound_[first]);
+                        reference_.data() + first * dim * dim, &bound_[first]);
       if (this->front_.acts())
         for (unsigned int l = 0; l < cells.count; ++l) {
           const std::size_t b = first + l;

@@ -7,6 +7,9 @@
 
 namespace nsfd
 {
+  template <int dim>
+  struct BodyShape;
+
   /**
    * Isotropic quads and hexes of any degree, `lanes` of them at a time, by sums
    * over one direction after the other: (degree + 1)^(dim + 1) operations and
@@ -34,10 +37,10 @@ namespace nsfd
 
   private:
     using Numbers = dealii::AlignedVector<double>;
-    static constexpr unsigned int n_stresses = dim * (dim + 1) / 2;
     static constexpr std::size_t per_map = ((1u << dim) - 1) * dim * lanes;
 
     void set_blocks();
+    double distortion(const BodyShape<dim> &shape) const;
     void set_places(const JoinedMesh<dim> &mesh);
     TensorBlock block(std::size_t index) const;
     /** Of the tractions of a cell, lane by lane. */
@@ -57,7 +60,7 @@ namespace nsfd
     const CornerGroups<dim> *groups_ = nullptr; ///< of the last forces
     std::vector<double> forces_;                ///< K q by corner
     std::vector<double> bound_; ///< of the stress at the nodes of a cell, Pa
-    Numbers reference_;         ///< stresses near those of a block
+    Numbers reference_;         ///< gradients near those of a block
 
     // where they have been needed since the last forces
     mutable Numbers scratch_, tractions_;

@@ -44,10 +44,18 @@ namespace nsfd
    */
   struct TensorKernels {
     /**
-     * Stresses of the displacements @p q of the groups: the integral of tr eps
-     * by lane. @p bound, by lane, is not below the Frobenius norm of the
-     * stress at any node of an affine cell, Pa; it is the smaller the closer
-     * the stress is to @p reference, which becomes its mean.
+     * Stresses of the displacements @p q of the groups, and by lane the
+     * integral of tr eps. @p reference is any gradient H_0 of the cells, which
+     * becomes the mean of those at the points.
+     *
+     * @p bound is one of |sigma| at the nodes of a cell, Pa. The gradient in
+     * the reference cell is G = sum over the points of L_q G_q, for polynomials
+     * L_q, and so is J = dx/dxi; with H_q = G_q J_q^{-1}, C the elasticity and
+     * B the sum of |L_q|,
+     *
+     *   sigma(x) = C H_0 + sum L_q(x) C (H_q - H_0) J_q J(x)^{-1}
+     *   |sigma(x)| <= |C H_0| + B max |C (H_q - H_0)|
+     *                 + B |C| max |H_q - H_0| max |J_q J(x)^{-1} - 1|.
      */
     void (*evaluate)(const TensorLine &line, const TensorBlock &block,
                      const double *q, double *scratch, double *dilatation,

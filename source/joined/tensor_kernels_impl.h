@@ -158,34 +158,40 @@ namespace nsfd
       return a == b ? a : dim == 2 ? 2u : a + b + 2u;
     }
 
-    /** sigma from dxi_d/dx_c and du_a/dxi_d; tr eps. */
+    /** H_ab = du_a/dx_b from dxi_d/dx_b and du_a/dxi_d. */
     template <int dim>
-    NSFD_INLINE Vector8 set_stress(const Vector8 (&K)[dim][dim],
-                                   const Vector8 (&G)[dim][dim],
-                                   const Vector8 lambda, const Vector8 mu,
-                                   Vector8 *sigma)
+    NSFD_INLINE void set_gradient(const Vector8 (&K)[dim][dim],
+                                  const Vector8 (&G)[dim][dim], Vector8 *H)
     {
-      Vector8 H[dim][dim];
 #pragma GCC unroll 3
       for (unsigned int a = 0; a < dim; ++a)
 #pragma GCC unroll 3
         for (unsigned int b = 0; b < dim; ++b) {
-          H[a][b] = G[a][0] * K[0][b];
+          Vector8 sum = G[a][0] * K[0][b];
 #pragma GCC unroll 3
           for (unsigned int d = 1; d < dim; ++d)
-            H[a][b] += G[a][d] * K[d][b];
+            sum += G[a][d] * K[d][b];
+          H[a * dim + b] = sum;
         }
-      Vector8 trace = H[0][0];
+    }
+
+    /** sigma of H; tr eps. */
+    template <int dim>
+    NSFD_INLINE Vector8 set_stress(const Vector8 *H, const Vector8 lambda,
+                                   const Vector8 mu, Vector8 *sigma)
+    {
+      Vector8 trace = H[0];
 #pragma GCC unroll 3
       for (unsigned int a = 1; a < dim; ++a)
-        trace += H[a][a];
+        trace += H[a * dim + a];
       const Vector8 pressure = lambda * trace;
 #pragma GCC unroll 3
       for (unsigned int a = 0; a < dim; ++a)
 #pragma GCC unroll 3
         for (unsigned int b = a; b < dim; ++b)
           sigma[stress_at(dim, a, b)] =
-              a == b ? pressure + 2. * mu * H[a][a] : mu * (H[a][b] + H[b][a]);
+              a == b ? pressure + 2. * mu * H[a * dim + a]
+                     : mu * (H[a * dim + b] + H[b * dim + a]);
       return trace;
     }
 
@@ -217,6 +223,8 @@ namespace nsfd
       const auto *moduli = reinterpret_cast<const Vector8 *>(block.moduli);
       auto *around = reinterpret_cast<Vector8 *>(reference);
       const Vector8 lambda = moduli[0], mu = moduli[1];
+      Vector8 stress_around[n_stresses];
+      set_stress<dim>(around, lambda, mu, stress_around);
       Vector8 J[dim][dim], C[dim][dim], K[dim][dim], det;
       const auto set_map = [&](const double *xi) {
         set_jacobian<dim, affine>(map, xi, J);
@@ -231,7 +239,7 @@ namespace nsfd
       double xi[3] = {};
       if (affine)
         set_map(xi);
-      Vector8 mean[n_stresses] = {}, all = {}, farthest = {};
+      Vector8 mean[dim * dim] = {}, all = {}, farthest = {}, turned = {};
       unsigned int q = 0;
       for (unsigned int z = 0; z < (dim == 3 ? n : 1); ++z)
         for (unsigned int y = 0; y < n; ++y)
@@ -251,18 +259,25 @@ namespace nsfd
 #pragma GCC unroll 3
               for (unsigned int d = 0; d < dim; ++d)
                 G[a][d] = gradients[(a * dim + d) * size + q];
-            Vector8 sigma[n_stresses];
-            const Vector8 trace = set_stress<dim>(K, G, lambda, mu, sigma);
-            all += weight * det * trace;
-            if constexpr (affine) {
-              Vector8 off[n_stresses];
+            Vector8 H[dim * dim], sigma[n_stresses], off[n_stresses];
+            set_gradient<dim>(K, G, H);
+            all += weight * det * set_stress<dim>(H, lambda, mu, sigma);
+#pragma GCC unroll 9
+            for (unsigned int s = 0; s < dim * dim; ++s)
+              mean[s] += H[s];
 #pragma GCC unroll 6
-              for (unsigned int s = 0; s < n_stresses; ++s) {
-                mean[s] += sigma[s];
-                off[s] = sigma[s] - around[s];
+            for (unsigned int s = 0; s < n_stresses; ++s)
+              off[s] = sigma[s] - stress_around[s];
+            const Vector8 distance = square<dim>(off);
+            farthest = distance > farthest ? distance : farthest;
+            if constexpr (!affine) {
+              Vector8 sum = {};
+#pragma GCC unroll 9
+              for (unsigned int s = 0; s < dim * dim; ++s) {
+                H[s] -= around[s];
+                sum += H[s] * H[s];
               }
-              const Vector8 distance = square<dim>(off);
-              farthest = distance > farthest ? distance : farthest;
+              turned = sum > turned ? sum : turned;
             }
 #pragma GCC unroll 3
             for (unsigned int d = 0; d < dim; ++d) {
@@ -284,24 +299,22 @@ namespace nsfd
               }
             }
           }
-      if constexpr (affine) {
+      if constexpr (affine)
 #pragma GCC unroll 3
         for (unsigned int d = 0; d < dim; ++d)
 #pragma GCC unroll 3
           for (unsigned int b = 0; b < dim; ++b)
             weighted[d * dim + b] = C[d][b];
-        const Vector8 centre = square<dim>(around);
-        for (unsigned int l = 0; l < lanes; ++l)
-          bound[l] =
-              (1. + 1e-10) *
-              (std::sqrt(centre[l]) +
-               (dim == 2 ? 1. : line.extrapolation) * line.extrapolation *
-                   line.extrapolation * std::sqrt(farthest[l]));
-        for (unsigned int s = 0; s < n_stresses; ++s)
-          around[s] = mean[s] / double(size);
-      } else
-        for (unsigned int l = 0; l < lanes; ++l)
-          bound[l] = HUGE_VAL;
+      const Vector8 centre = square<dim>(stress_around);
+      const double grows = line.extrapolation * line.extrapolation *
+                           (dim == 2 ? 1. : line.extrapolation);
+      for (unsigned int l = 0; l < lanes; ++l)
+        bound[l] =
+            (1. + 1e-10) * (std::sqrt(centre[l]) +
+                            grows * (std::sqrt(farthest[l]) +
+                                     moduli[2][l] * std::sqrt(turned[l])));
+      for (unsigned int s = 0; s < dim * dim; ++s)
+        around[s] = mean[s] / double(size);
       for (unsigned int l = 0; l < lanes; ++l)
         dilatation[l] = all[l];
     }
@@ -457,7 +470,7 @@ namespace nsfd
       }
     }
 
-    template <int dim, int N, bool affine>
+    template <int dim, int N>
     NSFD_INLINE void set_tractions(const TensorLine &line,
                                    const TensorBlock &block, const double *q,
                                    double *scratch, double *tractions)
@@ -482,7 +495,7 @@ namespace nsfd
             const double xi[3] = {line.nodes[at[0]], line.nodes[at[1]],
                                   line.nodes[at[2]]};
             Vector8 J[dim][dim], C[dim][dim], K[dim][dim], G[dim][dim];
-            set_jacobian<dim, affine>(map, xi, J);
+            set_jacobian<dim, false>(map, xi, J);
             const Vector8 inverse = 1. / cofactors<dim>(J, C);
             unsigned int node = 0;
             for (unsigned int e = 0; e < dim; ++e)
@@ -499,8 +512,9 @@ namespace nsfd
                 K[e][a] = C[e][a] * inverse;
               }
             }
-            Vector8 sigma[dim * (dim + 1) / 2];
-            set_stress<dim>(K, G, moduli[0], moduli[1], sigma);
+            Vector8 H[dim * dim], sigma[dim * (dim + 1) / 2];
+            set_gradient<dim>(K, G, H);
+            set_stress<dim>(H, moduli[0], moduli[1], sigma);
             Vector8 normal[dim], length = {};
             for (unsigned int c = 0; c < dim; ++c) {
               normal[c] = side ? K[d][c] : -K[d][c];
@@ -548,10 +562,7 @@ namespace nsfd
       const TensorLine &line, const TensorBlock &block, const double *q,       \
       double *scratch, double *tractions)                                      \
   {                                                                            \
-    if (block.affine)                                                          \
-      set_tractions<dim, N, true>(line, block, q, scratch, tractions);         \
-    else                                                                       \
-      set_tractions<dim, N, false>(line, block, q, scratch, tractions);        \
+    set_tractions<dim, N>(line, block, q, scratch, tractions);                 \
   }
 
 #define NSFD_TENSOR_CASE(N)                                                    \

@@ -1,0 +1,344 @@
+#include "make_scene.h"
+
+#include "discretization/cells.h"
+#include "joined/block_forces.h"
+#include "joined/tensor_forces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace nsfd::test_tensor_forces
+{
+  namespace
+  {
+    const std::string body = R"(
+subsection Material: bulk
+  set Young modulus = 135 GPa
+  set Poisson ratio = 0.32
+  set density       = 7800 kg/m^3
+end
+subsection Interface: all
+  set law       = camacho-ortiz
+  set strength  = 300 MPa
+  set toughness = 0.5 J/m^2
+end
+subsection Time
+  set end    = 1 ns
+  set step   = auto
+  set scheme = leapfrog
+end
+)";
+    constexpr double size = 10e-6; // m
+
+    /** A square or a cube of that size. */
+    std::vector<std::string> mesh(const unsigned int dim,
+                                  const std::string &cells,
+                                  const unsigned int degree,
+                                  const bool distorted)
+    {
+      std::vector<std::string> set = {
+          "Mesh/cells=" + cells,
+          "Discretization/degree=" + std::to_string(degree),
+          std::string("Mesh/distortion=") + (distorted ? "0.2" : "0")};
+      if (dim == 2)
+        set.insert(set.end(), {"dimension=2", "Mesh/upper corner=10 um, 10 um",
+                               "Mesh/type=rectangle"});
+      else
+        set.insert(set.end(), {"dimension=3", "Mesh/type=brick",
+                               "Mesh/upper corner=10 um, 10 um, 10 um"});
+      return set;
+    }
+
+    /** Cells that are all joined, and both kinds of forces on them. */
+    template <int dim>
+    struct Pair : test::Scene<dim> {
+      Pair(const std::vector<std::string> &overrides, const double viscosity)
+          : test::Scene<dim>(body, overrides), mesh(*this->discretization),
+            groups(mesh, all_intact(*this->discretization)),
+            front(*this->discretization, viscosity),
+            blocks(*this->discretization, mesh, front),
+            tensors(*this->discretization, mesh, front)
+      {
+        EXPECT_TRUE(TensorForces<dim>::fits(*this->discretization));
+        set_sites();
+      }
+
+      static std::vector<std::uint8_t>
+      all_intact(const Discretization<dim> &discretization)
+      {
+        std::vector<std::uint8_t> intact;
+        for (const auto &origin : discretization.origins())
+          intact.push_back(origin.kind == PointOrigin::Kind::interface);
+        return intact;
+      }
+
+      /** A face of cells of degree 1, else a point; limits are set later. */
+      void set_sites()
+      {
+        const auto &points = this->discretization->points();
+        const bool whole = this->input->discretization.degree == 1;
+        for (const auto &face : points.faces) {
+          if (face.bodies[0] < 0 || face.bodies[1] < 0)
+            continue;
+          sites.first_of_face.push_back(sites.size());
+          sites.least.push_back(0.);
+          for (unsigned int k = 0; k < (whole ? 1 : face.count); ++k) {
+            sites.first_point.push_back(face.first + k);
+            sites.n_points.push_back(whole ? face.count : 1);
+            sites.cells.push_back(
+                {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}});
+            const double *normal =
+                &points.frame[std::size_t(face.first + k) * dim * dim];
+            sites.normal.insert(sites.normal.end(), normal, normal + dim);
+            sites.shear_weight.push_back(1.5);
+            sites.limit.push_back(0.);
+          }
+        }
+        sites.first_of_face.push_back(sites.size());
+      }
+
+      void set_limits(const double limit)
+      {
+        std::fill(sites.limit.begin(), sites.limit.end(), limit);
+        std::fill(sites.least.begin(), sites.least.end(), limit / 1.5);
+      }
+
+      dealii::Point<dim> node(const std::size_t b, const unsigned int i) const
+      {
+        const auto &cells = this->discretization->cells();
+        return cells.place(b, cells.shape(b).nodes[i]);
+      }
+
+      JoinedMesh<dim> mesh;
+      CornerGroups<dim> groups;
+      FrontViscosity front;
+      BlockForces<dim> blocks;
+      TensorForces<dim> tensors;
+      StrengthSites sites;
+    };
+
+    double largest(const std::vector<double> &x)
+    {
+      double result = 0.;
+      for (const double value : x)
+        result = std::max(result, std::abs(value));
+      return result;
+    }
+
+    template <int dim>
+    void expect_equal(const std::string &cells, const unsigned int degree,
+                      const bool distorted)
+    {
+      SCOPED_TRACE("degree " + std::to_string(degree) +
+                   (distorted ? ", distorted" : ""));
+      Pair<dim> pair(mesh(dim, cells, degree, distorted), 0.2);
+      std::mt19937 random(degree);
+      std::uniform_real_distribution<double> between(-1e-9, 1e-9);
+      auto &groups = pair.groups;
+      std::vector<double> force, expected, squares, expected_squares;
+      for (unsigned int step = 0; step < 3;
+           ++step) { // tensions from the second
+        for (double &value : groups.displacement)
+          value = between(random);
+        const double h = step == 0 ? 0. : pair.time_step;
+        pair.tensors.set_forces(groups, h);
+        pair.tensors.front().finish(pair.communicator);
+        force = groups.force;
+        pair.blocks.set_forces(groups, h);
+        pair.blocks.front().finish(pair.communicator);
+        expected = groups.force;
+        for (std::size_t k = 0; k < force.size(); ++k)
+          ASSERT_NEAR(force[k], expected[k], 1e-12 * largest(expected)) << k;
+      }
+      EXPECT_GT(largest(pair.tensors.front().tension), 0.);
+      for (std::size_t i = 0; i < pair.mesh.n_corners(); ++i) {
+        const auto mine = pair.tensors.corner_force(i, groups),
+                   others = pair.blocks.corner_force(i, groups);
+        for (unsigned int c = 0; c < dim; ++c)
+          ASSERT_NEAR(mine[c], others[c], 1e-12 * largest(expected));
+      }
+      pair.set_limits(0.);
+      pair.blocks.squared_tractions(pair.sites, expected_squares);
+      const double most = largest(expected_squares);
+      for (std::size_t k = 0; k < pair.sites.size(); ++k) {
+        const auto mine = pair.tensors.traction(pair.sites, k),
+                   others = pair.blocks.traction(pair.sites, k);
+        for (unsigned int c = 0; c < dim; ++c)
+          ASSERT_NEAR(mine[c], others[c], 1e-12 * std::sqrt(most)) << k;
+      }
+      // what is near a limit is not missed, what is far from it left out
+      for (const double share : {0., 0.5, 1., 4., 25., 1e10}) {
+        pair.set_limits(share * most);
+        pair.tensors.set_forces(groups, 0.); // nothing is known yet
+        pair.tensors.squared_tractions(pair.sites, squares);
+        ASSERT_EQ(squares.size(), expected_squares.size());
+        const double quiet = StrengthSites::quiet * StrengthSites::quiet;
+        for (std::size_t k = 0; k < squares.size(); ++k) {
+          if (squares[k] != 0. || expected_squares[k] >= quiet * share * most) {
+            ASSERT_NEAR(squares[k], expected_squares[k], 2e-12 * most);
+          }
+        }
+        EXPECT_EQ(largest(squares) > 0., share < 1e10);
+      }
+    }
+
+    TEST(TensorForces, EqualThoseOfBlocksOnQuads)
+    {
+      for (const unsigned int degree : {1u, 2u, 3u, 4u, 5u, 6u, 8u})
+        for (const bool distorted : {false, true})
+          expect_equal<2>("4, 3", degree, distorted);
+    }
+
+    TEST(TensorForces, EqualThoseOfBlocksOnHexes)
+    {
+      for (const bool distorted : {false, true}) {
+        expect_equal<3>("3, 3, 2", 1, distorted);
+        expect_equal<3>("2, 3, 2", 2, distorted);
+        expect_equal<3>("2, 2, 1", 3, distorted);
+        expect_equal<3>("2, 1, 1", 4, distorted);
+      }
+    }
+
+    // A linear displacement: no force inside, the same stress everywhere.
+    template <int dim>
+    void expect_patch(const std::string &cells, const unsigned int degree)
+    {
+      SCOPED_TRACE("degree " + std::to_string(degree));
+      Pair<dim> pair(mesh(dim, cells, degree, true), 0.);
+      const double H[3][3] = {
+          {1e-4, 3e-4, -2e-4}, {-1e-4, 2e-4, 4e-4}, {5e-4, 1e-4, -3e-4}};
+      const auto &shapes = pair.discretization->cells();
+      std::vector<char> inside(pair.groups.size(), 1);
+      for (std::size_t b = 0; b < shapes.bodies.size(); ++b)
+        for (unsigned int i = 0; i < shapes.shape(b).n_nodes; ++i) {
+          const auto x = pair.node(b, i);
+          const auto group = pair.groups.of(unsigned(shapes.first_node[b]) + i);
+          for (unsigned int c = 0; c < dim; ++c) {
+            double u = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              u += H[c][d] * x[d];
+            pair.groups.displacement[group * dim + c] = u;
+            if (x[c] < 1e-6 * size || x[c] > (1. - 1e-6) * size)
+              inside[group] = 0;
+          }
+        }
+      pair.tensors.set_forces(pair.groups, 0.);
+      const auto &force = pair.groups.force;
+      EXPECT_GT(std::count(inside.begin(), inside.end(), 1), 0);
+      for (std::size_t k = 0; k < force.size(); ++k)
+        if (inside[k / dim]) { // round-off grows with degree^2
+          ASSERT_LT(std::abs(force[k]), 1e-11 * largest(force)) << k;
+        }
+      const double E = 135e9, nu = 0.32, mu = E / (2. * (1. + nu)),
+                   lambda = E * nu / ((1. + nu) * (1. - 2. * nu));
+      double trace = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        trace += H[c][c];
+      const auto &points = pair.discretization->points();
+      for (std::size_t k = 0; k < pair.sites.size() && degree > 1; ++k) {
+        const double *n =
+            &points.frame[pair.sites.first_point[k] * std::size_t(dim * dim)];
+        const auto t = pair.tensors.traction(pair.sites, k);
+        for (unsigned int c = 0; c < dim; ++c) {
+          double expected = lambda * trace * n[c];
+          for (unsigned int d = 0; d < dim; ++d)
+            expected += mu * (H[c][d] + H[d][c]) * n[d];
+          ASSERT_NEAR(t[c], expected, 1e-11 * E * 5e-4) << k;
+        }
+      }
+    }
+
+    TEST(TensorForces, PassThePatchTest)
+    {
+      for (const unsigned int degree : {1u, 2u, 3u, 4u, 7u})
+        expect_patch<2>("3, 3", degree);
+      expect_patch<3>("3, 2, 2", 1);
+      expect_patch<3>("2, 2, 2", 2);
+      expect_patch<3>("2, 2, 2", 3);
+    }
+
+    /**
+     * L2 error of a standing wave u = sin(pi t) cos(pi x) / pi, n cells to its
+     * half length, against what the leapfrog makes of its exact shape:
+     * A sin(w t), sin(w h/2) = pi h/2, A sin(w h) = h.
+     */
+    template <int dim>
+    double wave_error(const unsigned int n, const unsigned int degree)
+    {
+      const std::string cells =
+          std::to_string(n) + (dim == 2 ? ", 1" : ", 1, 1");
+      const std::string text = R"(
+subsection Material: bar
+  set Young modulus = 1
+  set Poisson ratio = 0
+  set density       = 1
+  set initial velocity x = cos(pi * x)
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Time
+  set end             = 1
+  set step            = auto
+  set scheme          = leapfrog
+  set front viscosity = 0
+end
+)";
+      test::Scene<dim> scene(
+          text, {"dimension=" + std::to_string(dim), "Mesh/cells=" + cells,
+                 dim == 2 ? "Mesh/upper corner=1, 0.2"
+                          : "Mesh/upper corner=1, 0.2, 0.2",
+                 dim == 2 ? "Mesh/type=rectangle" : "Mesh/type=brick",
+                 "Discretization/degree=" + std::to_string(degree)});
+      State state = scene.leapfrog->start_from(scene.state), next = state;
+      const auto n_steps = unsigned(std::ceil(0.4 / scene.time_step));
+      const double h = 0.4 / n_steps;
+      for (unsigned int k = 0; k < n_steps; ++k) {
+        scene.leapfrog->advance(state, h, next, 2);
+        std::swap(state, next);
+      }
+      scene.leapfrog->show(state);
+      const double w = 2. / h * std::asin(M_PI * h / 2.),
+                   amplitude = h / std::sin(w * h) * std::sin(w * 0.4);
+      const auto &of_cells = scene.discretization->cells();
+      double error = 0., norm = 0.;
+      for (std::size_t b = 0; b < of_cells.bodies.size(); ++b) {
+        const auto &shape = of_cells.shape(b);
+        const double *u = &state.displacement[of_cells.bodies.first_dof[b]];
+        for (std::size_t q = 0; q < shape.JxW.size(); ++q) {
+          double value = 0.;
+          for (unsigned int i = 0; i < shape.n_nodes; ++i)
+            value += shape.values[q * shape.n_nodes + i] * u[i * dim];
+          const double exact =
+              amplitude *
+              std::cos(M_PI * of_cells.place(b, shape.positions[q])[0]);
+          error += shape.JxW[q] * (value - exact) * (value - exact);
+          norm += shape.JxW[q] * exact * exact;
+        }
+      }
+      return std::sqrt(error / norm);
+    }
+
+    template <int dim>
+    void expect_order(const unsigned int degree, const unsigned int n)
+    {
+      SCOPED_TRACE("degree " + std::to_string(degree));
+      const double coarse = wave_error<dim>(n, degree),
+                   fine = wave_error<dim>(2 * n, degree);
+      EXPECT_GT(std::log2(coarse / fine), degree + 0.85);
+      EXPECT_LT(std::log2(coarse / fine), degree + 1.6);
+      EXPECT_LT(fine, std::pow(0.5, 4. * degree)); // of the amplitude
+    }
+
+    TEST(TensorForces, WavesAreOfOrderDegreePlusOne)
+    {
+      for (const unsigned int degree : {1u, 2u, 3u, 4u})
+        expect_order<2>(degree, 4);
+      for (const unsigned int degree : {1u, 2u, 3u, 4u})
+        expect_order<3>(degree, 4);
+    }
+  } // namespace
+} // namespace nsfd::test_tensor_forces
