@@ -14,7 +14,7 @@ namespace nsfd
    */
   struct StrengthSites {
     /// share of its strength below which a site is not looked at
-    static constexpr double quiet = 0.2;
+    static constexpr double quiet = 0.99;
 
     std::vector<unsigned int> first_point, n_points;
     std::vector<std::array<unsigned int, 2>> cells;
