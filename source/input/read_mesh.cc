@@ -196,7 +196,10 @@ namespace nsfd
     {
       const unsigned int degree = scene.discretization.degree;
       const bool simplices = has_simplices(scene);
-      const unsigned int highest = simplices ? 2 : scene.dimension == 2 ? 8 : 4;
+      const unsigned int highest = simplices                               ? 2
+                                   : scene.dimension == 2                  ? 8
+                                   : scene.time.scheme == Scheme::leapfrog ? 6
+                                                                           : 4;
       if (degree <= highest)
         return;
       const char *const reason =
@@ -205,7 +208,9 @@ namespace nsfd
                 "tetrahedra (`split simplices = true` makes quads or hexes of "
                 "them)"
               : (scene.dimension == 2 ? "quadrilaterals are tested to degree 8"
-                                      : "hexahedra are tested to degree 4");
+                 : highest == 6 ? "hexahedra of explicit steps are tested to "
+                                  "degree 6"
+                                : "hexahedra are tested to degree 4");
       reader.error("degree",
                    fmt::format("degree = {} must be at most {} on this mesh: "
                                "{}",
