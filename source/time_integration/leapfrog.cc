@@ -279,11 +279,13 @@ namespace nsfd
     typename LeapfrogPoints<dim>::Outcome outcome;
     {
       const Charge charge(Cost::solver);
-      outcome = points_.solve(h, last, supports_.mask(), g);
+      outcome =
+          points_.solve(h, last, supports_.mask(), input_.solver.tolerance, g);
     }
     counters_.problems += outcome.problems;
     counters_.sweeps += outcome.sweeps;
     counters_.newton += outcome.newton;
+    counters_.loose += outcome.loose;
     counters_.released += report.released;
     report.solver.converged = !communicator_.any(!outcome.converged);
     report.solver.residual = communicator_.max(outcome.residual);
@@ -418,6 +420,7 @@ namespace nsfd
     counters["newton"] = double(counters_.newton);
     counters["released_points"] = double(counters_.released);
     counters["active_points"] = double(points_.size());
+    counters["node_problems_above_1e-12"] = double(counters_.loose);
     counters["groups"] = double(groups_ ? groups_->size() : 0);
     counters["worst_excess_over_strength"] = excess_;
     counters["worst_excess_at_crack_ends"] = excess_at_ends_;

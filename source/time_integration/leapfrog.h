@@ -95,7 +95,8 @@ namespace nsfd
     /// over the strength, less 1: of mean tractions, of what holds a node
     double excess_ = 0., excess_at_ends_ = 0.;
     struct Counters {
-      unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0;
+      unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0,
+                         loose = 0;
     } counters_;
   };
 } // namespace nsfd

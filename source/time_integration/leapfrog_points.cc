@@ -196,9 +196,10 @@ namespace nsfd
             chains_.impulse[a * dim + c] +
             p.weight[a] * p.time_step * energies.cohesive_traction[c];
         work += rub * (U[c] + chains_.old_velocity[a * dim + c]) / 2.;
-        size += std::abs(rub * U[c]);
+        size += std::abs(rub) *
+                (std::abs(U[c]) + std::abs(chains_.old_velocity[a * dim + c]));
       }
-      if (work <= 1e-12 * size)
+      if (work <= 1e-9 * size)
         continue;
       turned = true;
       chains_.turned[a] = 1;
@@ -211,6 +212,7 @@ namespace nsfd
   template <int dim>
   auto LeapfrogPoints<dim>::solve(const double h, const double last,
                                   const std::vector<std::uint8_t> &prescribed,
+                                  const double tolerance,
                                   CornerGroups<dim> &groups) -> Outcome
   {
     Outcome outcome;
@@ -238,7 +240,9 @@ namespace nsfd
           outcome.residual = report.residual;
           outcome.worst = chains_.point[moved_[first]];
         }
-        outcome.converged = outcome.converged && report.converged;
+        outcome.loose += !report.converged;
+        outcome.converged = outcome.converged &&
+                            (report.converged || report.residual <= tolerance);
         take_velocities(first, groups);
       } while (turn_friction(first));
     }

@@ -45,15 +45,17 @@ namespace nsfd
       bool converged = true;
       double residual = 0.;
       unsigned int sweeps = 0, newton = 0, problems = 0;
-      std::size_t worst = 0; ///< point of the mesh
+      unsigned int loose = 0; ///< problems not solved to round-off
+      std::size_t worst = 0;  ///< point of the mesh
     };
     /**
      * The problems of all nodes, from the velocities of the groups without
      * impulses to those with them. @p last is the length of the step before,
-     * 0 if there was none; @p prescribed: bit c of a group, component c.
+     * 0 if there was none; @p prescribed: bit c of a group, component c. What
+     * is not solved to round-off counts as solved below @p tolerance.
      */
     Outcome solve(double time_step, double last,
-                  const std::vector<std::uint8_t> &prescribed,
+                  const std::vector<std::uint8_t> &prescribed, double tolerance,
                   CornerGroups<dim> &groups);
 
     /** What the points did in the step that was solved: sums over them, J. */
