@@ -13,8 +13,8 @@ namespace nsfd
    * is averaged along it), or a point of cells of higher degree.
    */
   struct StrengthSites {
-    /// share of its strength below which a site is not looked at
-    static constexpr double quiet = 0.99;
+    /// share of its strength from which on a site counts
+    static constexpr double looked_at = 0.99;
 
     std::vector<unsigned int> first_point, n_points;
     std::vector<std::array<unsigned int, 2>> cells;
@@ -50,7 +50,7 @@ namespace nsfd
     /**
      * <t_N>_+^2 + shear_weight |t_T|^2 of the mean traction at every site, of
      * the displacements of the last forces, Pa^2; 0 may stand where it is less
-     * than `quiet`^2 times the limit.
+     * than `looked_at`^2 times the limit.
      */
     virtual void squared_tractions(const StrengthSites &sites,
                                    std::vector<double> &squares) const = 0;

@@ -243,8 +243,8 @@ namespace nsfd
   template <int dim>
   const double *TensorForces<dim>::tractions(const std::size_t cell) const
   {
-    const std::size_t size = 2 * dim * dim * (n_nodes_ / line_.n) * lanes,
-                      index = cell / lanes;
+    const std::size_t per_cell = 2 * dim * dim * (n_nodes_ / line_.n),
+                      size = per_cell * lanes, index = cell / lanes;
     int &place = tractions_of_block_[index];
     if (place < 0) {
       place = int(known_.size());
@@ -255,7 +255,8 @@ namespace nsfd
                              scratch_.data(),
                              tractions_.data() + std::size_t(place) * size);
     }
-    return tractions_.data() + std::size_t(place) * size + cell % lanes;
+    return tractions_.data() + std::size_t(place) * size +
+           cell % lanes * per_cell;
   }
 
   template <int dim>
@@ -275,8 +276,8 @@ namespace nsfd
       const double sign = side == 0 ? 0.5 : -0.5;
       for (unsigned int i = first; i < last; ++i)
         for (unsigned int c = 0; c < dim; ++c)
-          result[c] += sign * weight[i] / length *
-                       of_cell[(place_[i][side] * dim + c) * lanes];
+          result[c] +=
+              sign * weight[i] / length * of_cell[place_[i][side] * dim + c];
     }
     return result;
   }
@@ -285,7 +286,7 @@ namespace nsfd
   void TensorForces<dim>::squared_tractions(const StrengthSites &sites,
                                             std::vector<double> &squares) const
   {
-    constexpr double quiet = StrengthSites::quiet * StrengthSites::quiet;
+    const double quiet = sites.looked_at * sites.looked_at;
     squares.assign(sites.size(), 0.);
     for (std::size_t f = 0; f < sites.least.size(); ++f) {
       const std::size_t first = sites.first_of_face[f];

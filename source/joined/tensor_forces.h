@@ -43,7 +43,7 @@ namespace nsfd
     double distortion(const BodyShape<dim> &shape) const;
     void set_places(const JoinedMesh<dim> &mesh);
     TensorBlock block(std::size_t index) const;
-    /** Of the tractions of a cell, lane by lane. */
+    /** At the nodes of the faces of a cell, dim components each. */
     const double *tractions(std::size_t cell) const;
 
     const Discretization<dim> &discretization_;

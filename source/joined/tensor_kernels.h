@@ -68,8 +68,8 @@ namespace nsfd
                       const double *tension, double *scratch,
                       double *corner_forces, double *forces);
     /**
-     * On the outward normal at the nodes of all faces: (face, node of the
-     * face, component, lane), Pa.
+     * On the outward normal at the nodes of all faces: (lane, face, node of
+     * the face, component), Pa.
      */
     void (*set_tractions)(const TensorLine &line, const TensorBlock &block,
                           const double *q, double *scratch, double *tractions);
