@@ -190,9 +190,6 @@ namespace nsfd
       excess = std::max(excess, std::sqrt(square) - 1.);
       let_go(k, released);
     }
-    if (!ends_.empty() && sites_.looked_at == 1.) { // the first ones
-        forces.squared_tractions(sites_, squares_);
-    }
     return released;
   }
 

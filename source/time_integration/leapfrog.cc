@@ -225,12 +225,12 @@ namespace nsfd
   template <int dim>
   unsigned int Leapfrog<dim>::let_go()
   {
-    auto released = faces_.reached(*forces_, excess_);
+    auto released = faces_.reached(*forces_, counters_.excess);
     release(released);
     const auto n = unsigned(released.size());
     released =
         faces_.reached_at_ends(*forces_, *groups_, points_, corner_loads_,
-                               supports_.mask(), excess_at_ends_);
+                               supports_.mask(), counters_.excess_at_ends);
     release(released);
     return n + unsigned(released.size());
   }
@@ -422,15 +422,15 @@ namespace nsfd
     counters["active_points"] = double(points_.size());
     counters["node_problems_above_1e-12"] = double(counters_.loose);
     counters["groups"] = double(groups_ ? groups_->size() : 0);
-    counters["worst_excess_over_strength"] = excess_;
-    counters["worst_excess_at_crack_ends"] = excess_at_ends_;
+    counters["worst_excess_over_strength"] = counters_.excess;
+    counters["worst_excess_at_crack_ends"] = counters_.excess_at_ends;
   }
 
   template <int dim>
   void Leapfrog<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "leapfrog");
-    archive.numbers("excess", excess_, excess_at_ends_);
+    archive.numbers("excess", counters_.excess, counters_.excess_at_ends);
     points_.serialize(archive);
     auto &front = forces_->front();
     front.serialize(archive, discretization_.bodies().first_dof);

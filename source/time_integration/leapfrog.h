@@ -92,9 +92,9 @@ namespace nsfd
 
     std::vector<double> old_velocity_, old_displacement_, terms_;
     FrontViscosity::Powers front_;
-    /// over the strength, less 1: of mean tractions, of what holds a node
-    double excess_ = 0., excess_at_ends_ = 0.;
     struct Counters {
+      /// over the strength, less 1: of mean tractions, of what holds a node
+      double excess = 0., excess_at_ends = 0.;
       unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0,
                          loose = 0;
     } counters_;
