@@ -167,6 +167,10 @@ namespace nsfd
               facts.beyond_unique, facts.steps,
               facts.brittle
                   ? std::string("its traction jumps, no step is short enough")
+              : facts.explicit_steps
+                  ? std::string(
+                        "smaller cells (a third of the cohesive length) "
+                        "or a shorter Time/step")
               : facts.automatic_steps
                   ? fmt::format("raise Time/maximum bisections above {}",
                                 facts.maximum_bisections)

@@ -42,6 +42,7 @@ namespace nsfd
     bool softens = false;           ///< some face has a cohesive law
     bool brittle = false;         ///< the traction of one of them jumps to zero
     bool automatic_steps = false; ///< step = auto
+    bool explicit_steps = false;  ///< on joined cells
     bool follows_jumps = false;   ///< at solution jump = dynamic
     bool takes_jumps = false;     ///< at solution jump = relax
     unsigned int maximum_bisections = 10;

@@ -188,6 +188,7 @@ namespace nsfd
         input.statics && input.statics->at_jump == SolutionJump::relax;
     facts.maximum_bisections = input.time.maximum_bisections;
     facts.automatic_steps = input.time.step_kind == StepKind::automatic;
+    facts.explicit_steps = input.time.scheme == Scheme::leapfrog;
     facts.beyond_unique = counter("steps_beyond_uniqueness");
     facts.solution_jumps = counter("solution_jumps");
     facts.rejected = counter("rejected_steps");

@@ -26,6 +26,26 @@ namespace nsfd
     constexpr double share_at_start = 1e-9;
   } // namespace
 
+  /**
+   * A softening point has one solution as long as h^2 w (1/m_1 + 1/m_2)
+   * max|T'| < 2, against single groups.
+   */
+  template <int dim>
+  bool LeapfrogPoints<dim>::is_beyond_unique(
+      const unsigned int a, const PointEnergies<dim> &energies) const
+  {
+    const OneStepProblem<dim> &p = chains_.problem;
+    const auto &interaction = p.interactions[p.interaction[a]];
+    if (!interaction.law ||
+        !past_peak(*interaction.law, p.opening_factor[a], energies.history))
+      return false;
+    const double softening = p.strength_factor[a] * p.opening_factor[a] *
+                             interaction.law->steepest_softening();
+    const double h = p.time_step * p.theta;
+    return h * p.time_step * p.weight[a] * p.majorant_normal[a] * softening >=
+           2.;
+  }
+
   template <int dim>
   void LeapfrogPoints<dim>::account_point(const unsigned int a,
                                           const std::size_t row,
@@ -74,6 +94,8 @@ namespace nsfd
         put(positive_friction, std::max(0., rubbing));
       } else
         residual += rubbing;
+      balance.beyond_unique |=
+          solution.damages && is_beyond_unique(a, energies);
       balance.active += chains_.closed[a] || solution.damages;
     }
     put(stored, w * (energies.stored - energies.stored_old));
@@ -172,6 +194,7 @@ namespace nsfd
     balance.viscous = sums[viscous];
     balance.broken = sums[broken];
     balance.penetration = communicator.max(balance.penetration);
+    balance.beyond_unique = communicator.any(balance.beyond_unique);
     balance.active = unsigned(communicator.sum_integer(balance.active));
     const auto set = [&](const WatchedLine line, const Row row) {
       balance.changes.taken[std::size_t(line)] = sums[row];

@@ -154,6 +154,13 @@ namespace nsfd
         continue;
       const int one = local(corners[0]), two = local(corners[1]);
       local_.points.push_back({a, {{one, two}}});
+      double flexibility = 0.;
+      for (const int group : {one, two})
+        if (group >= 0) {
+          const auto &inverse = local_.inverse_mass[std::size_t(group)];
+          flexibility += *std::max_element(inverse.begin(), inverse.end());
+        }
+      chains_.problem.majorant_normal[a] = flexibility;
     }
     return !local_.points.empty();
   }

@@ -111,6 +111,8 @@ namespace nsfd
                  CornerGroups<dim> &groups);
     bool turn_friction(std::size_t first);
     void take_velocities(std::size_t first, CornerGroups<dim> &groups);
+    bool is_beyond_unique(unsigned int a,
+                          const PointEnergies<dim> &energies) const;
     void account_point(unsigned int a, std::size_t row, Balance &balance);
     void keep_jump(unsigned int a);
     void keep(unsigned int a, const PointEnergies<dim> &energies);
