@@ -56,8 +56,7 @@ namespace nsfd
         forces_(make_cell_forces(
             discretization, mesh_,
             FrontViscosity(discretization, input.front_viscosity()))),
-        faces_(discretization, mesh_, all_),
-        supports_(input, discretization, mesh_),
+        faces_(discretization, all_), supports_(input, discretization, mesh_),
         points_(discretization, mesh_, all_),
         check_(input, [this](const std::size_t i) {
           return name_of_point<dim>(input_, discretization_.origins(),
@@ -225,14 +224,9 @@ namespace nsfd
   template <int dim>
   unsigned int Leapfrog<dim>::let_go()
   {
-    auto released = faces_.reached(*forces_, counters_.excess);
+    const auto released = faces_.reached(*forces_, counters_.excess);
     release(released);
-    const auto n = unsigned(released.size());
-    released =
-        faces_.reached_at_ends(*forces_, *groups_, points_, corner_loads_,
-                               supports_.mask(), counters_.excess_at_ends);
-    release(released);
-    return n + unsigned(released.size());
+    return unsigned(released.size());
   }
 
   /** Without points: v- + k (f + F)/m, or what is prescribed. */
@@ -423,14 +417,13 @@ namespace nsfd
     counters["node_problems_above_1e-12"] = double(counters_.loose);
     counters["groups"] = double(groups_ ? groups_->size() : 0);
     counters["worst_excess_over_strength"] = counters_.excess;
-    counters["worst_excess_at_crack_ends"] = counters_.excess_at_ends;
   }
 
   template <int dim>
   void Leapfrog<dim>::serialize(Archive &archive)
   {
     const Archive::Part part(archive, "leapfrog");
-    archive.numbers("excess", counters_.excess, counters_.excess_at_ends);
+    archive.numbers("excess", counters_.excess);
     points_.serialize(archive);
     auto &front = forces_->front();
     front.serialize(archive, discretization_.bodies().first_dof);

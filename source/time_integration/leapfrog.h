@@ -93,8 +93,7 @@ namespace nsfd
     std::vector<double> old_velocity_, old_displacement_, terms_;
     FrontViscosity::Powers front_;
     struct Counters {
-      /// over the strength, less 1: of mean tractions, of what holds a node
-      double excess = 0., excess_at_ends = 0.;
+      double excess = 0.; ///< of a traction over the strength, less 1
       unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0,
                          loose = 0;
     } counters_;

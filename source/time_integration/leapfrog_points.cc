@@ -279,35 +279,6 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogPoints<dim>::add_forces(
-      const std::size_t node, const CornerGroups<dim> &groups,
-      std::vector<std::array<double, dim>> &forces) const
-  {
-    if (node_index_[node] < 0 || chains_.problem.time_step == 0.)
-      return;
-    const auto corners = mesh_.corners_of_node(node);
-    for (const unsigned int a : nodes_[std::size_t(node_index_[node])].points) {
-      const auto &sides = mesh_.corners(chains_.point[a]);
-      if (sides[0] != JoinedMesh<dim>::none &&
-          sides[1] != JoinedMesh<dim>::none &&
-          groups.of(sides[0]) == groups.of(sides[1]))
-        continue;
-      for (unsigned int side = 0; side < 2; ++side) {
-        if (sides[side] == JoinedMesh<dim>::none)
-          continue;
-        auto &force = forces[std::size_t(
-            std::lower_bound(corners.begin(), corners.end(), sides[side]) -
-            corners.begin())];
-        for (unsigned int r = 0; r < dim; ++r)
-          for (unsigned int c = 0; c < dim; ++c)
-            force[c] += (side == 0 ? -2. : 2.) / chains_.problem.time_step *
-                        chains_.impulse[a * dim + r] *
-                        chains_.frame[(std::size_t(a) * dim + r) * dim + c];
-      }
-    }
-  }
-
-  template <int dim>
   double
   LeapfrogPoints<dim>::initial_energy(const Communicator &communicator) const
   {

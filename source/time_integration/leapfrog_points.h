@@ -83,13 +83,6 @@ namespace nsfd
                       const CornerGroups<dim> &groups,
                       std::vector<double> &rows) const;
 
-    /**
-     * Adds the forces of the last step on the corners of @p node, in N, in
-     * their order.
-     */
-    void add_forces(std::size_t node, const CornerGroups<dim> &groups,
-                    std::vector<std::array<double, dim>> &forces) const;
-
     void show(State &state) const { chains_.show(state); }
     /** The chain that is not shown, of points that have been add()ed. */
     void serialize(Archive &archive)
