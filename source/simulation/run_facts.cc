@@ -134,9 +134,11 @@ namespace nsfd
         if (line == WatchedLine::joints || line == WatchedLine::supports)
           given.bound += share(watch.noise);
         if (line == WatchedLine::scheme)
-          given.bound = never_gives(line, input)
-                            ? energy_round_off + share(watch.noise)
-                            : of_pure_rules;
+          // that of the leapfrog only gives where its steps change their length
+          given.bound =
+              never_gives(line, input) || input.time.scheme == Scheme::leapfrog
+                  ? energy_round_off + share(watch.noise)
+                  : of_pure_rules;
         given.advice = advice_of(line, input);
         result.push_back(std::move(given));
       }

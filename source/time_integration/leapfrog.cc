@@ -376,6 +376,8 @@ namespace nsfd
     report.changes = balance.changes;
     report.changes.taken[std::size_t(WatchedLine::scheme)] =
         energy.numerical - old.energy.numerical;
+    report.changes.taken[std::size_t(WatchedLine::viscous)] =
+        energy.viscous - old.energy.viscous;
     close_balance(old, next, report);
     const double scale = 4. * std::abs(energy.kinetic);
     const TakenStep step{old, next, h, scale, 0};

@@ -112,6 +112,9 @@ end
         for (const auto line : {&EnergyLines::damage, &EnergyLines::friction,
                                 &EnergyLines::impact})
           worst_gift = std::max(worst_gift, before.*line - after.*line);
+        // what the certificate watches is what the line did
+        EXPECT_EQ(report.changes.taken[std::size_t(WatchedLine::viscous)],
+                  after.viscous - before.viscous);
         ASSERT_GE(after.kinetic, 0.);
         ASSERT_GE(after.elastic, 0.);
       }
