@@ -41,8 +41,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void BlockForces<dim>::set_forces(CornerGroups<dim> &groups,
-                                    const double time_step)
+  void BlockForces<dim>::set_forces(CornerGroups<dim> &groups)
   {
     const Bodies &bodies = discretization_.bodies();
     std::vector<double> x, y, t;
@@ -75,7 +74,7 @@ namespace nsfd
             double now = 0.;
             for (unsigned int j = 0; j < body.n_dofs; ++j)
               now += mean[j] * x[j * lanes + l];
-            this->front_.update(b, now, time_step, volume);
+            this->front_.update(b, now, volume);
             for (unsigned int j = 0; j < body.n_dofs; ++j)
               forces_[bodies.first_dof[b] + j] +=
                   volume * this->front_.tension[b] * mean[j];
@@ -127,16 +126,8 @@ namespace nsfd
                                            std::vector<double> &squares) const
   {
     squares.resize(sites.size());
-    for (std::size_t k = 0; k < sites.size(); ++k) {
-      const auto t = traction(sites, k);
-      double square = 0., pull = 0.;
-      for (unsigned int c = 0; c < dim; ++c) {
-        square += t[c] * t[c];
-        pull += t[c] * sites.normal[k * dim + c];
-      }
-      squares[k] = (pull > 0. ? pull * pull : 0.) +
-                   sites.shear_weight[k] * (square - pull * pull);
-    }
+    for (std::size_t k = 0; k < sites.size(); ++k)
+      squares[k] = sites.square(k, traction(sites, k));
   }
 
   template <int dim>

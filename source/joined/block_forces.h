@@ -12,7 +12,7 @@ namespace nsfd
     BlockForces(const Discretization<dim> &discretization,
                 const JoinedMesh<dim> &mesh, FrontViscosity front);
 
-    void set_forces(CornerGroups<dim> &groups, double time_step) override;
+    void set_forces(CornerGroups<dim> &groups) override;
     std::array<double, dim>
     corner_force(std::size_t corner,
                  const CornerGroups<dim> &groups) const override;

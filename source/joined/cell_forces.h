@@ -28,6 +28,20 @@ namespace nsfd
     std::vector<double> least;
 
     std::size_t size() const { return cells.size(); }
+
+    /** <t_N>_+^2 + shear_weight |t_T|^2 of a traction @p t at a site, Pa^2. */
+    template <std::size_t dim>
+    double square(const std::size_t site,
+                  const std::array<double, dim> &t) const
+    {
+      double sum = 0., pull = 0.;
+      for (std::size_t c = 0; c < dim; ++c) {
+        sum += t[c] * t[c];
+        pull += t[c] * normal[site * dim + c];
+      }
+      return (pull > 0. ? pull * pull : 0.) +
+             shear_weight[site] * (sum - pull * pull);
+    }
   };
 
   /** Elastic forces of cells on the groups of their corners. */
@@ -39,10 +53,10 @@ namespace nsfd
     virtual ~CellForces() = default;
 
     /**
-     * f = -K q on all groups, and the forces of the front viscosity, after a
-     * step of @p time_step (0: none). front() is to be finished then.
+     * f = -K q on all groups, and the forces of the front viscosity.
+     * front() begins a step before, and is to be finished then.
      */
-    virtual void set_forces(CornerGroups<dim> &groups, double time_step) = 0;
+    virtual void set_forces(CornerGroups<dim> &groups) = 0;
     /** The part of a corner in the last forces, N. */
     virtual std::array<double, dim>
     corner_force(std::size_t corner, const CornerGroups<dim> &groups) const = 0;

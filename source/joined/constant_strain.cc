@@ -98,8 +98,7 @@ namespace nsfd
     template <int dim>
     NSFD_INLINE void set_all(const std::size_t n_cells, const double *cells,
                              const unsigned int *of, const double *q,
-                             double *stresses, double *f, FrontViscosity *front,
-                             const double time_step)
+                             double *stresses, double *f, FrontViscosity *front)
     {
       constexpr unsigned int n_corners = dim + 1,
                              n_stresses = dim * (dim + 1) / 2;
@@ -121,7 +120,7 @@ namespace nsfd
         double tension[lanes] = {};
         for (unsigned int l = 0; front && l < count; ++l) {
           front->update(first + l, dilatation_of<dim>(mine, sigma, l),
-                        time_step, mine[dim * dim * lanes + l]);
+                        mine[dim * dim * lanes + l]);
           tension[l] = front->tension[first + l];
         }
         force_block<dim>(mine, sigma, front ? tension : nullptr, F);
@@ -136,17 +135,17 @@ namespace nsfd
     NSFD_CLONES
     void set_plane(const std::size_t n, const double *cells,
                    const unsigned int *of, const double *q, double *stresses,
-                   double *f, FrontViscosity *front, const double time_step)
+                   double *f, FrontViscosity *front)
     {
-      set_all<2>(n, cells, of, q, stresses, f, front, time_step);
+      set_all<2>(n, cells, of, q, stresses, f, front);
     }
 
     NSFD_CLONES
     void set_space(const std::size_t n, const double *cells,
                    const unsigned int *of, const double *q, double *stresses,
-                   double *f, FrontViscosity *front, const double time_step)
+                   double *f, FrontViscosity *front)
     {
-      set_all<3>(n, cells, of, q, stresses, f, front, time_step);
+      set_all<3>(n, cells, of, q, stresses, f, front);
     }
 
     template <int dim>
@@ -238,14 +237,13 @@ namespace nsfd
   }
 
   template <int dim>
-  void ConstantStrainForces<dim>::set_forces(CornerGroups<dim> &groups,
-                                             const double time_step)
+  void ConstantStrainForces<dim>::set_forces(CornerGroups<dim> &groups)
   {
     std::fill(groups.force.begin(), groups.force.end(), 0.);
     (dim == 2 ? set_plane : set_space)(
         n_cells_, cells_.data(), groups.of_corners().data(),
         groups.displacement.data(), stresses_.data(), groups.force.data(),
-        this->front_.acts() ? &this->front_ : nullptr, time_step);
+        this->front_.acts() ? &this->front_ : nullptr);
   }
 
   template <int dim>

@@ -39,8 +39,8 @@ namespace nsfd
     for (std::size_t b = 0; b < n; ++b)
       eta_.push_back(of_class[cells.bodies.class_of[b]]);
     tension.assign(n, 0.);
-    dilatation = rate = viscosity = tension;
-    terms_.assign(3 * n, 0.);
+    dilatation = rate = viscosity = present_viscosity = tension;
+    terms_.assign(4 * n, 0.);
 
     std::vector<std::array<int, 2>> pairs;
     for (const auto &face : discretization.points().faces)
@@ -82,8 +82,8 @@ namespace nsfd
         viscosity[b] =
             eta_[other] > 0. ? viscosity[other] / eta_[other] * eta_[b] : 0.;
       }
-    const auto sums = communicator.sums(terms_.data(), 3, n);
-    return {sums[0], sums[1], sums[2]};
+    const auto sums = communicator.sums(terms_.data(), 4, n);
+    return {sums[0], sums[1], sums[2], sums[3]};
   }
 
   void FrontViscosity::serialize(Archive &archive,
@@ -95,8 +95,9 @@ namespace nsfd
     const auto copy = [&](const bool reads) {
       for (std::size_t b = 0; b < eta_.size(); ++b) {
         double *mine = all.data() + first_dof[b];
-        double *const values[3] = {&tension[b], &rate[b], &viscosity[b]};
-        for (unsigned int k = 0; k < 3; ++k)
+        double *const values[4] = {&tension[b], &rate[b], &viscosity[b],
+                                   &present_viscosity[b]};
+        for (unsigned int k = 0; k < 4; ++k)
           (reads ? *values[k] : mine[k]) = reads ? mine[k] : *values[k];
       }
     };

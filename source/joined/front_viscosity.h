@@ -3,6 +3,7 @@
 #include "core/communicator.h"
 #include "discretization/discretization.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace nsfd
@@ -25,6 +26,16 @@ namespace nsfd
    * of cell size over wavelength. The rate is that of the step
    * before, so that v.(M - h^2 K/4 - h C/2) v > 0 bounds the step:
    * h < (2/omega) (sqrt(1 + b^2) - b).
+   *
+   * With c = psi eta and the rates D- and D+ before and after a kick of length
+   * k the pressure c- D- takes k c- D-.(D- + D+)/2, which is negative where the
+   * rate changes its sign. The kinetic energy of the scheme is therefore less
+   * by h c D^2/4 of every cell, and what is taken is
+   *
+   *   k c- ((D- + D+)/2)^2 - (k c- - h c+) (D+)^2/4,
+   *
+   * never negative as long as h c+ >= -k c- r (2 + r), r = D-/D+: psi falls no
+   * faster than that.
    */
   class FrontViscosity
   {
@@ -38,30 +49,41 @@ namespace nsfd
     bool acts() const { return !eta_.empty(); }
 
     /** By cell: of the present forces. -p, Pa; (q_k) and (v_{k-1/2}): tr eps
-     * and its rate. */
-    std::vector<double> tension, dilatation, rate;
+     * and its rate; psi eta, Pa s. */
+    std::vector<double> tension, dilatation, rate, present_viscosity;
     /** Of the next ones: psi eta, Pa s. */
     std::vector<double> viscosity;
 
-    /**
-     * The dilatation of a cell has become @p now in a step of @p time_step
-     * (0: there was none): its tension. @p volume in m^3 or m^2.
-     */
-    void update(const std::size_t cell, const double now,
-                const double time_step, const double volume)
+    /** The next updates are of a step of length @p h (0: there was none) after
+     * a kick of length @p kick, s. */
+    void begin_step(const double h, const double kick)
+    {
+      h_ = h;
+      kick_ = kick;
+    }
+
+    /** The dilatation of a cell has become @p now: its tension. @p volume in
+     * m^3 or m^2. */
+    void update(const std::size_t cell, const double now, const double volume)
     {
       const std::size_t n = eta_.size();
       if (holds) {
         dilatation[cell] = now;
         return;
       }
-      const double D =
-          time_step > 0. ? (now - dilatation[cell]) / time_step : 0.;
-      const double next = viscosity[cell] * D;
+      const double D = h_ > 0. ? (now - dilatation[cell]) / h_ : 0.;
+      const double before = kick_ * present_viscosity[cell];
+      const double sum = rate[cell] + D;
+      const double r = D != 0. ? rate[cell] / D : 0.;
+      const double least = h_ > 0. ? -before / h_ * r * (2. + r) : 0.;
+      const double next = std::max(viscosity[cell], least);
       terms_[cell] = volume * tension[cell] * D;
-      terms_[n + cell] = volume * next * D;
-      terms_[2 * n + cell] = volume * next * now;
-      tension[cell] = next;
+      terms_[n + cell] = volume * next * D * D;
+      terms_[2 * n + cell] = volume * next * D * now;
+      terms_[3 * n + cell] =
+          volume / 4. * (before * sum * sum - (before - h_ * next) * D * D);
+      present_viscosity[cell] = next;
+      tension[cell] = next * D;
       dilatation[cell] = now;
       rate[cell] = D;
     }
@@ -69,16 +91,17 @@ namespace nsfd
     /** Tensions stay what they are: those of a checkpoint. */
     bool holds = false;
 
-    /** Sums over the cells of volume times tension times ..., in J or W. */
+    /** Sums over the cells: of volume times tension times ..., in J or W. */
     struct Powers {
       double before = 0.; ///< tension of the forces before, rate of the step
       double after = 0.;  ///< of the present forces, rate of the step
       double stored = 0.; ///< of the present forces, dilatation
+      double taken = 0.;  ///< what the step took, J
     };
     /** After all cells: those, and psi of the next forces. Collective. */
     Powers finish(const Communicator &communicator);
 
-    /** Of @p first_dof: places in a vector over unknowns, three per cell. */
+    /** Of @p first_dof: places in a vector over unknowns, four per cell. */
     void serialize(Archive &archive, const std::vector<std::size_t> &first_dof);
 
   private:
@@ -86,6 +109,7 @@ namespace nsfd
     std::vector<std::size_t> first_neighbor_;
     std::vector<unsigned int> neighbor_;
     std::vector<double> terms_;
+    double h_ = 0., kick_ = 0.;
   };
 
   /** What of the longest step is left with a share @p b of critical damping. */

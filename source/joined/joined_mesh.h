@@ -36,10 +36,15 @@ namespace nsfd
     {
       return corners_[point];
     }
-    unsigned int node_of_point(const std::size_t point) const
+    /** The one that a point at the boundary has, or that of body 1. */
+    unsigned int a_corner(const std::size_t point) const
     {
       const auto &sides = corners_[point];
-      return node_[sides[0] != none ? sides[0] : sides[1]];
+      return sides[0] != none ? sides[0] : sides[1];
+    }
+    unsigned int node_of_point(const std::size_t point) const
+    {
+      return node_[a_corner(point)];
     }
 
     struct Range {

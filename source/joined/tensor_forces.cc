@@ -202,8 +202,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void TensorForces<dim>::set_forces(CornerGroups<dim> &groups,
-                                     const double time_step)
+  void TensorForces<dim>::set_forces(CornerGroups<dim> &groups)
   {
     groups_ = &groups;
     for (const unsigned int index : known_)
@@ -220,8 +219,7 @@ namespace nsfd
       if (this->front_.acts())
         for (unsigned int l = 0; l < cells.count; ++l) {
           const std::size_t b = first + l;
-          this->front_.update(b, dilatation[l] / volume_[b], time_step,
-                              volume_[b]);
+          this->front_.update(b, dilatation[l] / volume_[b], volume_[b]);
           tension[l] = this->front_.tension[b];
         }
       kernels_.integrate(line_, cells, tension, scratch_.data(),
@@ -294,18 +292,9 @@ namespace nsfd
       const double largest = (bound_[cells[0]] + bound_[cells[1]]) / 2.;
       if (!(largest * largest >= quiet * sites.least[f]))
         continue;
-      for (std::size_t k = first; k < sites.first_of_face[f + 1]; ++k) {
-        if (!(sites.limit[k] < HUGE_VAL)) // it has let go
-          continue;
-        const auto t = traction(sites, k);
-        double square = 0., pull = 0.;
-        for (unsigned int c = 0; c < dim; ++c) {
-          square += t[c] * t[c];
-          pull += t[c] * sites.normal[k * dim + c];
-        }
-        squares[k] = (pull > 0. ? pull * pull : 0.) +
-                     sites.shear_weight[k] * (square - pull * pull);
-      }
+      for (std::size_t k = first; k < sites.first_of_face[f + 1]; ++k)
+        if (std::isfinite(sites.limit[k])) // it has not let go
+          squares[k] = sites.square(k, traction(sites, k));
     }
   }
 

@@ -52,6 +52,20 @@ namespace nsfd
         to[std::size_t(i) * stride] = x[i];
     }
 
+    /** A times every line of @p from in direction @p d; may be @p to. */
+    template <int d, int dim, int N>
+    NSFD_INLINE void multiply_along(const Grid<dim, N> &grid, const double *A,
+                                    const Vector8 *from, Vector8 *to)
+    {
+      const unsigned int stride = d == 0 ? 1 : grid.stride(d);
+      Vector8 x[Grid<dim, N>::most], y[Grid<dim, N>::most];
+      for_lines<d>(grid, [&](const unsigned int k) {
+        load(grid, from + k, stride, x);
+        multiply(grid, A, x, y);
+        store(grid, y, stride, to + k);
+      });
+    }
+
     /** The values of the corners: (component, node). */
     template <int dim, int N>
     NSFD_INLINE void gather(const Grid<dim, N> &grid, const TensorBlock &block,
@@ -88,19 +102,9 @@ namespace nsfd
       Vector8 x[Grid<dim, N>::most], y[Grid<dim, N>::most];
       for (unsigned int c = 0; c < dim; ++c) {
         Vector8 *mine = u + c * size, *G = gradients + c * dim * size;
-        for_lines<0>(grid, [&](const unsigned int k) {
-          load(grid, mine + k, 1, x);
-          multiply(grid, values, x, y);
-          store(grid, y, 1, mine + k);
-        });
-        if constexpr (dim == 3) {
-          const unsigned int stride = grid.stride(1);
-          for_lines<1>(grid, [&](const unsigned int k) {
-            load(grid, mine + k, stride, x);
-            multiply(grid, values, x, y);
-            store(grid, y, stride, mine + k);
-          });
-        }
+        multiply_along<0>(grid, values, mine, mine);
+        if constexpr (dim == 3)
+          multiply_along<1>(grid, values, mine, mine);
         const unsigned int last = grid.stride(dim - 1);
         for_lines<dim - 1>(grid, [&](const unsigned int k) {
           load(grid, mine + k, last, x);
@@ -109,19 +113,9 @@ namespace nsfd
           multiply(grid, slopes, y, x);
           store(grid, x, last, G + (dim - 1) * size + k);
         });
-        for_lines<0>(grid, [&](const unsigned int k) {
-          load(grid, mine + k, 1, x);
-          multiply(grid, slopes, x, y);
-          store(grid, y, 1, G + k);
-        });
-        if constexpr (dim == 3) {
-          const unsigned int stride = grid.stride(1);
-          for_lines<1>(grid, [&](const unsigned int k) {
-            load(grid, mine + k, stride, x);
-            multiply(grid, slopes, x, y);
-            store(grid, y, stride, G + size + k);
-          });
-        }
+        multiply_along<0>(grid, slopes, mine, G);
+        if constexpr (dim == 3)
+          multiply_along<1>(grid, slopes, mine, G + size);
       }
       set_fluxes<dim, N, affine>(grid, line, block, gradients,
                                  gradients + dim * dim * size, dilatation,
@@ -194,19 +188,9 @@ namespace nsfd
           multiply(grid, values, y, x);
           store(grid, x, last, mine + k);
         });
-        if constexpr (dim == 3) {
-          const unsigned int stride = grid.stride(1);
-          for_lines<1>(grid, [&](const unsigned int k) {
-            load(grid, mine + k, stride, x);
-            multiply(grid, values, x, y);
-            store(grid, y, stride, mine + k);
-          });
-        }
-        for_lines<0>(grid, [&](const unsigned int k) {
-          load(grid, mine + k, 1, x);
-          multiply(grid, values, x, y);
-          store(grid, y, 1, mine + k);
-        });
+        if constexpr (dim == 3)
+          multiply_along<1>(grid, values, mine, mine);
+        multiply_along<0>(grid, values, mine, mine);
       }
       const auto *scalars = reinterpret_cast<const double *>(u);
       for (unsigned int l = 0; l < block.count; ++l) {

@@ -17,6 +17,8 @@ namespace nsfd
   {
     // tension behind a compressive front is then at most 4 % of its amplitude
     constexpr double automatic = 0.2;
+    if (time.scheme != Scheme::leapfrog)
+      return 0.;
     if (time.front_viscosity)
       return *time.front_viscosity;
     return std::any_of(

@@ -194,8 +194,7 @@ namespace nsfd
     build_tables();
     // behind a front that front viscosity spreads there is hardly any tension
     constexpr double enough = 0.15;
-    if (input.time.scheme != Scheme::leapfrog ||
-        input.front_viscosity() < enough)
+    if (input.front_viscosity() < enough)
       front_ = sharp_front(input, discretization, communicator);
   }
 

@@ -130,7 +130,7 @@ namespace nsfd
     template <int dim>
     bool Simulation<dim>::set_state(const std::optional<FoundCheckpoint> &found)
     {
-      if (!model_.leapfrog)
+      if (model_.delassus)
         model_.delassus->reinit(model_.control->step(),
                                 input_.time.bulk_theta());
       charge_memory("blocks of the bodies");

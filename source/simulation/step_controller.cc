@@ -39,8 +39,8 @@ namespace nsfd
       const State &state, const State &next)
   {
     auto &control = *model_.control;
-    if (input_.time.step_kind != StepKind::automatic || model_.leapfrog ||
-        !report.beyond_unique || !control.can_bisect())
+    if (input_.time.step_kind != StepKind::automatic || !report.beyond_unique ||
+        !control.can_bisect())
       return false;
     const double h = control.step();
     const double unique = integrator.unique_step(state, next);
@@ -104,7 +104,7 @@ namespace nsfd
       -> Outcome
   {
     auto &control = *model_.control;
-    if (input_.time.step_kind == StepKind::automatic && !model_.leapfrog)
+    if (input_.time.step_kind == StepKind::automatic)
       choose_step(integrator, state);
     StepRequest step;
     step.length = control.step();

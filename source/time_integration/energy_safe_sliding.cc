@@ -19,26 +19,24 @@ namespace nsfd
                          rubs) ||
              std::any_of(input.contacts.begin(), input.contacts.end(), rubs);
     }
-
-    /** P_c,T . U_theta,T of a point, in J. */
-    template <int dim>
-    double friction_work(const OneStepProblem<dim> &problem,
-                         const std::size_t i,
-                         const LocalSolution<dim> &solution,
-                         const double *impulse, const double *velocity,
-                         const double *old_velocity, const double theta)
-    {
-      std::array<double, dim> U;
-      std::copy_n(velocity, dim, U.begin());
-      const auto energies = point_energies<dim>(problem, i, U, solution.frozen);
-      const double wh = problem.weight[i] * problem.time_step;
-      double work = 0.;
-      for (unsigned int c = 1; c < dim; ++c)
-        work += (impulse[c] + wh * energies.cohesive_traction[c]) *
-                (theta * U[c] + (1. - theta) * old_velocity[c]);
-      return work;
-    }
   } // namespace
+
+  template <int dim>
+  double friction_work(const OneStepProblem<dim> &problem, const std::size_t i,
+                       const LocalSolution<dim> &solution,
+                       const double *impulse, const double *velocity,
+                       const double *old_velocity, const double theta)
+  {
+    std::array<double, dim> U;
+    std::copy_n(velocity, dim, U.begin());
+    const auto energies = point_energies<dim>(problem, i, U, solution.frozen);
+    const double wh = problem.weight[i] * problem.time_step;
+    double work = 0.;
+    for (unsigned int c = 1; c < dim; ++c)
+      work += (impulse[c] + wh * energies.cohesive_traction[c]) *
+              (theta * U[c] + (1. - theta) * old_velocity[c]);
+    return work;
+  }
 
   template <int dim>
   EnergySafeSliding<dim>::EnergySafeSliding(const SceneInput &input)
@@ -105,6 +103,13 @@ namespace nsfd
     return true;
   }
 
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template double friction_work<dim>(                                          \
+      const OneStepProblem<dim> &, std::size_t, const LocalSolution<dim> &,    \
+      const double *, const double *, const double *, double)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
   template class EnergySafeSliding<2>;
   template class EnergySafeSliding<3>;
 } // namespace nsfd

@@ -10,6 +10,16 @@ namespace nsfd
   struct SceneInput;
 
   /**
+   * P_c,T . U_theta,T of a point in J, U_theta = theta U + (1 - theta) U_old;
+   * impulses (N s) and velocities have dim components in its frame.
+   */
+  template <int dim>
+  double friction_work(const OneStepProblem<dim> &problem, std::size_t i,
+                       const LocalSolution<dim> &solution,
+                       const double *impulse, const double *velocity,
+                       const double *old_velocity, double theta);
+
+  /**
    * Coulomb friction that never gives energy and still rests (`sliding = energy
    * safe`). Friction opposes U_T at the end of the step, so that what sticks is
    * at rest. Its work P_T . U_theta,T may then be positive: at an impact, and

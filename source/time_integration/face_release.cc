@@ -53,8 +53,7 @@ namespace nsfd
             {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}});
         const double *normal = &points.frame[std::size_t(i) * dim * dim];
         sites_.normal.insert(sites_.normal.end(), normal, normal + dim);
-        strength_factor_.push_back(strength);
-        opening_factor_.push_back(opening);
+        factors_.push_back({strength, opening});
         const LawPoint here = law(sites_.size() - 1);
         const double shear[2] = {1., 0.};
         const double of_shear =
@@ -77,7 +76,7 @@ namespace nsfd
     const auto &block =
         discretization_.input().interfaces
             [discretization_.origins()[sites_.first_point[site]].block];
-    return LawPoint(*block.law, strength_factor_[site], opening_factor_[site],
+    return LawPoint(*block.law, factors_[site].strength, factors_[site].opening,
                     block.plateau);
   }
 
@@ -85,22 +84,19 @@ namespace nsfd
   typename LeapfrogPoints<dim>::Factors
   FaceRelease<dim>::factors(const unsigned int point) const
   {
-    if (site_of_[point] < 0)
+    const int site = site_of_[point];
+    if (site < 0)
       return {};
-    const auto site = std::size_t(site_of_[point]);
-    return {strength_factor_[site], opening_factor_[site]};
+    return factors_[std::size_t(site)];
   }
 
   template <int dim>
   void FaceRelease<dim>::start(std::vector<std::uint8_t> intact)
   {
     intact_ = std::move(intact);
-    for (std::size_t k = 0; k < sites_.size(); ++k) {
-      const unsigned int first = sites_.first_point[k];
-      if (intact_[first])
-        continue;
-      sites_.limit[k] = infinity;
-    }
+    for (std::size_t k = 0; k < sites_.size(); ++k)
+      if (!intact_[sites_.first_point[k]])
+        sites_.limit[k] = infinity;
   }
 
   template <int dim>

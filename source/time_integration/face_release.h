@@ -46,9 +46,10 @@ namespace nsfd
     std::array<double, dim> in_frame(std::size_t point,
                                      const std::array<double, dim> &t) const;
     void let_go(std::size_t site, std::vector<unsigned int> &released);
+
     const Discretization<dim> &discretization_;
     StrengthSites sites_;
-    std::vector<double> strength_factor_, opening_factor_; ///< of the sites
+    std::vector<typename LeapfrogPoints<dim>::Factors> factors_; ///< of sites
     std::vector<int> site_of_; ///< by point, -1: it never lets go
     std::vector<double> squares_;
     std::vector<std::uint8_t> intact_; ///< by point

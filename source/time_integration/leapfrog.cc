@@ -66,9 +66,6 @@ namespace nsfd
   }
 
   template <int dim>
-  Leapfrog<dim>::~Leapfrog() = default;
-
-  template <int dim>
   State Leapfrog<dim>::initial_state() const
   {
     State state = initial_motion(input_, discretization_);
@@ -110,17 +107,10 @@ namespace nsfd
     groups_->gather(state.displacement, groups_->displacement);
     groups_->gather(state.velocity, groups_->velocity);
     supports_.find(*groups_);
-    if (discretization_.loads().any()) {
-      corner_loads_.assign(mesh_.n_corners() * dim, 0.);
-      loads_time_ = state.time;
-      discretization_.add_loads(loads_time_, corner_loads_);
-    }
-    forces_->set_forces(*groups_, 0.);
+    forces_->set_forces(*groups_);
     front_ = forces_->front().finish(communicator_);
-    loads_.assign(corner_loads_.empty() ? 0 : groups_->force.size(), 0.);
-    for (std::size_t i = 0; i < mesh_.n_corners() && !loads_.empty(); ++i)
-      for (unsigned int c = 0; c < dim; ++c)
-        loads_[groups_->of(i) * dim + c] += corner_loads_[i * dim + c];
+    if (discretization_.loads().any())
+      set_loads(state.time);
   }
 
   template <int dim>
@@ -138,10 +128,7 @@ namespace nsfd
     state.bond_traction.assign(state.jump.size(), 0.);
     show(state);
     const auto &g = *groups_;
-    terms_.resize(g.force.size());
-    for (std::size_t k = 0; k < terms_.size(); ++k)
-      terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
-    state.energy.kinetic = communicator_.sum(terms_);
+    state.energy.kinetic = kinetic_energy();
     state.energy.elastic =
         -communicator_.dot(g.force.data(), g.displacement.data(),
                            g.force.size()) /
@@ -149,6 +136,17 @@ namespace nsfd
     state.energy.cohesive = points_.initial_energy(communicator_);
     begin_balance(state);
     return state;
+  }
+
+  /** v.M v/2. Collective. */
+  template <int dim>
+  double Leapfrog<dim>::kinetic_energy()
+  {
+    const auto &g = *groups_;
+    terms_.resize(g.velocity.size());
+    for (std::size_t k = 0; k < terms_.size(); ++k)
+      terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
+    return communicator_.sum(terms_);
   }
 
   template <int dim>
@@ -166,13 +164,10 @@ namespace nsfd
   template <int dim>
   void Leapfrog<dim>::set_loads(const double time)
   {
-    if (corner_loads_.empty() || !discretization_.loads().depend_on_time() ||
-        time == loads_time_)
-      return;
     loads_time_ = time;
-    std::fill(corner_loads_.begin(), corner_loads_.end(), 0.);
+    corner_loads_.assign(mesh_.n_corners() * dim, 0.);
     discretization_.add_loads(time, corner_loads_);
-    std::fill(loads_.begin(), loads_.end(), 0.);
+    loads_.assign(groups_->force.size(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         loads_[groups_->of(i) * dim + c] += corner_loads_[i * dim + c];
@@ -200,10 +195,14 @@ namespace nsfd
     }
   }
 
-  /** Points that let go: nodes fall apart where they are cut. */
+  /**
+   * Faces that have reached their strength let go: nodes fall apart where they
+   * are cut. Returns the number of points.
+   */
   template <int dim>
-  void Leapfrog<dim>::release(const std::vector<unsigned int> &points)
+  unsigned int Leapfrog<dim>::let_go()
   {
+    const auto points = faces_.reached(*forces_, counters_.excess);
     bool cut_support = false;
     for (const unsigned int point : points)
       points_.release(point, faces_.factors(point));
@@ -219,14 +218,7 @@ namespace nsfd
     if (cut_support)
       supports_.find(*groups_);
     supports_.resize(groups_->size());
-  }
-
-  template <int dim>
-  unsigned int Leapfrog<dim>::let_go()
-  {
-    const auto released = faces_.reached(*forces_, counters_.excess);
-    release(released);
-    return unsigned(released.size());
+    return unsigned(points.size());
   }
 
   /** Without points: v- + k (f + F)/m, or what is prescribed. */
@@ -265,7 +257,8 @@ namespace nsfd
     double of_change = 0.;
     {
       const Charge charge(Cost::free_motion);
-      set_loads(old.time);
+      if (discretization_.loads().depend_on_time() && old.time != loads_time_)
+        set_loads(old.time);
       move_freely(kick, old.time, h);
     }
     const double *f = g.force.data();
@@ -306,23 +299,24 @@ namespace nsfd
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
     points_.add_impulses(supports_.row_of_group(), g, supports_.rows());
     energies.work += supports_.work(communicator_, kick, old_velocity_, g);
-    terms_.resize(n);
-    for (std::size_t k = 0; k < n; ++k)
-      terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
-    energies.kinetic = communicator_.sum(terms_);
+    energies.kinetic = kinetic_energy();
     {
       const Charge moving(Cost::update);
       old_displacement_.swap(g.displacement);
       g.displacement.resize(n);
       for (std::size_t k = 0; k < n; ++k)
         g.displacement[k] = old_displacement_[k] + h * g.velocity[k];
-      forces_->set_forces(g, h);
+      forces_->front().begin_step(h, kick);
+      forces_->set_forces(g);
     }
     const auto front = forces_->front().finish(communicator_);
     energies.numerical += (last - h) / 4. * (front_.after - front.before);
     energies.stored -= front_.stored / 2.;
     energies.power += front.before;
-    energies.viscous = kick / 2. * (front.before + front_.after);
+    // the part of the kinetic energy that the viscosity holds
+    energies.kinetic -= h / 4. * front.after;
+    energies.numerical += (kick - last) / 4. * front_.after;
+    energies.viscous = front.taken;
     energies.power_after =
         communicator_.dot(f, g.velocity.data(), n) + front.after;
     front_ = front;
@@ -396,9 +390,7 @@ namespace nsfd
     for (std::size_t i = 0; i < origins.size(); ++i) {
       if (origins[i].kind != PointOrigin::Kind::motion)
         continue;
-      const auto &corners = mesh_.corners(i);
-      const unsigned int group = groups_->of(
-          corners[1] != JoinedMesh<dim>::none ? corners[1] : corners[0]);
+      const unsigned int group = groups_->of(mesh_.a_corner(i));
       for (unsigned int c = 0; c < dim; ++c) { // its axes are x, y, z
         state.jump[i * dim + c] = groups_->displacement[group * dim + c];
         state.relative_velocity[i * dim + c] =
@@ -431,10 +423,11 @@ namespace nsfd
     front.serialize(archive, discretization_.bodies().first_dof);
     if (archive.reads() && front.acts()) {
       front.holds = true;
-      forces_->set_forces(*groups_, 0.);
+      forces_->set_forces(*groups_);
       front.holds = false;
     }
-    archive.numbers("front", front_.before, front_.after, front_.stored);
+    archive.numbers("front", front_.before, front_.after, front_.stored,
+                    front_.taken);
     archive.common("reactions", supports_.reactions());
   }
 

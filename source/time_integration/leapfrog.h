@@ -38,7 +38,6 @@ namespace nsfd
     /** @throws std::runtime_error with a sentence for the user. */
     Leapfrog(const SceneInput &input, const Discretization<dim> &discretization,
              const Communicator &communicator);
-    ~Leapfrog() override;
 
     /** At t = 0, as the scene gives it; start_from() joins it. */
     State initial_state() const;
@@ -69,8 +68,8 @@ namespace nsfd
 
     void take(const State &state, std::vector<std::uint8_t> intact);
     void set_loads(double time);
+    double kinetic_energy();
     void gather(std::size_t node);
-    void release(const std::vector<unsigned int> &points);
     unsigned int let_go();
     void move_freely(double kick, double time, double h);
     void book(const State &old, double h, const Energies &bodies, State &next,

@@ -134,7 +134,6 @@ namespace nsfd
   {
     OneStepProblem<dim> &p = problem;
     const Archive::Part part(archive, "chain");
-    archive.numbers("time_step", p.time_step);
     const auto store = [&](const char *name, std::vector<double> &values,
                            const unsigned int width) {
       std::vector<double> all(n * width, 0.);

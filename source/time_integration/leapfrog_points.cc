@@ -1,5 +1,7 @@
 #include "leapfrog_points.h"
 
+#include "energy_safe_sliding.h"
+
 #include "discretization/discretization.h"
 #include "nsfd/scene/scene_input.h"
 
@@ -193,19 +195,14 @@ namespace nsfd
       const unsigned int a = moved_[k];
       if (chains_.solution[a].frozen.threshold <= 0. || chains_.turned[a])
         continue;
-      std::array<double, dim> U;
-      std::copy_n(&chains_.velocity[a * dim], dim, U.begin());
-      const auto energies =
-          point_energies<dim>(p, a, U, chains_.solution[a].frozen);
-      double work = 0., size = 0.;
-      for (unsigned int c = 1; c < dim; ++c) {
-        const double rub =
-            chains_.impulse[a * dim + c] +
-            p.weight[a] * p.time_step * energies.cohesive_traction[c];
-        work += rub * (U[c] + chains_.old_velocity[a * dim + c]) / 2.;
-        size += std::abs(rub) *
-                (std::abs(U[c]) + std::abs(chains_.old_velocity[a * dim + c]));
-      }
+      const double *P = &chains_.impulse[a * dim],
+                   *U = &chains_.velocity[a * dim],
+                   *before = &chains_.old_velocity[a * dim];
+      const double work =
+          friction_work<dim>(p, a, chains_.solution[a], P, U, before, 0.5);
+      double size = 0.;
+      for (unsigned int c = 1; c < dim; ++c)
+        size += std::abs(P[c]) * (std::abs(U[c]) + std::abs(before[c]));
       if (work <= 1e-9 * size)
         continue;
       turned = true;

@@ -26,9 +26,7 @@ namespace nsfd
     for (std::size_t i = 0; i < origins.size(); ++i) {
       if (origins[i].kind != PointOrigin::Kind::motion)
         continue;
-      const auto &corners = mesh_.corners(i);
-      const unsigned int group = groups.of(
-          corners[1] != JoinedMesh<dim>::none ? corners[1] : corners[0]);
+      const unsigned int group = groups.of(mesh_.a_corner(i));
       for (unsigned int c = 0; c < dim; ++c) {
         if ((!motion_.velocity(i, c) && !motion_.displacement(i, c)) ||
             (mask_[group] & (1u << c)))

@@ -1,4 +1,5 @@
 #include "make_scene.h"
+#include "standing_bar.h"
 
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
@@ -205,29 +206,9 @@ end
     double frequency_error(const unsigned int n, const char *viscosity)
     {
       const std::string cells = std::to_string(n / 2);
-      Steps<2> run(
-          R"(
-set dimension = 2
-subsection Mesh
-  set upper corner = 1, 0.1
-end
-subsection Material: bar
-  set Young modulus = 1
-  set Poisson ratio = 0
-  set density       = 1
-  set initial velocity x = cos(pi * x)
-end
-subsection Interface: all
-  set law = rigid
-end
-subsection Time
-  set end    = 4
-  set step   = auto
-  set scheme = leapfrog
-end
-)",
-          {"Mesh/cells=" + cells + ", 1",
-           std::string("Time/front viscosity=") + viscosity});
+      Steps<2> run(test::standing_bar,
+                   {"Mesh/upper corner=1, 0.1", "Mesh/cells=" + cells + ", 1",
+                    std::string("Time/front viscosity=") + viscosity});
       double last = 0., zero = 0.;
       while (zero == 0.) {
         const double t = run.state.time;
@@ -253,28 +234,9 @@ end
     TEST(Leapfrog, FrontViscosityLeavesSmoothWavesAlone)
     {
       const double period = 2.;
-      Steps<2> run(R"(
-set dimension = 2
-subsection Mesh
-  set upper corner = 1, 0.1
-  set cells        = 10, 1
-end
-subsection Material: bar
-  set Young modulus = 1
-  set Poisson ratio = 0
-  set density       = 1
-  set initial velocity x = cos(pi * x)
-end
-subsection Interface: all
-  set law = rigid
-end
-subsection Time
-  set end             = 2
-  set step            = auto
-  set scheme          = leapfrog
-  set front viscosity = 0.2
-end
-)");
+      Steps<2> run(test::standing_bar,
+                   {"Mesh/upper corner=1, 0.1", "Mesh/cells=10, 1",
+                    "Time/end=2", "Time/front viscosity=0.2"});
       while (run.state.time < period)
         run.step();
       const EnergyLines &e = run.state.energy;
