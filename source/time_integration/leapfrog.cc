@@ -5,6 +5,7 @@
 #include "step_data.h"
 
 #include "core/cost.h"
+#include "core/stopwatch.h"
 #include "discretization/loads.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
@@ -247,6 +248,7 @@ namespace nsfd
   StepReport Leapfrog<dim>::advance(const State &old, const double h,
                                     State &next, const unsigned int)
   {
+    const Stopwatch watch(counters_.seconds);
     StepReport report;
     const double last = old.last_step, kick = (h + last) / 2.;
     auto &g = *groups_;

@@ -56,6 +56,10 @@ namespace nsfd
       return supports_.reactions();
     }
     void fill_counters(std::map<std::string, double> &counters) const override;
+    std::vector<std::pair<std::string, double>> stage_seconds() const override
+    {
+      return {{"explicit steps", counters_.seconds}};
+    }
     void serialize(Archive &archive) override;
 
   private:
@@ -95,6 +99,7 @@ namespace nsfd
       double excess = 0.; ///< of a traction over the strength, less 1
       unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0,
                          loose = 0;
+      double seconds = 0.; ///< of steps
     } counters_;
   };
 } // namespace nsfd

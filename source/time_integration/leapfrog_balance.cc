@@ -11,11 +11,12 @@ namespace nsfd
   {
     enum Row {
       stored,
-      damage,
-      friction,
-      positive_friction,
       impact,
       numerical,
+      n_rows_of_springs,
+      damage = n_rows_of_springs,
+      friction,
+      positive_friction,
       viscous,
       broken,
       n_rows
@@ -44,6 +45,43 @@ namespace nsfd
     const double h = p.time_step * p.theta;
     return h * p.time_step * p.weight[a] * p.majorant_normal[a] * softening >=
            2.;
+  }
+
+  /** The same of a point that was a spring in the step. */
+  template <int dim>
+  void LeapfrogPoints<dim>::account_spring(const unsigned int a,
+                                           const std::size_t row,
+                                           Balance &balance)
+  {
+    const OneStepProblem<dim> &p = chains_.problem;
+    const std::size_t n = moved_.size();
+    const double w = p.weight[a], wH = w * p.time_step;
+    const double *P = &chains_.impulse[a * dim],
+                 *U = &chains_.velocity[a * dim],
+                 *before = &chains_.old_velocity[a * dim];
+    const bool closed = springs_[row]->closed;
+    const auto energies = springs_[row]->law.energies(p, a, U);
+    double cohesive_work = 0., residual = 0.;
+    for (unsigned int c = 0; c < dim; ++c) {
+      const double mean = (U[c] + before[c]) / 2.,
+                   pull = wH * energies.traction[c],
+                   rest = (P[c] + pull) * mean;
+      cohesive_work -= pull * mean;
+      if (c == 0 && closed)
+        terms_[impact * n + row] = -rest;
+      else
+        residual += rest;
+    }
+    const double change = w * (energies.stored - energies.stored_old);
+    terms_[stored * n + row] = change;
+    terms_[numerical * n + row] = -residual - cohesive_work - change;
+    chains_.closed[a] = closed;
+    balance.active += closed;
+    if (springs_[row]->law.one_sided)
+      balance.penetration =
+          std::max(balance.penetration,
+                   -(p.jump_free[a * dim] + p.time_step * p.theta * U[0]) -
+                       chains_.released[a]);
   }
 
   template <int dim>
@@ -118,34 +156,35 @@ namespace nsfd
                        chains_.released[a]);
   }
 
+  /** Jump and way of the chain at the end of the step. */
   template <int dim>
   void LeapfrogPoints<dim>::keep_jump(const unsigned int a)
   {
-    const double h = chains_.problem.time_step * chains_.problem.theta;
+    OneStepProblem<dim> &p = chains_.problem;
+    const double h = p.time_step * p.theta;
+    const double *U = &chains_.velocity[a * dim];
     for (unsigned int c = 0; c < dim; ++c)
-      chains_.problem.jump_old[a * dim + c] =
-          chains_.problem.jump_free[a * dim + c] +
-          h * chains_.velocity[a * dim + c];
+      p.jump_old[a * dim + c] = p.jump_free[a * dim + c] + h * U[c];
+    if (p.theta > 0.5 && p.theta < 1. && p.compression_stiffness[a] == 0.)
+      chains_.released[a] = std::max(chains_.released[a], -p.jump_old[a * dim]);
+    if (chains_.closed[a]) {
+      double square = 0.;
+      for (unsigned int c = 1; c < dim; ++c)
+        square += U[c] * U[c];
+      chains_.slip[a] += h * std::sqrt(square);
+    }
+    std::copy_n(U, dim, &chains_.old_velocity[a * dim]);
   }
 
-  /** Jump and history of the chain at the end of the step. */
+  /** History of the chain at the end of the step. */
   template <int dim>
   void LeapfrogPoints<dim>::keep(const unsigned int a,
                                  const PointEnergies<dim> &energies)
   {
     OneStepProblem<dim> &p = chains_.problem;
-    keep_jump(a);
-    if (p.theta > 0.5 && p.theta < 1. && p.compression_stiffness[a] == 0.)
-      chains_.released[a] = std::max(chains_.released[a], -p.jump_old[a * dim]);
     const double *P = &chains_.impulse[a * dim];
     if (p.kind[a] == PointKind::free && P[0] == 0.)
       return;
-    if (chains_.closed[a]) {
-      double square = 0.;
-      for (unsigned int c = 1; c < dim; ++c)
-        square += chains_.velocity[a * dim + c] * chains_.velocity[a * dim + c];
-      chains_.slip[a] += p.time_step * p.theta * std::sqrt(square);
-    }
     if (energies.beta < 1e-3 && chains_.beta[a] >= 1e-3)
       separates_ |=
           --hold_of_face_[discretization_.points().face_of[chains_.point[a]]] ==
@@ -180,11 +219,20 @@ namespace nsfd
   {
     Balance balance;
     const std::size_t n = moved_.size();
-    terms_.assign(n_rows * n, 0.);
+    bool springs = true;
+    for (const auto *spring : springs_)
+      springs = springs && spring;
+    const std::size_t rows =
+        communicator.any(!springs) ? n_rows : n_rows_of_springs;
+    terms_.assign(rows * n, 0.);
     energies_.resize(n);
     for (std::size_t k = 0; k < n; ++k)
-      account_point(moved_[k], k, balance);
-    const auto sums = communicator.sums(terms_.data(), n_rows, n);
+      if (springs_[k])
+        account_spring(moved_[k], k, balance);
+      else
+        account_point(moved_[k], k, balance);
+    auto sums = communicator.sums(terms_.data(), rows, n);
+    sums.resize(n_rows, 0.);
     balance.stored = sums[stored];
     balance.damage = sums[damage];
     balance.friction = sums[friction];
@@ -198,12 +246,14 @@ namespace nsfd
     balance.active = unsigned(communicator.sum_integer(balance.active));
     const auto set = [&](const WatchedLine line, const Row row) {
       balance.changes.taken[std::size_t(line)] = sums[row];
+      balance.changes.worst[std::size_t(line)] = LineChanges::no_point;
+      if (row >= rows)
+        return;
       const auto first = terms_.begin() + long(row * n);
       const auto least = std::min_element(first, first + long(n));
-      balance.changes.worst[std::size_t(line)] =
-          n > 0 && *least < 0.
-              ? chains_.point[moved_[std::size_t(least - first)]]
-              : LineChanges::no_point;
+      if (n > 0 && *least < 0.)
+        balance.changes.worst[std::size_t(line)] =
+            chains_.point[moved_[std::size_t(least - first)]];
     };
     set(WatchedLine::friction, friction);
     set(WatchedLine::damage, damage);
@@ -217,11 +267,17 @@ namespace nsfd
   {
     separates_ = false;
     for (std::size_t k = 0; k < moved_.size(); ++k) {
-      keep(moved_[k], energies_[k]);
-      std::copy_n(&chains_.velocity[moved_[k] * dim], dim,
-                  &chains_.old_velocity[moved_[k] * dim]);
+      const unsigned int a = moved_[k];
+      keep_jump(a);
+      if (springs_[k])
+        continue;
+      // kind, history or overlap may change
+      const std::size_t node = mesh_.node_of_point(chains_.point[a]);
+      nodes_[std::size_t(node_index_[node])].elastic[chain_].is_new = true;
+      keep(a, energies_[k]);
     }
     chains_.swap();
+    chain_ = 1 - chain_;
     return separates_;
   }
 

@@ -45,7 +45,9 @@ namespace nsfd
       node_index_[node] = int(nodes_.size());
       nodes_.push_back({node, {}});
     }
-    auto &points = nodes_[std::size_t(node_index_[node])].points;
+    auto &here = nodes_[std::size_t(node_index_[node])];
+    here.is_new = true;
+    auto &points = here.points;
     points.insert(std::lower_bound(
                       points.begin(), points.end(), a,
                       [this](const unsigned int one, const unsigned int two) {
@@ -119,32 +121,32 @@ namespace nsfd
           chains_.beta[a] > 0. ? all_.viscosity[chains_.point[a]] : 0.;
   }
 
-  /** The problem of a node; false if none of its points is between two groups.
-   */
+  /** The problem of a node: its points between two groups. */
   template <int dim>
-  bool LeapfrogPoints<dim>::collect(const Node &node,
+  void LeapfrogPoints<dim>::collect(Node &node,
                                     const std::vector<std::uint8_t> &prescribed,
-                                    CornerGroups<dim> &groups)
+                                    const CornerGroups<dim> &groups)
   {
-    local_.clear();
-    local_groups_.clear();
+    NodeProblem<dim> &problem = node.problem;
+    problem.clear();
+    node.groups.clear();
+    node.is_new = false;
+    for (auto &elastic : node.elastic)
+      elastic.is_new = true;
     const auto local = [&](const unsigned int corner) {
       if (corner == JoinedMesh<dim>::none)
         return -1;
       const unsigned int group = groups.of(corner);
       const auto found =
-          std::find(local_groups_.begin(), local_groups_.end(), group);
-      const auto at = int(found - local_groups_.begin());
-      if (found == local_groups_.end()) {
-        local_groups_.push_back(group);
-        std::array<double, dim> inverse, v;
-        for (unsigned int c = 0; c < dim; ++c) {
+          std::find(node.groups.begin(), node.groups.end(), group);
+      const auto at = int(found - node.groups.begin());
+      if (found == node.groups.end()) {
+        node.groups.push_back(group);
+        std::array<double, dim> inverse;
+        for (unsigned int c = 0; c < dim; ++c)
           inverse[c] =
               prescribed[group] & (1u << c) ? 0. : 1. / groups.mass[group];
-          v[c] = groups.velocity[group * dim + c];
-        }
-        local_.inverse_mass.push_back(inverse);
-        local_.velocity.push_back(v);
+        problem.inverse_mass.push_back(inverse);
       }
       return at;
     };
@@ -155,30 +157,25 @@ namespace nsfd
           groups.of(corners[0]) == groups.of(corners[1]))
         continue;
       const int one = local(corners[0]), two = local(corners[1]);
-      local_.points.push_back({a, {{one, two}}});
+      problem.points.push_back({a, {{one, two}}});
       double flexibility = 0.;
       for (const int group : {one, two})
         if (group >= 0) {
-          const auto &inverse = local_.inverse_mass[std::size_t(group)];
+          const auto &inverse = problem.inverse_mass[std::size_t(group)];
           flexibility += *std::max_element(inverse.begin(), inverse.end());
         }
       chains_.problem.majorant_normal[a] = flexibility;
     }
-    return !local_.points.empty();
+    problem.velocity.resize(node.groups.size());
   }
 
-  /** Of the solved node, whose points are the last ones of `moved_`. */
   template <int dim>
-  void LeapfrogPoints<dim>::take_velocities(const std::size_t first,
-                                            CornerGroups<dim> &groups)
+  void LeapfrogPoints<dim>::take_velocities(const Node &node,
+                                            CornerGroups<dim> &groups) const
   {
-    for (std::size_t k = 0; k < local_groups_.size(); ++k)
-      std::copy_n(local_.velocity[k].begin(), dim,
-                  &groups.velocity[local_groups_[k] * dim]);
-    for (std::size_t k = first; k < moved_.size(); ++k) {
-      const auto U = relative(moved_[k], groups);
-      std::copy(U.begin(), U.end(), &chains_.velocity[moved_[k] * dim]);
-    }
+    for (std::size_t k = 0; k < node.groups.size(); ++k)
+      std::copy_n(node.problem.velocity[k].begin(), dim,
+                  &groups.velocity[node.groups[k] * dim]);
   }
 
   /**
@@ -214,28 +211,101 @@ namespace nsfd
   }
 
   template <int dim>
+  void LeapfrogPoints<dim>::set_rule(const double h, const double last)
+  {
+    OneStepProblem<dim> &p = chains_.problem;
+    p.time_step = h + last;
+    p.theta = h / p.time_step;
+    // the first kick, of half a step, is of half of the work along its way:
+    // the law at its end gives no more than that to a body at rest
+    p.rule = last > 0. ? CohesionRule::exact : CohesionRule::end_point;
+    const std::array<double, 2> step = {p.time_step, p.theta};
+    if (step == steps_[chain_])
+      return;
+    steps_[chain_] = step;
+    for (Node &node : nodes_)
+      node.elastic[chain_].is_new = true;
+  }
+
+  /** False where a point of @p node is broken or rubs, or would go on opening
+      beyond its history at the speed that it has. */
+  template <int dim>
+  bool LeapfrogPoints<dim>::may_be_elastic(const Node &node) const
+  {
+    const OneStepProblem<dim> &p = chains_.problem;
+    const double h = p.time_step * p.theta;
+    for (const auto &place : node.problem.points) {
+      const std::size_t a = place.point;
+      if (p.kind[a] == PointKind::elastic)
+        continue;
+      if (p.kind[a] != PointKind::cohesive ||
+          (chains_.closed[a] && chains_.beta[a] < 1. &&
+           p.interactions[p.interaction[a]].friction > 0.))
+        return false;
+      std::array<double, dim> u;
+      for (unsigned int c = 0; c < dim; ++c)
+        u[c] = p.jump_free[a * dim + c] + h * chains_.old_velocity[a * dim + c];
+      if (!(effective_opening<dim>(p.interactions[p.interaction[a]],
+                                   u.data()) <= p.opening_max[a]))
+        return false;
+    }
+    return true;
+  }
+
+  /** False if something else than springs is in the step of @p node. */
+  template <int dim>
+  bool LeapfrogPoints<dim>::solve_elastic(Node &node)
+  {
+    if (!may_be_elastic(node))
+      return false;
+    auto &elastic = node.elastic[chain_];
+    if (elastic.is_new) {
+      elastic.is_new = false;
+      elastic.exists = elastic.node.reinit(chains_.problem, chains_.frame,
+                                           node.problem, chains_.beta);
+    }
+    return elastic.exists &&
+           elastic.node.solve(chains_.problem, chains_.frame, chains_.closed,
+                              node.problem, chains_.impulse, chains_.velocity);
+  }
+
+  template <int dim>
   auto LeapfrogPoints<dim>::solve(const double h, const double last,
                                   const std::vector<std::uint8_t> &prescribed,
                                   const double tolerance,
                                   CornerGroups<dim> &groups) -> Outcome
   {
     Outcome outcome;
-    chains_.problem.time_step = h + last;
-    chains_.problem.theta = h / chains_.problem.time_step;
+    set_rule(h, last);
     moved_.clear();
-    for (const Node &node : nodes_) {
-      if (!collect(node, prescribed, groups))
+    springs_.clear();
+    for (Node &node : nodes_) {
+      if (node.is_new)
+        collect(node, prescribed, groups);
+      if (node.problem.points.empty())
         continue;
       const std::size_t first = moved_.size();
-      for (const auto &x : local_.points) {
+      for (const auto &x : node.problem.points) {
         set_point(unsigned(x.point));
         moved_.push_back(unsigned(x.point));
       }
-      free_ = local_.velocity;
+      auto &velocity = node.problem.velocity;
+      for (std::size_t k = 0; k < node.groups.size(); ++k)
+        std::copy_n(&groups.velocity[node.groups[k] * dim], dim,
+                    velocity[k].begin());
+      if (solve_elastic(node)) {
+        ++outcome.problems;
+        for (std::size_t k = 0; k < node.problem.points.size(); ++k)
+          springs_.push_back(&node.elastic[chain_].node.point(k));
+        take_velocities(node, groups);
+        continue;
+      }
+      springs_.resize(moved_.size(), nullptr);
+      free_ = velocity;
       do {
-        local_.velocity = free_;
+        velocity = free_;
         const NodeReport report =
-            solver_.solve(chains_.problem, chains_.frame, local_,
+            solver_.solve(chains_.problem, chains_.frame, node.problem,
                           chains_.impulse, chains_.solution);
         outcome.sweeps += report.sweeps;
         outcome.newton += report.newton;
@@ -247,7 +317,11 @@ namespace nsfd
         outcome.loose += !report.converged;
         outcome.converged = outcome.converged &&
                             (report.converged || report.residual <= tolerance);
-        take_velocities(first, groups);
+        take_velocities(node, groups);
+        for (std::size_t k = first; k < moved_.size(); ++k) {
+          const auto U = relative(moved_[k], groups);
+          std::copy(U.begin(), U.end(), &chains_.velocity[moved_[k] * dim]);
+        }
       } while (turn_friction(first));
     }
     return outcome;

@@ -4,6 +4,7 @@
 #include "leapfrog_chains.h"
 
 #include "joined/corner_groups.h"
+#include "joined/elastic_node.h"
 #include "joined/node_solver.h"
 #include "nonsmooth/one_step_problem.h"
 
@@ -95,18 +96,31 @@ namespace nsfd
     struct Node {
       std::size_t node;
       std::vector<unsigned int> points; ///< all active ones here
+      bool is_new = true;               ///< points or groups have changed
+      NodeProblem<dim> problem;
+      std::vector<unsigned int> groups; ///< of the problem
+      /// of either chain
+      struct Elastic {
+        bool is_new = true, exists = false;
+        ElasticNode<dim> node;
+      };
+      std::array<Elastic, 2> elastic;
     };
 
     void put_into_node();
     void count_holds();
     void set_point(unsigned int a);
-    bool collect(const Node &node, const std::vector<std::uint8_t> &prescribed,
-                 CornerGroups<dim> &groups);
+    void collect(Node &node, const std::vector<std::uint8_t> &prescribed,
+                 const CornerGroups<dim> &groups);
+    void set_rule(double time_step, double last);
+    bool may_be_elastic(const Node &node) const;
+    bool solve_elastic(Node &node);
     bool turn_friction(std::size_t first);
-    void take_velocities(std::size_t first, CornerGroups<dim> &groups);
+    void take_velocities(const Node &node, CornerGroups<dim> &groups) const;
     bool is_beyond_unique(unsigned int a,
                           const PointEnergies<dim> &energies) const;
     void account_point(unsigned int a, std::size_t row, Balance &balance);
+    void account_spring(unsigned int a, std::size_t row, Balance &balance);
     void keep_jump(unsigned int a);
     void keep(unsigned int a, const PointEnergies<dim> &energies);
     std::array<double, dim> relative(unsigned int a,
@@ -125,10 +139,12 @@ namespace nsfd
     std::vector<int> node_index_;     ///< by node of the mesh, -1: none here
     std::vector<unsigned int> moved_; ///< points of the step, nodes in order
     NodeSolver<dim> solver_;
-    NodeProblem<dim> local_;
-    std::vector<unsigned int> local_groups_;
-    std::vector<std::array<double, dim>> free_; ///< of the groups
+    unsigned int chain_ = 0;                       ///< which one is in the step
+    std::array<std::array<double, 2>, 2> steps_{}; ///< H and theta, by chain
+    std::vector<std::array<double, dim>> free_;    ///< of the groups
     std::vector<double> terms_;
-    std::vector<PointEnergies<dim>> energies_; ///< of the step, as `moved_`
+    /// of the step, as `moved_`; springs of an ElasticNode, else null
+    std::vector<const typename ElasticNode<dim>::Point *> springs_;
+    std::vector<PointEnergies<dim>> energies_;
   };
 } // namespace nsfd

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "make_scene.h"
+
+#include "discretization/cells.h"
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace nsfd::test
+{
+  /** A scene of `scheme = leapfrog`, step by step. */
+  template <int dim>
+  class Steps : public Scene<dim>
+  {
+  public:
+    explicit Steps(const std::string &text,
+                   const std::vector<std::string> &overrides = {})
+        : Scene<dim>(text, overrides)
+    {
+      this->state = this->leapfrog->start_from(this->state);
+      this->next = this->state;
+    }
+
+    StepReport step(const double share = 1.)
+    {
+      StepReport report;
+      for (double h = share * this->time_step;; h /= 2.)
+        try {
+          report = this->leapfrog->advance(this->state, h, this->next, 2);
+          break;
+        } catch (const StepRejected &rejected) {
+          if (h < 1e-3 * this->time_step ||
+              rejected.cure() == StepRejected::Cure::none)
+            throw;
+        }
+      std::swap(this->state, this->next);
+      return report;
+    }
+
+    std::array<double, dim> momentum()
+    {
+      this->leapfrog->show(this->state);
+      std::array<double, dim> sum{};
+      const auto &cells = this->discretization->cells();
+      for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+        const std::size_t first = cells.bodies.first_dof[b];
+        for (unsigned int j = 0; j < cells.body_class(b).n_dofs; ++j)
+          sum[j % dim] += lumped_mass(cells.shape(b), j / dim) *
+                          this->state.velocity[first + j];
+      }
+      return sum;
+    }
+  };
+} // namespace nsfd::test
