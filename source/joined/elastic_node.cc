@@ -46,6 +46,12 @@ namespace nsfd
         (!problem.viscosity.empty() && problem.viscosity[i] > 0.))
       return false;
     beta = present_beta;
+    one_sided = problem.compression_stiffness[i] == 0.;
+    broken = kind == PointKind::free;
+    if (broken) {
+      largest = springs::infinity;
+      return one_sided;
+    }
     if (kind == PointKind::elastic) {
       const double k = interaction.normal_stiffness;
       secant = {k, k * interaction.stiffness_ratio};
@@ -60,7 +66,6 @@ namespace nsfd
     } else
       return false;
     const double compression = problem.compression_stiffness[i];
-    one_sided = compression == 0.;
     rubs = interaction.friction > 0. &&
            (beta < 1. || interaction.friction_exponent == 0.);
     return secant.normal > 0. && secant.tangential > 0. &&
@@ -157,8 +162,9 @@ namespace nsfd
   {
     has_map_ = false;
     points_.clear();
-    if (node.points.size() * dim > most || node.inverse_mass.size() > most)
+    if (node.points.size() > most_points)
       return false;
+    std::size_t n = 0;
     const double slope = springs::tangential_spring<dim>(problem, 1.).slope;
     for (const auto &place : node.points) {
       const std::size_t i = place.point;
@@ -168,9 +174,13 @@ namespace nsfd
       const double w = problem.weight[i] * problem.time_step * slope;
       point.flexibility.fill(1. / (w * point.law.secant.tangential));
       point.flexibility[0] = 1. / (w * point.law.secant.normal);
+      if (!point.law.broken) {
+        point.first = unsigned(n);
+        n += dim;
+      }
       points_.push_back(point);
     }
-    return set_open_map(node, frames);
+    return n <= most && set_open_map(n, node, frames);
   }
 
   template <int dim>
@@ -188,9 +198,9 @@ namespace nsfd
       const auto &place = node.points[k];
       const std::size_t i = place.point;
       relative<dim>(&frames[i * dim * dim], place.groups, node.velocity,
-                    &step.free[k * dim]);
+                    step.free[k].data());
       for (unsigned int c = 0; c < dim; ++c)
-        step.offset[k * dim + c] =
+        step.offset[k][c] =
             springs::tangential_offset<dim>(problem, i, c) / slope;
       for (unsigned int c = 0; c < dim; ++c)
         step.speed = std::max(
@@ -202,30 +212,34 @@ namespace nsfd
 
   /** With all points open: (W + 1/(kappa s)) P = -y_0/s - U_free. */
   template <int dim>
-  bool ElasticNode<dim>::set_open_map(const NodeProblem<dim> &node,
+  bool ElasticNode<dim>::set_open_map(const std::size_t n,
+                                      const NodeProblem<dim> &node,
                                       const std::vector<double> &frames)
   {
-    const std::size_t n = points_.size() * dim;
     lu_.reinit(int(n));
     for (std::size_t l = 0; l < points_.size(); ++l)
-      for (unsigned int d = 0; d < dim; ++d) {
+      for (unsigned int d = 0; d < dim && !points_[l].law.broken; ++d) {
         double P[dim] = {};
         P[d] = 1.;
         velocity_.assign(node.velocity.size(), {});
         const auto &place = node.points[l];
         push<dim>(&frames[place.point * dim * dim], place.groups, P,
                   node.inverse_mass, velocity_);
+        const std::size_t column = points_[l].first + d;
         for (std::size_t k = 0; k < points_.size(); ++k) {
+          if (points_[k].law.broken)
+            continue;
           double U[dim];
           relative<dim>(&frames[node.points[k].point * dim * dim],
                         node.points[k].groups, velocity_, U);
           for (unsigned int c = 0; c < dim; ++c)
-            lu_.row(int(k * dim + c))[l * dim + d] = U[c];
+            lu_.row(int(points_[k].first + c))[column] = U[c];
         }
-        lu_.row(int(l * dim + d))[l * dim + d] += points_[l].flexibility[d];
+        lu_.row(int(column))[column] += points_[l].flexibility[d];
       }
     if (!lu_.factorise())
       return false;
+    size_ = n;
     stride_ = (n + lanes - 1) / lanes * lanes;
     open_.assign(n * stride_, 0.);
     for (std::size_t j = 0; j < n; ++j) {
@@ -243,20 +257,20 @@ namespace nsfd
   template <int dim>
   bool ElasticNode<dim>::set_map(const Step &step)
   {
-    const std::size_t n = points_.size() * dim;
     inverse_ = open_;
     for (std::size_t k = 0; k < points_.size(); ++k) {
       points_[k].closed = step.closed[k];
       if (!step.closed[k])
         continue;
-      const std::size_t j = k * dim;
+      const std::size_t j = points_[k].first;
       const double share = points_[k].flexibility[0];
-      const double left = 1. - share * inverse_[j * stride_ + j];
+      const double left =
+          points_[k].law.broken ? 0. : 1. - share * inverse_[j * stride_ + j];
       if (!(left > 1e-12))
         return false; // closed points hold each other
       Unknowns column;
       std::copy_n(&inverse_[j * stride_], stride_, column.begin());
-      for (std::size_t l = 0; l < n; ++l)
+      for (std::size_t l = 0; l < size_; ++l)
         add<lanes>(share / left * inverse_[l * stride_ + j], column.data(),
                    &inverse_[l * stride_], stride_);
     }
@@ -269,36 +283,36 @@ namespace nsfd
                                    const std::vector<double> &frames,
                                    Step &step)
   {
-    const std::size_t n = points_.size() * dim;
     std::fill_n(step.impulse.begin(), stride_, 0.);
-    std::copy_n(step.free.begin(), n, step.velocity.begin());
+    std::copy_n(step.free.begin(), points_.size(), step.velocity.begin());
     velocity_ = node.velocity;
     for (unsigned int round = 0; round <= most_refinements; ++round) {
       Unknowns rest;
       double worst = 0.;
       for (std::size_t k = 0; k < points_.size(); ++k)
-        for (unsigned int c = 0; c < dim; ++c) {
-          const std::size_t j = k * dim + c;
+        for (unsigned int c = 0; c < dim && !points_[k].law.broken; ++c) {
+          const std::size_t j = points_[k].first + c;
           rest[j] = c == 0 && points_[k].closed
-                        ? step.target[k] - step.velocity[j]
-                        : -step.offset[j] - step.velocity[j] -
+                        ? step.target[k] - step.velocity[k][0]
+                        : -step.offset[k][c] - step.velocity[k][c] -
                               points_[k].flexibility[c] * step.impulse[j];
           worst = std::max(worst, std::abs(rest[j]));
         }
       if (!(worst > round_off * step.speed))
         return worst == worst;
-      for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t j = 0; j < size_; ++j)
         add<lanes>(rest[j], &inverse_[j * stride_], step.impulse.data(),
                    stride_);
       velocity_ = node.velocity;
       for (std::size_t k = 0; k < points_.size(); ++k)
-        push<dim>(&frames[node.points[k].point * dim * dim],
-                  node.points[k].groups, &step.impulse[k * dim],
-                  node.inverse_mass, velocity_);
+        if (!points_[k].law.broken)
+          push<dim>(&frames[node.points[k].point * dim * dim],
+                    node.points[k].groups, &step.impulse[points_[k].first],
+                    node.inverse_mass, velocity_);
       for (std::size_t k = 0; k < points_.size(); ++k)
         relative<dim>(&frames[node.points[k].point * dim * dim],
                       node.points[k].groups, velocity_,
-                      &step.velocity[k * dim]);
+                      step.velocity[k].data());
     }
     return false;
   }
@@ -327,10 +341,10 @@ namespace nsfd
     for (std::size_t k = 0; k < points_.size(); ++k) {
       if (!points_[k].law.one_sided)
         continue;
-      const double U = step.velocity[k * dim];
+      const double U = step.velocity[k][0];
       const bool closed =
           points_[k].closed
-              ? step.impulse[k * dim] >=
+              ? step.impulse[points_[k].first] >=
                     spring_impulse(problem, node, k, step.target[k])
               : U < step.target[k] - round_off * step.speed;
       found = found && closed == points_[k].closed;
@@ -354,8 +368,7 @@ namespace nsfd
         return false;
       std::array<double, dim> u;
       for (unsigned int c = 0; c < dim; ++c)
-        u[c] = problem.jump_free[i * dim + c] +
-               h_theta * step.velocity[k * dim + c];
+        u[c] = problem.jump_free[i * dim + c] + h_theta * step.velocity[k][c];
       double square = springs::square(springs::positive(u[0])), slip = 0.;
       for (unsigned int c = 1; c < dim; ++c)
         slip += u[c] * u[c];
@@ -363,7 +376,7 @@ namespace nsfd
           problem.interactions[problem.interaction[i]].shear_weight * slip;
       if (!(square <= law.largest))
         return false;
-      if (law.one_sided && !points_[k].closed &&
+      if (law.one_sided && !law.broken && !points_[k].closed &&
           problem.jump_old[i * dim] < -round_off * step.speed * h_theta)
         return false;
     }
@@ -396,8 +409,9 @@ namespace nsfd
       for (std::size_t k = 0; k < points_.size(); ++k)
         for (unsigned int c = 0; c < dim; ++c) {
           const std::size_t i = node.points[k].point * dim + c;
-          impulses[i] = step.impulse[k * dim + c];
-          velocities[i] = step.velocity[k * dim + c];
+          impulses[i] =
+              points_[k].law.broken ? 0. : step.impulse[points_[k].first + c];
+          velocities[i] = step.velocity[k][c];
         }
       return true;
     }

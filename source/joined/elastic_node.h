@@ -11,7 +11,7 @@ namespace nsfd
   /**
    * A point that is a spring as long as it is not open beyond its history: with
    * P = -kappa (y_0 + s U) in each direction and, where the spring is
-   * one-sided, contact.
+   * one-sided, contact. Or one that is broken, as long as it is open.
    */
   template <int dim>
   struct ElasticPoint {
@@ -20,6 +20,7 @@ namespace nsfd
     double largest = 0.;    ///< of the square of the effective opening
     bool one_sided = false; ///< contact ends the spring
     bool rubs = false;      ///< once it is closed
+    bool broken = false;
 
     /** False if the point is anything else. @p beta: what it has. */
     bool reinit(const OneStepProblem<dim> &problem, std::size_t i, double beta);
@@ -45,8 +46,9 @@ namespace nsfd
   class ElasticNode
   {
   public:
-    /** The largest number of unknowns: the map of a node is dense. */
-    static constexpr unsigned int most = 48;
+    /** The largest numbers of unknowns, since the map of a node is dense, and
+       of points. */
+    static constexpr unsigned int most = 48, most_points = 80;
 
     /**
      * Of the points as they are, with @p beta by point of the problem; until
@@ -60,6 +62,7 @@ namespace nsfd
       ElasticPoint<dim> law;
       std::array<double, dim> flexibility{}; ///< 1 / (kappa s), kg^-1
       bool closed = false;                   ///< in the map
+      unsigned int first = 0; ///< of its unknowns; broken: it has none
     };
     /** By point of the node. */
     const Point &point(const std::size_t k) const { return points_[k]; }
@@ -83,17 +86,18 @@ namespace nsfd
     using Unknowns = std::array<double, most>;
     /** Of the step that is solved. */
     struct Step {
-      Unknowns free, offset, impulse, velocity; ///< by unknown, y_0 / s in m/s
-      std::array<double, most> target;          ///< by point
+      Unknowns impulse;
+      std::array<Vector, most_points> free, offset, velocity; ///< y_0/s: m/s
+      std::array<double, most_points> target;
       double speed = 0.;
-      std::array<bool, most> closed;
+      std::array<bool, most_points> closed;
     };
 
     void begin(const OneStepProblem<dim> &problem,
                const std::vector<double> &frames,
                const std::vector<std::uint8_t> &closed,
                const NodeProblem<dim> &node, Step &step) const;
-    bool set_open_map(const NodeProblem<dim> &node,
+    bool set_open_map(std::size_t n, const NodeProblem<dim> &node,
                       const std::vector<double> &frames);
     bool set_map(const Step &step);
     bool solve_map(const NodeProblem<dim> &node,
@@ -110,7 +114,7 @@ namespace nsfd
     bool has_map_ = false;
     /// of the maps, column by column: with all points open, and now
     std::vector<double> open_, inverse_;
-    std::size_t stride_ = 0; ///< of a column
+    std::size_t size_ = 0, stride_ = 0; ///< of them and of a column
     std::vector<Vector> velocity_;
     DenseLU lu_;
   };

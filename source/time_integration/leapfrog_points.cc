@@ -227,8 +227,8 @@ namespace nsfd
       node.elastic[chain_].is_new = true;
   }
 
-  /** False where a point of @p node is broken or rubs, or would go on opening
-      beyond its history at the speed that it has. */
+  /** False where a point of @p node is broken and closed, rubs, or would go on
+      opening beyond its history at the speed that it has. */
   template <int dim>
   bool LeapfrogPoints<dim>::may_be_elastic(const Node &node) const
   {
@@ -238,6 +238,11 @@ namespace nsfd
       const std::size_t a = place.point;
       if (p.kind[a] == PointKind::elastic)
         continue;
+      if (p.kind[a] == PointKind::free) {
+        if (chains_.closed[a])
+          return false;
+        continue;
+      }
       if (p.kind[a] != PointKind::cohesive ||
           (chains_.closed[a] && chains_.beta[a] < 1. &&
            p.interactions[p.interaction[a]].friction > 0.))
