@@ -169,15 +169,6 @@ namespace nsfd
     problem.velocity.resize(node.groups.size());
   }
 
-  template <int dim>
-  void LeapfrogPoints<dim>::take_velocities(const Node &node,
-                                            CornerGroups<dim> &groups) const
-  {
-    for (std::size_t k = 0; k < node.groups.size(); ++k)
-      std::copy_n(node.problem.velocity[k].begin(), dim,
-                  &groups.velocity[node.groups[k] * dim]);
-  }
-
   /**
    * Friction that opposes the velocity of the end of a step gives energy where
    * sliding turns round in it: such points oppose the mean from then on. True
@@ -281,6 +272,11 @@ namespace nsfd
                                   CornerGroups<dim> &groups) -> Outcome
   {
     Outcome outcome;
+    const auto take_velocities = [&groups](const Node &node) {
+      for (std::size_t k = 0; k < node.groups.size(); ++k)
+        std::copy_n(node.problem.velocity[k].begin(), dim,
+                    &groups.velocity[node.groups[k] * dim]);
+    };
     set_rule(h, last);
     moved_.clear();
     springs_.clear();
@@ -302,7 +298,7 @@ namespace nsfd
         ++outcome.problems;
         for (std::size_t k = 0; k < node.problem.points.size(); ++k)
           springs_.push_back(&node.elastic[chain_].node.point(k));
-        take_velocities(node, groups);
+        take_velocities(node);
         continue;
       }
       springs_.resize(moved_.size(), nullptr);
@@ -322,7 +318,7 @@ namespace nsfd
         outcome.loose += !report.converged;
         outcome.converged = outcome.converged &&
                             (report.converged || report.residual <= tolerance);
-        take_velocities(node, groups);
+        take_velocities(node);
         for (std::size_t k = first; k < moved_.size(); ++k) {
           const auto U = relative(moved_[k], groups);
           std::copy(U.begin(), U.end(), &chains_.velocity[moved_[k] * dim]);

@@ -116,7 +116,6 @@ namespace nsfd
     bool may_be_elastic(const Node &node) const;
     bool solve_elastic(Node &node);
     bool turn_friction(std::size_t first);
-    void take_velocities(const Node &node, CornerGroups<dim> &groups) const;
     bool is_beyond_unique(unsigned int a,
                           const PointEnergies<dim> &energies) const;
     void account_point(unsigned int a, std::size_t row, Balance &balance);
