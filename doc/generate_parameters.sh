@@ -271,7 +271,7 @@ end
 END
 
 # Explicit steps on joined cells.
-sed -e '/quasi-static/d; s/set step .*/set step = auto\n  set scheme = leapfrog/' \
+sed -e '/quasi-static/d; s/set step .*/set step = auto\n  set scheme = explicit/' \
   "$scratch/static.prm" >"$scratch/leapfrog.prm"
 
 # Section Path of `nsfd law`, with options.
@@ -385,7 +385,7 @@ that it does not use.
   1e9 steps.
 - `--set 'Section/name=value'` changes an entry from the command line; a block
   is named in full: `--set 'Interface: all/toughness=2 J/m^2'`.
-- Former words of entries and values (`maximum halvings`, `symplectic`, `global`,
+- Former words of entries and values (`maximum halvings`, `leapfrog`, `global`,
   `element-wise`, `chain`, `contacts alone`) go on working; a note names today's
   word. `crossings` and `courant` are the same.
 

@@ -40,7 +40,7 @@ namespace nsfd
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");
       refuse(scene.time.scheme == Scheme::leapfrog,
-             "the mesh does not change with scheme = leapfrog yet",
+             "the mesh does not change with scheme = explicit yet",
              "write scheme = moreau-jean or explicit");
       refuse(scene.time.scheme == Scheme::arkode,
              "the mesh does not change with scheme = arkode",

@@ -14,7 +14,7 @@ namespace nsfd
     {
       if (block.sliding.lifts())
         reader.error("scheme",
-                     fmt::format("scheme = leapfrog has no dilatancy and no "
+                     fmt::format("scheme = explicit has no dilatancy and no "
                                  "wear, and `{}` has one of them",
                                  block.name),
                      "remove it, or write scheme = moreau-jean");
@@ -27,7 +27,7 @@ namespace nsfd
     reader.refuse({"theta", "forecast gamma1", "forecast gamma2",
                    "cohesion rule", "contact target", "sliding",
                    "maximum bisections", "largest overshoot"},
-                  "scheme = leapfrog has none");
+                  "scheme = explicit has none");
     scene.time.largest_overshoot = std::numeric_limits<double>::infinity();
     const auto front = reader.raw(
         "front viscosity", "auto",
@@ -40,7 +40,7 @@ namespace nsfd
     for (const MaterialInput &material : scene.materials)
       if (material.rigid || material.is_viscous())
         reader.error("scheme",
-                     fmt::format("scheme = leapfrog is for elastic bodies, "
+                     fmt::format("scheme = explicit is for elastic bodies, "
                                  "and material `{}` is {}",
                                  material.name,
                                  material.rigid ? "rigid" : "viscous"),
@@ -49,7 +49,7 @@ namespace nsfd
       refuse_lift(reader, interface);
       if (interface.crack_pressure)
         reader.error("scheme",
-                     fmt::format("scheme = leapfrog has no pressure in "
+                     fmt::format("scheme = explicit has no pressure in "
                                  "cracks, and `{}` has one",
                                  interface.name),
                      "write scheme = moreau-jean");
@@ -61,7 +61,7 @@ namespace nsfd
       refuse_lift(reader, obstacle);
     if (scene.statics)
       reader.error("start",
-                   "scheme = leapfrog does not start from an equilibrium yet",
+                   "scheme = explicit does not start from an equilibrium yet",
                    "write given");
   }
 } // namespace nsfd

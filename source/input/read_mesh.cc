@@ -268,7 +268,7 @@ namespace nsfd
     {
       const DiscretizationInput &input = scene.discretization;
       const std::string reason =
-          "scheme = leapfrog has masses and points at the nodes of the cells";
+          "scheme = explicit has masses and points at the nodes of the cells";
       if (!input.lumped_mass)
         reader.error("mass", "mass = consistent: " + reason, "write lumped");
       if (input.interface_quadrature != "gauss lobatto")

@@ -48,7 +48,7 @@ namespace nsfd
    * own for it; read_time() reads it, and reports what is wrong with it.
    */
   void look_at_scheme(const ParameterFile &file, SceneInput &scene);
-  /** Entries of section `Time` with scheme = leapfrog, and what it refuses. */
+  /** Entries of section `Time` with scheme = explicit, and what it refuses. */
   void read_leapfrog(SectionReader &reader, SceneInput &scene);
 
   void read_materials(ParameterFile &file, InputErrors &errors,

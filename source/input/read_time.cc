@@ -333,9 +333,9 @@ namespace nsfd
                      "scheme = arkode knows no viscosity, and a material has "
                      "one",
                      "write scheme = moreau-jean");
-      if (scheme == "explicit" && scene.has_bonded_faces())
+      if (scheme == "symplectic" && scene.has_bonded_faces())
         reader.error("scheme",
-                     "scheme = explicit takes bonded faces by explicit "
+                     "scheme = symplectic takes bonded faces by explicit "
                      "forces, and viscous materials need implicit ones",
                      "write scheme = moreau-jean, or join the faces by the law "
                      "`rigid`");
@@ -362,7 +362,7 @@ namespace nsfd
   {
     const ParameterSection *section = file.find("Time");
     const ParameterEntry *entry = section ? section->find("scheme") : nullptr;
-    if (entry && entry->value.text() == "leapfrog")
+    if (entry && entry->value.text() == "explicit")
       scene.time.scheme = Scheme::leapfrog;
   }
 
@@ -373,8 +373,8 @@ namespace nsfd
     time.end = reader.number("end", "", units::time, Range::positive(), "s");
     const std::string scheme = reader.choice(
         "scheme", "moreau-jean",
-        {"moreau-jean", "leapfrog", "explicit", "arkode", "quasi-static"},
-        "moreau-jean, leapfrog, explicit, arkode or "
+        {"moreau-jean", "explicit", "symplectic", "arkode", "quasi-static"},
+        "moreau-jean, explicit, symplectic, arkode or "
         "quasi-static");
     if (refuse_scheme(reader, scene, scheme))
       return;
@@ -399,15 +399,15 @@ namespace nsfd
     }
     if (scheme == "arkode")
       return read_smooth(reader, scene);
-    if (scheme == "leapfrog")
+    if (scheme == "explicit")
       return read_leapfrog(reader, scene);
-    reader.refuse({"front viscosity"}, "it belongs to scheme = leapfrog");
+    reader.refuse({"front viscosity"}, "it belongs to scheme = explicit");
     reader.refuse({"pairs", "order", "integration tolerance"},
                   "it belongs to scheme = arkode");
-    if (scheme == "explicit") {
+    if (scheme == "symplectic") {
       time.scheme = Scheme::explicit_moreau_jean;
       time.theta = 1.;
-      reader.refuse({"theta"}, "scheme = explicit has none");
+      reader.refuse({"theta"}, "scheme = symplectic has none");
     } else
       read_theta(reader, scene, time);
     time.forecast_gamma1 = reader.number(

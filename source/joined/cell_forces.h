@@ -13,8 +13,8 @@ namespace nsfd
    * is averaged along it), or a point of cells of higher degree.
    */
   struct StrengthSites {
-    /// share of its strength from which on a site counts
-    static constexpr double looked_at = 0.99;
+    /// share of its strength from which on the traction of a site is computed
+    static constexpr double looked_at = 0.6;
 
     std::vector<unsigned int> first_point, n_points;
     std::vector<std::array<unsigned int, 2>> cells;

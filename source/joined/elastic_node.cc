@@ -13,6 +13,8 @@ namespace nsfd
     /// of velocities, over the size of those that they are differences of
     constexpr double round_off = 4e-15;
     constexpr unsigned int most_changes = 6, most_refinements = 3;
+    /// of W beside points that hold: in a cycle they share what they hold
+    constexpr double softening = 1e-10;
 
     /** Below the history the law is a spring through the origin. */
     template <int dim>
@@ -51,6 +53,12 @@ namespace nsfd
     if (broken) {
       largest = springs::infinity;
       return one_sided;
+    }
+    holds = kind == PointKind::rigid;
+    if (holds) {
+      one_sided = false;
+      largest = springs::infinity;
+      return true;
     }
     if (kind == PointKind::elastic) {
       const double k = interaction.normal_stiffness;
@@ -171,9 +179,11 @@ namespace nsfd
       Point point;
       if (!point.law.reinit(problem, i, beta[i]))
         return false;
-      const double w = problem.weight[i] * problem.time_step * slope;
-      point.flexibility.fill(1. / (w * point.law.secant.tangential));
-      point.flexibility[0] = 1. / (w * point.law.secant.normal);
+      if (!point.law.holds && !point.law.broken) {
+        const double w = problem.weight[i] * problem.time_step * slope;
+        point.flexibility.fill(1. / (w * point.law.secant.tangential));
+        point.flexibility[0] = 1. / (w * point.law.secant.normal);
+      }
       if (!point.law.broken) {
         point.first = unsigned(n);
         n += dim;
@@ -205,6 +215,8 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         step.speed = std::max(
             step.speed, std::abs(problem.jump_free[i * dim + c]) / h_theta);
+      if (points_[k].law.holds)
+        step.offset[k].fill(0.);
       step.target[k] = problem.target[i];
       step.closed[k] = points_[k].law.one_sided && closed[i] != 0;
     }
@@ -235,7 +247,9 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             lu_.row(int(points_[k].first + c))[column] = U[c];
         }
-        lu_.row(int(column))[column] += points_[l].flexibility[d];
+        double &diagonal = lu_.row(int(column))[column];
+        diagonal += points_[l].law.holds ? softening * diagonal
+                                         : points_[l].flexibility[d];
       }
     if (!lu_.factorise())
       return false;
@@ -353,6 +367,19 @@ namespace nsfd
     return found;
   }
 
+  template <int dim>
+  bool ElasticNode<dim>::can_hold(const OneStepProblem<dim> &problem,
+                                  const std::size_t i,
+                                  const double *impulse) const
+  {
+    std::array<double, dim> pull;
+    for (unsigned int c = 0; c < dim; ++c)
+      pull[c] = -impulse[c];
+    return effective_traction<dim>(problem, i, pull[0], &pull[1]) <=
+           point_strength<dim>(problem, i) * problem.weight[i] *
+               problem.time_step;
+  }
+
   /** No point is open beyond its history, or rubs, or has come from an overlap,
       where the rule is no spring. */
   template <int dim>
@@ -366,6 +393,11 @@ namespace nsfd
       const auto &law = points_[k].law;
       if (points_[k].closed && law.rubs)
         return false;
+      if (law.holds) {
+        if (!can_hold(problem, i, &step.impulse[points_[k].first]))
+          return false;
+        continue;
+      }
       std::array<double, dim> u;
       for (unsigned int c = 0; c < dim; ++c)
         u[c] = problem.jump_free[i * dim + c] + h_theta * step.velocity[k][c];

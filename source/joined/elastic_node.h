@@ -11,7 +11,8 @@ namespace nsfd
   /**
    * A point that is a spring as long as it is not open beyond its history: with
    * P = -kappa (y_0 + s U) in each direction and, where the spring is
-   * one-sided, contact. Or one that is broken, as long as it is open.
+   * one-sided, contact. Or one that is broken, as long as it is open; or one
+   * that never was open, as long as it holds: U = 0.
    */
   template <int dim>
   struct ElasticPoint {
@@ -20,7 +21,7 @@ namespace nsfd
     double largest = 0.;    ///< of the square of the effective opening
     bool one_sided = false; ///< contact ends the spring
     bool rubs = false;      ///< once it is closed
-    bool broken = false;
+    bool broken = false, holds = false;
 
     /** False if the point is anything else. @p beta: what it has. */
     bool reinit(const OneStepProblem<dim> &problem, std::size_t i, double beta);
@@ -106,6 +107,8 @@ namespace nsfd
                      const NodeProblem<dim> &node, Step &step) const;
     bool is_elastic(const OneStepProblem<dim> &problem,
                     const NodeProblem<dim> &node, const Step &step) const;
+    bool can_hold(const OneStepProblem<dim> &problem, std::size_t i,
+                  const double *impulse) const;
     double spring_impulse(const OneStepProblem<dim> &problem,
                           const NodeProblem<dim> &node, std::size_t k,
                           double velocity) const;

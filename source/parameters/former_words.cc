@@ -38,7 +38,7 @@ namespace nsfd
     static const std::vector<FormerWord> words = {
         {Place::entry, "Time", "maximum bisections", "maximum halvings",
          "maximum bisections"},
-        {Place::value, "Time", "scheme", "symplectic", "explicit"},
+        {Place::value, "Time", "scheme", "leapfrog", "explicit"},
         {Place::unit, "Time", "step", "crossings", "courant", true},
         {Place::unit, "Time", "step", "crossing", "courant", true},
         {Place::unit, "Time", "dynamic step", "crossings", "courant", true},

@@ -94,8 +94,8 @@ namespace nsfd
   {
     method = "node by node";
     if (communicator.size() > 1) {
-      problems.push_back("scheme = leapfrog runs on one rank so far: leave out "
-                         "mpirun, or write scheme = explicit");
+      problems.push_back("scheme = explicit runs on one rank so far: leave out "
+                         "mpirun, or write scheme = moreau-jean");
       return;
     }
     try {

@@ -2,6 +2,7 @@
 
 #include "discretization/cells.h"
 #include "discretization/point_factors.h"
+#include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -13,6 +14,10 @@ namespace nsfd
   namespace
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    /// of the strength: a face lets go early that would be further in the next
+    /// step
+    constexpr double too_far = 1.03;
   } // namespace
 
   template <int dim>
@@ -129,26 +134,46 @@ namespace nsfd
       -> std::vector<unsigned int>
   {
     std::vector<unsigned int> released;
+    old_squares_.swap(squares_);
     forces.squared_tractions(sites_, squares_);
+    old_squares_.resize(squares_.size(), infinity); // nothing has grown
+    constexpr double seen = StrengthSites::looked_at,
+                     least = (too_far + seen) / 2.;
     for (std::size_t k = 0; k < sites_.size(); ++k) {
-      if (!(squares_[k] >= sites_.limit[k]))
+      if (!(squares_[k] >= least * least * sites_.limit[k]))
         continue;
       const LawPoint here = law(k);
-      double square = squares_[k] / (here.strength() * here.strength());
+      double share = std::sqrt(squares_[k]) / here.strength();
       if (here.law().mixed()) {
         const auto t =
             in_frame(sites_.first_point[k], forces.traction(sites_, k));
-        const double share =
-            here.template effective_traction<dim>(t[0], &t[1]) /
-            here.strength();
-        square = share * share;
-        if (square < 1.)
-          continue;
+        share = here.template effective_traction<dim>(t[0], &t[1]) /
+                here.strength();
       }
-      excess = std::max(excess, std::sqrt(square) - 1.);
+      // what it was below that has not been looked at
+      const double before =
+          std::max(seen, share * std::sqrt(old_squares_[k] / squares_[k]));
+      if (share < 1. && 2. * share - before < too_far)
+        continue;
+      excess = std::max(excess, share - 1.);
       let_go(k, released);
     }
     return released;
+  }
+
+  template <int dim>
+  void FaceRelease<dim>::serialize(Archive &archive)
+  {
+    std::vector<double> all(discretization_.points().n_points, infinity);
+    if (!archive.reads())
+      for (std::size_t k = 0; k < squares_.size(); ++k)
+        all[sites_.first_point[k]] = squares_[k];
+    archive.points("squared_tractions", all);
+    if (!archive.reads())
+      return;
+    squares_.resize(sites_.size());
+    for (std::size_t k = 0; k < sites_.size(); ++k)
+      squares_[k] = all[sites_.first_point[k]];
   }
 
   template <int dim>

@@ -9,12 +9,14 @@
 
 namespace nsfd
 {
+  class Archive;
   struct SceneInput;
 
   /**
    * Which faces of joined cells let go: where the mean traction of both sides
-   * reaches their strength. To let go is not to open: the points are held as
-   * before until the problem of the node opens them.
+   * reaches their strength, or would be well beyond it in the next step. To let
+   * go is not to open: the points are held as before until the problem of the
+   * node opens them.
    */
   template <int dim>
   class FaceRelease
@@ -37,6 +39,8 @@ namespace nsfd
      */
     std::vector<unsigned int> reached(const CellForces<dim> &forces,
                                       double &excess);
+    /** The tractions of the last step. */
+    void serialize(Archive &archive);
     /** Mean tractions at intact points in their frames, Pa. */
     void show(const CellForces<dim> &forces,
               std::vector<double> &tractions) const;
@@ -51,7 +55,7 @@ namespace nsfd
     StrengthSites sites_;
     std::vector<typename LeapfrogPoints<dim>::Factors> factors_; ///< of sites
     std::vector<int> site_of_; ///< by point, -1: it never lets go
-    std::vector<double> squares_;
-    std::vector<std::uint8_t> intact_; ///< by point
+    std::vector<double> squares_, old_squares_; ///< of this step and the last
+    std::vector<std::uint8_t> intact_;          ///< by point
   };
 } // namespace nsfd

@@ -420,6 +420,7 @@ namespace nsfd
   {
     const Archive::Part part(archive, "leapfrog");
     archive.numbers("excess", counters_.excess);
+    faces_.serialize(archive);
     points_.serialize(archive);
     auto &front = forces_->front();
     front.serialize(archive, discretization_.bodies().first_dof);

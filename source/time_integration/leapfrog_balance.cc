@@ -271,9 +271,11 @@ namespace nsfd
       keep_jump(a);
       if (springs_[k])
         continue;
-      // kind, history or overlap may change
+      // kind, history or overlap may change, and what opens starts the other
+      // chain
       const std::size_t node = mesh_.node_of_point(chains_.point[a]);
-      nodes_[std::size_t(node_index_[node])].elastic[chain_].is_new = true;
+      for (auto &elastic : nodes_[std::size_t(node_index_[node])].elastic)
+        elastic.is_new = true;
       keep(a, energies_[k]);
     }
     chains_.swap();

@@ -227,7 +227,7 @@ namespace nsfd
     const double h = p.time_step * p.theta;
     for (const auto &place : node.problem.points) {
       const std::size_t a = place.point;
-      if (p.kind[a] == PointKind::elastic)
+      if (p.kind[a] == PointKind::elastic || p.kind[a] == PointKind::rigid)
         continue;
       if (p.kind[a] == PointKind::free) {
         if (chains_.closed[a])

@@ -13,7 +13,7 @@ namespace nsfd
 
   /**
    * The Moreau-Jean step of linear bodies: one free motion, one nonsmooth
-   * problem. With `scheme = explicit` the bodies are explicit.
+   * problem. With `scheme = symplectic` the bodies are explicit.
    */
   template <int dim>
   class LinearMoreauJean final : public MoreauJean<dim>

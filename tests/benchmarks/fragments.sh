@@ -34,7 +34,7 @@ subsection Interface: all
   set broken    = cos(pi * x * n / side)^2 > 1 - 1e-9 || cos(pi * y * n / side)^2 > 1 - 1e-9
 end
 subsection Time
-  set scheme   = explicit
+  set scheme   = symplectic
   set end      = 2 us
   set step     = 0.02 us
 end

@@ -125,7 +125,7 @@ namespace end_to_end::test_bonded
       return result;
     };
     const Result implicit = tear("moreau-jean", "0.2"),
-                 by_forces = tear("explicit", "0.05");
+                 by_forces = tear("symplectic", "0.05");
     EXPECT_GE(implicit.number("fragments"), 2);
     EXPECT_EQ(by_forces.counter("redone_steps"), 0.);
     EXPECT_EQ(by_forces.counter("global_factorisations"), 0.);

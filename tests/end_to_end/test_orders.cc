@@ -88,7 +88,7 @@ namespace end_to_end::test_orders
     for (const std::string law : {"rigid", "bonded"}) {
       const auto with_step = [&law](const std::string &step) {
         return Launch{scene("mode"),
-                      {"Time/scheme=explicit", "Time/step=" + step,
+                      {"Time/scheme=symplectic", "Time/step=" + step,
                        "Interface: joints/law=" + law, "Output/fields=false"}};
       };
       const Result refused =

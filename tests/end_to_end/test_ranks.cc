@@ -219,8 +219,9 @@ namespace end_to_end::test_ranks
   TEST(Ranks, ExplicitBondsAreTheSameBitForBit)
   {
     const Workspace workspace;
-    const std::vector<std::string> set = {"Mesh/cells=8, 8", "Time/end=9 ns",
-                                          "Output/fields=false"};
+    const std::vector<std::string> set = {
+        "Mesh/cells=8, 8", "Time/end=9 ns", "Output/fields=false",
+        "Time/scheme=symplectic", "Time/step=0.05 courant"};
     const auto file = benchmark("fracture_extrinsic");
     const Result one = good_run(workspace, "1 rank", {file, set});
     EXPECT_GT(one.counter("released_bonds"), 0.);

@@ -11,7 +11,7 @@
 
 namespace nsfd::test
 {
-  /** A scene of `scheme = leapfrog`, step by step. */
+  /** A scene of `scheme = explicit`, step by step. */
   template <int dim>
   class Steps : public Scene<dim>
   {

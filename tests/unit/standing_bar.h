@@ -19,7 +19,7 @@ end
 subsection Time
   set end    = 4
   set step   = auto
-  set scheme = leapfrog
+  set scheme = explicit
 end
 )";
 } // namespace nsfd::test

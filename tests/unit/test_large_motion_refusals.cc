@@ -263,9 +263,9 @@ namespace nsfd::large_motion_scenes::test_large_motion_refusals
          "the extrinsic law camacho-ortiz has none",
          "write rigid, or take an intrinsic law", "set intact faces = spring"},
         {"explicit", &space, "set step = 1 us",
-         "set step = 1 us\n  set scheme = explicit",
-         "scheme = explicit is not available for motion = large",
-         "scheme = moreau-jean", "set scheme = explicit"},
+         "set step = 1 us\n  set scheme = symplectic",
+         "scheme = symplectic is not available for motion = large",
+         "scheme = moreau-jean", "set scheme = symplectic"},
         {"quasi_static", &space, "set step = 1 us",
          "set step = 1 us\n  set scheme = quasi-static\n"
          "  set at solution jump = relax",

@@ -42,7 +42,7 @@ end
 subsection Time
   set end    = 24 ns
   set step   = auto
-  set scheme = leapfrog
+  set scheme = explicit
 end
 )";
 
@@ -228,7 +228,7 @@ end
 subsection Time
   set end    = 0.9
   set step   = auto
-  set scheme = leapfrog
+  set scheme = explicit
 end
 )",
                    {std::string("Time/front viscosity=") + viscosity});

@@ -324,7 +324,7 @@ end
                             "  set strength = 0.1\n  set friction = 0.3";
     for (const std::vector<std::string> &more :
          {std::vector<std::string>{},
-          std::vector<std::string>{"Time/scheme=explicit",
+          std::vector<std::string>{"Time/scheme=symplectic",
                                    "Time/step=0.1 courant"},
           std::vector<std::string>{"Solver/path=assembled"},
           std::vector<std::string>{"Solver/method=interior point"}}) {

@@ -102,8 +102,8 @@ end
            "joins bodies without history, and the scene has model = "
            "viscoplastic"},
           {{"Solver/path=assembled"}, "path = assembled has one matrix"},
-          {{"Time/scheme=explicit"},
-           "scheme = explicit is not available for model = viscoplastic"},
+          {{"Time/scheme=symplectic"},
+           "scheme = symplectic is not available for model = viscoplastic"},
           {{"Time/start=equilibrium"}, "equilibria of scenes with model"},
       };
       for (const Refused &row : table) {

@@ -36,7 +36,7 @@ end
 subsection Time
   set end    = 1
   set step   = 0.2 courant
-  set scheme = explicit
+  set scheme = symplectic
 end
 )";
 
@@ -151,8 +151,8 @@ end
           "michel-suquet\n  set stiffness        = 2000";
       text.replace(text.find(intrinsic), intrinsic.size(),
                    "camacho-ortiz\n  set toughness        = 0.02");
-      test::Scene<2> scene(text,
-                           {"Time/scheme=explicit", "Time/step=0.02 courant"});
+      test::Scene<2> scene(
+          text, {"Time/scheme=symplectic", "Time/step=0.02 courant"});
       ASSERT_NE(scene.bonded, nullptr);
       for (unsigned int step = 0; step < 1500; ++step) {
         const EnergyLines before = scene.state.energy;
@@ -202,7 +202,7 @@ end
 subsection Time
   set end    = 1
   set step   = 0.01
-  set scheme = explicit
+  set scheme = symplectic
 end
 )");
         for (unsigned int step = 0; step < 20; ++step)
@@ -215,8 +215,8 @@ end
 
     TEST(SymplecticTest, BalanceThroughFracture)
     {
-      test::Scene<2> scene(test::breaking_plate,
-                           {"Time/scheme=explicit", "Time/step=0.05 courant"});
+      test::Scene<2> scene(test::breaking_plate, {"Time/scheme=symplectic",
+                                                  "Time/step=0.05 courant"});
       double defect = 0.;
       for (unsigned int step = 0; step < 400; ++step) {
         scene.advance_bisecting();

@@ -29,7 +29,7 @@ end
 subsection Time
   set end    = 1 ns
   set step   = auto
-  set scheme = leapfrog
+  set scheme = explicit
 end
 )";
     constexpr double size = 10e-6; // m

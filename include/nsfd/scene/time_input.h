@@ -36,7 +36,7 @@ namespace nsfd
     double largest_overshoot = 0.05; ///< of the strength of a bonded point
     /// of scheme = arkode: implicit (SDIRK) or explicit Runge-Kutta pairs,
     /// their order and the error per step relative to the largest motion
-    /// of scheme = leapfrog: nothing is `auto`
+    /// of scheme = explicit: nothing is `auto`
     std::optional<double> front_viscosity;
     bool implicit_pairs = false;
     unsigned int order = 5;
