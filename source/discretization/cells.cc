@@ -123,7 +123,7 @@ namespace nsfd
   template <int dim>
   Cells<dim>::Cells(const Triangulation<dim> &triangulation,
                     const std::vector<unsigned int> &materials,
-                    const SceneInput &input)
+                    const SceneInput &input, const CellSet set)
   {
     const unsigned int degree = input.discretization.degree;
     if (triangulation.all_reference_cells_are_hyper_cube())
@@ -147,7 +147,7 @@ namespace nsfd
     first_node.push_back(0);
     bodies.first_dof.push_back(0);
     bodies.first_slot.push_back(0);
-    for (const auto &cell : owned_cells(triangulation)) {
+    for (const auto &cell : cells_of(triangulation, set)) {
       const unsigned int material = materials[cell->active_cell_index()];
       auto &own_corners = corners.emplace_back();
       for (const unsigned int v : cell->vertex_indices())

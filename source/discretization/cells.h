@@ -2,6 +2,8 @@
 
 #include "body_shape.h"
 
+#include "mesh/cell_set.h"
+
 #include <deal.II/fe/fe.h>
 
 #include <map>
@@ -16,7 +18,7 @@ namespace dealii
 
 namespace nsfd
 {
-  /** The cells of this rank: bodies, their classes, places and nodes. */
+  /** The cells that a rank looks at: bodies, classes, places and nodes. */
   template <int dim>
   struct Cells {
     /**
@@ -26,7 +28,8 @@ namespace nsfd
      * `graded`.
      */
     Cells(const dealii::Triangulation<dim, dim> &triangulation,
-          const std::vector<unsigned int> &materials, const SceneInput &input);
+          const std::vector<unsigned int> &materials, const SceneInput &input,
+          CellSet set = CellSet::own);
 
     std::unique_ptr<dealii::FiniteElement<dim, dim>> element;
     Bodies bodies;                                        ///< without points

@@ -151,24 +151,25 @@ namespace nsfd
   Discretization<dim>::Discretization(
       const Communicator &communicator, const Triangulation<dim> &triangulation,
       const MeshGroups<dim> &groups, const std::vector<unsigned int> &materials,
-      const SceneInput &input)
+      const SceneInput &input, const CellSet set)
       : input_(&input),
-        loads_(std::make_unique<Loads<dim>>(triangulation, groups, input)),
+        loads_(std::make_unique<Loads<dim>>(triangulation, groups, input, set)),
         extent_((groups.upper() - groups.lower()).norm())
   {
     for (unsigned int b = 0; b < input.boundaries.size(); ++b)
       if (is_driven<dim>(input.boundaries[b]))
         driven_.push_back(b);
-    auto cells = std::make_unique<Cells<dim>>(triangulation, materials, input);
+    auto cells =
+        std::make_unique<Cells<dim>>(triangulation, materials, input, set);
     auto faces = make_face_points(communicator, triangulation, groups,
-                                  materials, driven_, input);
+                                  materials, driven_, input, set);
     points_ = std::move(faces.points);
     origins_ = std::move(faces.origins);
     springs_inside_ = std::move(faces.springs_inside);
     obstacle_faces_ = std::move(faces.obstacle_faces);
     inner_faces_ = std::move(faces.inner_faces);
     fill_slots(points_, *cells);
-    cells->n_global = communicator.sum_integer(cells->bodies.size());
+    cells->n_global = triangulation.n_global_active_cells();
     cells_ = std::move(cells);
     check_graded(input, *cells_, communicator);
     extremes_ = material_extremes(input, *cells_, communicator);

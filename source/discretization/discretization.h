@@ -5,6 +5,7 @@
 #include "core/communicator.h"
 #include "materials/material_extremes.h"
 #include "mesh/body_table.h"
+#include "mesh/cell_set.h"
 #include "nsfd/discretization/point_origin.h"
 
 #include <deal.II/base/point.h>
@@ -57,12 +58,16 @@ namespace nsfd
   class Discretization
   {
   public:
-    /** @throws std::runtime_error with a sentence for the user. */
+    /**
+     * With ghosts, what is said of this rank holds for them too; sizes of
+     * cells and constants of materials are still those of all ranks.
+     * @throws std::runtime_error with a sentence for the user.
+     */
     Discretization(const Communicator &communicator,
                    const dealii::Triangulation<dim, dim> &triangulation,
                    const MeshGroups<dim> &groups,
                    const std::vector<unsigned int> &materials,
-                   const SceneInput &input);
+                   const SceneInput &input, CellSet set = CellSet::own);
     ~Discretization();
     Discretization(Discretization &&) noexcept;
     /** For a mesh that has changed; what refers to bodies() is void then. */

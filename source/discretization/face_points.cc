@@ -65,7 +65,7 @@ namespace nsfd
                     const MeshGroups<dim> &groups,
                     const std::vector<unsigned int> &materials,
                     const std::vector<unsigned int> &driven,
-                    const SceneInput &input);
+                    const SceneInput &input, CellSet set);
 
       std::vector<NewFace<dim>> faces; ///< those of this rank first
       std::vector<int> springs_inside; ///< per body, or empty: none
@@ -91,18 +91,24 @@ namespace nsfd
       const SceneInput &input_;
       const SpringShares<dim> shares_;
       std::vector<int> body_of_; ///< by active cell index, -1 if not ours
+
+      bool is_ours(const Cell &cell) const
+      {
+        return body_of_[cell->active_cell_index()] >= 0;
+      }
     };
 
     template <int dim>
     FaceCollector<dim>::FaceCollector(
         const Triangulation<dim> &triangulation, const MeshGroups<dim> &groups,
         const std::vector<unsigned int> &materials,
-        const std::vector<unsigned int> &driven, const SceneInput &input)
+        const std::vector<unsigned int> &driven, const SceneInput &input,
+        const CellSet set)
         : groups_(groups), materials_(materials), driven_(driven),
           input_(input), shares_(input, groups, materials),
-          body_of_(bodies_of_cells(triangulation))
+          body_of_(bodies_of_cells(triangulation, set))
     {
-      for (const auto &cell : owned_cells(triangulation)) {
+      for (const auto &cell : cells_of(triangulation, set)) {
         if (shares_.any())
           springs_inside.push_back(shares_.inside(cell));
         for (const unsigned int f : cell->face_indices()) {
@@ -210,12 +216,14 @@ namespace nsfd
         const unsigned int face_no = cell->neighbor_of_neighbor(f);
         for (unsigned int c = 0; c < cell->face(f)->n_children(); ++c) {
           const Cell small(cell->neighbor_child_on_subface(f, c));
-          if (!small->is_locally_owned())
+          if (!small->is_artificial() && !is_ours(small))
             add_between(small, face_no, cell);
         }
         return;
       }
       const Cell neighbor(cell->neighbor(f));
+      if (neighbor->is_artificial()) // behind a ghost
+        return;
       if (is_inner(cell, neighbor)) {
         if (cell->id() < neighbor->id())
           inner_faces.push_back(
@@ -226,7 +234,7 @@ namespace nsfd
       }
       if (cell->neighbor_is_coarser(f) || cell->id() < neighbor->id())
         add_between(cell, f, neighbor);
-      else if (!neighbor->is_locally_owned())
+      else if (!is_ours(neighbor))
         add_between(neighbor, cell->neighbor_face_no(f), cell);
     }
 
@@ -272,9 +280,9 @@ namespace nsfd
                            body_of_[cell_2->active_cell_index()]}};
       face.face.cells = {{cell_1->global_active_cell_index(),
                           cell_2->global_active_cell_index()}};
-      face.owned = cell_1->is_locally_owned();
+      face.owned = is_ours(cell_1);
       for (const Cell *one : {&cell_1, &cell_2})
-        if (!(*one)->is_locally_owned())
+        if (!is_ours(*one))
           face.face.neighbor_rank = int((*one)->subdomain_id());
       faces.push_back(std::move(face));
     }
@@ -361,10 +369,10 @@ namespace nsfd
                                    const MeshGroups<dim> &groups,
                                    const std::vector<unsigned int> &materials,
                                    const std::vector<unsigned int> &driven,
-                                   const SceneInput &input)
+                                   const SceneInput &input, const CellSet set)
   {
     FaceCollector<dim> collector(triangulation, groups, materials, driven,
-                                 input);
+                                 input, set);
     demand_blocks(communicator, collector.without_block);
     FacePoints<dim> result;
     result.springs_inside = std::move(collector.springs_inside);
@@ -469,7 +477,7 @@ namespace nsfd
   template FacePoints<dim> make_face_points(                                   \
       const Communicator &, const Triangulation<dim> &,                        \
       const MeshGroups<dim> &, const std::vector<unsigned int> &,              \
-      const std::vector<unsigned int> &, const SceneInput &);                  \
+      const std::vector<unsigned int> &, const SceneInput &, CellSet);         \
   template void fill_slots(const InterfacePoints<dim> &, Cells<dim> &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);

@@ -22,15 +22,18 @@ namespace nsfd
    * A set of points for every face between two cells, and one for every
    * prescribed motion and obstacle that holds for a boundary face. @p driven
    * are the boundaries with a prescribed motion. The points of shared faces
-   * are the same on both ranks. @throws std::runtime_error on all ranks if no
-   * interface block holds for a face of one of them.
+   * are the same on both ranks; with ghosts, all faces between two cells of
+   * @p set are those of this rank. @throws std::runtime_error on all ranks if
+   * no interface block holds for a face of one of them.
    */
   template <int dim>
-  FacePoints<dim> make_face_points(
-      const Communicator &communicator,
-      const dealii::Triangulation<dim, dim> &triangulation,
-      const MeshGroups<dim> &groups, const std::vector<unsigned int> &materials,
-      const std::vector<unsigned int> &driven, const SceneInput &input);
+  FacePoints<dim>
+  make_face_points(const Communicator &communicator,
+                   const dealii::Triangulation<dim, dim> &triangulation,
+                   const MeshGroups<dim> &groups,
+                   const std::vector<unsigned int> &materials,
+                   const std::vector<unsigned int> &driven,
+                   const SceneInput &input, CellSet set = CellSet::own);
 
   /** Puts the points on the slots of the bodies, by their positions. */
   template <int dim>

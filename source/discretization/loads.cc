@@ -15,7 +15,8 @@ namespace nsfd
 
   template <int dim>
   Loads<dim>::Loads(const Triangulation<dim> &triangulation,
-                    const MeshGroups<dim> &groups, const SceneInput &input)
+                    const MeshGroups<dim> &groups, const SceneInput &input,
+                    const CellSet set)
       : input_(input)
   {
     for (unsigned int c = 0; c < dim; ++c)
@@ -33,7 +34,7 @@ namespace nsfd
     }
 
     unsigned int body = 0;
-    for (const auto &cell : owned_cells(triangulation)) {
+    for (const auto &cell : cells_of(triangulation, set)) {
       for (const unsigned int f : cell->face_indices())
         for (unsigned int b = 0; b < input.boundaries.size(); ++b) {
           const auto &boundary = input.boundaries[b];

@@ -15,7 +15,8 @@ namespace nsfd
   {
   public:
     Loads(const dealii::Triangulation<dim, dim> &triangulation,
-          const MeshGroups<dim> &groups, const SceneInput &input);
+          const MeshGroups<dim> &groups, const SceneInput &input,
+          CellSet set = CellSet::own);
 
     bool any() const { return any_; }
     bool depend_on_time() const { return depend_on_time_; }

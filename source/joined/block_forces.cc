@@ -133,12 +133,16 @@ namespace nsfd
   template <int dim>
   std::unique_ptr<CellForces<dim>>
   make_cell_forces(const Discretization<dim> &discretization,
-                   const JoinedMesh<dim> &mesh, FrontViscosity front)
+                   const JoinedMesh<dim> &mesh, FrontViscosity front,
+                   const GhostCells *ghosts)
   {
-    if (ConstantStrainForces<dim>::fits(discretization))
+    const auto everywhere = [&](const bool here) {
+      return ghosts ? !ghosts->anywhere(!here) : here;
+    };
+    if (everywhere(ConstantStrainForces<dim>::fits(discretization)))
       return std::make_unique<ConstantStrainForces<dim>>(discretization,
                                                          std::move(front));
-    if (TensorForces<dim>::fits(discretization))
+    if (everywhere(TensorForces<dim>::fits(discretization)))
       return std::make_unique<TensorForces<dim>>(discretization, mesh,
                                                  std::move(front));
     return std::make_unique<BlockForces<dim>>(discretization, mesh,
@@ -149,8 +153,8 @@ namespace nsfd
   template class BlockForces<3>;
   template std::unique_ptr<CellForces<2>>
   make_cell_forces(const Discretization<2> &, const JoinedMesh<2> &,
-                   FrontViscosity);
+                   FrontViscosity, const GhostCells *);
   template std::unique_ptr<CellForces<3>>
   make_cell_forces(const Discretization<3> &, const JoinedMesh<3> &,
-                   FrontViscosity);
+                   FrontViscosity, const GhostCells *);
 } // namespace nsfd

@@ -16,6 +16,9 @@ namespace nsfd
       mass[of_[i]] += mesh.mass(i);
     displacement.assign(mesh.n_nodes() * dim, 0.);
     velocity = force = displacement;
+    for (unsigned int node = 0; node < mesh.n_nodes(); ++node)
+      if (!mesh.counts(node))
+        not_counted_.push_back(node);
     for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
       split(node, intact);
   }
@@ -66,6 +69,8 @@ namespace nsfd
       cut = true;
       const auto fresh = unsigned(mass.size());
       mass.push_back(0.);
+      if (!mesh_.counts(node))
+        not_counted_.push_back(fresh);
       for (auto *values : {&displacement, &velocity, &force})
         for (unsigned int c = 0; c < dim; ++c)
           values->push_back((*values)[group * dim + c]);

@@ -22,6 +22,12 @@ namespace nsfd
     /** By corner. */
     const std::vector<unsigned int> &of_corners() const { return of_; }
 
+    /** Over which this rank does not sum, see JoinedMesh: few, ascending. */
+    const std::vector<unsigned int> &not_counted() const
+    {
+      return not_counted_;
+    }
+
     /**
      * After links of @p node have let go: what does not hang together any more
      * gets groups of its own, behind all others, at the same place and speed.
@@ -47,5 +53,6 @@ namespace nsfd
     const JoinedMesh<dim> &mesh_;
     std::vector<unsigned int> of_;
     std::vector<unsigned int> component_; ///< of the corners of a node
+    std::vector<unsigned int> not_counted_;
   };
 } // namespace nsfd

@@ -20,9 +20,10 @@ namespace nsfd
 
   template <int dim>
   FrontViscosity::FrontViscosity(const Discretization<dim> &discretization,
-                                 const double share)
+                                 const double share, const GhostCells *ghosts)
+      : acts_(share != 0.), ghosts_(ghosts)
   {
-    if (share == 0.)
+    if (!acts_)
       return;
     const Cells<dim> &cells = discretization.cells();
     const auto frequency = frequencies_of_classes(cells);
@@ -57,31 +58,50 @@ namespace nsfd
     for (const auto &pair : pairs)
       for (unsigned int side = 0; side < 2; ++side)
         neighbor_[next[std::size_t(pair[side])]++] = unsigned(pair[1 - side]);
+    // ghosts have neighbours that are not here
+    std::vector<double> n_neighbors;
+    for (std::size_t b = 0; b < n; ++b)
+      n_neighbors.push_back(
+          double(first_neighbor_[b + 1] - first_neighbor_[b]));
+    if (ghosts_)
+      ghosts_->fetch(n_neighbors);
+    for (std::size_t b = 0; b < n; ++b)
+      if (n_neighbors[b] == 1. && first_neighbor_[b + 1] > first_neighbor_[b])
+        ends_.push_back(unsigned(b));
+  }
+
+  void FrontViscosity::set_viscosity(const std::size_t cell)
+  {
+    double jump = 0., size = 0.;
+    for (std::size_t k = first_neighbor_[cell]; k < first_neighbor_[cell + 1];
+         ++k) {
+      const double other = rate[neighbor_[k]];
+      jump += other - rate[cell];
+      size += std::abs(other) + std::abs(rate[cell]);
+    }
+    const double ratio = size > 0. ? jump / size : 0.;
+    const double share = std::min(1., std::abs(ratio) / sharp);
+    viscosity[cell] = eta_[cell] * share * share * share;
   }
 
   FrontViscosity::Powers
   FrontViscosity::finish(const Communicator &communicator)
   {
     const std::size_t n = eta_.size();
-    for (std::size_t b = 0; b < n; ++b) {
-      double jump = 0., size = 0.;
-      for (std::size_t k = first_neighbor_[b]; k < first_neighbor_[b + 1];
-           ++k) {
-        const double other = rate[neighbor_[k]];
-        jump += other - rate[b];
-        size += std::abs(other) + std::abs(rate[b]);
-      }
-      const double ratio = size > 0. ? jump / size : 0.;
-      const double share = std::min(1., std::abs(ratio) / sharp);
-      viscosity[b] = eta_[b] * share * share * share;
+    for (std::size_t b = 0; b < n; ++b)
+      set_viscosity(b);
+    if (ghosts_ && acts_) {
+      ghosts_->fetch(viscosity);
+      for (std::size_t b = 0; b < n; ++b)
+        for (unsigned int row = 0; row < 4 && ghosts_->is_ghost(b); ++row)
+          terms_[row * n + b] = 0.;
     }
     // at an end there is no second difference
-    for (std::size_t b = 0; b < n; ++b)
-      if (first_neighbor_[b] + 1 == first_neighbor_[b + 1]) {
-        const unsigned int other = neighbor_[first_neighbor_[b]];
-        viscosity[b] =
-            eta_[other] > 0. ? viscosity[other] / eta_[other] * eta_[b] : 0.;
-      }
+    for (const unsigned int b : ends_) {
+      const unsigned int other = neighbor_[first_neighbor_[b]];
+      viscosity[b] =
+          eta_[other] > 0. ? viscosity[other] / eta_[other] * eta_[b] : 0.;
+    }
     const auto sums = communicator.sums(terms_.data(), 4, n);
     return {sums[0], sums[1], sums[2], sums[3]};
   }
@@ -107,6 +127,8 @@ namespace nsfd
       copy(true);
   }
 
-  template FrontViscosity::FrontViscosity(const Discretization<2> &, double);
-  template FrontViscosity::FrontViscosity(const Discretization<3> &, double);
+  template FrontViscosity::FrontViscosity(const Discretization<2> &, double,
+                                          const GhostCells *);
+  template FrontViscosity::FrontViscosity(const Discretization<3> &, double,
+                                          const GhostCells *);
 } // namespace nsfd

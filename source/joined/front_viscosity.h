@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ghost_cells.h"
+
 #include "core/communicator.h"
 #include "discretization/discretization.h"
 
@@ -42,11 +44,13 @@ namespace nsfd
   public:
     /** Nothing acts. */
     FrontViscosity() = default;
-    /** @p share is b. */
+    /** @p share is b; @p ghosts of the cells, if there may be some, outlive it.
+     */
     template <int dim>
-    FrontViscosity(const Discretization<dim> &discretization, double share);
+    FrontViscosity(const Discretization<dim> &discretization, double share,
+                   const GhostCells *ghosts = nullptr);
 
-    bool acts() const { return !eta_.empty(); }
+    bool acts() const { return acts_; }
 
     /** By cell: of the present forces. -p, Pa; (q_k) and (v_{k-1/2}): tr eps
      * and its rate; psi eta, Pa s. */
@@ -105,9 +109,14 @@ namespace nsfd
     void serialize(Archive &archive, const std::vector<std::size_t> &first_dof);
 
   private:
-    std::vector<double> eta_; ///< Pa s
+    void set_viscosity(std::size_t cell);
+
+    bool acts_ = false;
+    const GhostCells *ghosts_ = nullptr; ///< null: there are none
+    std::vector<double> eta_;            ///< Pa s
     std::vector<std::size_t> first_neighbor_;
     std::vector<unsigned int> neighbor_;
+    std::vector<unsigned int> ends_; ///< cells with one neighbour
     std::vector<double> terms_;
     double h_ = 0., kick_ = 0.;
   };

@@ -23,7 +23,8 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  JoinedMesh<dim>::JoinedMesh(const Discretization<dim> &discretization)
+  JoinedMesh<dim>::JoinedMesh(const Discretization<dim> &discretization,
+                              const GhostCells *ghosts)
   {
     const Cells<dim> &cells = discretization.cells();
     node_.resize(cells.first_node.back());
@@ -33,13 +34,21 @@ namespace nsfd
       for (std::size_t i = first; i < cells.first_node[b + 1]; ++i)
         mass_[i] = lumped_mass(cells.shape(b), unsigned(i - first));
     }
-    find_corners(discretization);
-    find_nodes();
+    find_corners(discretization, ghosts);
+    std::vector<std::uint8_t> own;
+    for (std::size_t b = 0; ghosts && b < ghosts->size(); ++b)
+      own.insert(own.end(), cells.first_node[b + 1] - cells.first_node[b],
+                 !ghosts->is_ghost(b));
+    find_nodes(own);
+    sort_corners();
+    if (!own.empty())
+      share_nodes(own);
     sort_links();
   }
 
   template <int dim>
-  void JoinedMesh<dim>::find_corners(const Discretization<dim> &discretization)
+  void JoinedMesh<dim>::find_corners(const Discretization<dim> &discretization,
+                                     const GhostCells *ghosts)
   {
     const Cells<dim> &cells = discretization.cells();
     const std::size_t n = discretization.points().n_points;
@@ -60,16 +69,17 @@ namespace nsfd
                      corners_[point][side] =
                          unsigned(cells.first_node[body] + std::size_t(i));
                    });
-    if (!at_nodes)
+    if (ghosts ? ghosts->anywhere(!at_nodes) : !at_nodes)
       throw std::runtime_error(
           "joined cells share nodes, and some points of faces are at none: "
           "they need `interface quadrature = gauss lobatto` with one point "
           "more than the degree, and cells that meet face to face");
   }
 
-  /** Corners that links connect, numbered by their first one. */
+  /** Corners that links connect, numbered by their first one; @p own by
+      corner, empty if there are no ghosts. */
   template <int dim>
-  void JoinedMesh<dim>::find_nodes()
+  void JoinedMesh<dim>::find_nodes(const std::vector<std::uint8_t> &own)
   {
     std::vector<unsigned int> parent(n_corners());
     std::iota(parent.begin(), parent.end(), 0u);
@@ -84,10 +94,26 @@ namespace nsfd
       const unsigned int a = root(sides[0]), b = root(sides[1]);
       parent[std::max(a, b)] = std::min(a, b);
     }
+    if (!own.empty()) {
+      auto whole = own; // by the first corner of a node
+      for (unsigned int i = 0; i < n_corners(); ++i)
+        whole[root(i)] |= own[i];
+      std::vector<unsigned int> alone;
+      for (unsigned int i = 0; i < n_corners(); ++i)
+        if (!whole[root(i)])
+          alone.push_back(i);
+      for (const unsigned int i : alone)
+        parent[i] = i;
+    }
     unsigned int n = 0;
     for (unsigned int i = 0; i < n_corners(); ++i)
       node_[i] = root(i) == i ? n++ : node_[root(i)];
     first_corner_.assign(n + 1, 0);
+  }
+
+  template <int dim>
+  void JoinedMesh<dim>::sort_corners()
+  {
     for (const unsigned int node : node_)
       ++first_corner_[node + 1];
     std::partial_sum(first_corner_.begin(), first_corner_.end(),
@@ -98,12 +124,28 @@ namespace nsfd
       corner_[next[node_[i]]++] = i;
   }
 
+  /** The rank of the first corner counts. */
+  template <int dim>
+  void JoinedMesh<dim>::share_nodes(const std::vector<std::uint8_t> &own)
+  {
+    share_.assign(n_nodes(), Share::part);
+    for (std::size_t node = 0; node < n_nodes(); ++node)
+      for (const unsigned int corner : corners_of_node(node))
+        if (own[corner]) {
+          share_[node] = corner == *corners_of_node(node).begin()
+                             ? Share::counted
+                             : Share::whole;
+          break;
+        }
+  }
+
   template <int dim>
   void JoinedMesh<dim>::sort_links()
   {
     first_link_.assign(n_nodes() + 1, 0);
     const auto is_link = [&](const std::size_t i) {
-      return corners_[i][0] != none && corners_[i][1] != none;
+      return corners_[i][0] != none && corners_[i][1] != none &&
+             node_[corners_[i][0]] == node_[corners_[i][1]];
     };
     for (std::size_t i = 0; i < corners_.size(); ++i)
       if (is_link(i))

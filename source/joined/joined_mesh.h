@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ghost_cells.h"
+
 #include "discretization/discretization.h"
 
 #include <array>
@@ -12,6 +14,9 @@ namespace nsfd
    * The nodes of cells that may hang together. A corner is a node of one cell;
    * the points of a face sit at its nodes and link the corners of its two
    * cells. Corners that links connect, intact or not, are one node of the mesh.
+   * Where ghosts are around the cells of a rank, nodes with a corner of one of
+   * its own are whole; corners at other nodes stand alone, and move as other
+   * ranks say.
    */
   template <int dim>
   class JoinedMesh
@@ -21,9 +26,11 @@ namespace nsfd
 
     /**
      * @throws std::runtime_error where a point is not at a node of its cells:
-     * faces between cells of two sizes, other interface quadratures.
+     * faces between cells of two sizes, other interface quadratures. The same
+     * on all ranks; @p ghosts of the cells, if there may be some.
      */
-    explicit JoinedMesh(const Discretization<dim> &discretization);
+    explicit JoinedMesh(const Discretization<dim> &discretization,
+                        const GhostCells *ghosts = nullptr);
 
     std::size_t n_corners() const { return node_.size(); }
     std::size_t n_nodes() const { return first_corner_.size() - 1; }
@@ -47,6 +54,17 @@ namespace nsfd
       return node_[a_corner(point)];
     }
 
+    /** All corners of the node are here. */
+    bool is_whole(const std::size_t node) const
+    {
+      return share_.empty() || share_[node] != Share::part;
+    }
+    /** Of the ranks that have the whole node, this one sums over it. */
+    bool counts(const std::size_t node) const
+    {
+      return share_.empty() || share_[node] == Share::counted;
+    }
+
     struct Range {
       const unsigned int *first, *last;
       const unsigned int *begin() const { return first; }
@@ -67,8 +85,13 @@ namespace nsfd
     }
 
   private:
-    void find_corners(const Discretization<dim> &discretization);
-    void find_nodes();
+    enum class Share : std::uint8_t { counted, whole, part };
+
+    void find_corners(const Discretization<dim> &discretization,
+                      const GhostCells *ghosts);
+    void find_nodes(const std::vector<std::uint8_t> &own);
+    void sort_corners();
+    void share_nodes(const std::vector<std::uint8_t> &own);
     void sort_links();
 
     std::vector<unsigned int> node_;
@@ -76,5 +99,6 @@ namespace nsfd
     std::vector<std::array<unsigned int, 2>> corners_;
     std::vector<std::size_t> first_corner_, first_link_; ///< size n + 1
     std::vector<unsigned int> corner_, link_;
+    std::vector<Share> share_; ///< by node; empty: there are no ghosts
   };
 } // namespace nsfd

@@ -25,6 +25,19 @@ namespace nsfd
           B[i * n + j] = A[j * n + i];
       return B;
     }
+
+    /** Component @p c of the map of a cell, of the directions in @p subset. */
+    template <int dim>
+    double map_entry(const BodyShape<dim> &shape, const unsigned int subset,
+                     const unsigned int c)
+    {
+      double sum = 0.;
+      for (unsigned int v = 0; v < 1u << dim; ++v)
+        if ((v | subset) == subset)
+          sum += (__builtin_popcount(v ^ subset) % 2 ? -1. : 1.) *
+                 shape.corners[v][c];
+      return sum;
+    }
   } // namespace
 
   TensorLine::TensorLine(const unsigned int degree) : n(degree + 1)
@@ -93,49 +106,73 @@ namespace nsfd
     set_places(mesh);
   }
 
-  /** Maps and moduli; a cell whose corners are those of a parallelepiped, as
-      far as they are known, is affine. */
+  /** Cells whose corners are those of a parallelepiped, as far as they are
+      known. */
+  template <int dim>
+  std::vector<char> TensorForces<dim>::find_affine() const
+  {
+    const Cells<dim> &cells = discretization_.cells();
+    std::vector<char> of_class, affine;
+    for (const auto &shape : cells.shapes) {
+      double size = 0., curved = 0.;
+      for (unsigned int subset = 1; subset < 1u << dim; ++subset)
+        for (unsigned int c = 0; c < dim; ++c) {
+          double &largest = (subset & (subset - 1)) ? curved : size;
+          largest = std::max(largest, std::abs(map_entry(shape, subset, c)));
+        }
+      of_class.push_back(curved <= 0x1p-40 * size);
+    }
+    for (std::size_t b = 0; b < n_cells_; ++b)
+      affine.push_back(of_class[cells.bodies.class_of[b]]);
+    return affine;
+  }
+
+  /** Cells in their order, as many in a block as are of one kind. */
+  template <int dim>
+  void TensorForces<dim>::divide(const std::vector<char> &affine)
+  {
+    for (std::size_t b = 0; b < n_cells_; ++b) {
+      if (b == 0 || affine[b] != affine_.back() ||
+          b - first_cell_.back() == lanes) {
+        first_cell_.push_back(b);
+        affine_.push_back(affine[b]);
+      }
+      block_.push_back(unsigned(first_cell_.size() - 1));
+    }
+    first_cell_.push_back(n_cells_);
+  }
+
   template <int dim>
   void TensorForces<dim>::set_blocks()
   {
+    divide(find_affine());
     const Cells<dim> &cells = discretization_.cells();
-    const std::size_t n_blocks = (n_cells_ + lanes - 1) / lanes;
+    const std::size_t n_blocks = affine_.size();
     maps_.resize(n_blocks * per_map, 0.);
     moduli_.resize(n_blocks * 3 * lanes, 0.);
     reference_.resize(n_blocks * dim * dim * lanes, 0.);
-    affine_.assign(n_blocks, 1);
-    bound_.assign(n_blocks * lanes, 0.);
+    bound_.assign(n_cells_ + lanes, 0.);
     tractions_of_block_.assign(n_blocks, -1);
     volume_.resize(n_cells_);
     std::vector<double> of_class;
     for (const auto &shape : cells.shapes)
       of_class.push_back(distortion(shape));
     for (std::size_t b = 0; b < n_blocks * lanes; ++b) {
-      const std::size_t cell = std::min(b, n_cells_ - 1);
-      const auto &shape = cells.shape(cell);
       const std::size_t index = b / lanes, lane = b % lanes;
-      double size = 0., curved = 0.;
+      const std::size_t cell =
+          std::min(first_cell_[index] + lane, first_cell_[index + 1] - 1);
+      const auto &shape = cells.shape(cell);
       for (unsigned int subset = 1; subset < 1u << dim; ++subset)
-        for (unsigned int c = 0; c < dim; ++c) {
-          double sum = 0.;
-          for (unsigned int v = 0; v < 1u << dim; ++v)
-            if ((v | subset) == subset)
-              sum += (__builtin_popcount(v ^ subset) % 2 ? -1. : 1.) *
-                     shape.corners[v][c];
+        for (unsigned int c = 0; c < dim; ++c)
           maps_[index * per_map + ((subset - 1) * dim + c) * lanes + lane] =
-              sum;
-          double &largest = (subset & (subset - 1)) ? curved : size;
-          largest = std::max(largest, std::abs(sum));
-        }
-      affine_[index] = affine_[index] && curved <= 0x1p-40 * size;
+              map_entry(shape, subset, c);
       double *moduli = moduli_.data() + index * 3 * lanes + lane;
       const auto &law = shape.elasticity[0];
       moduli[0] = law.lambda;
       moduli[lanes] = law.mu;
       const double norm = std::max(2. * law.mu, dim * law.lambda + 2. * law.mu);
       moduli[2 * lanes] = norm * of_class[cells.bodies.class_of[cell]];
-      if (b < n_cells_)
-        volume_[b] = shape.volume;
+      volume_[cell] = shape.volume;
     }
   }
 
@@ -194,11 +231,11 @@ namespace nsfd
   template <int dim>
   TensorBlock TensorForces<dim>::block(const std::size_t index) const
   {
-    const std::size_t first = index * lanes;
-    return {maps_.data() + index * per_map, moduli_.data() + first * 3,
+    const std::size_t first = first_cell_[index];
+    return {maps_.data() + index * per_map, moduli_.data() + index * 3 * lanes,
             affine_[index] != 0,
             groups_->of_corners().data() + first * n_nodes_,
-            unsigned(std::min<std::size_t>(lanes, n_cells_ - first))};
+            unsigned(first_cell_[index + 1] - first)};
   }
 
   template <int dim>
@@ -211,11 +248,11 @@ namespace nsfd
     std::fill(groups.force.begin(), groups.force.end(), 0.);
     for (std::size_t index = 0; index < affine_.size(); ++index) {
       const TensorBlock cells = block(index);
-      const std::size_t first = index * lanes;
+      const std::size_t first = first_cell_[index];
       double dilatation[lanes], tension[lanes] = {};
-      kernels_.evaluate(line_, cells, groups.displacement.data(),
-                        scratch_.data(), dilatation,
-                        reference_.data() + first * dim * dim, &bound_[first]);
+      kernels_.evaluate(
+          line_, cells, groups.displacement.data(), scratch_.data(), dilatation,
+          reference_.data() + index * dim * dim * lanes, &bound_[first]);
       if (this->front_.acts())
         for (unsigned int l = 0; l < cells.count; ++l) {
           const std::size_t b = first + l;
@@ -242,7 +279,7 @@ namespace nsfd
   const double *TensorForces<dim>::tractions(const std::size_t cell) const
   {
     const std::size_t per_cell = 2 * dim * dim * (n_nodes_ / line_.n),
-                      size = per_cell * lanes, index = cell / lanes;
+                      size = per_cell * lanes, index = block_[cell];
     int &place = tractions_of_block_[index];
     if (place < 0) {
       place = int(known_.size());
@@ -254,7 +291,7 @@ namespace nsfd
                              tractions_.data() + std::size_t(place) * size);
     }
     return tractions_.data() + std::size_t(place) * size +
-           cell % lanes * per_cell;
+           (cell - first_cell_[index]) * per_cell;
   }
 
   template <int dim>

@@ -13,8 +13,9 @@ namespace nsfd
   /**
    * Isotropic quads and hexes of any degree, `lanes` of them at a time, by sums
    * over one direction after the other: (degree + 1)^(dim + 1) operations and
-   * no matrix. Tractions are computed where a bound of the stress comes near
-   * the strength of a face.
+   * no matrix. A block has cells of one kind, affine or not: to the last bit
+   * no cell depends on the others in its block. Tractions are computed where a
+   * bound of the stress comes near the strength of a face.
    */
   template <int dim>
   class TensorForces final : public CellForces<dim>
@@ -39,6 +40,8 @@ namespace nsfd
     using Numbers = dealii::AlignedVector<double>;
     static constexpr std::size_t per_map = ((1u << dim) - 1) * dim * lanes;
 
+    std::vector<char> find_affine() const;
+    void divide(const std::vector<char> &affine);
     void set_blocks();
     double distortion(const BodyShape<dim> &shape) const;
     void set_places(const JoinedMesh<dim> &mesh);
@@ -52,7 +55,9 @@ namespace nsfd
     std::size_t n_cells_;
     unsigned int n_nodes_; ///< of a cell
     Numbers maps_, moduli_;
-    std::vector<char> affine_; ///< by block
+    std::vector<char> affine_;            ///< by block
+    std::vector<std::size_t> first_cell_; ///< by block, and the end
+    std::vector<unsigned int> block_;     ///< by cell
     std::vector<double> volume_;
     /// by point: which traction of body 1 and of body 2 it has
     std::vector<std::array<std::uint16_t, 2>> place_;

@@ -42,15 +42,7 @@ namespace nsfd
 
   void GhostValues::start_fetch(const double *own) const
   {
-    for (std::size_t k = 0; k < neighbors_.size(); ++k) {
-      const Neighbor &neighbor = neighbors_[k];
-      auto &message = messages_.messages[k];
-      message.in.resize(neighbor.count);
-      message.out.resize(neighbor.wanted.size());
-      for (std::size_t j = 0; j < neighbor.wanted.size(); ++j)
-        message.out[j] = own[neighbor.wanted[j]];
-    }
-    messages_.start(mpi_, 21);
+    start(1, [own](const std::size_t k, double *value) { *value = own[k]; });
   }
 
   void GhostValues::finish_fetch(double *ghosts) const

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cell_set.h"
+
 #include <deal.II/grid/cell_id.h>
 #include <deal.II/grid/tria.h>
 
@@ -24,16 +26,25 @@ namespace nsfd
                 [](const auto &a, const auto &b) { return a->id() < b->id(); });
   }
 
+  /** The cells of this rank, and those around them if @p set says so. */
+  template <int dim>
+  ActiveCells<dim> cells_of(const dealii::Triangulation<dim> &triangulation,
+                            const CellSet set)
+  {
+    ActiveCells<dim> cells;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned() ||
+          (set == CellSet::with_ghosts && cell->is_ghost()))
+        cells.push_back(cell);
+    put_in_order<dim>(triangulation.n_global_levels() > 1, cells);
+    return cells;
+  }
+
   /** The cells of this rank. */
   template <int dim>
   ActiveCells<dim> owned_cells(const dealii::Triangulation<dim> &triangulation)
   {
-    ActiveCells<dim> cells;
-    for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned())
-        cells.push_back(cell);
-    put_in_order<dim>(triangulation.n_global_levels() > 1, cells);
-    return cells;
+    return cells_of(triangulation, CellSet::own);
   }
 
   /** Those of all ranks, of a mesh that every rank knows as a whole. */
@@ -47,13 +58,14 @@ namespace nsfd
     return cells;
   }
 
-  /** The body of every active cell, by its index; -1: not of this rank. */
+  /** The body of every active cell, by its index; -1: none of @p set. */
   template <int dim>
   std::vector<int>
-  bodies_of_cells(const dealii::Triangulation<dim> &triangulation)
+  bodies_of_cells(const dealii::Triangulation<dim> &triangulation,
+                  const CellSet set = CellSet::own)
   {
     std::vector<int> result(triangulation.n_active_cells(), -1);
-    const auto cells = owned_cells(triangulation);
+    const auto cells = cells_of(triangulation, set);
     for (std::size_t b = 0; b < cells.size(); ++b)
       result[cells[b]->active_cell_index()] = int(b);
     return result;

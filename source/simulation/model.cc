@@ -51,7 +51,7 @@ namespace nsfd
       find_unused_blocks(input, *this, communicator, problems);
       find_impossible_bonds(input, *this, communicator, problems);
       check_point_factors(input, *discretization, communicator, problems);
-      build_control(input, problems);
+      build_control(input, communicator, problems);
       const auto bad = check_formulas(input, *discretization, communicator);
       problems.insert(problems.end(), bad.begin(), bad.end());
     }
@@ -93,14 +93,20 @@ namespace nsfd
                                   std::vector<std::string> &problems)
   {
     method = "node by node";
+    std::unique_ptr<const GhostLayer<dim>> layer;
     if (communicator.size() > 1) {
-      problems.push_back("scheme = explicit runs on one rank so far: leave out "
-                         "mpirun, or write scheme = moreau-jean");
-      return;
+      std::vector<std::string> warnings; // as before
+      const auto materials = material_indices<dim>(
+          input, *groups, *triangulation, problems, warnings);
+      layer = std::make_unique<const GhostLayer<dim>>(
+          communicator, *discretization,
+          std::make_unique<const Discretization<dim>>(
+              communicator, *triangulation, *groups, materials, input,
+              CellSet::with_ghosts));
     }
     try {
-      leapfrog =
-          std::make_unique<Leapfrog<dim>>(input, *discretization, communicator);
+      leapfrog = std::make_unique<Leapfrog<dim>>(
+          input, *discretization, communicator, std::move(layer));
     } catch (const std::runtime_error &error) {
       problems.push_back(error.what());
     }

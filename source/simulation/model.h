@@ -83,6 +83,7 @@ namespace nsfd
                           const Communicator &communicator,
                           std::vector<std::string> &problems);
     void build_control(const SceneInput &input,
+                       const Communicator &communicator,
                        std::vector<std::string> &problems);
     double stable_limit(const SceneInput &input,
                         const Communicator &communicator, double enough);

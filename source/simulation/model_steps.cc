@@ -18,6 +18,7 @@ namespace nsfd
 {
   template <int dim>
   void Model<dim>::build_control(const SceneInput &input,
+                                 const Communicator &communicator,
                                  std::vector<std::string> &problems)
   {
     if (input.time.step_kind != StepKind::time &&
@@ -27,8 +28,9 @@ namespace nsfd
       return;
     }
     if (input.time.scheme == Scheme::leapfrog)
-      explicit_limit = 2. / highest_frequency(discretization->cells()) *
-                       step_share(input.front_viscosity());
+      explicit_limit =
+          2. / communicator.max(highest_frequency(discretization->cells())) *
+          step_share(input.front_viscosity());
     const bool quasi_static = input.statics && input.statics->steps;
     // more are a slip of the pen, and are counted in 32 bits
     constexpr double most_steps = 1e9;
@@ -137,8 +139,10 @@ namespace nsfd
   }
 
   template void Model<2>::build_control(const SceneInput &,
+                                        const Communicator &,
                                         std::vector<std::string> &);
   template void Model<3>::build_control(const SceneInput &,
+                                        const Communicator &,
                                         std::vector<std::string> &);
   template double Model<2>::stable_limit(const SceneInput &,
                                          const Communicator &, double);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace nsfd
 {
@@ -115,7 +116,10 @@ namespace nsfd
     step.idle_rounds <<= step.can_be_shorter ? std::min(attempts_, 10u) : 10;
     // the one place that catches StepRejected and shortens the step
     try {
-      const stop_request::Interruptible interruptible(communicator_.size());
+      // what keeps its motion by itself is not left in the middle of a step
+      std::optional<stop_request::Interruptible> interruptible;
+      if (!integrator.keeps_motion())
+        interruptible.emplace(communicator_.size());
       report = integrator.take_step(state, step, next);
     } catch (const StepRejected &rejected) {
       failure = bad_formulas_text(communicator_);

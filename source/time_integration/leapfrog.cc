@@ -1,5 +1,6 @@
 #include "leapfrog.h"
 
+#include "ghost_states.h"
 #include "initial_state.h"
 #include "point_name.h"
 #include "step_data.h"
@@ -50,20 +51,29 @@ namespace nsfd
   template <int dim>
   Leapfrog<dim>::Leapfrog(const SceneInput &input,
                           const Discretization<dim> &discretization,
-                          const Communicator &communicator)
-      : input_(input), discretization_(discretization),
-        communicator_(communicator), all_(point_data(input, discretization)),
-        mesh_(discretization),
-        forces_(make_cell_forces(
-            discretization, mesh_,
-            FrontViscosity(discretization, input.front_viscosity()))),
-        faces_(discretization, all_), supports_(input, discretization, mesh_),
-        points_(discretization, mesh_, all_),
+                          const Communicator &communicator,
+                          std::unique_ptr<const GhostLayer<dim>> layer)
+      : input_(input), communicator_(communicator),
+        ghosts_(communicator, discretization, std::move(layer)),
+        discretization_(ghosts_.discretization()),
+        all_(point_data(input, discretization_)),
+        own_(ghosts_.layer() ? std::make_unique<const OneStepProblem<dim>>(
+                                   point_data(input, discretization))
+                             : nullptr),
+        mesh_(discretization_, ghosts_.cells()),
+        forces_(make_cell_forces(discretization_, mesh_,
+                                 FrontViscosity(discretization_,
+                                                input.front_viscosity(),
+                                                ghosts_.cells()),
+                                 ghosts_.cells())),
+        faces_(discretization_, all_), supports_(input, discretization_, mesh_),
+        points_(discretization_, mesh_, all_),
         check_(input, [this](const std::size_t i) {
           return name_of_point<dim>(input_, discretization_.origins(),
                                     discretization_.points().position, i);
         })
   {
+    ghosts_.set_mesh(mesh_);
   }
 
   template <int dim>
@@ -92,16 +102,17 @@ namespace nsfd
     for (std::size_t i = 0; i < points.n_points; ++i)
       if (!state.two_sided[i]) // contact holds where it is
         state.released_overlap[i] = std::max(0., -state.jump[i * dim]);
-    return state;
+    return ghosts_.without(std::move(state));
   }
 
-  /** The motion and the points of @p state. */
+  /** The motion and the points of @p state, with ghosts. */
   template <int dim>
   void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact)
   {
     const auto &origins = discretization_.origins();
     for (std::size_t i = 0; i < intact.size(); ++i)
-      if (!intact[i] && origins[i].kind != PointOrigin::Kind::motion)
+      if (!intact[i] && origins[i].kind != PointOrigin::Kind::motion &&
+          mesh_.is_whole(mesh_.node_of_point(i)))
         points_.add(unsigned(i), faces_.factors(unsigned(i)), state);
     groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
     faces_.start(std::move(intact));
@@ -118,25 +129,22 @@ namespace nsfd
   State Leapfrog<dim>::start_from(const State &given)
   {
     const auto &origins = discretization_.origins();
-    State state = given;
+    State state = ghosts_.with(given);
     std::vector<std::uint8_t> intact(origins.size());
     for (std::size_t i = 0; i < origins.size(); ++i) {
-      intact[i] = is_interface(origins[i]) && is_joined(given.kind[i]);
+      intact[i] = is_interface(origins[i]) && is_joined(state.kind[i]);
       if (intact[i])
         state.kind[i] = PointKind::bonded;
     }
     take(state, std::move(intact));
     state.bond_traction.assign(state.jump.size(), 0.);
-    show(state);
+    show_all(state);
     const auto &g = *groups_;
     state.energy.kinetic = kinetic_energy();
-    state.energy.elastic =
-        -communicator_.dot(g.force.data(), g.displacement.data(),
-                           g.force.size()) /
-        2.;
+    state.energy.elastic = -ghosts_.dot(g, g.force, g.displacement) / 2.;
     state.energy.cohesive = points_.initial_energy(communicator_);
     begin_balance(state);
-    return state;
+    return ghosts_.without(std::move(state));
   }
 
   /** v.M v/2. Collective. */
@@ -147,12 +155,13 @@ namespace nsfd
     terms_.resize(g.velocity.size());
     for (std::size_t k = 0; k < terms_.size(); ++k)
       terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
-    return communicator_.sum(terms_);
+    return ghosts_.sum(g, terms_);
   }
 
   template <int dim>
-  void Leapfrog<dim>::resume_from(const State &state)
+  void Leapfrog<dim>::resume_from(const State &given)
   {
+    const State state = ghosts_.with(given);
     const auto &origins = discretization_.origins();
     std::vector<std::uint8_t> intact(origins.size());
     for (std::size_t i = 0; i < origins.size(); ++i)
@@ -165,13 +174,14 @@ namespace nsfd
   template <int dim>
   void Leapfrog<dim>::set_loads(const double time)
   {
-    loads_time_ = time;
-    corner_loads_.assign(mesh_.n_corners() * dim, 0.);
-    discretization_.add_loads(time, corner_loads_);
-    loads_.assign(groups_->force.size(), 0.);
+    loads_.time = time;
+    loads_.of_corners.assign(mesh_.n_corners() * dim, 0.);
+    discretization_.add_loads(time, loads_.of_corners);
+    loads_.of_groups.assign(groups_->force.size(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
-        loads_[groups_->of(i) * dim + c] += corner_loads_[i * dim + c];
+        loads_.of_groups[groups_->of(i) * dim + c] +=
+            loads_.of_corners[i * dim + c];
   }
 
   /** Forces and loads on the groups of a node that has split. */
@@ -179,34 +189,40 @@ namespace nsfd
   void Leapfrog<dim>::gather(const std::size_t node)
   {
     auto &g = *groups_;
-    loads_.resize(corner_loads_.empty() ? 0 : g.force.size());
+    loads_.of_groups.resize(loads_.of_corners.empty() ? 0 : g.force.size());
     for (const unsigned int corner : mesh_.corners_of_node(node))
       for (unsigned int c = 0; c < dim; ++c) {
         g.force[g.of(corner) * dim + c] = 0.;
-        if (!loads_.empty())
-          loads_[g.of(corner) * dim + c] = 0.;
+        if (!loads_.of_groups.empty())
+          loads_.of_groups[g.of(corner) * dim + c] = 0.;
       }
     for (const unsigned int corner : mesh_.corners_of_node(node)) {
       const auto force = forces_->corner_force(corner, g);
       for (unsigned int c = 0; c < dim; ++c) {
         g.force[g.of(corner) * dim + c] += force[c];
-        if (!loads_.empty())
-          loads_[g.of(corner) * dim + c] += corner_loads_[corner * dim + c];
+        if (!loads_.of_groups.empty())
+          loads_.of_groups[g.of(corner) * dim + c] +=
+              loads_.of_corners[corner * dim + c];
       }
     }
   }
 
   /**
    * Faces that have reached their strength let go: nodes fall apart where they
-   * are cut. Returns the number of points.
+   * are cut. Returns the number of points that count here.
    */
   template <int dim>
   unsigned int Leapfrog<dim>::let_go()
   {
     const auto points = faces_.reached(*forces_, counters_.excess);
     bool cut_support = false;
-    for (const unsigned int point : points)
-      points_.release(point, faces_.factors(point));
+    unsigned int n_released = 0;
+    for (const unsigned int point : points) {
+      const std::size_t node = mesh_.node_of_point(point);
+      if (mesh_.is_whole(node))
+        points_.release(point, faces_.factors(point));
+      n_released += mesh_.counts(node);
+    }
     for (const unsigned int point : points) {
       const std::size_t node = mesh_.node_of_point(point);
       if (!groups_->split(node, faces_.intact()))
@@ -219,7 +235,7 @@ namespace nsfd
     if (cut_support)
       supports_.find(*groups_);
     supports_.resize(groups_->size());
-    return unsigned(points.size());
+    return n_released;
   }
 
   /** Without points: v- + k (f + F)/m, or what is prescribed. */
@@ -237,11 +253,33 @@ namespace nsfd
         g.velocity[i * dim + c] =
             old_velocity_[i * dim + c] + share * g.force[i * dim + c];
     }
-    if (!loads_.empty())
+    if (!loads_.of_groups.empty())
       for (std::size_t i = 0; i < g.size(); ++i)
         for (unsigned int c = 0; c < dim; ++c)
-          g.velocity[i * dim + c] += kick / g.mass[i] * loads_[i * dim + c];
-    supports_.set_velocities(time, h, kick, g.force, loads_, g);
+          g.velocity[i * dim + c] +=
+              kick / g.mass[i] * loads_.of_groups[i * dim + c];
+    supports_.set_velocities(time, h, kick, g.force, loads_.of_groups, g);
+  }
+
+  /** What all ranks have done at the nodes. Collective. */
+  template <int dim>
+  void Leapfrog<dim>::count(const typename LeapfrogPoints<dim>::Outcome &mine,
+                            StepReport &report)
+  {
+    const double here[6] = {double(mine.problems),   double(mine.sweeps),
+                            double(mine.newton),     double(mine.loose),
+                            double(report.released), double(!mine.converged)};
+    const auto all = communicator_.sums(here, 6, 1);
+    counters_.problems += std::uint64_t(all[0]);
+    counters_.sweeps += std::uint64_t(all[1]);
+    counters_.newton += std::uint64_t(all[2]);
+    counters_.loose += std::uint64_t(all[3]);
+    counters_.released += std::uint64_t(all[4]);
+    report.solver.sweeps = unsigned(all[1]);
+    report.solver.newton = unsigned(all[2]);
+    report.released = unsigned(all[4]);
+    report.solver.converged = all[5] == 0.;
+    report.solver.residual = communicator_.max(mine.residual);
   }
 
   template <int dim>
@@ -259,45 +297,37 @@ namespace nsfd
     double of_change = 0.;
     {
       const Charge charge(Cost::free_motion);
-      if (discretization_.loads().depend_on_time() && old.time != loads_time_)
+      if (discretization_.loads().depend_on_time() && old.time != loads_.time)
         set_loads(old.time);
       move_freely(kick, old.time, h);
     }
-    const double *f = g.force.data();
-    const std::size_t n = g.force.size();
     typename LeapfrogPoints<dim>::Outcome outcome;
     {
       const Charge charge(Cost::solver);
       outcome =
           points_.solve(h, last, supports_.mask(), input_.solver.tolerance, g);
     }
-    counters_.problems += outcome.problems;
-    counters_.sweeps += outcome.sweeps;
-    counters_.newton += outcome.newton;
-    counters_.loose += outcome.loose;
-    counters_.released += report.released;
-    report.solver.converged = !communicator_.any(!outcome.converged);
-    report.solver.residual = communicator_.max(outcome.residual);
-    report.solver.newton = outcome.newton;
-    report.solver.sweeps = outcome.sweeps;
+    ghosts_.start(g);
+    count(outcome, report);
+    ghosts_.finish(g);
     if (!report.solver.converged) {
       old_velocity_.swap(g.velocity);
       check_.check_solution(h, old.time, report.solver, outcome.worst);
     }
     const Charge charge(Cost::energy_balance);
+    const auto &f = g.force;
     Energies energies;
     if (h != last)
-      of_change = (last - h) / 4. *
-                  (communicator_.dot(f, g.velocity.data(), n) -
-                   communicator_.dot(f, old_velocity_.data(), n));
+      of_change =
+          (last - h) / 4. *
+          (ghosts_.dot(g, f, g.velocity) - ghosts_.dot(g, f, old_velocity_));
     energies.numerical = -of_change;
-    energies.stored = -communicator_.dot(f, g.displacement.data(), n) / 2.;
-    energies.power = communicator_.dot(f, g.velocity.data(), n);
-    if (!loads_.empty())
-      energies.work =
-          kick / 2. *
-          (communicator_.dot(loads_.data(), g.velocity.data(), n) +
-           communicator_.dot(loads_.data(), old_velocity_.data(), n));
+    energies.stored = -ghosts_.dot(g, f, g.displacement) / 2.;
+    energies.power = ghosts_.dot(g, f, g.velocity);
+    if (!loads_.of_groups.empty())
+      energies.work = kick / 2. *
+                      (ghosts_.dot(g, loads_.of_groups, g.velocity) +
+                       ghosts_.dot(g, loads_.of_groups, old_velocity_));
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
     points_.add_impulses(supports_.row_of_group(), g, supports_.rows());
     energies.work += supports_.work(communicator_, kick, old_velocity_, g);
@@ -305,8 +335,8 @@ namespace nsfd
     {
       const Charge moving(Cost::update);
       old_displacement_.swap(g.displacement);
-      g.displacement.resize(n);
-      for (std::size_t k = 0; k < n; ++k)
+      g.displacement.resize(f.size());
+      for (std::size_t k = 0; k < f.size(); ++k)
         g.displacement[k] = old_displacement_[k] + h * g.velocity[k];
       forces_->front().begin_step(h, kick);
       forces_->set_forces(g);
@@ -319,8 +349,7 @@ namespace nsfd
     energies.kinetic -= h / 4. * front.after;
     energies.numerical += (kick - last) / 4. * front_.after;
     energies.viscous = front.taken;
-    energies.power_after =
-        communicator_.dot(f, g.velocity.data(), n) + front.after;
+    energies.power_after = ghosts_.dot(g, f, g.velocity) + front.after;
     front_ = front;
     try {
       book(old, h, energies, next, report);
@@ -384,6 +413,16 @@ namespace nsfd
   template <int dim>
   void Leapfrog<dim>::show(State &state) const
   {
+    if (!ghosts_.layer())
+      return show_all(state);
+    State all = spread_state(*ghosts_.layer(), state);
+    show_all(all);
+    take_own(*ghosts_.layer(), all, state);
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::show_all(State &state) const
+  {
     groups_->scatter(groups_->displacement, state.displacement);
     groups_->scatter(groups_->velocity, state.velocity);
     points_.show(state);
@@ -409,16 +448,29 @@ namespace nsfd
     counters["gauss_seidel_sweeps"] = double(counters_.sweeps);
     counters["newton"] = double(counters_.newton);
     counters["released_points"] = double(counters_.released);
-    counters["active_points"] = double(points_.size());
+    counters["active_points"] =
+        double(communicator_.sum_integer(points_.n_counted()));
     counters["node_problems_above_1e-12"] = double(counters_.loose);
-    counters["groups"] = double(groups_ ? groups_->size() : 0);
-    counters["worst_excess_over_strength"] = counters_.excess;
+    counters["groups"] = double(communicator_.sum_integer(
+        groups_ ? groups_->size() - groups_->not_counted().size() : 0));
+    counters["worst_excess_over_strength"] =
+        communicator_.max(counters_.excess);
   }
 
   template <int dim>
   void Leapfrog<dim>::serialize(Archive &archive)
   {
+    if (!ghosts_.layer())
+      return serialize_all(archive);
+    GhostArchive<dim> all(*ghosts_.layer(), archive);
+    serialize_all(all);
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::serialize_all(Archive &archive)
+  {
     const Archive::Part part(archive, "leapfrog");
+    counters_.excess = communicator_.max(counters_.excess);
     archive.numbers("excess", counters_.excess);
     faces_.serialize(archive);
     points_.serialize(archive);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "face_release.h"
+#include "leapfrog_ghosts.h"
 #include "leapfrog_points.h"
 #include "prescribed_groups.h"
 #include "step_check.h"
@@ -35,17 +36,24 @@ namespace nsfd
   class Leapfrog final : public TimeIntegrator<dim>
   {
   public:
-    /** @throws std::runtime_error with a sentence for the user. */
+    /**
+     * @p layer around the cells of @p discretization, null on one rank.
+     * @throws std::runtime_error with a sentence for the user, on all ranks.
+     */
     Leapfrog(const SceneInput &input, const Discretization<dim> &discretization,
-             const Communicator &communicator);
+             const Communicator &communicator,
+             std::unique_ptr<const GhostLayer<dim>> layer = nullptr);
 
     /** At t = 0, as the scene gives it; start_from() joins it. */
     State initial_state() const;
     /** Their constant data. */
-    const OneStepProblem<dim> &points_of_mesh() const { return all_; }
+    const OneStepProblem<dim> &points_of_mesh() const
+    {
+      return own_ ? *own_ : all_;
+    }
 
     State start_from(const State &given) override;
-    void resume_from(const State &state) override;
+    void resume_from(const State &given) override;
     StepReport advance(const State &old, double time_step, State &next,
                        unsigned int idle_rounds) override;
     void show(State &state) const override;
@@ -71,18 +79,25 @@ namespace nsfd
     };
 
     void take(const State &state, std::vector<std::uint8_t> intact);
+    void show_all(State &state) const;
+    void serialize_all(Archive &archive);
     void set_loads(double time);
     double kinetic_energy();
     void gather(std::size_t node);
     unsigned int let_go();
+    void count(const typename LeapfrogPoints<dim>::Outcome &mine,
+               StepReport &report);
     void move_freely(double kick, double time, double h);
     void book(const State &old, double h, const Energies &bodies, State &next,
               StepReport &report);
 
     const SceneInput &input_;
-    const Discretization<dim> &discretization_;
     const Communicator &communicator_;
+    LeapfrogGhosts<dim> ghosts_;
+    const Discretization<dim> &discretization_; ///< with ghosts
+    /// constant data of the points, and without ghosts if there may be some
     const OneStepProblem<dim> all_;
+    const std::unique_ptr<const OneStepProblem<dim>> own_;
     const JoinedMesh<dim> mesh_;
     const std::unique_ptr<CellForces<dim>> forces_;
     FaceRelease<dim> faces_;
@@ -90,8 +105,11 @@ namespace nsfd
     LeapfrogPoints<dim> points_;
     StepCheck check_;
     std::unique_ptr<CornerGroups<dim>> groups_;
-    std::vector<double> corner_loads_, loads_; ///< N; empty: none
-    double loads_time_ = 0.;
+    /// N; empty: none
+    struct {
+      std::vector<double> of_corners, of_groups;
+      double time = 0.;
+    } loads_;
 
     std::vector<double> old_velocity_, old_displacement_, terms_;
     FrontViscosity::Powers front_;

@@ -226,11 +226,18 @@ namespace nsfd
         communicator.any(!springs) ? n_rows : n_rows_of_springs;
     terms_.assign(rows * n, 0.);
     energies_.resize(n);
-    for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t k = 0; k < n; ++k) {
+      const unsigned int active = balance.active;
       if (springs_[k])
         account_spring(moved_[k], k, balance);
       else
         account_point(moved_[k], k, balance);
+      if (mesh_.counts(mesh_.node_of_point(chains_.point[moved_[k]])))
+        continue;
+      balance.active = active;
+      for (std::size_t row = 0; row < rows; ++row)
+        terms_[row * n + k] = 0.;
+    }
     auto sums = communicator.sums(terms_.data(), rows, n);
     sums.resize(n_rows, 0.);
     balance.stored = sums[stored];

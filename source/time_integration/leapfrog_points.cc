@@ -20,6 +20,16 @@ namespace nsfd
     count_holds();
   }
 
+  template <int dim>
+  std::size_t LeapfrogPoints<dim>::n_counted() const
+  {
+    std::size_t n = 0;
+    for (const Node &node : nodes_)
+      if (mesh_.counts(node.node))
+        n += node.points.size();
+    return n;
+  }
+
   /** Chains of the points of every face that are not broken. */
   template <int dim>
   void LeapfrogPoints<dim>::count_holds()
@@ -28,7 +38,7 @@ namespace nsfd
     hold_of_face_.clear();
     for (const auto &face : points.faces)
       hold_of_face_.push_back(2 * face.count);
-    for (std::size_t a = 0; a < size(); ++a)
+    for (std::size_t a = 0; a < chains_.size(); ++a)
       for (const double beta : {chains_.beta[a], chains_.other.beta[a]})
         if (beta < 1e-3)
           --hold_of_face_[points.face_of[chains_.point[a]]];
@@ -295,7 +305,7 @@ namespace nsfd
         std::copy_n(&groups.velocity[node.groups[k] * dim], dim,
                     velocity[k].begin());
       if (solve_elastic(node)) {
-        ++outcome.problems;
+        outcome.problems += mesh_.counts(node.node);
         for (std::size_t k = 0; k < node.problem.points.size(); ++k)
           springs_.push_back(&node.elastic[chain_].node.point(k));
         take_velocities(node);
@@ -308,14 +318,16 @@ namespace nsfd
         const NodeReport report =
             solver_.solve(chains_.problem, chains_.frame, node.problem,
                           chains_.impulse, chains_.solution);
-        outcome.sweeps += report.sweeps;
-        outcome.newton += report.newton;
-        ++outcome.problems;
+        if (mesh_.counts(node.node)) {
+          outcome.sweeps += report.sweeps;
+          outcome.newton += report.newton;
+          outcome.loose += !report.converged;
+          ++outcome.problems;
+        }
         if (!(report.residual <= outcome.residual)) {
           outcome.residual = report.residual;
           outcome.worst = chains_.point[moved_[first]];
         }
-        outcome.loose += !report.converged;
         outcome.converged = outcome.converged &&
                             (report.converged || report.residual <= tolerance);
         take_velocities(node);
@@ -354,10 +366,11 @@ namespace nsfd
   double
   LeapfrogPoints<dim>::initial_energy(const Communicator &communicator) const
   {
-    std::vector<double> terms(size());
-    for (std::size_t a = 0; a < size(); ++a)
-      terms[a] = 2. * chains_.problem.weight[a] *
-                 stored_energy<dim>(chains_.problem, a);
+    std::vector<double> terms(chains_.size());
+    for (std::size_t a = 0; a < chains_.size(); ++a)
+      if (mesh_.counts(mesh_.node_of_point(chains_.point[a])))
+        terms[a] = 2. * chains_.problem.weight[a] *
+                   stored_energy<dim>(chains_.problem, a);
     return communicator.sum(terms);
   }
 

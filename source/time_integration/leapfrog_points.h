@@ -32,7 +32,8 @@ namespace nsfd
     LeapfrogPoints(const Discretization<dim> &discretization,
                    const JoinedMesh<dim> &mesh, const OneStepProblem<dim> &all);
 
-    std::size_t size() const { return chains_.size(); }
+    /** Those that this rank sums over: see JoinedMesh. */
+    std::size_t n_counted() const;
 
     using Factors = typename LeapfrogChains<dim>::Factors;
     /** See LeapfrogChains. */

@@ -79,6 +79,8 @@ namespace nsfd
     terms_.assign((n_reactions + 1) * n, 0.);
     for (std::size_t k = 0; k < n; ++k) {
       const Row &row = all_[k];
+      if (!mesh_.counts(mesh_.node_of_point(row.point)))
+        continue;
       const std::size_t at = std::size_t(row.group) * dim + row.component;
       const double impulse =
           groups.mass[row.group] * (groups.velocity[at] - before[at]) -

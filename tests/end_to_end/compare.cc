@@ -114,4 +114,40 @@ namespace end_to_end
       text.replace(at, from.size(), to);
     return text;
   }
+
+  std::vector<std::vector<double>> records(const Result &result,
+                                           const std::string &base)
+  {
+    std::vector<std::vector<double>> all;
+    double number = 0.;
+    for (const Snapshot &snapshot : snapshots(result.directory, base)) {
+      const std::size_t n_points = snapshot.at("Points").size() / 3;
+      const std::size_t first = all.size();
+      for (std::size_t i = 0; i < n_points; ++i)
+        all.push_back({number});
+      for (const auto &[name, values] : snapshot)
+        if (n_points > 0 && values.size() % n_points == 0 &&
+            (name == "Points" || name == "displacement" || name == "velocity" ||
+             name == "stress")) {
+          const std::size_t width = values.size() / n_points;
+          for (std::size_t i = 0; i < n_points; ++i)
+            all[first + i].insert(all[first + i].end(),
+                                  values.begin() + i * width,
+                                  values.begin() + (i + 1) * width);
+        }
+      // fragments have the same numbers everywhere: linear cells
+      if (snapshot.count("fragment") != 0 &&
+          n_points % snapshot.at("fragment").size() == 0) {
+        const auto &fragment = snapshot.at("fragment"),
+                   &x = snapshot.at("Points");
+        const std::size_t width = x.size() / fragment.size();
+        for (std::size_t c = 0; c < fragment.size(); ++c)
+          all.push_back({number, x[c * width], x[c * width + 1],
+                         x[c * width + 2], fragment[c]});
+      }
+      ++number;
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
 } // namespace end_to_end

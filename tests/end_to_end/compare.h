@@ -3,6 +3,7 @@
 #include "program.h"
 
 #include <string>
+#include <vector>
 
 namespace end_to_end
 {
@@ -39,4 +40,12 @@ namespace end_to_end
                           const std::string &base, const std::string &array,
                           const std::string &scale_base,
                           const std::string &scale);
+
+  /**
+   * Of all snapshots: position, displacement, velocity and stress of every
+   * point, and the fragment of every cell, in an order of their own. Equal for
+   * runs on several ranks that are the same to the last bit.
+   */
+  std::vector<std::vector<double>> records(const Result &result,
+                                           const std::string &base);
 } // namespace end_to_end

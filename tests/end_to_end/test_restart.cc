@@ -252,11 +252,22 @@ namespace end_to_end::test_restart
     }
   }
 
-  // Large motions do not know how many ranks there are: rigid bodies, surfaces
-  // and what they keep go from two to three, plastic cells from one to two.
-  TEST(Restart, OnOtherRanksAfterLargeMotions)
+  // Large motions and joined cells do not know how many ranks there are: rigid
+  // bodies, surfaces and what they keep go from two to three, plastic cells
+  // from one to two, nodes that have split from two to one and from one to
+  // three.
+  TEST(Restart, OnOtherRanksBitForBit)
   {
+    const std::vector<std::string> joined = {
+        "Time/scheme=explicit",
+        "Time/step=auto",
+        "Interface: all/friction=0.3",
+        "Boundary: left/velocity x=if(t<8 ns,-2 m/s,2 m/s)",
+        "Boundary: right/velocity x=if(t<8 ns,2 m/s,-2 m/s)",
+        "Time/end=14 ns"};
     const std::vector<std::tuple<Launch, unsigned int, unsigned int>> rows = {
+        {with(with(torn, joined), {"Mesh/type=crossed triangles"}), 2, 1},
+        {with(torn, joined), 1, 3},
         {{benchmark("push_back"), {"Mesh/cells=6, 6", "Time/end=17 ns"}}, 2, 3},
         {{benchmark("heap_of_bricks"), {"Time/end=0.1 s"}}, 3, 1},
         {{scene("plastic_bar"), {"Time/end=10 us"}}, 1, 2}};

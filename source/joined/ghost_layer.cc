@@ -1,0 +1,209 @@
+#include "ghost_layer.h"
+
+#include "discretization/cells.h"
+#include "discretization/point_places.h"
+#include "nsfd/state/point_kind.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace nsfd
+{
+  namespace
+  {
+    /**
+     * Points by cell, slot and, where several are at one slot, their order:
+     * @p per_slot of them, @p n_slots slots per cell. The same for a cell in
+     * each discretization that has it.
+     */
+    template <int dim>
+    std::vector<unsigned int>
+    points_at_slots(const Discretization<dim> &discretization,
+                    const std::size_t n_slots, const std::size_t per_slot)
+    {
+      const Bodies &bodies = discretization.bodies();
+      const auto none = unsigned(discretization.points().n_points);
+      std::vector<unsigned int> result(bodies.size() * n_slots * per_slot,
+                                       none);
+      for_all_places(bodies, none,
+                     [&](const std::size_t body, const unsigned int slot,
+                         const std::size_t point, unsigned int) {
+                       auto place = result.begin() +
+                                    long((body * n_slots + slot) * per_slot);
+                       while (*place != none)
+                         ++place;
+                       *place = unsigned(point);
+                     });
+      return result;
+    }
+
+    /** The largest number of points at one slot. */
+    std::size_t most_at_a_slot(const Bodies &bodies)
+    {
+      std::size_t most = 1;
+      const auto &extra = bodies.extra_points;
+      for (std::size_t k = 0, same = 1; k < extra.size(); ++k) {
+        same = k > 0 && extra[k].first == extra[k - 1].first ? same + 1 : 1;
+        most = std::max(most, same + 1);
+      }
+      return most;
+    }
+
+    std::size_t most_slots(const Bodies &bodies)
+    {
+      std::size_t most = 0;
+      for (const BodyClass &body : bodies.classes)
+        most = std::max<std::size_t>(most, body.n_slots);
+      return most;
+    }
+  } // namespace
+
+  template <int dim>
+  GhostLayer<dim>::GhostLayer(const Communicator &communicator,
+                              const Discretization<dim> &own,
+                              std::unique_ptr<const Discretization<dim>> all)
+      : communicator_(communicator), own_(own), all_(std::move(all))
+  {
+    // both lists of cells are in the same order
+    const auto &numbers = all_->cells().global_cell;
+    const auto &mine = own_.cells().global_cell;
+    std::vector<std::uint8_t> ghost(numbers.size(), 1);
+    for (std::size_t b = 0; b < numbers.size() && cell_.size() < mine.size();
+         ++b)
+      if (numbers[b] == mine[cell_.size()]) {
+        ghost[b] = 0;
+        cell_.push_back(b);
+      }
+    cells_.emplace(communicator, numbers, std::move(ghost));
+    match_points();
+  }
+
+  template <int dim>
+  void GhostLayer<dim>::match_points()
+  {
+    const auto n_slots =
+        std::size_t(communicator_.max(double(most_slots(all_->bodies()))));
+    const auto per_slot =
+        std::size_t(communicator_.max(double(most_at_a_slot(all_->bodies()))));
+    n_per_cell_ = n_slots * per_slot;
+    points_of_cell_ = points_at_slots(*all_, n_slots, per_slot);
+    const auto of_own = points_at_slots(own_, n_slots, per_slot);
+    const auto none = unsigned(own_.points().n_points);
+    point_.assign(none, unsigned(all_->points().n_points));
+    for (std::size_t k = 0; k < of_own.size(); ++k)
+      if (of_own[k] != none)
+        point_[of_own[k]] =
+            points_of_cell_[cell_[k / n_per_cell_] * n_per_cell_ +
+                            k % n_per_cell_];
+  }
+
+  template <int dim>
+  template <typename T>
+  std::vector<T> GhostLayer<dim>::spread_points(const std::vector<T> &own,
+                                                const unsigned int width) const
+  {
+    if (own.empty())
+      return {};
+    std::vector<T> all(all_->points().n_points * width, T());
+    for (std::size_t i = 0; i < point_.size(); ++i)
+      std::copy_n(&own[i * width], width, &all[std::size_t(point_[i]) * width]);
+    return all;
+  }
+
+  template <int dim>
+  template <typename T>
+  std::vector<T> GhostLayer<dim>::own_points(const std::vector<T> &all,
+                                             const unsigned int width) const
+  {
+    if (all.empty())
+      return {};
+    std::vector<T> own(point_.size() * width);
+    for (std::size_t i = 0; i < point_.size(); ++i)
+      std::copy_n(&all[std::size_t(point_[i]) * width], width, &own[i * width]);
+    return own;
+  }
+
+  template <int dim>
+  std::vector<double>
+  GhostLayer<dim>::spread_unknowns(const std::vector<double> &own) const
+  {
+    std::vector<double> all(all_->bodies().n_dofs(), 0.);
+    const auto &from = own_.bodies().first_dof, &to = all_->bodies().first_dof;
+    for (std::size_t b = 0; b < cell_.size(); ++b)
+      std::copy(own.begin() + long(from[b]), own.begin() + long(from[b + 1]),
+                all.begin() + long(to[cell_[b]]));
+    return all;
+  }
+
+  template <int dim>
+  std::vector<double>
+  GhostLayer<dim>::own_unknowns(const std::vector<double> &all) const
+  {
+    std::vector<double> own(own_.bodies().n_dofs());
+    const auto &to = own_.bodies().first_dof, &from = all_->bodies().first_dof;
+    for (std::size_t b = 0; b < cell_.size(); ++b)
+      std::copy_n(all.begin() + long(from[cell_[b]]), to[b + 1] - to[b],
+                  own.begin() + long(to[b]));
+    return own;
+  }
+
+  template <int dim>
+  template <typename T>
+  void GhostLayer<dim>::fetch_points(const unsigned int width,
+                                     std::vector<T> &all) const
+  {
+    if (!communicator_.any(!all.empty()))
+      return; // there is no such field
+    const std::size_t none = all_->points().n_points;
+    all.resize(none * width);
+    const auto per_cell = unsigned(n_per_cell_ * width);
+    cells_->all().start(per_cell, [&](const std::size_t cell, double *values) {
+      for (std::size_t k = 0; k < n_per_cell_; ++k) {
+        const std::size_t i = points_of_cell_[cell * n_per_cell_ + k];
+        for (unsigned int c = 0; i < none && c < width; ++c)
+          values[k * width + c] = double(all[i * width + c]);
+      }
+    });
+    cells_->all().finish(
+        per_cell, [&](const std::size_t cell, const double *values) {
+          for (std::size_t k = 0; k < n_per_cell_; ++k) {
+            const std::size_t i = points_of_cell_[cell * n_per_cell_ + k];
+            for (unsigned int c = 0; i < none && c < width; ++c)
+              all[i * width + c] = T(values[k * width + c]);
+          }
+        });
+  }
+
+  template <int dim>
+  void GhostLayer<dim>::fetch_unknowns(std::vector<double> &all) const
+  {
+    // every cell has the same element
+    const auto &bodies = all_->bodies();
+    const auto width = unsigned(communicator_.max(
+        bodies.size() > 0 ? double(bodies.first_dof[1]) : 0.));
+    cells_->all().start(width, [&](const std::size_t cell, double *values) {
+      std::copy_n(&all[bodies.first_dof[cell]], width, values);
+    });
+    cells_->all().finish(
+        width, [&](const std::size_t cell, const double *values) {
+          std::copy_n(values, width, &all[bodies.first_dof[cell]]);
+        });
+  }
+
+#define NSFD_INSTANTIATE_OF(dim, T)                                            \
+  template std::vector<T> GhostLayer<dim>::spread_points(                      \
+      const std::vector<T> &, unsigned int) const;                             \
+  template std::vector<T> GhostLayer<dim>::own_points(const std::vector<T> &,  \
+                                                      unsigned int) const;     \
+  template void GhostLayer<dim>::fetch_points(unsigned int, std::vector<T> &)  \
+      const
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template class GhostLayer<dim>;                                              \
+  NSFD_INSTANTIATE_OF(dim, double);                                            \
+  NSFD_INSTANTIATE_OF(dim, std::uint8_t);                                      \
+  NSFD_INSTANTIATE_OF(dim, PointKind)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
+#undef NSFD_INSTANTIATE_OF
+} // namespace nsfd

@@ -1,0 +1,76 @@
+#include "ghost_states.h"
+
+#include "state/point_fields.h"
+
+namespace nsfd
+{
+  template <int dim>
+  State spread_state(const GhostLayer<dim> &layer, const State &own)
+  {
+    State all = own;
+    all.displacement = layer.spread_unknowns(own.displacement);
+    all.velocity = layer.spread_unknowns(own.velocity);
+    for_point_fields(
+        [&](const PointField &field, const auto member, const auto &...) {
+          all.*member = layer.spread_points(own.*member, field.width(dim));
+        });
+    return all;
+  }
+
+  template <int dim>
+  void fetch_state(const GhostLayer<dim> &layer, State &all)
+  {
+    layer.fetch_unknowns(all.displacement);
+    layer.fetch_unknowns(all.velocity);
+    for_point_fields(
+        [&](const PointField &field, const auto member, const auto &...) {
+          layer.fetch_points(field.width(dim), all.*member);
+        });
+  }
+
+  template <int dim>
+  void take_own(const GhostLayer<dim> &layer, const State &all, State &own)
+  {
+    own.displacement = layer.own_unknowns(all.displacement);
+    own.velocity = layer.own_unknowns(all.velocity);
+    for_point_fields(
+        [&](const PointField &field, const auto member, const auto &...) {
+          own.*member = layer.own_points(all.*member, field.width(dim));
+        });
+  }
+
+  template <int dim>
+  void GhostArchive<dim>::bodies(const std::string &name,
+                                 std::vector<double> &values)
+  {
+    auto own = layer_.own_unknowns(values);
+    archive_.bodies(path(name), own);
+    if (!reads())
+      return;
+    values = layer_.spread_unknowns(own);
+    layer_.fetch_unknowns(values);
+  }
+
+  template <int dim>
+  template <typename T>
+  void GhostArchive<dim>::store_points(const std::string &name,
+                                       std::vector<T> &values)
+  {
+    const unsigned int width = layer_.width(values);
+    auto own = layer_.own_points(values, width);
+    archive_.points(path(name), own);
+    if (!reads())
+      return;
+    values = layer_.spread_points(own, width);
+    layer_.fetch_points(width, values);
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template State spread_state(const GhostLayer<dim> &, const State &);         \
+  template void fetch_state(const GhostLayer<dim> &, State &);                 \
+  template void take_own(const GhostLayer<dim> &, const State &, State &);     \
+  template class GhostArchive<dim>
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
+} // namespace nsfd

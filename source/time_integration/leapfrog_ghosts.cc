@@ -1,0 +1,98 @@
+#include "leapfrog_ghosts.h"
+
+#include "ghost_states.h"
+
+#include "core/cost.h"
+#include "discretization/cells.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  LeapfrogGhosts<dim>::LeapfrogGhosts(
+      const Communicator &communicator, const Discretization<dim> &own,
+      std::unique_ptr<const GhostLayer<dim>> layer)
+      : communicator_(communicator), own_(own), layer_(std::move(layer))
+  {
+  }
+
+  template <int dim>
+  State LeapfrogGhosts<dim>::with(const State &own) const
+  {
+    if (!layer_)
+      return own;
+    State all = spread_state(*layer_, own);
+    fetch_state(*layer_, all);
+    return all;
+  }
+
+  template <int dim>
+  State LeapfrogGhosts<dim>::without(State &&all) const
+  {
+    State own = std::move(all);
+    if (layer_) {
+      const State taken = own;
+      take_own(*layer_, taken, own);
+    }
+    return own;
+  }
+
+  template <int dim>
+  void LeapfrogGhosts<dim>::set_mesh(const JoinedMesh<dim> &mesh)
+  {
+    if (!layer_)
+      return;
+    std::vector<std::size_t> beyond;
+    for (std::size_t i = 0; i < mesh.n_corners(); ++i)
+      if (!mesh.is_whole(mesh.node(i)))
+        beyond.push_back(i);
+    const unsigned int n_nodes =
+        layer_->all().cells().element->n_dofs_per_cell();
+    corners_.emplace(layer_->cells(), n_nodes, std::move(beyond));
+  }
+
+  template <int dim>
+  void LeapfrogGhosts<dim>::start(const CornerGroups<dim> &groups) const
+  {
+    if (corners_)
+      corners_->start(dim, [&](const std::size_t corner, double *v) {
+        std::copy_n(&groups.velocity[groups.of(corner) * dim], dim, v);
+      });
+  }
+
+  template <int dim>
+  void LeapfrogGhosts<dim>::finish(CornerGroups<dim> &groups) const
+  {
+    if (corners_)
+      corners_->finish(dim, [&](const std::size_t corner, const double *v) {
+        std::copy_n(v, dim, &groups.velocity[groups.of(corner) * dim]);
+      });
+  }
+
+  template <int dim>
+  double LeapfrogGhosts<dim>::sum(const CornerGroups<dim> &groups,
+                                  std::vector<double> &terms) const
+  {
+    for (const unsigned int group : groups.not_counted())
+      std::fill_n(&terms[std::size_t(group) * dim], dim, 0.);
+    return communicator_.sum(terms);
+  }
+
+  template <int dim>
+  double LeapfrogGhosts<dim>::dot(const CornerGroups<dim> &groups,
+                                  const std::vector<double> &a,
+                                  const std::vector<double> &b) const
+  {
+    if (!layer_)
+      return communicator_.dot(a.data(), b.data(), a.size());
+    const Charge charge(Cost::sums);
+    products_.resize(a.size());
+    for (std::size_t k = 0; k < a.size(); ++k)
+      products_[k] = a[k] * b[k];
+    return sum(groups, products_);
+  }
+
+  template class LeapfrogGhosts<2>;
+  template class LeapfrogGhosts<3>;
+} // namespace nsfd

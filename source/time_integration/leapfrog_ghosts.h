@@ -1,0 +1,64 @@
+#pragma once
+
+#include "joined/corner_groups.h"
+#include "joined/ghost_layer.h"
+#include "state/state.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * What Leapfrog does on several ranks. Each of them takes the step of its own
+   * cells and of the ghosts around them: releases, forces and problems of the
+   * nodes with an own cell are computed on all ranks that have one there, from
+   * the same numbers in the same order. Only the velocities of the ghosts at
+   * nodes beyond are sent, once per step. On one rank nothing happens here.
+   */
+  template <int dim>
+  class LeapfrogGhosts
+  {
+  public:
+    /** @p layer around the cells of @p own; null: all cells are here. */
+    LeapfrogGhosts(const Communicator &communicator,
+                   const Discretization<dim> &own,
+                   std::unique_ptr<const GhostLayer<dim>> layer);
+
+    /** All that this rank steps. */
+    const Discretization<dim> &discretization() const
+    {
+      return layer_ ? layer_->all() : own_;
+    }
+    const GhostCells *cells() const
+    {
+      return layer_ ? &layer_->cells() : nullptr;
+    }
+    /** Null on one rank. */
+    const GhostLayer<dim> *layer() const { return layer_.get(); }
+
+    /** A state of the cells of this rank, with ghosts. Collective. */
+    State with(const State &own) const;
+    State without(State &&all) const;
+
+    /** Before the first exchange. Collective. */
+    void set_mesh(const JoinedMesh<dim> &mesh);
+    /** Velocities of nodes that are not whole here, while others are used. */
+    void start(const CornerGroups<dim> &groups) const;
+    void finish(CornerGroups<dim> &groups) const;
+
+    /** Sums over the groups of all ranks. Collective. */
+    double sum(const CornerGroups<dim> &groups,
+               std::vector<double> &terms) const;
+    double dot(const CornerGroups<dim> &groups, const std::vector<double> &a,
+               const std::vector<double> &b) const;
+
+  private:
+    const Communicator &communicator_;
+    const Discretization<dim> &own_;
+    const std::unique_ptr<const GhostLayer<dim>> layer_;
+    std::optional<GhostCells::Wanted> corners_; ///< of nodes beyond
+    mutable std::vector<double> products_;
+  };
+} // namespace nsfd

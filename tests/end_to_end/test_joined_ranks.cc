@@ -1,0 +1,129 @@
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+// Explicit steps on joined cells, `scheme = explicit`: one, two and three ranks
+// give the same files, bit for bit, while nodes at their borders fall apart.
+
+namespace end_to_end::test_joined_ranks
+{
+  namespace
+  {
+    // everything breaks, and is pushed together again
+    const std::string square = R"(
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 10 um, 10 um
+  set cells        = 8, 8
+end
+subsection Material: bulk
+  set Young modulus = 135 GPa
+  set Poisson ratio = 0.32
+  set density       = 7800 kg/m^3
+end
+subsection Interface: all
+  set law              = camacho-ortiz
+  set strength         = 300 MPa
+  set toughness        = 0.5 J/m^2
+  set strength scatter = 0.1
+  set friction         = 0.3
+end
+subsection Boundary: left
+  set velocity x = if(t < 10 ns, -3 m/s, 3 m/s)
+  set velocity y = 0
+end
+subsection Boundary: right
+  set velocity x = if(t < 10 ns, 3 m/s, -3 m/s)
+end
+subsection Time
+  set end = 16 ns
+end
+subsection Output
+  set fields every = 4 ns
+end
+)";
+
+    struct JoinedRow {
+      std::string name;
+      std::vector<std::string> set;
+      bool is_scene = false; ///< of prm/verification, or the square
+    };
+
+    void PrintTo(const JoinedRow &row, std::ostream *stream)
+    {
+      *stream << row.name;
+    }
+
+    const std::string origin = "Mesh/lower corner=0, 0, 0",
+                      corner = "Mesh/upper corner=10 um, 6 um, 6 um",
+                      distorted = "Mesh/distortion=0.2";
+
+    // forces of simplices, of quads and hexes, affine and not, and by blocks;
+    // releases, contact and friction at the borders; supports, loads and an
+    // obstacle; fronts that meet the ends of bars
+    const std::vector<JoinedRow> rows = {
+        {"triangles",
+         {"dimension=2", "Mesh/type=crossed triangles", "Mesh/cells=6, 6",
+          distorted}},
+        {"quads", {"dimension=2", "Interface: all/restitution=0.2"}},
+        {"distorted_quads",
+         {"dimension=2", distorted, "Mesh/cells=6, 6",
+          "Discretization/degree=2", "Time/end=6 ns"}},
+        {"graded",
+         {"dimension=2", "Time/end=8 ns",
+          "Material: bulk/Young modulus=135 GPa + "
+          "if(x < 7 um, 0, 9 GPa * (x / 7 um - 1))"}},
+        {"tetrahedra",
+         {"dimension=3", "Mesh/type=tetrahedra", origin, corner,
+          "Mesh/cells=4, 3, 2", distorted, "Time/end=12 ns"}},
+        {"hexes",
+         {"dimension=3", "Mesh/type=brick", origin, corner,
+          "Mesh/cells=3, 2, 2", "Discretization/degree=3", "Time/end=5 ns"}},
+        {"spall_square", {"Mesh/cells=60, 1"}, true},
+        {"plate_impact", {"Mesh/cells=80, 1"}, true},
+        {"bar_wall", {"Mesh/cells=40, 1"}, true},
+    };
+
+    class JoinedRanksTest : public testing::TestWithParam<JoinedRow>
+    {
+    };
+  } // namespace
+
+  TEST_P(JoinedRanksTest, AreTheSameBitForBit)
+  {
+    const JoinedRow &row = GetParam();
+    const Workspace workspace;
+    const auto file =
+        row.is_scene ? scene(row.name) : workspace.path() / "square.prm";
+    if (!row.is_scene)
+      write_text(file, square);
+    std::vector<std::string> set = {"Time/scheme=explicit", "Time/step=auto"};
+    set.insert(set.end(), row.set.begin(), row.set.end());
+    const Result one = good_run(workspace, "1 rank", {file, set});
+    ASSERT_TRUE(one.completed());
+    EXPECT_TRUE(row.is_scene || one.counter("released_points") > 0.);
+    const auto fields = records(one, "fields");
+    for (const unsigned int n : {2u, 3u}) {
+      SCOPED_TRACE(std::to_string(n) + " ranks");
+      const Result several =
+          good_run(workspace, std::to_string(n) + " ranks", {file, set, n});
+      ASSERT_TRUE(several.completed());
+      EXPECT_TRUE(one.history_text == several.history_text)
+          << "history.csv differs by "
+          << energy_difference(one.history, several.history);
+      for (const char *key :
+           {"errors", "penetration_max", "fragments", "steps"})
+        EXPECT_EQ(one.summary[key], several.summary[key]) << key;
+      for (const char *key :
+           {"node_problems", "newton", "gauss_seidel_sweeps", "released_points",
+            "active_points", "groups", "worst_excess_over_strength"})
+        EXPECT_EQ(one.counter(key), several.counter(key)) << key;
+      EXPECT_TRUE(fields == records(several, "fields"));
+    }
+  }
+
+  INSTANTIATE_TEST_SUITE_P(Table, JoinedRanksTest, testing::ValuesIn(rows),
+                           [](const auto &info) { return info.param.name; });
+} // namespace end_to_end::test_joined_ranks
