@@ -1,5 +1,6 @@
 #include "node_solver.h"
 
+#include "node_path.h"
 #include "nonsmooth/natural_map.h"
 
 #include <algorithm>
@@ -78,6 +79,21 @@ namespace nsfd
     return false;
   }
 
+  /** At first, and now and then from what start_again() has led to. */
+  template <int dim>
+  bool NodeSolver<dim>::follow()
+  {
+    const unsigned int k = report_.starts;
+    if (k % 8 > 1)
+      return false;
+    NodePath<dim> path(system_, report_);
+    using Slack = typename NodePath<dim>::Slack;
+    const bool solved =
+        path.follow(k % 8 == 0 ? Slack::here_first : Slack::nothing);
+    error_ = evaluate();
+    return solved;
+  }
+
   template <int dim>
   void NodeSolver<dim>::start_again()
   {
@@ -120,6 +136,8 @@ namespace nsfd
       }
       if (report_.starts == most_starts)
         break;
+      if (follow())
+        return true;
       start_again();
     }
     if (best_ < error_) {

@@ -58,6 +58,7 @@ namespace nsfd
     bool is_solved();
     bool improve();
     bool accepts(double length, bool first);
+    bool follow();
     void start_again();
     double evaluate();
   };

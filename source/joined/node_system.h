@@ -41,6 +41,13 @@ namespace nsfd
      * to it. The floor is 4e-3 of the speeds: round-off of free flight. */
     double scale() const { return scale_; }
 
+    /**
+     * From now on every law has a spring in series with it, which gives way by
+     * R times @p share of the impulse, or of what it is beyond the present one:
+     * W + share R in place of W. None for 0.
+     */
+    void soften(double share, bool from_here);
+
     /** Derivatives of S where it was evaluated. */
     void linearise();
 
@@ -86,6 +93,7 @@ namespace nsfd
       double R, speed;
       bool scalar;                ///< W of the point is R times the identity
       bool is_new;                ///< not answered yet
+      Vector rest;                ///< impulse at which its spring is slack
       Matrix slopes;              ///< D = -dS/dU_loc
       Matrix inverse, stiffness;  ///< (1 - soft' R D)^-1 and this times D
       Vector residual, direction; ///< of P
@@ -101,8 +109,8 @@ namespace nsfd
     std::vector<Point> points_; ///< the first n_ of them
     std::size_t n_ = 0;
     std::vector<Vector> free_, velocity_, change_, root_mass_;
-    double floor_ = 0., scale_ = 0.;
-    std::array<Kept, 2> kept_;
+    double floor_ = 0., scale_ = 0., soft_ = 0.;
+    std::array<Kept, 3> kept_;
     std::vector<int> unknown_; ///< first of a group, -1: none
     int n_unknowns_ = 0;
     DenseLU matrix_;

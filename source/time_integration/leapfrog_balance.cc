@@ -118,14 +118,24 @@ namespace nsfd
                        chains_.released[a]);
   }
 
+  /**
+   * What is held stays where it is, without the round-off of its velocity: the
+   * points of a cycle could not all undo that, and would hold each other until
+   * one of them lets go.
+   */
   template <int dim>
   void LeapfrogPoints<dim>::keep_jump(const unsigned int a)
   {
-    const double h = chains_.problem.time_step * chains_.problem.theta;
+    OneStepProblem<dim> &p = chains_.problem;
+    const double h = p.time_step * p.theta;
+    const auto &solution = chains_.solution[a];
     for (unsigned int c = 0; c < dim; ++c)
-      chains_.problem.jump_old[a * dim + c] =
-          chains_.problem.jump_free[a * dim + c] +
-          h * chains_.velocity[a * dim + c];
+      p.jump_old[a * dim + c] =
+          p.jump_free[a * dim + c] + h * chains_.velocity[a * dim + c];
+    if (p.kind[a] == PointKind::rigid && !solution.damages)
+      std::fill_n(&p.jump_old[a * dim], dim, 0.);
+    else if (solution.contact_impulse > 0.)
+      p.jump_old[a * dim] = p.jump_free[a * dim] + h * p.target[a];
   }
 
   /** Jump and history of the chain at the end of the step. */
