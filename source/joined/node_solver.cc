@@ -4,6 +4,7 @@
 #include "nonsmooth/natural_map.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace nsfd
 {
@@ -79,17 +80,29 @@ namespace nsfd
     return false;
   }
 
-  /** At first, and now and then from what start_again() has led to. */
+  /**
+   * Between attempts: along ways by softer laws, each from what the last
+   * attempt has led to. Where a point alone has several answers, softening or
+   * with friction that grows with its damage, S jumps from one to another;
+   * against a smaller R it has one.
+   */
   template <int dim>
   bool NodeSolver<dim>::follow()
   {
-    const unsigned int k = report_.starts;
-    if (k % 8 > 1)
-      return false;
-    NodePath<dim> path(system_, report_);
     using Slack = typename NodePath<dim>::Slack;
-    const bool solved =
-        path.follow(k % 8 == 0 ? Slack::here_first : Slack::nothing);
+    constexpr struct {
+      double share; ///< of R
+      Slack slack;
+    } ways[] = {{1., Slack::here_first},  {0.3, Slack::here_first},
+                {0.3, Slack::nothing},    {1., Slack::nothing},
+                {0.1, Slack::here_first}, {0.5, Slack::nothing}};
+    const std::size_t k = report_.starts % 8;
+    if (k >= std::size(ways))
+      return false;
+    system_.scale_majorant(ways[k].share);
+    const bool solved = NodePath<dim>(system_, report_).follow(ways[k].slack);
+    if (!solved)
+      system_.scale_majorant(1. / ways[k].share);
     error_ = evaluate();
     return solved;
   }

@@ -9,12 +9,15 @@
 
 namespace nsfd
 {
-  template <int dim>
-  Reach NodeSystem<dim>::history(const std::size_t index) const
+  namespace
   {
-    return {problem_->opening_max[index],
-            problem_->slip_max.empty() ? 0. : problem_->slip_max[index]};
-  }
+    template <int dim>
+    Reach history(const OneStepProblem<dim> &problem, const std::size_t index)
+    {
+      return {problem.opening_max[index],
+              problem.slip_max.empty() ? 0. : problem.slip_max[index]};
+    }
+  } // namespace
 
   template <int dim>
   void NodeSystem<dim>::reinit(const OneStepProblem<dim> &problem,
@@ -56,7 +59,7 @@ namespace nsfd
     added.index = i;
     added.frame = &frames[i * dim * dim];
     added.groups = point.groups;
-    added.solution.reach = history(i);
+    added.solution.reach = history(*problem_, i);
     added.solution.damages = false;
     added.is_new = true;
     Vector sum{};
@@ -245,10 +248,18 @@ namespace nsfd
         seed = mixed(seed);
         P *= spread * double(seed >> 11) * 0x1p-53;
       }
-      point.solution.reach = history(point.index);
+      point.solution.reach = history(*problem_, point.index);
       point.solution.damages = false;
     }
     refresh_velocity();
+  }
+
+  template <int dim>
+  void NodeSystem<dim>::scale_majorant(const double factor)
+  {
+    for (std::size_t k = 0; k < n_; ++k)
+      points_[k].R *= factor;
+    floor_ /= std::sqrt(factor);
   }
 
   template <int dim>

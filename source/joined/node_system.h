@@ -41,6 +41,9 @@ namespace nsfd
      * to it. The floor is 4e-3 of the speeds: round-off of free flight. */
     double scale() const { return scale_; }
 
+    /** R times @p factor from now on: another map with the same solutions. */
+    void scale_majorant(double factor);
+
     /**
      * From now on every law has a spring in series with it, which gives way by
      * R times @p share of the impulse, or of what it is beyond the present one:
@@ -118,7 +121,6 @@ namespace nsfd
 
     void add(const typename NodeProblem<dim>::Point &point,
              const std::vector<double> &frames);
-    Reach history(std::size_t index) const;
     Vector relative(const Point &point,
                     const std::vector<Vector> &velocity) const;
     void push(const Point &point, const Vector &impulse,

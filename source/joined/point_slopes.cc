@@ -82,7 +82,7 @@ namespace nsfd
                                problem.theta *
                                solution.frozen.secant.tangential;
       const double step =
-          d * std::clamp(1e-8 * std::sqrt(R * stiffness), 1e-7, 1e-3);
+          d * std::clamp(1e-8 * std::sqrt(R * stiffness), 1e-7, 1e-2);
       const PointDamage<dim> damage(problem, i);
       LocalProblem<dim> beside{problem, i, local, R, R};
       beside.solve_end(damage, {d + step, 0.});
