@@ -34,11 +34,15 @@ namespace nsfd
     }
   }
 
-  /** s = 1: as Gauss-Seidel steps, which lead there where Newton's do not. */
+  /**
+   * s = 1: a step of Gauss-Seidel contracts, against all of R, and leads where
+   * Newton's steps do not.
+   */
   template <int dim>
-  bool NodePath<dim>::begin(const Slack slack)
+  bool NodePath<dim>::begin(const double part, const Slack slack)
   {
-    for (unsigned int k = 0; k < 5; ++k) {
+    const unsigned int most = part < 1. ? 1 : 5;
+    for (unsigned int k = 0; k < most; ++k) {
       system_.keep(good);
       system_.soften(1., slack == Slack::here_first);
       if (newton(1., 1e-6, 25)) {
@@ -46,7 +50,7 @@ namespace nsfd
         return true;
       }
       system_.restore(good);
-      const unsigned int n = 20u << k;
+      const unsigned int n = part < 1. ? 0 : 20u << k;
       report_.sweeps += n;
       for (unsigned int s = 0; s < n; ++s)
         system_.sweep();
@@ -67,28 +71,35 @@ namespace nsfd
   }
 
   template <int dim>
-  bool NodePath<dim>::follow(const Slack slack)
+  bool NodePath<dim>::descend(const Slack slack)
   {
-    bool solved = false;
-    if (begin(slack)) {
-      double share = 1., factor = 0.1;
-      while (!solved && factor < 0.97 && share > 1e-13) {
-        const double next = share * factor;
-        system_.soften(next, slack == Slack::here_first);
-        const double tolerance =
-            std::max(NodeSolver<dim>::aim, 1e-3 * std::min(next, 1e-3));
-        if (newton(next, tolerance, 25)) {
-          share = next;
-          factor = std::max(0.1, 0.5 * factor);
-          system_.keep(good);
-          solved = share < 1e-4 && finish();
-        } else
-          factor = std::sqrt(factor);
-        if (!solved)
-          system_.restore(good);
-      }
+    double share = 1., factor = 0.1;
+    while (factor < 0.97 && share > 1e-13) {
+      const double next = share * factor;
+      system_.soften(next, slack == Slack::here_first);
+      const double tolerance =
+          std::max(NodeSolver<dim>::aim, 1e-3 * std::min(next, 1e-3));
+      if (newton(next, tolerance, 25)) {
+        share = next;
+        factor = std::max(0.1, 0.5 * factor);
+        system_.keep(good);
+        if (share < 1e-4 && finish())
+          return true;
+      } else
+        factor = std::sqrt(factor);
+      system_.restore(good);
     }
+    return false;
+  }
+
+  template <int dim>
+  bool NodePath<dim>::follow(const double part, const Slack slack)
+  {
+    system_.scale_majorant(part);
+    const bool solved = begin(part, slack) && descend(slack);
     system_.soften(0., false);
+    if (!solved)
+      system_.scale_majorant(1. / part);
     return solved;
   }
 

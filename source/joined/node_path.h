@@ -30,12 +30,16 @@ namespace nsfd
     {
     }
 
-    /** To a solution without springs; false: somewhere near the end. */
-    bool follow(Slack slack);
+    /**
+     * To a solution without springs, which has @p part of R from then on;
+     * false: somewhere near the end, with R as it was.
+     */
+    bool follow(double part, Slack slack);
 
   private:
     bool newton(double share, double tolerance, unsigned int most);
-    bool begin(Slack slack);
+    bool begin(double part, Slack slack);
+    bool descend(Slack slack);
     bool finish();
 
     NodeSystem<dim> &system_;

@@ -99,10 +99,8 @@ namespace nsfd
     const std::size_t k = report_.starts % 8;
     if (k >= std::size(ways))
       return false;
-    system_.scale_majorant(ways[k].share);
-    const bool solved = NodePath<dim>(system_, report_).follow(ways[k].slack);
-    if (!solved)
-      system_.scale_majorant(1. / ways[k].share);
+    const bool solved =
+        NodePath<dim>(system_, report_).follow(ways[k].share, ways[k].slack);
     error_ = evaluate();
     return solved;
   }
@@ -153,7 +151,7 @@ namespace nsfd
         return true;
       start_again();
     }
-    if (best_ < error_) {
+    if (report_.starts > 0 && !(error_ <= best_)) {
       system_.restore(1);
       error_ = best_;
     }
