@@ -1,8 +1,10 @@
 #include "node_solver.h"
 
+#include "node_path.h"
 #include "nonsmooth/natural_map.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace nsfd
 {
@@ -78,6 +80,31 @@ namespace nsfd
     return false;
   }
 
+  /**
+   * Between attempts: along ways by softer laws, each from what the last
+   * attempt has led to. Where a point alone has several answers, softening or
+   * with friction that grows with its damage, S jumps from one to another;
+   * against a smaller R it has one.
+   */
+  template <int dim>
+  bool NodeSolver<dim>::follow()
+  {
+    using Slack = typename NodePath<dim>::Slack;
+    constexpr struct {
+      double share; ///< of R
+      Slack slack;
+    } ways[] = {{1., Slack::here_first},  {0.3, Slack::here_first},
+                {0.3, Slack::nothing},    {1., Slack::nothing},
+                {0.1, Slack::here_first}, {0.5, Slack::nothing}};
+    const std::size_t k = report_.starts % 8;
+    if (k >= std::size(ways))
+      return false;
+    const bool solved =
+        NodePath<dim>(system_, report_).follow(ways[k].share, ways[k].slack);
+    error_ = evaluate();
+    return solved;
+  }
+
   template <int dim>
   void NodeSolver<dim>::start_again()
   {
@@ -120,9 +147,11 @@ namespace nsfd
       }
       if (report_.starts == most_starts)
         break;
+      if (follow())
+        return true;
       start_again();
     }
-    if (best_ < error_) {
+    if (report_.starts > 0 && !(error_ <= best_)) {
       system_.restore(1);
       error_ = best_;
     }

@@ -21,9 +21,10 @@ namespace nsfd
    * A semismooth Newton method from the impulses of the last step solves nearly
    * all, most in one step. Where points of a cycle hold each other more than
    * they can, what is left over does not change until one of them lets go:
-   * softened directions go there at an equal error. What is left is swept and
-   * begun again from other impulses, drawn from the number of the attempt: the
-   * result depends on nothing but the problem.
+   * softened directions go there at an equal error. What stalls is reached by
+   * softer laws (NodePath). What is left is swept and begun again from other
+   * impulses, drawn from the number of the attempt: the result depends on
+   * nothing but the problem.
    *
    * Where the traction drops to nothing at the end of a law (brittle, dugdale)
    * a problem may have no solution: the point can neither stay nor go. Then
@@ -58,6 +59,7 @@ namespace nsfd
     bool is_solved();
     bool improve();
     bool accepts(double length, bool first);
+    bool follow();
     void start_again();
     double evaluate();
   };

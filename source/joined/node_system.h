@@ -41,6 +41,16 @@ namespace nsfd
      * to it. The floor is 4e-3 of the speeds: round-off of free flight. */
     double scale() const { return scale_; }
 
+    /** R times @p factor from now on: another map with the same solutions. */
+    void scale_majorant(double factor);
+
+    /**
+     * From now on every law has a spring in series with it, which gives way by
+     * R times @p share of the impulse, or of what it is beyond the present one:
+     * W + share R in place of W. None for 0.
+     */
+    void soften(double share, bool from_here);
+
     /** Derivatives of S where it was evaluated. */
     void linearise();
 
@@ -86,6 +96,7 @@ namespace nsfd
       double R, speed;
       bool scalar;                ///< W of the point is R times the identity
       bool is_new;                ///< not answered yet
+      Vector rest;                ///< impulse at which its spring is slack
       Matrix slopes;              ///< D = -dS/dU_loc
       Matrix inverse, stiffness;  ///< (1 - soft' R D)^-1 and this times D
       Vector residual, direction; ///< of P
@@ -101,8 +112,8 @@ namespace nsfd
     std::vector<Point> points_; ///< the first n_ of them
     std::size_t n_ = 0;
     std::vector<Vector> free_, velocity_, change_, root_mass_;
-    double floor_ = 0., scale_ = 0.;
-    std::array<Kept, 2> kept_;
+    double floor_ = 0., scale_ = 0., soft_ = 0.;
+    std::array<Kept, 3> kept_;
     std::vector<int> unknown_; ///< first of a group, -1: none
     int n_unknowns_ = 0;
     DenseLU matrix_;
@@ -110,7 +121,6 @@ namespace nsfd
 
     void add(const typename NodeProblem<dim>::Point &point,
              const std::vector<double> &frames);
-    Reach history(std::size_t index) const;
     Vector relative(const Point &point,
                     const std::vector<Vector> &velocity) const;
     void push(const Point &point, const Vector &impulse,

@@ -75,9 +75,14 @@ namespace nsfd
                     const LocalSolution<dim> &solution,
                     std::array<double, dim * dim> &slopes)
     {
-      const double d = solution.reach.opening, step = 1e-7 * d;
-      if (!(step > 0.))
+      const double d = solution.reach.opening;
+      if (!(d > 0.))
         return;
+      const double stiffness = problem.weight[i] * square(problem.time_step) *
+                               problem.theta *
+                               solution.frozen.secant.tangential;
+      const double step =
+          d * std::clamp(1e-8 * std::sqrt(R * stiffness), 1e-7, 1e-2);
       const PointDamage<dim> damage(problem, i);
       LocalProblem<dim> beside{problem, i, local, R, R};
       beside.solve_end(damage, {d + step, 0.});

@@ -156,15 +156,21 @@ namespace nsfd
                        chains_.released[a]);
   }
 
-  /** Jump and way of the chain at the end of the step. */
+  /**
+   * Jump and way of the chain at the end of the step. What is held stays where
+   * it is, without the round-off of its velocity: the points of a cycle could
+   * not all undo that, and would hold each other until one of them lets go.
+   */
   template <int dim>
-  void LeapfrogPoints<dim>::keep_jump(const unsigned int a)
+  void LeapfrogPoints<dim>::keep_jump(const unsigned int a, const bool held)
   {
     OneStepProblem<dim> &p = chains_.problem;
     const double h = p.time_step * p.theta;
     const double *U = &chains_.velocity[a * dim];
     for (unsigned int c = 0; c < dim; ++c)
-      p.jump_old[a * dim + c] = p.jump_free[a * dim + c] + h * U[c];
+      p.jump_old[a * dim + c] = held ? 0. : p.jump_free[a * dim + c] + h * U[c];
+    if (chains_.closed[a])
+      p.jump_old[a * dim] = p.jump_free[a * dim] + h * p.target[a];
     if (p.theta > 0.5 && p.theta < 1. && p.compression_stiffness[a] == 0.)
       chains_.released[a] = std::max(chains_.released[a], -p.jump_old[a * dim]);
     if (chains_.closed[a]) {
@@ -275,7 +281,9 @@ namespace nsfd
     separates_ = false;
     for (std::size_t k = 0; k < moved_.size(); ++k) {
       const unsigned int a = moved_[k];
-      keep_jump(a);
+      keep_jump(a, springs_[k] ? springs_[k]->law.holds
+                               : chains_.problem.kind[a] == PointKind::rigid &&
+                                     !chains_.solution[a].damages);
       if (springs_[k])
         continue;
       // kind, history or overlap may change, and what opens starts the other

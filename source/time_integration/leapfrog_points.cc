@@ -53,7 +53,7 @@ namespace nsfd
     const std::size_t node = mesh_.node_of_point(point);
     if (node_index_[node] < 0) {
       node_index_[node] = int(nodes_.size());
-      nodes_.push_back({node, {}});
+      nodes_.emplace_back().node = node;
     }
     auto &here = nodes_[std::size_t(node_index_[node])];
     here.is_new = true;

@@ -121,7 +121,7 @@ namespace nsfd
                           const PointEnergies<dim> &energies) const;
     void account_point(unsigned int a, std::size_t row, Balance &balance);
     void account_spring(unsigned int a, std::size_t row, Balance &balance);
-    void keep_jump(unsigned int a);
+    void keep_jump(unsigned int a, bool held);
     void keep(unsigned int a, const PointEnergies<dim> &energies);
     std::array<double, dim> relative(unsigned int a,
                                      const CornerGroups<dim> &groups) const;

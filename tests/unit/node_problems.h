@@ -29,19 +29,42 @@ namespace node_test
     bool plateau = false, mean_sliding = false, two_sided = false;
   };
 
-  /** A star of groups that moves by the leapfrog; the forces are drawn. */
+  /** What a solver is given, and what it gives. */
   template <int dim>
-  class NodeRun
-  {
-  public:
+  struct NodeData {
     OneStepProblem<dim> problem;
     NodeProblem<dim> node;
     std::vector<double> frames, impulses;
     std::vector<LocalSolution<dim>> solutions;
+    double h = 0.;
+
+    Vec<dim> relative(const std::size_t i,
+                      const std::vector<Vec<dim>> &of_groups) const
+    {
+      Vec<dim> d{}, result{};
+      const auto &groups = node.points[i].groups;
+      for (int s = 0; s < 2; ++s)
+        if (groups[s] >= 0)
+          for (int c = 0; c < dim; ++c)
+            d[c] += (s == 0 ? -1. : 1.) * of_groups[groups[s]][c];
+      for (int r = 0; r < dim; ++r)
+        for (int c = 0; c < dim; ++c)
+          result[r] += frames[(i * dim + r) * dim + c] * d[c];
+      return result;
+    }
+  };
+
+  /** A star of groups that moves by the leapfrog; the forces are drawn. */
+  template <int dim>
+  class NodeRun : public NodeData<dim>
+  {
+  public:
+    using NodeData<dim>::problem, NodeData<dim>::node, NodeData<dim>::frames,
+        NodeData<dim>::impulses, NodeData<dim>::solutions, NodeData<dim>::h,
+        NodeData<dim>::relative;
     std::vector<Vec<dim>> velocity, old_velocity; ///< of the groups
     std::vector<Vec<dim>> position, offset;
     std::vector<double> mass;
-    double h = 0.;
 
     NodeRun(const Setting &setting, const std::uint64_t seed)
         : random(seed), setting_(setting)
@@ -156,21 +179,6 @@ namespace node_test
             problem.kind[i] = PointKind::free;
         }
       }
-    }
-
-    Vec<dim> relative(const std::size_t i,
-                      const std::vector<Vec<dim>> &of_groups) const
-    {
-      Vec<dim> d{}, result{};
-      const auto &groups = node.points[i].groups;
-      for (int s = 0; s < 2; ++s)
-        if (groups[s] >= 0)
-          for (int c = 0; c < dim; ++c)
-            d[c] += (s == 0 ? -1. : 1.) * of_groups[groups[s]][c];
-      for (int r = 0; r < dim; ++r)
-        for (int c = 0; c < dim; ++c)
-          result[r] += frames[(i * dim + r) * dim + c] * d[c];
-      return result;
     }
 
     Random random;
@@ -297,7 +305,7 @@ namespace node_test
 
   /** | P - P* |_R / | P |_R, independent of the solver. */
   template <int dim>
-  double natural_map(const NodeRun<dim> &run)
+  double natural_map(const NodeData<dim> &run)
   {
     double error = 0., size = 0.;
     for (const auto &p : run.node.points) {

@@ -1,0 +1,212 @@
+#include "node_system.h"
+
+#include "linear_algebra/small_matrix.h"
+#include "point_slopes.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Newton's directions of NodeSystem.
+
+namespace nsfd
+{
+  template <int dim>
+  void NodeSystem<dim>::linearise()
+  {
+    unknown_.assign(velocity_.size(), -1);
+    root_mass_.resize(velocity_.size());
+    n_unknowns_ = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      if (!point.carries)
+        continue;
+      point_slopes<dim>(*problem_, point.index, point.local, point.R,
+                        point.solution, point.slopes);
+      for (const int g : point.groups)
+        if (g >= 0 && unknown_[g] < 0) {
+          unknown_[g] = n_unknowns_;
+          n_unknowns_ += dim;
+          for (unsigned int c = 0; c < dim; ++c)
+            root_mass_[g][c] = std::sqrt((*inverse_mass_)[g][c]);
+        }
+    }
+  }
+
+  template <int dim>
+  bool NodeSystem<dim>::invert_slopes(Point &point, const double soft,
+                                      double &stiffest) const
+  {
+    Matrix compliance;
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        compliance[r * dim + c] =
+            (r == c ? 1. : 0.) -
+            (1. - soft) * point.R * point.slopes[r * dim + c];
+    double b[dim * dim] = {};
+    for (unsigned int c = 0; c < dim; ++c)
+      b[c * (dim + 1)] = 1.;
+    Matrix &a = compliance;
+    for (int k = 0; k < dim; ++k) {
+      int p = k;
+      for (int i = k + 1; i < dim; ++i)
+        if (std::abs(a[i * dim + k]) > std::abs(a[p * dim + k]))
+          p = i;
+      if (!(std::abs(a[p * dim + k]) > 0.))
+        return false;
+      const double factor = 1. / a[p * dim + k];
+      for (int j = 0; j < dim; ++j) {
+        std::swap(a[k * dim + j], a[p * dim + j]);
+        std::swap(b[k * dim + j], b[p * dim + j]);
+        a[k * dim + j] *= factor;
+        b[k * dim + j] *= factor;
+      }
+      for (int i = 0; i < dim; ++i)
+        if (i != k) {
+          const double f = a[i * dim + k];
+          for (int j = 0; j < dim; ++j) {
+            a[i * dim + j] -= f * a[k * dim + j];
+            b[i * dim + j] -= f * b[k * dim + j];
+          }
+        }
+    }
+    std::copy_n(b, dim * dim, point.inverse.begin());
+    stored::multiply<dim>(b, point.slopes.data(), point.stiffness.data());
+    for (unsigned int c = 0; c < dim; ++c)
+      stiffest = std::max(stiffest,
+                          point.R * std::abs(point.stiffness[c * (dim + 1)]));
+    return true;
+  }
+
+  /** 1 + M^-1/2 H^T K H M^-1/2 */
+  template <int dim>
+  void NodeSystem<dim>::assemble()
+  {
+    matrix_.reinit(n_unknowns_);
+    for (int i = 0; i < n_unknowns_; ++i)
+      matrix_.row(i)[i] = 1.;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const Point &point = points_[k];
+      if (!point.carries)
+        continue;
+      Matrix KF, K{}; // in the axes of space
+      stored::multiply<dim>(point.stiffness.data(), point.frame, KF.data());
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int j = 0; j < dim; ++j)
+            K[r * dim + c] += point.frame[j * dim + r] * KF[j * dim + c];
+      for (const int g : point.groups)
+        for (const int f : point.groups) {
+          if (g < 0 || f < 0)
+            continue;
+          const double sign = g == f ? 1. : -1.;
+          for (unsigned int r = 0; r < dim; ++r) {
+            double *row = matrix_.row(unknown_[g] + r) + unknown_[f];
+            for (unsigned int c = 0; c < dim; ++c)
+              row[c] +=
+                  sign * root_mass_[g][r] * K[r * dim + c] * root_mass_[f][c];
+          }
+        }
+    }
+  }
+
+  /**
+   * What is missing of (1 - (1 - soft) R D) dP + D H dv = S - P, and once more
+   * solved for it. @return the size of the correction over that of dP.
+   */
+  template <int dim>
+  double NodeSystem<dim>::correct(const double soft)
+  {
+    right_side_.assign(n_unknowns_, 0.);
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      Vector &q = point.residual;
+      if (!point.carries) {
+        for (unsigned int c = 0; c < dim; ++c)
+          q[c] = -point.impulse[c] - point.direction[c];
+      } else {
+        const Vector dU = relative(point, change_);
+        for (unsigned int r = 0; r < dim; ++r) {
+          q[r] = -point.direction[r];
+          for (unsigned int c = 0; c < dim; ++c)
+            q[r] += point.inverse[r * dim + c] *
+                        (point.solution.impulse[c] - point.impulse[c]) +
+                    point.stiffness[r * dim + c] *
+                        (soft * point.R * point.direction[c] - dU[c]);
+        }
+      }
+      Vector p{};
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          p[c] += point.frame[r * dim + c] * q[r];
+      for (unsigned int s = 0; s < 2; ++s) {
+        const int g = point.groups[s];
+        if (g >= 0 && unknown_[g] >= 0)
+          for (unsigned int c = 0; c < dim; ++c)
+            right_side_[unknown_[g] + c] +=
+                (s == 0 ? -1. : 1.) * root_mass_[g][c] * p[c];
+      }
+    }
+    matrix_.solve(right_side_.data());
+    double change = 0., size = 0.;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      Vector step = point.residual;
+      if (point.carries) {
+        Vector v{};
+        for (unsigned int s = 0; s < 2; ++s) {
+          const int g = point.groups[s];
+          if (g >= 0)
+            for (unsigned int c = 0; c < dim; ++c)
+              v[c] += (s == 0 ? -1. : 1.) * root_mass_[g][c] *
+                      right_side_[unknown_[g] + c];
+        }
+        double U[dim];
+        stored::multiply_vector<dim>(point.frame, v.data(), U);
+        stored::subtract_vector<dim>(point.stiffness.data(), U, step.data());
+      }
+      for (unsigned int c = 0; c < dim; ++c) {
+        point.direction[c] += step[c];
+        change += point.R * step[c] * step[c];
+        size += point.R * point.direction[c] * point.direction[c];
+      }
+    }
+    std::fill(change_.begin(), change_.end(), Vector{});
+    for (std::size_t k = 0; k < n_; ++k)
+      push(points_[k], points_[k].direction, change_);
+    return size > 0. ? std::sqrt(change / size) : 0.;
+  }
+
+  template <int dim>
+  bool NodeSystem<dim>::find_direction(const double soft, const bool refine)
+  {
+    double stiffest = 0.;
+    for (std::size_t k = 0; k < n_; ++k) {
+      Point &point = points_[k];
+      point.direction.fill(0.);
+      if (point.carries && !invert_slopes(point, soft, stiffest))
+        return false;
+    }
+    assemble();
+    if (!matrix_.factorise())
+      return false;
+    change_.assign(velocity_.size(), Vector{});
+    // springs stiffer by far than W take digits, which come back
+    const double left = refine ? soft : 0.;
+    double last = correct(left);
+    for (unsigned int k = 0; k < 5 && stiffest > 1e3 && last > 1e-10; ++k) {
+      const double next = correct(left);
+      if (k > 0 && next > 0.5 * last)
+        break;
+      last = next;
+    }
+    return std::isfinite(last);
+  }
+
+#define INSTANTIATE(dim)                                                       \
+  template void NodeSystem<dim>::linearise();                                  \
+  template bool NodeSystem<dim>::find_direction(double, bool)
+
+  INSTANTIATE(2);
+  INSTANTIATE(3);
+#undef INSTANTIATE
+} // namespace nsfd
