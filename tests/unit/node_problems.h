@@ -303,9 +303,9 @@ namespace node_test
     }
   };
 
-  /** | P - P* |_R / | P |_R, independent of the solver. */
+  /** | P - P* |_R / | P |_R against @p part of R, independent of the solver. */
   template <int dim>
-  double natural_map(const NodeData<dim> &run)
+  double natural_map(const NodeData<dim> &run, const double part = 1.)
   {
     double error = 0., size = 0.;
     for (const auto &p : run.node.points) {
@@ -323,6 +323,7 @@ namespace node_test
       double R = *std::max_element(w.begin(), w.end());
       if (R == 0.)
         R = 1.;
+      R *= part;
       Vec<dim> local = run.relative(i, run.node.velocity);
       for (int c = 0; c < dim; ++c)
         local[c] -= R * run.impulses[i * dim + c];

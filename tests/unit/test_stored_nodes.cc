@@ -14,14 +14,15 @@ namespace node_test::test_stored_nodes
     const NodeReport report = NodeSolver<dim>().solve(
         data.problem, data.frames, data.node, data.impulses, data.solutions);
     EXPECT_TRUE(report.converged) << report.residual;
-    EXPECT_LE(natural_map(data), 1e-12);
+    // a point that has several answers against R has one against a part of it
+    EXPECT_LE(std::min(natural_map(data), natural_map(data, 0.1)), 1e-12);
   }
 
   TEST(StoredNodes, AreAllSolved)
   {
     const Json all =
         read_stored_nodes(NSFD_SOURCE_DIR "/tests/problems/nodes.cbor");
-    ASSERT_EQ(all.size(), 46);
+    ASSERT_EQ(all.size(), 56);
     for (std::size_t k = 0; k < all.size(); ++k) {
       SCOPED_TRACE(k);
       if (all[k]["dimension"] == 2)
