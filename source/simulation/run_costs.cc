@@ -178,6 +178,8 @@ namespace nsfd
       add(*model.smooth_motion);
     if (model.equilibria)
       add(*model.equilibria);
+    if (model.leapfrog)
+      add(*model.leapfrog);
     if (model.stepper)
       add(*model.stepper);
     stages.emplace_back("output", output);
