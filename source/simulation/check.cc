@@ -175,7 +175,7 @@ namespace nsfd
            "the fracture energy is right, stresses at a crack front are not");
       const double needed = std::ceil(points_wanted / edges);
       std::string text;
-      if (needed <= most_points)
+      if (needed <= most_points && input.time.scheme != Scheme::leapfrog)
         text = fmt::format("`set interface points = {:g}`, or ", needed);
       change(text +
              fmt::format(
@@ -216,7 +216,11 @@ namespace nsfd
            "conflict on any mesh: faces stiff enough to add no compliance are "
            "too strong to be resolved");
       const double enough = std::ceil(points * bounds.lower / bounds.upper);
-      if (enough <= most_points)
+      if (input.time.scheme == Scheme::leapfrog) // points are at the nodes
+        change(fmt::format("extrinsic laws, which add no compliance, or "
+                           "{:g} points on an edge and another scheme",
+                           enough));
+      else if (enough <= most_points)
         change(fmt::format("`set interface points = {:g}` ends it", enough));
       else
         line("",
