@@ -138,7 +138,7 @@ namespace nsfd
     }
     take(state, std::move(intact));
     state.bond_traction.assign(state.jump.size(), 0.);
-    show_all(state);
+    show_at(state, {});
     const auto &g = *groups_;
     state.energy.kinetic = kinetic_energy();
     state.energy.elastic = -ghosts_.dot(g, g.force, g.displacement) / 2.;
@@ -410,34 +410,43 @@ namespace nsfd
     check_.watch_energy(step, report);
   }
 
+  /** Bodies and tractions with ghosts, points where they have a place. */
   template <int dim>
-  void Leapfrog<dim>::show(State &state) const
-  {
-    if (!ghosts_.layer())
-      return show_all(state);
-    State all = spread_state(*ghosts_.layer(), state);
-    show_all(all);
-    take_own(*ghosts_.layer(), all, state);
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::show_all(State &state) const
+  void Leapfrog<dim>::show_at(State &state,
+                              const std::vector<unsigned int> &place) const
   {
     groups_->scatter(groups_->displacement, state.displacement);
     groups_->scatter(groups_->velocity, state.velocity);
-    points_.show(state);
+    points_.show(state, place);
     const auto &origins = discretization_.origins();
+    state.bond_traction.resize(origins.size() * dim);
     faces_.show(*forces_, state.bond_traction);
     for (std::size_t i = 0; i < origins.size(); ++i) {
       if (origins[i].kind != PointOrigin::Kind::motion)
         continue;
+      const unsigned int at = place.empty() ? unsigned(i) : place[i];
+      if (at == unsigned(-1))
+        continue;
       const unsigned int group = groups_->of(mesh_.a_corner(i));
       for (unsigned int c = 0; c < dim; ++c) { // its axes are x, y, z
-        state.jump[i * dim + c] = groups_->displacement[group * dim + c];
-        state.relative_velocity[i * dim + c] =
+        state.jump[std::size_t(at) * dim + c] =
+            groups_->displacement[group * dim + c];
+        state.relative_velocity[std::size_t(at) * dim + c] =
             groups_->velocity[group * dim + c];
       }
     }
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::show(State &state) const
+  {
+    show_at(state, ghosts_.own_points());
+    const auto *layer = ghosts_.layer();
+    if (!layer)
+      return;
+    state.displacement = layer->own_unknowns(state.displacement);
+    state.velocity = layer->own_unknowns(state.velocity);
+    state.bond_traction = layer->own_points(state.bond_traction, dim);
   }
 
   template <int dim>

@@ -79,7 +79,7 @@ namespace nsfd
     };
 
     void take(const State &state, std::vector<std::uint8_t> intact);
-    void show_all(State &state) const;
+    void show_at(State &state, const std::vector<unsigned int> &place) const;
     void serialize_all(Archive &archive);
     void set_loads(double time);
     double kinetic_energy();

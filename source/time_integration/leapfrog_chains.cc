@@ -108,10 +108,14 @@ namespace nsfd
 
   /** The chain of the last step is the other one now. */
   template <int dim>
-  void LeapfrogChains<dim>::show(State &state) const
+  void LeapfrogChains<dim>::show(State &state,
+                                 const std::vector<unsigned int> &place) const
   {
     for (std::size_t a = 0; a < size(); ++a) {
-      const std::size_t i = point[a];
+      const unsigned int at = place.empty() ? point[a] : place[point[a]];
+      if (at == unsigned(-1))
+        continue;
+      const std::size_t i = at;
       state.kind[i] = other.kind[a];
       state.opening_max[i] = other.opening_max[a];
       if (!state.slip_max.empty())

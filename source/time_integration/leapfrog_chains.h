@@ -45,8 +45,9 @@ namespace nsfd
     /** The next step goes from u_k, over u_{k+1}. */
     void swap();
 
-    /** Of the chain of the last step. */
-    void show(State &state) const;
+    /** Of the chain of the last step. @p place in @p state of the points of the
+        mesh, or unsigned(-1); empty: that of the mesh. */
+    void show(State &state, const std::vector<unsigned int> &place) const;
     /** The other one, of points that have been added; @p n of the mesh. */
     void serialize(Archive &archive, std::size_t n);
 

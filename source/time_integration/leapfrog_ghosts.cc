@@ -6,6 +6,7 @@
 #include "discretization/cells.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace nsfd
 {
@@ -15,6 +16,14 @@ namespace nsfd
       std::unique_ptr<const GhostLayer<dim>> layer)
       : communicator_(communicator), own_(own), layer_(std::move(layer))
   {
+    if (!layer_)
+      return;
+    std::vector<double> number(own.points().n_points);
+    std::iota(number.begin(), number.end(), 1.);
+    own_points_.assign(layer_->all().points().n_points, unsigned(-1));
+    const auto at = layer_->spread_points(number, 1);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      own_points_[i] = unsigned(at[i]) - 1u; // 0 where it is of other ranks
   }
 
   template <int dim>

@@ -35,6 +35,8 @@ namespace nsfd
     {
       return layer_ ? &layer_->cells() : nullptr;
     }
+    /** By point with ghosts, that without, or unsigned(-1); empty: the same. */
+    const std::vector<unsigned int> &own_points() const { return own_points_; }
     /** Null on one rank. */
     const GhostLayer<dim> *layer() const { return layer_.get(); }
 
@@ -58,6 +60,7 @@ namespace nsfd
     const Communicator &communicator_;
     const Discretization<dim> &own_;
     const std::unique_ptr<const GhostLayer<dim>> layer_;
+    std::vector<unsigned int> own_points_;
     std::optional<GhostCells::Wanted> corners_; ///< of nodes beyond
     mutable std::vector<double> products_;
   };

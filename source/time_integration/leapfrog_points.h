@@ -85,7 +85,11 @@ namespace nsfd
                       const CornerGroups<dim> &groups,
                       std::vector<double> &rows) const;
 
-    void show(State &state) const { chains_.show(state); }
+    /** See LeapfrogChains. */
+    void show(State &state, const std::vector<unsigned int> &place) const
+    {
+      chains_.show(state, place);
+    }
     /** The chain that is not shown, of points that have been add()ed. */
     void serialize(Archive &archive)
     {
