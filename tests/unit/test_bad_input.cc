@@ -275,7 +275,7 @@ namespace nsfd::changed_scene::test_bad_input
          "set law = bonded\n  set friction = 0.1",
          "faces of the law `bonded` never open", "set friction = 0.1"},
         {"scheme", "set theta = 0.5", "set scheme = newmark",
-         "scheme = newmark is not one of: moreau-jean, leapfrog, explicit, "
+         "scheme = newmark is not one of: moreau-jean, explicit, symplectic, "
          "arkode, quasi-static",
          "set scheme = newmark"},
         {"mesh_type", "set type = rectangle", "set type = rectangel",

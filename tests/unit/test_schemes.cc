@@ -249,9 +249,9 @@ end
         return errors.report();
       };
       EXPECT_NE(
-          report("explicit").find("explicit steps are not bisected for it"),
+          report("symplectic").find("explicit steps are not bisected for it"),
           std::string::npos)
-          << report("explicit");
+          << report("symplectic");
       EXPECT_EQ(report("moreau-jean"), "");
     }
 
