@@ -57,6 +57,32 @@ namespace end_to_end::test_orders
     }
   }
 
+  // Joined cells in explicit steps, which fall like L^((p + 1) / 2).
+  TEST(OrdersTest, SpaceWithJoinedCells)
+  {
+    const Workspace workspace;
+    for (const unsigned int degree : {1u, 2u, 3u, 4u}) {
+      const auto mode = [&](const unsigned int n) {
+        const double step = 0.05 * std::pow(8. / n, (degree - 1) / 2.) /
+                            double(degree * degree);
+        return good_run(workspace,
+                        "p" + std::to_string(degree) + "_" + std::to_string(n),
+                        {scene("mode"),
+                         {"Time/scheme=explicit",
+                          "Discretization/degree=" + std::to_string(degree),
+                          "Mesh/cells=" + std::to_string(n) + ", 1",
+                          "Time/step=" + std::to_string(step) + " courant",
+                          "Output/fields=false"}});
+      };
+      const Result fine = mode(16);
+      const double u =
+          rate(mode(8).error("displacement_L2"), fine.error("displacement_L2"));
+      std::printf("  p = %u: u %.2f (%.2e)\n", degree, u,
+                  fine.error("displacement_L2"));
+      EXPECT_NEAR(u, degree + 1., 0.25);
+    }
+  }
+
   // The same mode, seen by both: what is left is the error of space, and the
   // energy balance, the frequency and the motion of joints of the pairs.
   TEST(OrdersTest, PairsOfArkode)
