@@ -11,11 +11,33 @@ namespace nsfd
   namespace
   {
     const std::vector<NamedText> plain_laws = {
+        {"joined",
+         "common nodes in explicit steps; elsewhere bonded if where = "
+         "all, rigid if not"},
         {"rigid", "faces stay closed, without any compliance"},
         {"bonded", "the same, joined through the bulk (interior penalty)"},
         {"elastic", "springs C_N, C_T that never break"},
         {"contact", "unilateral contact and Coulomb friction only"},
     };
+
+    bool all_rigid(const SceneInput &scene)
+    {
+      return !scene.materials.empty() &&
+             std::all_of(scene.materials.begin(), scene.materials.end(),
+                         [](const MaterialInput &m) { return m.rigid; });
+    }
+
+    /**
+     * What joins cells that do not share their nodes: rigid rows on all faces
+     * make W singular, and tractions ambiguous, but there are no bonds where
+     * steps are iterations.
+     */
+    std::string joint(const InterfaceInput &input, const SceneInput &scene)
+    {
+      const bool bonds = !scene.iterates() && !all_rigid(scene) &&
+                         input.where.kind == Where::Kind::all;
+      return bonds ? "bonded" : "rigid";
+    }
 
     /** Entries that all cohesive laws have, and only they. */
     const std::vector<std::string> cohesive_entries = {
@@ -28,8 +50,9 @@ namespace nsfd
     std::string read_law_name(SectionReader &reader)
     {
       const auto value = reader.raw(
-          "law", "", "rigid, bonded, elastic, contact or a cohesive law",
-          "rigid");
+          "law", "",
+          "joined, rigid, bonded, elastic, contact or a cohesive law",
+          "joined");
       if (!value) {
         reader.accept_everything();
         return "";
@@ -97,13 +120,6 @@ namespace nsfd
       input.has_broken = !input.broken.is_zero();
     }
 
-    bool all_rigid(const SceneInput &scene)
-    {
-      return !scene.materials.empty() &&
-             std::all_of(scene.materials.begin(), scene.materials.end(),
-                         [](const MaterialInput &m) { return m.rigid; });
-    }
-
     /** Bonds act on the bulk of cells as Hooke's law of small strain has it. */
     void refuse_bonds(SectionReader &reader, const SceneInput &scene,
                       const std::string &name)
@@ -158,21 +174,16 @@ namespace nsfd
                                   const SceneInput &scene)
     {
       const bool extrinsic = input.law && input.law->extrinsic();
-      // rigid rows on all faces make W singular, and tractions ambiguous: but
-      // there are no bonds where steps are iterations
-      const bool bonds = !scene.iterates() && !all_rigid(scene) &&
-                         input.where.kind == Where::Kind::all;
-      const std::string name = reader.choice(
-          "intact faces",
-          !extrinsic ? "spring"
-          : bonds    ? "bonded"
-                     : "rigid",
-          {"spring", "unilateral", "rigid", "bonded"},
+      std::string name = reader.choice(
+          "intact faces", extrinsic ? "joined" : "spring",
+          {"spring", "unilateral", "joined", "rigid", "bonded"},
           scene.iterates()
-              ? "while beta = 1: spring or unilateral (intrinsic laws), rigid "
+              ? "while beta = 1: spring or unilateral (intrinsic laws), joined "
                 "(extrinsic laws)"
-              : "while beta = 1: spring or unilateral (intrinsic laws), rigid "
-                "or bonded (extrinsic laws; default: bonded if where = all)");
+              : "while beta = 1: spring or unilateral (intrinsic laws), joined "
+                "(extrinsic laws: bonded if where = all, else rigid)");
+      if (name == "joined")
+        name = joint(input, scene);
       check_intact_faces(reader, input, name, scene);
       if (name == "bonded")
         return IntactFaces::bonded;
@@ -282,6 +293,8 @@ namespace nsfd
       input.law_name = read_law_name(reader);
       if (input.law_name.empty())
         return input;
+      if (input.law_name == "joined")
+        input.law_name = joint(input, scene);
       if (input.law_name == "rigid" || input.law_name == "bonded") {
         input.intact = input.law_name == "rigid" ? IntactFaces::rigid
                                                  : IntactFaces::bonded;
