@@ -125,41 +125,6 @@ namespace nsfd
         for (std::size_t l = 0; l < lanes; ++l)
           y[i + l] += factor * x[i + l];
     }
-
-    /** v += (side) H^T P / m */
-    template <int dim>
-    void push(const double *frame, const std::array<int, 2> &groups,
-              const double *P,
-              const std::vector<std::array<double, dim>> &inverse_mass,
-              std::vector<std::array<double, dim>> &velocity)
-    {
-      std::array<double, dim> F{};
-      for (unsigned int r = 0; r < dim; ++r)
-        for (unsigned int c = 0; c < dim; ++c)
-          F[c] += frame[r * dim + c] * P[r];
-      for (unsigned int side = 0; side < 2; ++side)
-        if (const int g = groups[side]; g >= 0)
-          for (unsigned int c = 0; c < dim; ++c)
-            velocity[std::size_t(g)][c] +=
-                (side == 0 ? -F[c] : F[c]) * inverse_mass[std::size_t(g)][c];
-    }
-
-    template <int dim>
-    void relative(const double *frame, const std::array<int, 2> &groups,
-                  const std::vector<std::array<double, dim>> &velocity,
-                  double *U)
-    {
-      std::array<double, dim> v{};
-      for (unsigned int side = 0; side < 2; ++side)
-        if (const int g = groups[side]; g >= 0)
-          for (unsigned int c = 0; c < dim; ++c)
-            v[c] += (side == 0 ? -1. : 1.) * velocity[std::size_t(g)][c];
-      for (unsigned int r = 0; r < dim; ++r) {
-        U[r] = 0.;
-        for (unsigned int c = 0; c < dim; ++c)
-          U[r] += frame[r * dim + c] * v[c];
-      }
-    }
   } // namespace
 
   template <int dim>
@@ -207,8 +172,8 @@ namespace nsfd
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const auto &place = node.points[k];
       const std::size_t i = place.point;
-      relative<dim>(&frames[i * dim * dim], place.groups, node.velocity,
-                    step.free[k].data());
+      step.free[k] = relative_velocity<dim>(&frames[i * dim * dim],
+                                            place.groups, node.velocity);
       for (unsigned int c = 0; c < dim; ++c)
         step.offset[k][c] =
             springs::tangential_offset<dim>(problem, i, c) / slope;
@@ -235,15 +200,15 @@ namespace nsfd
         P[d] = 1.;
         velocity_.assign(node.velocity.size(), {});
         const auto &place = node.points[l];
-        push<dim>(&frames[place.point * dim * dim], place.groups, P,
-                  node.inverse_mass, velocity_);
+        push_groups<dim>(&frames[place.point * dim * dim], place.groups, P,
+                         node.inverse_mass, velocity_);
         const std::size_t column = points_[l].first + d;
         for (std::size_t k = 0; k < points_.size(); ++k) {
           if (points_[k].law.broken)
             continue;
-          double U[dim];
-          relative<dim>(&frames[node.points[k].point * dim * dim],
-                        node.points[k].groups, velocity_, U);
+          const Vector U =
+              relative_velocity<dim>(&frames[node.points[k].point * dim * dim],
+                                     node.points[k].groups, velocity_);
           for (unsigned int c = 0; c < dim; ++c)
             lu_.row(int(points_[k].first + c))[column] = U[c];
         }
@@ -320,13 +285,13 @@ namespace nsfd
       velocity_ = node.velocity;
       for (std::size_t k = 0; k < points_.size(); ++k)
         if (!points_[k].law.broken)
-          push<dim>(&frames[node.points[k].point * dim * dim],
-                    node.points[k].groups, &step.impulse[points_[k].first],
-                    node.inverse_mass, velocity_);
+          push_groups<dim>(
+              &frames[node.points[k].point * dim * dim], node.points[k].groups,
+              &step.impulse[points_[k].first], node.inverse_mass, velocity_);
       for (std::size_t k = 0; k < points_.size(); ++k)
-        relative<dim>(&frames[node.points[k].point * dim * dim],
-                      node.points[k].groups, velocity_,
-                      step.velocity[k].data());
+        step.velocity[k] =
+            relative_velocity<dim>(&frames[node.points[k].point * dim * dim],
+                                   node.points[k].groups, velocity_);
     }
     return false;
   }

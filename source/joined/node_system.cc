@@ -93,15 +93,7 @@ namespace nsfd
                                  const std::vector<Vector> &velocity) const
       -> Vector
   {
-    const auto [a, b] = point.groups;
-    Vector v = b >= 0 ? velocity[b] : Vector{}, U{};
-    if (a >= 0)
-      for (unsigned int c = 0; c < dim; ++c)
-        v[c] -= velocity[a][c];
-    for (unsigned int r = 0; r < dim; ++r)
-      for (unsigned int c = 0; c < dim; ++c)
-        U[r] += point.frame[r * dim + c] * v[c];
-    return U;
+    return relative_velocity<dim>(point.frame, point.groups, velocity);
   }
 
   /** v += M^-1 H^T P */
@@ -109,17 +101,8 @@ namespace nsfd
   void NodeSystem<dim>::push(const Point &point, const Vector &impulse,
                              std::vector<Vector> &velocity) const
   {
-    Vector P{};
-    for (unsigned int r = 0; r < dim; ++r)
-      for (unsigned int c = 0; c < dim; ++c)
-        P[c] += point.frame[r * dim + c] * impulse[r];
-    const auto [a, b] = point.groups;
-    for (unsigned int c = 0; c < dim; ++c) {
-      if (a >= 0)
-        velocity[a][c] -= (*inverse_mass_)[a][c] * P[c];
-      if (b >= 0)
-        velocity[b][c] += (*inverse_mass_)[b][c] * P[c];
-    }
+    push_groups<dim>(point.frame, point.groups, impulse.data(), *inverse_mass_,
+                     velocity);
   }
 
   template <int dim>

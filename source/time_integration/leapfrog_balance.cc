@@ -47,7 +47,8 @@ namespace nsfd
            2.;
   }
 
-  /** The same of a point that was a spring in the step. */
+  /** account_point() of one that was a spring, held or apart: it took nothing.
+   */
   template <int dim>
   void LeapfrogPoints<dim>::account_spring(const unsigned int a,
                                            const std::size_t row,
