@@ -28,8 +28,8 @@ namespace nsfd
           for (const unsigned int v : cell->vertex_indices())
             for (unsigned int d = 0; d < dim; ++d)
               if (!(v >> d & 1u))
-                body.size = std::max(
-                    body.size, cell->vertex(v).distance(cell->vertex(v | 1u << d)));
+                body.size = std::max(body.size, cell->vertex(v).distance(
+                                                    cell->vertex(v | 1u << d)));
           body.level = unsigned(cell->level());
           body.largest = std::ldexp(body.size, cell->level());
         }

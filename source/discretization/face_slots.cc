@@ -21,8 +21,8 @@ namespace nsfd
                                   const std::size_t slot)
     {
       const auto &faces = shape.slot_faces;
-      const auto face = std::equal_range(faces.begin(), faces.end(),
-                                         faces[slot]);
+      const auto face =
+          std::equal_range(faces.begin(), faces.end(), faces[slot]);
       const auto first = std::size_t(face.first - faces.begin());
       auto n = std::size_t(face.second - face.first);
       if (shape.divided >> faces[slot] & 1u)

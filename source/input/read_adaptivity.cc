@@ -123,8 +123,9 @@ namespace nsfd
         adaptivity.indicators.push_back(std::move(indicator));
     const auto &found = adaptivity.indicators;
     if (scene.time.scheme == Scheme::leapfrog &&
-        !std::all_of(found.begin(), found.end(),
-                     [](const auto &indicator) { return indicator->is_fixed(); }))
+        !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
+          return indicator->is_fixed();
+        }))
       reader.error("levels",
                    "with scheme = explicit the mesh does not change in a run "
                    "yet: it is refined before it",

@@ -18,9 +18,9 @@ namespace nsfd
       std::size_t most = 1;
       for (const auto &shape : cells.shapes)
         for (const unsigned int face : shape.slot_faces)
-          most = std::max(most, std::size_t(std::count(shape.slot_faces.begin(),
-                                                       shape.slot_faces.end(),
-                                                       face)));
+          most = std::max(
+              most, std::size_t(std::count(shape.slot_faces.begin(),
+                                           shape.slot_faces.end(), face)));
       return most;
     }
 
@@ -41,21 +41,21 @@ namespace nsfd
       const auto none = unsigned(discretization.points().n_points);
       std::vector<unsigned int> result(
           bodies.size() * n_faces * per_face * per_slot, none);
-      for_all_places(
-          bodies, none,
-          [&](const std::size_t body, const unsigned int slot,
-              const std::size_t point, unsigned int) {
-            const auto &faces = cells.shape(body).slot_faces;
-            const unsigned int face = faces[slot];
-            const auto first = std::find(faces.begin(), faces.end(), face);
-            const std::size_t at =
-                (body * n_faces + face) * per_face +
-                (slot - std::size_t(first - faces.begin()));
-            auto place = result.begin() + long(at * per_slot);
-            while (*place != none)
-              ++place;
-            *place = unsigned(point);
-          });
+      for_all_places(bodies, none,
+                     [&](const std::size_t body, const unsigned int slot,
+                         const std::size_t point, unsigned int) {
+                       const auto &faces = cells.shape(body).slot_faces;
+                       const unsigned int face = faces[slot];
+                       const auto first =
+                           std::find(faces.begin(), faces.end(), face);
+                       const std::size_t at =
+                           (body * n_faces + face) * per_face +
+                           (slot - std::size_t(first - faces.begin()));
+                       auto place = result.begin() + long(at * per_slot);
+                       while (*place != none)
+                         ++place;
+                       *place = unsigned(point);
+                     });
       return result;
     }
 

@@ -53,9 +53,9 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::vector<std::pair<unsigned int, double>>
-  trace_at(const Cells<dim> &cells, const unsigned int cell,
-           const unsigned int slot)
+  std::vector<std::pair<unsigned int, double>> trace_at(const Cells<dim> &cells,
+                                                        const unsigned int cell,
+                                                        const unsigned int slot)
   {
     const auto nodes = lobatto_nodes(cells);
     const auto n = unsigned(nodes.size());
@@ -166,12 +166,12 @@ namespace nsfd
     std::vector<std::uint8_t> of_face(faces.size(), 0);
     const auto n = unsigned(face_of.size());
     for (unsigned int i = 0; i < n; ++i)
-      of_face[face_of[i]] |=
-          mesh_.between_sizes(i) || hangs(mesh_.a_corner(i));
+      of_face[face_of[i]] |= mesh_.between_sizes(i) || hangs(mesh_.a_corner(i));
     // faces at the nodes that are followed along edges
     std::map<unsigned int, std::vector<unsigned int>> at_node;
     const auto is_edge = [&](const std::size_t k) {
-      return first_[k + 1] - first_[k] <= discretization_.cells().element->degree + 1;
+      return first_[k + 1] - first_[k] <=
+             discretization_.cells().element->degree + 1;
     };
     for (std::size_t k = 0; dim == 3 && k + 1 < first_.size(); ++k)
       for (std::size_t j = first_[k]; is_edge(k) && j < first_[k + 1]; ++j)
@@ -192,7 +192,8 @@ namespace nsfd
         bool has_all = true;
         for (std::size_t j = first_[k]; j < first_[k + 1]; ++j) {
           const auto &list = at_node[mesh_.node(master_[j])];
-          has_all = has_all && std::binary_search(list.begin(), list.end(), face);
+          has_all =
+              has_all && std::binary_search(list.begin(), list.end(), face);
         }
         of_face[face] |= has_all;
       }
@@ -257,8 +258,8 @@ namespace nsfd
     exchange(1, shares);
     for (std::size_t i = 0; i < masses.size(); ++i)
       if (hangs(i)) {
-        good = good && (!mesh_.is_whole(mesh_.node(i)) ||
-                        tie_of[groups.of(i)] >= 0);
+        good = good &&
+               (!mesh_.is_whole(mesh_.node(i)) || tie_of[groups.of(i)] >= 0);
         masses[i] = 0.;
       }
     for (std::size_t l = 0; l < loaded_.size(); ++l)
@@ -396,12 +397,12 @@ namespace nsfd
       std::copy_n(&groups.displacement[first], dim, values);
       std::copy_n(&groups.velocity[first], dim, values + dim);
     });
-    beyond_->finish(2 * dim, [&](const std::size_t corner,
-                                 const double *values) {
-      const std::size_t first = std::size_t(groups.of(corner)) * dim;
-      std::copy_n(values, dim, &groups.displacement[first]);
-      std::copy_n(values + dim, dim, &groups.velocity[first]);
-    });
+    beyond_->finish(
+        2 * dim, [&](const std::size_t corner, const double *values) {
+          const std::size_t first = std::size_t(groups.of(corner)) * dim;
+          std::copy_n(values, dim, &groups.displacement[first]);
+          std::copy_n(values + dim, dim, &groups.velocity[first]);
+        });
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \

@@ -61,24 +61,24 @@ namespace nsfd
         nodes[k].push_back(node_at(shape, place));
     }
     bool at_nodes = true;
-    for_all_places(cells.bodies, n,
-                   [&](const std::size_t body, const unsigned int slot,
-                       const std::size_t point, const unsigned int side) {
-                     const int i = nodes[cells.bodies.class_of[body]][slot];
-                     const auto &shape = cells.shape(body);
-                     if (shape.divided >> shape.slot_faces[slot] & 1u) {
-                       between_sizes_.resize(n, 0);
-                       between_sizes_[point] = 1;
-                       if (i < 0) {
-                         hanging_.push_back(
-                             {unsigned(point), none, unsigned(body), slot});
-                         return;
-                       }
-                     }
-                     at_nodes = at_nodes && i >= 0;
-                     corners_[point][side] =
-                         unsigned(cells.first_node[body] + std::size_t(i));
-                   });
+    for_all_places(
+        cells.bodies, n,
+        [&](const std::size_t body, const unsigned int slot,
+            const std::size_t point, const unsigned int side) {
+          const int i = nodes[cells.bodies.class_of[body]][slot];
+          const auto &shape = cells.shape(body);
+          if (shape.divided >> shape.slot_faces[slot] & 1u) {
+            between_sizes_.resize(n, 0);
+            between_sizes_[point] = 1;
+            if (i < 0) {
+              hanging_.push_back({unsigned(point), none, unsigned(body), slot});
+              return;
+            }
+          }
+          at_nodes = at_nodes && i >= 0;
+          corners_[point][side] =
+              unsigned(cells.first_node[body] + std::size_t(i));
+        });
     if (ghosts ? ghosts->anywhere(!at_nodes) : !at_nodes)
       throw std::runtime_error(
           "joined cells share nodes, and some points of faces are at none: "
@@ -165,10 +165,10 @@ namespace nsfd
     for (std::size_t node = 0; node < n_nodes(); ++node)
       for (const unsigned int corner : corners_of_node(node))
         if (own[corner]) {
-          share_[node] = corner == *corners_of_node(node).begin() &&
-                                 own[corner] == 1
-                             ? Share::counted
-                             : Share::whole;
+          share_[node] =
+              corner == *corners_of_node(node).begin() && own[corner] == 1
+                  ? Share::counted
+                  : Share::whole;
           break;
         }
   }

@@ -18,6 +18,9 @@ namespace nsfd
 {
   namespace
   {
+    /// a point at no node: see `place_.between`
+    constexpr std::uint16_t hangs = 0xffff;
+
     std::vector<double> transposed(const std::vector<double> &A,
                                    const unsigned int n)
     {
@@ -211,21 +214,22 @@ namespace nsfd
   {
     const Cells<dim> &cells = discretization_.cells();
     const std::size_t n = discretization_.points().n_points;
-    place_.assign(n, {{0, 0}});
+    place_.of_point.assign(n, {{0, 0}});
     for_all_places(cells.bodies, n,
                    [&](const std::size_t body, const unsigned int slot,
                        const std::size_t point, const unsigned int side) {
                      const unsigned int corner = mesh.corners(point)[side],
-                                        face = cells.shape(body).slot_faces[slot];
+                                        face =
+                                            cells.shape(body).slot_faces[slot];
                      if (corner != JoinedMesh<dim>::none) {
-                       place_[point][side] = place_in_faces(
+                       place_.of_point[point][side] = place_in_faces(
                            corner - unsigned(cells.first_node[body]), face);
                        return;
                      }
-                     place_[point][side] = hangs;
+                     place_.of_point[point][side] = hangs;
                      for (const auto &[node, value] :
                           trace_at(cells, unsigned(body), slot))
-                       blends_[unsigned(point)].emplace_back(
+                       place_.between[unsigned(point)].emplace_back(
                            place_in_faces(node, face), value);
                    });
   }
@@ -326,14 +330,14 @@ namespace nsfd
       const double sign = side == 0 ? 0.5 : -0.5;
       for (unsigned int i = first; i < last; ++i) {
         const double share = sign * weight[i] / length;
-        if (place_[i][side] == hangs) {
-          for (const auto &[place, value] : blends_.at(i))
+        if (place_.of_point[i][side] == hangs) {
+          for (const auto &[place, value] : place_.between.at(i))
             for (unsigned int c = 0; c < dim; ++c)
               result[c] += share * value * of_cell[place * dim + c];
           continue;
         }
         for (unsigned int c = 0; c < dim; ++c)
-          result[c] += share * of_cell[place_[i][side] * dim + c];
+          result[c] += share * of_cell[place_.of_point[i][side] * dim + c];
       }
     }
     return result;

@@ -63,12 +63,13 @@ namespace nsfd
     std::vector<std::size_t> first_cell_; ///< by block, and the end
     std::vector<unsigned int> block_;     ///< by cell
     std::vector<double> volume_;
-    /// by point: which traction of body 1 and of body 2 it has
-    std::vector<std::array<std::uint16_t, 2>> place_;
-    static constexpr std::uint16_t hangs = 0xffff; ///< see blends_
-    /// by point at no node of body 2: the tractions that it is between
-    std::map<unsigned int, std::vector<std::pair<std::uint16_t, double>>>
-        blends_;
+    /// which tractions of body 1 and of body 2 a point has
+    struct {
+      std::vector<std::array<std::uint16_t, 2>> of_point;
+      /// of points at no node of body 2: those that they are between
+      std::map<unsigned int, std::vector<std::pair<std::uint16_t, double>>>
+          between;
+    } place_;
 
     const CornerGroups<dim> *groups_ = nullptr; ///< of the last forces
     std::vector<double> forces_;                ///< K q by corner

@@ -1,7 +1,7 @@
 #include "model.h"
 
-#include "model_checks.h"
 #include "adaptivity/initial_mesh.h"
+#include "model_checks.h"
 #include "print_problems.h"
 #include "time_integration/linear_moreau_jean.h"
 #include "time_integration/newton_moreau_jean.h"

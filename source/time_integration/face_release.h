@@ -70,7 +70,7 @@ namespace nsfd
     std::vector<int> site_of_; ///< by point, -1: it never lets go
     std::vector<double> squares_, old_squares_; ///< of this step and the last
     std::vector<std::uint8_t> intact_;          ///< by point
-    std::vector<std::uint8_t> held_; ///< by site; empty: none is
+    std::vector<std::uint8_t> held_;            ///< by site; empty: none is
     Held worst_held_;
   };
 } // namespace nsfd

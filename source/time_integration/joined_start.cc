@@ -60,8 +60,8 @@ namespace nsfd
       if (joined[i] || origins[i].kind != PointOrigin::Kind::interface)
         continue;
       open |= mesh.between_sizes(i);
-      springs |= hanging.hangs(mesh.a_corner(i)) &&
-                 state.kind[i] != PointKind::free;
+      springs |=
+          hanging.hangs(mesh.a_corner(i)) && state.kind[i] != PointKind::free;
     }
     refuse(open, "the law of a face between them must be extrinsic or joined, "
                  "and the face not be broken from the start; or let cells of "
@@ -85,10 +85,10 @@ namespace nsfd
 #define NSFD_INSTANTIATE(dim)                                                  \
   template std::vector<std::uint8_t> joined_points(                            \
       const Discretization<dim> &, const State &);                             \
-  template void check_hanging(                                                 \
-      const Communicator &, const Discretization<dim> &,                       \
-      const JoinedMesh<dim> &, const State &, HangingNodes<dim> &,             \
-      PrescribedGroups<dim> &)
+  template void check_hanging(const Communicator &,                            \
+                              const Discretization<dim> &,                     \
+                              const JoinedMesh<dim> &, const State &,          \
+                              HangingNodes<dim> &, PrescribedGroups<dim> &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

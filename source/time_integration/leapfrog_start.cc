@@ -91,9 +91,11 @@ namespace nsfd
   }
 
   template State Leapfrog<2>::initial_state() const;
-  template void Leapfrog<2>::fill_counters(std::map<std::string, double> &) const;
+  template void
+  Leapfrog<2>::fill_counters(std::map<std::string, double> &) const;
   template void Leapfrog<2>::serialize(Archive &);
   template State Leapfrog<3>::initial_state() const;
-  template void Leapfrog<3>::fill_counters(std::map<std::string, double> &) const;
+  template void
+  Leapfrog<3>::fill_counters(std::map<std::string, double> &) const;
   template void Leapfrog<3>::serialize(Archive &);
 } // namespace nsfd
