@@ -224,7 +224,8 @@ namespace nsfd
     cells_.assign(n_blocks * per_cell<dim> * lanes, 0.);
     stresses_.assign(n_blocks * n_stresses * lanes, 0.);
     for (std::size_t b = 0; b < n_cells_; ++b) {
-      const BodyShape<dim> &shape = cells.shape(b);
+      const auto of_body = cells.shape(b);
+      const BodyShape<dim> &shape = *of_body;
       double *mine =
           cells_.data() + (b / lanes) * per_cell<dim> * lanes + b % lanes;
       for (unsigned int i = 1; i <= dim; ++i)

@@ -31,8 +31,9 @@ namespace nsfd
     mass_.resize(node_.size());
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
       const std::size_t first = cells.first_node[b];
+      const auto shape = cells.shape(b);
       for (std::size_t i = first; i < cells.first_node[b + 1]; ++i)
-        mass_[i] = lumped_mass(cells.shape(b), unsigned(i - first));
+        mass_[i] = lumped_mass(*shape, unsigned(i - first));
     }
     find_corners(discretization, ghosts);
     std::vector<std::uint8_t> own;

@@ -161,7 +161,8 @@ namespace nsfd
       const std::size_t index = b / lanes, lane = b % lanes;
       const std::size_t cell =
           std::min(first_cell_[index] + lane, first_cell_[index + 1] - 1);
-      const auto &shape = cells.shape(cell);
+      const auto of_body = cells.shape(cell);
+      const BodyShape<dim> &shape = *of_body;
       for (unsigned int subset = 1; subset < 1u << dim; ++subset)
         for (unsigned int c = 0; c < dim; ++c)
           maps_[index * per_map + ((subset - 1) * dim + c) * lanes + lane] =
@@ -214,7 +215,7 @@ namespace nsfd
                    [&](const std::size_t body, const unsigned int slot,
                        const std::size_t point, const unsigned int side) {
                      const unsigned int face =
-                         cells.shape(body).slot_faces[slot];
+                         cells.class_shape(body).slot_faces[slot];
                      unsigned int node = mesh.corners(point)[side] -
                                          unsigned(cells.first_node[body]);
                      unsigned int in_face = 0, factor = 1;
