@@ -100,7 +100,7 @@ namespace nsfd
           const auto stress = discretization.stress(body, x, gradient);
           for (unsigned int c = 0; c < 6; ++c)
             mean[body][c] +=
-                JxW / discretization.cells().shape(body)->volume * stress[c];
+                JxW / discretization.cells().volume(body) * stress[c];
         });
     return mean;
   }

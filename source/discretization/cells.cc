@@ -198,6 +198,25 @@ namespace nsfd
         of_class, RoundedCorners<dim>(corners[body]).relative));
   }
 
+  /** Relative to corner 0. */
+  template <int dim>
+  Point<dim> Cells<dim>::mean_of_corners(const std::size_t body) const
+  {
+    Point<dim> centre;
+    for (const auto &corner : corners[body])
+      centre += (corner - corners[body][0]) / double(dim + 1);
+    return centre;
+  }
+
+  template <int dim>
+  double Cells<dim>::volume_of_simplex(const std::size_t body) const
+  {
+    Tensor<2, dim> edges;
+    for (unsigned int i = 0; i < dim; ++i)
+      edges[i] = corners[body][i + 1] - corners[body][0];
+    return determinant(edges) / (dim == 2 ? 2. : 6.);
+  }
+
   template <int dim>
   std::vector<double>
   Cells<dim>::at_corners(const std::size_t body,

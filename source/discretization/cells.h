@@ -65,7 +65,13 @@ namespace nsfd
     }
     dealii::Point<dim> centre(const std::size_t body) const
     {
-      return place(body, shape(body)->centre);
+      return place(body,
+                   differ() ? mean_of_corners(body) : class_shape(body).centre);
+    }
+    /** m^3, or m^2 in the plane. */
+    double volume(const std::size_t body) const
+    {
+      return differ() ? volume_of_simplex(body) : class_shape(body).volume;
     }
     /** Values of a nodal vector at the corners, dim each. */
     std::vector<double> at_corners(std::size_t body,
@@ -74,6 +80,9 @@ namespace nsfd
     std::size_t n_nodal() const { return first_node.back() * dim; }
 
   private:
+    dealii::Point<dim> mean_of_corners(std::size_t body) const;
+    double volume_of_simplex(std::size_t body) const;
+
     std::unique_ptr<const ClassBuilder<dim>> builder_;
   };
 } // namespace nsfd

@@ -316,7 +316,7 @@ namespace nsfd
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
       Amounts &sum = sums[pieces.of_cell(c)];
       ++sum.cells;
-      sum.volume.add(discretization_.cells().shape(c)->volume);
+      sum.volume.add(discretization_.cells().volume(c));
     }
     for (const Body &body : bodies) {
       Amounts &sum = sums[pieces.of_cell(body.cell)];

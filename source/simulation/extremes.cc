@@ -170,7 +170,7 @@ namespace nsfd
       };
       for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
         BodyMeasures &body = result[number(b)];
-        body.volume += discretization.cells().shape(b)->volume;
+        body.volume += discretization.cells().volume(b);
         body.width =
             std::min(body.width,
                      width<dim>(reference, discretization.cells().corners[b]));

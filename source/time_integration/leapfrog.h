@@ -83,6 +83,7 @@ namespace nsfd
     void serialize_all(Archive &archive);
     void set_loads(double time);
     double kinetic_energy();
+    void set_energies(double kick, double h, double last, Energies &energies);
     void gather(std::size_t node);
     unsigned int let_go();
     void count(const typename LeapfrogPoints<dim>::Outcome &mine,

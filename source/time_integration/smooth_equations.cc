@@ -143,7 +143,7 @@ namespace nsfd
           discretization_.cells().body_class(unsigned(b)).material;
       mass +=
           discretization_.cells().class_shape(unsigned(b)).extremes.densest *
-          discretization_.cells().shape(unsigned(b))->volume;
+          discretization_.cells().volume(unsigned(b));
       if (!input_.materials[m].rigid)
         speed = std::max(speed, discretization_.extremes(m).fastest);
     }
