@@ -109,7 +109,7 @@ end
           continue;
         ++n_found;
         const auto of_body = cells.shape(b);
-        const BodyShape<dim> &shape = *of_body;
+        const BodyShape<3> &shape = *of_body;
         const std::size_t local = s - bodies.first_slot[b];
         const Vector x =
             Vector(cells.corners[b][0]) + Vector(shape.slot_positions[local]);
