@@ -29,7 +29,7 @@ namespace nsfd
         if (b < 0)
           continue;
         const auto &softest =
-            discretization.cells().shape(unsigned(b)).extremes.softest;
+            discretization.cells().class_shape(unsigned(b)).extremes.softest;
         if (softest.young > 0.) // not rigid
           modulus = std::min(
               modulus,
@@ -100,7 +100,7 @@ namespace nsfd
           const auto stress = discretization.stress(body, x, gradient);
           for (unsigned int c = 0; c < 6; ++c)
             mean[body][c] +=
-                JxW / discretization.cells().shape(body).volume * stress[c];
+                JxW / discretization.cells().volume(body) * stress[c];
         });
     return mean;
   }

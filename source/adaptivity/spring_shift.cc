@@ -70,7 +70,7 @@ namespace nsfd
                          mesh.discretization.origins()[i];
                      const auto face =
                          std::uint8_t(1u << mesh.discretization.cells()
-                                                .shape(unsigned(body))
+                                                .class_shape(unsigned(body))
                                                 .slot_faces[slot]);
                      const bool same =
                          origin.kind == PointOrigin::Kind::interface &&
@@ -170,10 +170,9 @@ namespace nsfd
     std::uint8_t held = 0, broken = 0; // of the parent: by any of its children
     for (unsigned int child = 0; child < bodies.size(); ++child) {
       const unsigned int body = bodies[child];
-      volume += discretization_.cells().shape(body).volume;
+      volume += discretization_.cells().volume(body);
       for (unsigned int c = 0; c < mean.size(); ++c)
-        mean[c] +=
-            discretization_.cells().shape(body).volume * stress_[body][c];
+        mean[c] += discretization_.cells().volume(body) * stress_[body][c];
       std::uint8_t outside = 0;
       for (unsigned int face = 0; face < 2 * dim; ++face)
         outside |= std::uint8_t(lies_on_face(child, face) << face);

@@ -112,7 +112,7 @@ namespace nsfd
   {
     for (const auto &[slot, point] : points_of_[body]) {
       const unsigned int face_no =
-          old_.discretization.cells().shape(body).slot_faces[slot];
+          old_.discretization.cells().class_shape(body).slot_faces[slot];
       if (!all_faces && !lies_on_face(child, face_no))
         continue;
       const std::size_t first = parcel.size();
@@ -363,7 +363,7 @@ namespace nsfd
           double *row = &rows[side][point * size];
           const double *memory = memory_of(received_[body],
                                            fresh.discretization.cells()
-                                               .shape(unsigned(body))
+                                               .class_shape(unsigned(body))
                                                .slot_faces[slot],
                                            point, fresh, inside);
           if (memory)

@@ -27,7 +27,8 @@ namespace nsfd
         nodes_per_cell_(discretization.cells().element->n_dofs_per_cell())
   {
     for (unsigned int c = 0; c < discretization.bodies().size(); ++c) {
-      const auto &shape = discretization.cells().shape(c);
+      const auto of_body = discretization.cells().shape(c);
+      const BodyShape<dim> &shape = *of_body;
       const Place corner = discretization.cells().corners[c][0];
       for (const Place &node : shape.nodes)
         for (unsigned int d = 0; d < dim; ++d)
@@ -78,7 +79,8 @@ namespace nsfd
     Vec3 centre{};
     const auto for_points = [&](const auto &visit) {
       for (const unsigned int c : body.cells) {
-        const auto &shape = discretization_.cells().shape(c);
+        const auto of_body = discretization_.cells().shape(c);
+        const BodyShape<dim> &shape = *of_body;
         const Place corner = discretization_.cells().corners[c][0];
         for (std::size_t q = 0; q < shape.JxW.size(); ++q)
           visit(material.density * shape.JxW[q],
@@ -160,7 +162,8 @@ namespace nsfd
       auto &gradients = slot_gradients_.emplace_back();
       if (body.bodies.empty())
         continue;
-      const auto &shape = discretization_.cells().shape(body.bodies[0]);
+      const auto of_body = discretization_.cells().shape(body.bodies[0]);
+      const BodyShape<dim> &shape = *of_body;
       for (const Place &place : shape.slot_places) {
         const auto inverse =
             invert(jacobian(shape.reference, shape.corners, place));

@@ -60,7 +60,7 @@ namespace nsfd
       point_ = 0;
     body_ = body;
     const unsigned int q = point_++;
-    if (point_ == discretization_.cells().shape(body).JxW.size())
+    if (point_ == discretization_.cells().class_shape(body).JxW.size())
       point_ = 0; // the next visit of all may begin here
     return materials_[discretization_.cells().body_class(body).material]
         ->stress(gradient, history(body, q));
@@ -98,7 +98,8 @@ namespace nsfd
                               const std::vector<double> &nodal) const
   {
     constexpr unsigned int width = 7;
-    const auto &shape = discretization_.cells().shape(body);
+    const auto of_body = discretization_.cells().shape(body);
+    const BodyShape<dim> &shape = *of_body;
     const auto &material =
         *materials_[discretization_.cells().body_class(body).material];
     const unsigned int n = shape.n_nodes;

@@ -58,7 +58,7 @@ namespace nsfd
       first.push_back(
           first.back() +
           of_material[discretization.cells().body_class(c).material] *
-              discretization.cells().shape(c).JxW.size());
+              discretization.cells().class_shape(c).JxW.size());
     return first;
   }
 
@@ -72,8 +72,9 @@ namespace nsfd
       cells_.push_back(
           body.bodies.empty()
               ? nullptr
-              : make_cell<dim>(discretization.input(), body.material,
-                               discretization.cells().shape(body.bodies[0])));
+              : make_cell<dim>(
+                    discretization.input(), body.material,
+                    discretization.cells().class_shape(body.bodies[0])));
       auto &mass = masses_.emplace_back();
       if (cells_.back())
         for (unsigned int j = 0; j < body.n_dofs; ++j)

@@ -251,7 +251,7 @@ namespace nsfd
     for (const unsigned int c : mover.cells) {
       const std::size_t first = discretization_.cells().first_node[c];
       for (std::size_t i = first;
-           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
+           i < first + discretization_.cells().class_shape(c).n_nodes; ++i) {
         const Vec3 f = in_space<dim>(Vector(at_node<dim>(motion_.forces, i)));
         load.force = load.force + f;
         load.moment =

@@ -81,7 +81,8 @@ namespace nsfd
       values.assign(rest.n_points * stride, 0.);
     for (std::size_t b = 0; b < layout_.size(); ++b)
       for (const BodySlot &slot : layout_.slots(b)) {
-        const unsigned int n = discretization_.cells().shape(slot.cell).n_nodes;
+        const unsigned int n =
+            discretization_.cells().class_shape(slot.cell).n_nodes;
         const Vector *g = layout_.slot_gradients(
             discretization_.bodies().class_of[slot.cell], slot.slot, n);
         const std::size_t first = discretization_.cells().first_node[slot.cell];

@@ -48,7 +48,7 @@ namespace nsfd
     for (const unsigned int c : body.cells) {
       const std::size_t first = discretization_.cells().first_node[c];
       for (std::size_t i = first;
-           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
+           i < first + discretization_.cells().class_shape(c).n_nodes; ++i) {
         const Vec3 X = in_space<dim>(Vector(at_node<dim>(layout_.rest(), i)));
         const Vec3 u = rigid.centre + R * (X - body.centre) - X;
         for (unsigned int d = 0; d < dim; ++d)
@@ -71,7 +71,7 @@ namespace nsfd
     for (const unsigned int c : body.cells) {
       const std::size_t first = discretization_.cells().first_node[c];
       for (std::size_t i = first;
-           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
+           i < first + discretization_.cells().class_shape(c).n_nodes; ++i) {
         const Vec3 x_now =
             in_space<dim>(Vector(at_node<dim>(layout_.rest(), i)) +
                           Vector(at_node<dim>(state.displacement, i)));
@@ -115,7 +115,7 @@ namespace nsfd
     for (const unsigned int c : body.cells) {
       const std::size_t first = discretization_.cells().first_node[c];
       for (std::size_t i = first;
-           i < first + discretization_.cells().shape(c).n_nodes; ++i) {
+           i < first + discretization_.cells().class_shape(c).n_nodes; ++i) {
         X.push_back(in_space<dim>(Vector(at_node<dim>(layout_.rest(), i))));
         x.push_back(X.back() +
                     in_space<dim>(Vector(at_node<dim>(state.displacement, i))));

@@ -50,11 +50,11 @@ namespace nsfd
     const Bodies &cells = discretization_.bodies();
     std::vector<std::vector<FaceNodes<dim>>> own;
     for (const auto &body : cells.classes)
-      own.push_back(
-          body.bodies.empty()
-              ? std::vector<FaceNodes<dim>>()
-              : face_nodes(*discretization_.cells().element,
-                           discretization_.cells().shape(body.bodies[0])));
+      own.push_back(body.bodies.empty()
+                        ? std::vector<FaceNodes<dim>>()
+                        : face_nodes(*discretization_.cells().element,
+                                     discretization_.cells().class_shape(
+                                         body.bodies[0])));
     std::size_t before = 0;
     const auto of_ranks = Utilities::MPI::all_gather(all_.mpi(), own);
     for (std::size_t r = 0; r < of_ranks.size(); ++r) {
@@ -107,7 +107,8 @@ namespace nsfd
       const unsigned int b = bodies_.body_of_cell(c);
       if (!bodies_[b].is_rigid())
         continue;
-      const auto &shape = discretization_.cells().shape(c);
+      const auto of_body = discretization_.cells().shape(c);
+      const BodyShape<dim> &shape = *of_body;
       const Point<dim> corner = discretization_.cells().corners[c][0];
       for (unsigned int i = 0; i < nodes_per_cell_; ++i) {
         std::array<long long, dim> at;
@@ -140,7 +141,7 @@ namespace nsfd
             discretization_.origins()[i].kind == PointOrigin::Kind::interface)
           between.push_back({points.faces[points.face_of[i]].key, cell_of(c),
                              discretization_.cells()
-                                 .shape(c)
+                                 .class_shape(c)
                                  .slot_faces[s - cells.first_slot[c]]});
       }
     // several points of one face are next to each other

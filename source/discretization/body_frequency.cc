@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace nsfd
 {
@@ -109,44 +110,69 @@ namespace nsfd
   }
 
   template <int dim>
-  std::vector<double> frequencies_of_classes(const Cells<dim> &cells)
+  std::vector<double> frequencies_of_bodies(const Cells<dim> &cells)
   {
-    std::vector<double> result;
-    for (std::size_t k = 0; k < cells.shapes.size(); ++k) {
-      const BodyClass &body = cells.bodies.classes[k];
-      result.push_back(!body.rigid && body.stiffness.rows == 0
-                           ? frequency_bound(cells.shapes[k])
-                           : highest_frequency(body));
+    std::vector<double> result(cells.bodies.size());
+    if (cells.differ()) {
+      for (std::size_t b = 0; b < result.size(); ++b)
+        result[b] = frequency_bound(*cells.shape(b));
+      return result;
+    }
+    for (const BodyClass &body : cells.bodies.classes) {
+      const double frequency = highest_frequency(body);
+      for (const unsigned int b : body.bodies)
+        result[b] = frequency;
     }
     return result;
   }
 
+  namespace
+  {
+    /** Bodies without blocks: exact ones of those alone whose bounds matter. */
+    template <int dim>
+    double highest_of_different(const Cells<dim> &cells)
+    {
+      const auto bounds = frequencies_of_bodies(cells);
+      std::vector<unsigned int> order(bounds.size());
+      std::iota(order.begin(), order.end(), 0u);
+      std::sort(order.begin(), order.end(),
+                [&](const unsigned int a, const unsigned int b) {
+                  return bounds[a] > bounds[b];
+                });
+      double highest = 0.;
+      std::set<std::vector<double>> known; // congruent cells: gradients, moduli
+      for (const unsigned int b : order) {
+        if (bounds[b] <= highest)
+          break;
+        const auto shape = cells.shape(b);
+        std::vector<double> key = {shape->elasticity[0].lambda,
+                                   shape->elasticity[0].mu,
+                                   shape->moduli[0].density};
+        for (unsigned int i = 0; i <= dim; ++i)
+          for (unsigned int d = 0; d < dim; ++d)
+            key.push_back(shape->gradients[i][d]);
+        if (known.insert(std::move(key)).second)
+          highest = std::max(highest, highest_frequency(*shape));
+      }
+      return highest;
+    }
+  } // namespace
+
   template <int dim>
   double highest_frequency(const Cells<dim> &cells)
   {
-    const auto bounds = frequencies_of_classes(cells);
-    std::vector<unsigned int> order(bounds.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(),
-              [&](const unsigned int a, const unsigned int b) {
-                return bounds[a] > bounds[b];
-              });
+    if (cells.differ())
+      return highest_of_different(cells);
     double highest = 0.;
-    for (const unsigned int k : order) {
-      if (bounds[k] <= highest)
-        break;
-      const BodyClass &body = cells.bodies.classes[k];
-      highest = std::max(highest, !body.rigid && body.stiffness.rows == 0
-                                      ? highest_frequency(cells.shapes[k])
-                                      : bounds[k]);
-    }
+    for (const BodyClass &body : cells.bodies.classes)
+      highest = std::max(highest, highest_frequency(body));
     return highest;
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
   template double highest_frequency(const BodyShape<dim> &);                   \
   template double frequency_bound(const BodyShape<dim> &);                     \
-  template std::vector<double> frequencies_of_classes(const Cells<dim> &);     \
+  template std::vector<double> frequencies_of_bodies(const Cells<dim> &);      \
   template double highest_frequency(const Cells<dim> &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);

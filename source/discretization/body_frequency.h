@@ -25,12 +25,12 @@ namespace nsfd
   double frequency_bound(const BodyShape<dim> &shape);
 
   /**
-   * By class: omega_max from blocks, or its bound for simplices without any.
+   * By body: omega_max from blocks, or its bound for simplices without any.
    */
   template <int dim>
-  std::vector<double> frequencies_of_classes(const Cells<dim> &cells);
+  std::vector<double> frequencies_of_bodies(const Cells<dim> &cells);
 
-  /** omega_max over all classes of this rank. */
+  /** omega_max over all bodies of this rank. */
   template <int dim>
   double highest_frequency(const Cells<dim> &cells);
 } // namespace nsfd

@@ -101,6 +101,27 @@ namespace nsfd
   } // namespace
 
   template <int dim>
+  ClassBuilder<dim>::ClassBuilder(const FiniteElement<dim> &element,
+                                  const SceneInput &input)
+      : element_(element), input_(input),
+        cell_rule_(cell_quadrature<dim>(element.reference_cell(),
+                                        input.discretization.degree + 1)),
+        face_rule_(interface_quadrature<dim>(
+            input.discretization, element.reference_cell().is_simplex())),
+        no_blocks_(input.time.scheme == Scheme::leapfrog &&
+                   element.reference_cell().is_simplex() &&
+                   input.discretization.degree == 1 &&
+                   std::none_of(input.materials.begin(), input.materials.end(),
+                                [](const MaterialInput &material) {
+                                  return material.rigid ||
+                                         material.transverse ||
+                                         material.graded ||
+                                         material.is_viscous();
+                                }))
+  {
+  }
+
+  template <int dim>
   void ClassBuilder<dim>::build(const ReferenceCell &reference,
                                 const std::vector<Point<dim>> &corners,
                                 const double size, const unsigned int material,
@@ -117,8 +138,8 @@ namespace nsfd
     set_elasticity(shape, material);
     body.material = material;
     body.rigid = input.rigid && !input_.large_motion;
-    if (has_no_blocks(shape, input)) {
-      trace(shape); // for its places
+    set_slots(shape);
+    if (has_no_blocks()) {
       body.n_slots = unsigned(shape.slot_positions.size());
       body.n_dofs = shape.n_nodes * dim;
       return;
@@ -171,7 +192,7 @@ namespace nsfd
     set_tables(shape);
     auto places = shape.positions;
     if (input_.has_bonded_faces()) {
-      trace(shape);
+      set_slots(shape);
       for (const auto &slot : shape.slot_positions)
         places.push_back(a_little_inside(slot, shape.centre));
     }
@@ -196,28 +217,34 @@ namespace nsfd
   template <int dim>
   void ClassBuilder<dim>::set_tables(BodyShape<dim> &shape) const
   {
-    const auto &reference = shape.reference;
     const unsigned int n = element_.n_dofs_per_cell();
     shape.n_nodes = n;
-    for (const auto &support : element_.get_unit_support_points())
-      shape.nodes.push_back(map_point(reference, shape.corners, support));
     for (unsigned int v = 0; v < shape.corners.size(); ++v)
       for (unsigned int i = 0; i < n; ++i)
         shape.corner_values.push_back(
-            element_.shape_value(i, reference.template vertex<dim>(v)));
+            element_.shape_value(i, shape.reference.template vertex<dim>(v)));
+    for (unsigned int q = 0; q < cell_rule_.size(); ++q)
+      for (unsigned int i = 0; i < n; ++i)
+        shape.values.push_back(element_.shape_value(i, cell_rule_.point(q)));
+    set_cell(shape);
+  }
 
-    const auto quadrature =
-        cell_quadrature<dim>(reference, input_.discretization.degree + 1);
-    for (unsigned int q = 0; q < quadrature.size(); ++q) {
-      const Point<dim> xi = quadrature.point(q);
+  template <int dim>
+  void ClassBuilder<dim>::set_cell(BodyShape<dim> &shape) const
+  {
+    const auto &reference = shape.reference;
+    const unsigned int n = shape.n_nodes;
+    for (const auto &support : element_.get_unit_support_points())
+      shape.nodes.push_back(map_point(reference, shape.corners, support));
+    for (unsigned int q = 0; q < cell_rule_.size(); ++q) {
+      const Point<dim> xi = cell_rule_.point(q);
       const auto J = jacobian(reference, shape.corners, xi);
       const auto inverse = invert(J);
       shape.positions.push_back(map_point(reference, shape.corners, xi));
-      shape.JxW.push_back(determinant(J) * quadrature.weight(q));
+      shape.JxW.push_back(determinant(J) * cell_rule_.weight(q));
       shape.volume += shape.JxW.back();
       shape.centre += shape.JxW.back() * shape.positions.back();
       for (unsigned int i = 0; i < n; ++i) {
-        shape.values.push_back(element_.shape_value(i, xi));
         const auto g = element_.shape_grad(i, xi);
         Tensor<1, dim> physical;
         for (unsigned int a = 0; a < dim; ++a)
@@ -230,15 +257,29 @@ namespace nsfd
     shape.height = height(shape);
   }
 
-  /** Explicit steps on joined simplices take gradients and volumes alone. */
   template <int dim>
-  bool ClassBuilder<dim>::has_no_blocks(const BodyShape<dim> &shape,
-                                        const MaterialInput &material) const
+  void ClassBuilder<dim>::set_slots(BodyShape<dim> &shape) const
   {
-    return input_.time.scheme == Scheme::leapfrog &&
-           shape.reference.is_simplex() && input_.discretization.degree == 1 &&
-           !material.rigid && !material.transverse && !material.graded &&
-           !material.is_viscous();
+    const bool has_places = !shape.slot_places.empty();
+    for (unsigned int f = 0; f < shape.reference.n_faces(); ++f) {
+      const FaceGeometry<dim> face(shape.reference, shape.corners, f);
+      const bool halves = (shape.divided >> f & 1u) != 0;
+      const unsigned int n_parts = halves ? 1u << (dim - 1) : 1;
+      for (unsigned int part = 0; part < n_parts; ++part)
+        for (unsigned int q = 0; q < face_rule_.size(); ++q) {
+          Point<dim - 1> xi = face_rule_.point(q);
+          if (halves)
+            for (unsigned int d = 0; d < dim - 1; ++d)
+              xi[d] = (xi[d] + double(part >> d & 1u)) / 2.;
+          shape.slot_positions.push_back(face.position(xi));
+          shape.slot_normals.push_back(face.normal(xi) * face_rule_.weight(q) /
+                                       double(n_parts));
+          if (has_places)
+            continue;
+          shape.slot_places.push_back(face.in_reference_cell(xi));
+          shape.slot_faces.push_back(f);
+        }
+    }
   }
 
   template <int dim>
@@ -287,37 +328,17 @@ namespace nsfd
   }
 
   template <int dim>
-  Block ClassBuilder<dim>::trace(BodyShape<dim> &shape) const
+  Block ClassBuilder<dim>::trace(const BodyShape<dim> &shape) const
   {
     const unsigned int n = shape.n_nodes;
-    std::vector<double> values;
-    for (unsigned int f = 0; f < shape.reference.n_faces(); ++f) {
-      const FaceGeometry<dim> face(shape.reference, shape.corners, f);
-      const auto quadrature =
-          interface_quadrature<dim>(input_.discretization, face.is_triangle());
-      const bool halves = (shape.divided >> f & 1u) != 0;
-      const unsigned int n_parts = halves ? 1u << (dim - 1) : 1;
-      for (unsigned int part = 0; part < n_parts; ++part)
-        for (unsigned int q = 0; q < quadrature.size(); ++q) {
-          Point<dim - 1> xi = quadrature.point(q);
-          if (halves)
-            for (unsigned int d = 0; d < dim - 1; ++d)
-              xi[d] = (xi[d] + double(part >> d & 1u)) / 2.;
-          shape.slot_positions.push_back(face.position(xi));
-          shape.slot_normals.push_back(face.normal(xi) * quadrature.weight(q) /
-                                       double(n_parts));
-          shape.slot_places.push_back(face.in_reference_cell(xi));
-          shape.slot_faces.push_back(f);
-          for (unsigned int i = 0; i < n; ++i)
-            values.push_back(element_.shape_value(i, shape.slot_places.back()));
-        }
-    }
-    const unsigned int n_slots = unsigned(shape.slot_positions.size());
+    const unsigned int n_slots = unsigned(shape.slot_places.size());
     Block trace(n_slots * dim, n * dim);
     for (unsigned int s = 0; s < n_slots; ++s)
-      for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int i = 0; i < n; ++i) {
+        const double value = element_.shape_value(i, shape.slot_places[s]);
         for (unsigned int c = 0; c < dim; ++c)
-          trace(s * dim + c, i * dim + c) = values[s * n + i];
+          trace(s * dim + c, i * dim + c) = value;
+      }
     return trace;
   }
 

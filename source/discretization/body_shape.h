@@ -5,9 +5,11 @@
 #include "bodies.h"
 
 #include <deal.II/base/point.h>
+#include <deal.II/base/quadrature.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/grid/reference_cell.h>
 
+#include <memory>
 #include <vector>
 
 namespace dealii
@@ -23,7 +25,8 @@ namespace nsfd
 
   /**
    * What the bodies of one class share besides their blocks: tables of the
-   * cell with its corner 0 at the origin.
+   * cell with its corner 0 at the origin. Bodies of a class without blocks (see
+   * ClassBuilder) differ in what depends on their corners.
    */
   template <int dim>
   struct BodyShape {
@@ -53,6 +56,24 @@ namespace nsfd
     Block modes;               ///< rigid: nodal values = modes * unknowns
     Block projection;          ///< rigid: unknowns = projection * nodal values
     Block nodal_mass;          ///< rigid: of the nodal values
+  };
+
+  /** The shape of a body: kept by its class, or made when it is asked for. */
+  template <int dim>
+  class ShapeOfBody
+  {
+  public:
+    explicit ShapeOfBody(const BodyShape<dim> &kept) : shape_(&kept) {}
+    explicit ShapeOfBody(std::unique_ptr<const BodyShape<dim>> made)
+        : made_(std::move(made)), shape_(made_.get())
+    {
+    }
+    const BodyShape<dim> &operator*() const { return *shape_; }
+    const BodyShape<dim> *operator->() const { return shape_; }
+
+  private:
+    std::unique_ptr<const BodyShape<dim>> made_;
+    const BodyShape<dim> *shape_;
   };
 
   /** Of the places of a class: one for all, or one for each. */
@@ -92,11 +113,9 @@ namespace nsfd
   class ClassBuilder
   {
   public:
+    /** Both are to live longer. */
     ClassBuilder(const dealii::FiniteElement<dim, dim> &element,
-                 const SceneInput &input)
-        : element_(element), input_(input)
-    {
-    }
+                 const SceneInput &input);
 
     void build(const dealii::ReferenceCell &reference,
                const std::vector<dealii::Point<dim>> &corners, double size,
@@ -114,17 +133,29 @@ namespace nsfd
                   const std::vector<dealii::Point<dim>> &corners,
                   unsigned int divided) const;
 
+    /**
+     * Explicit steps on joined simplices take gradients and volumes alone,
+     * unless a material asks for more: cells have no blocks, and those of a
+     * material are of one class whatever their corners.
+     */
+    bool has_no_blocks() const { return no_blocks_; }
+    /** As @p of_class, a class without blocks, with other corners. */
+    std::unique_ptr<const BodyShape<dim>>
+    with_corners(const BodyShape<dim> &of_class,
+                 const std::vector<dealii::Point<dim>> &corners) const;
+
   private:
-    bool has_no_blocks(const BodyShape<dim> &shape,
-                       const MaterialInput &material) const;
+    /** What does not depend on the corners, then what does. */
     void set_tables(BodyShape<dim> &shape) const;
+    void set_cell(BodyShape<dim> &shape) const;
+    void set_slots(BodyShape<dim> &shape) const;
     void set_elasticity(BodyShape<dim> &shape, unsigned int material) const;
     Block mass(const BodyShape<dim> &shape) const;
     /** Of @p local at the positions of the quadrature. */
     Block stiffness(const BodyShape<dim> &shape,
                     const std::vector<LinearElasticity<dim>> &local) const;
-    /** Also the slots. */
-    Block trace(BodyShape<dim> &shape) const;
+    /** Of shapes with slots. */
+    Block trace(const BodyShape<dim> &shape) const;
     /**
      * The traction of @p local at the slots, and its bound against @p K; needs
      * motions and slots.
@@ -135,5 +166,8 @@ namespace nsfd
 
     const dealii::FiniteElement<dim, dim> &element_;
     const SceneInput &input_;
+    dealii::Quadrature<dim> cell_rule_;
+    dealii::Quadrature<dim - 1> face_rule_;
+    bool no_blocks_;
   };
 } // namespace nsfd

@@ -130,7 +130,8 @@ namespace nsfd
       element = std::make_unique<FE_DGQ<dim>>(degree);
     else
       element = std::make_unique<FE_SimplexDGP<dim>>(degree);
-    const ClassBuilder<dim> builder(*element, input);
+    builder_ = std::make_unique<ClassBuilder<dim>>(*element, input);
+    const ClassBuilder<dim> &builder = *builder_;
 
     using Form = std::pair<unsigned int, std::vector<long long>>;
     using Key = std::tuple<unsigned int, Form, std::vector<double>>;
@@ -154,7 +155,8 @@ namespace nsfd
         own_corners.push_back(cell->vertex(v));
       const RoundedCorners<dim> rounded(own_corners);
       const unsigned int divided = divided_faces(cell);
-      const Form form(divided, rounded.key);
+      const Form form =
+          builder.has_no_blocks() ? Form() : Form(divided, rounded.key);
       std::vector<double> local; // empty where the material is not graded
       std::vector<LocalModuli> moduli;
       if (input.materials[material].graded) {
@@ -187,11 +189,40 @@ namespace nsfd
   }
 
   template <int dim>
+  ShapeOfBody<dim> Cells<dim>::shape(const std::size_t body) const
+  {
+    const auto &of_class = class_shape(body);
+    if (!differ())
+      return ShapeOfBody<dim>(of_class);
+    return ShapeOfBody<dim>(builder_->with_corners(
+        of_class, RoundedCorners<dim>(corners[body]).relative));
+  }
+
+  /** Relative to corner 0. */
+  template <int dim>
+  Point<dim> Cells<dim>::mean_of_corners(const std::size_t body) const
+  {
+    Point<dim> centre;
+    for (const auto &corner : corners[body])
+      centre += (corner - corners[body][0]) / double(dim + 1);
+    return centre;
+  }
+
+  template <int dim>
+  double Cells<dim>::volume_of_simplex(const std::size_t body) const
+  {
+    Tensor<2, dim> edges;
+    for (unsigned int i = 0; i < dim; ++i)
+      edges[i] = corners[body][i + 1] - corners[body][0];
+    return determinant(edges) / (dim == 2 ? 2. : 6.);
+  }
+
+  template <int dim>
   std::vector<double>
   Cells<dim>::at_corners(const std::size_t body,
                          const std::vector<double> &nodal) const
   {
-    const auto &of_class = shape(body);
+    const auto &of_class = class_shape(body);
     const double *u = nodal.data() + first_node[body] * dim;
     std::vector<double> result(of_class.corners.size() * dim, 0.);
     for (std::size_t v = 0; v < of_class.corners.size(); ++v)

@@ -32,8 +32,8 @@ namespace nsfd
           CellSet set = CellSet::own);
 
     std::unique_ptr<dealii::FiniteElement<dim, dim>> element;
-    Bodies bodies;                                        ///< without points
-    std::vector<BodyShape<dim>> shapes;                   ///< per class
+    Bodies bodies;                      ///< without points
+    std::vector<BodyShape<dim>> shapes; ///< per class, see class_shape()
     std::vector<std::vector<dealii::Point<dim>>> corners; ///< as in deal.II
     std::vector<std::size_t> first_node;                  ///< size n + 1
     std::vector<unsigned long long> global_cell;
@@ -45,10 +45,14 @@ namespace nsfd
     /// this rank; -infinity: one is not a number somewhere
     std::map<unsigned int, std::array<LocalModuli, 2>> graded;
 
-    const BodyShape<dim> &shape(const std::size_t body) const
+    ShapeOfBody<dim> shape(std::size_t body) const;
+    /** What all bodies of its class have, and its corners but for those. */
+    const BodyShape<dim> &class_shape(const std::size_t body) const
     {
       return shapes[bodies.class_of[body]];
     }
+    /** Bodies of a class differ in their corners, and have no blocks. */
+    bool differ() const { return builder_->has_no_blocks(); }
     const BodyClass &body_class(const std::size_t body) const
     {
       return bodies.classes[bodies.class_of[body]];
@@ -61,12 +65,24 @@ namespace nsfd
     }
     dealii::Point<dim> centre(const std::size_t body) const
     {
-      return place(body, shape(body).centre);
+      return place(body,
+                   differ() ? mean_of_corners(body) : class_shape(body).centre);
+    }
+    /** m^3, or m^2 in the plane. */
+    double volume(const std::size_t body) const
+    {
+      return differ() ? volume_of_simplex(body) : class_shape(body).volume;
     }
     /** Values of a nodal vector at the corners, dim each. */
     std::vector<double> at_corners(std::size_t body,
                                    const std::vector<double> &nodal) const;
     /** Entries of nodal vectors: node-major, dim components, all cells. */
     std::size_t n_nodal() const { return first_node.back() * dim; }
+
+  private:
+    dealii::Point<dim> mean_of_corners(std::size_t body) const;
+    double volume_of_simplex(std::size_t body) const;
+
+    std::unique_ptr<const ClassBuilder<dim>> builder_;
   };
 } // namespace nsfd

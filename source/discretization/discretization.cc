@@ -175,13 +175,19 @@ namespace nsfd
     extremes_ = material_extremes(input, *cells_, communicator);
 
     double size = std::numeric_limits<double>::max(), crossing = size;
+    const auto take = [&](const BodyShape<dim> &shape, const bool rigid) {
+      size = std::min(size, shape.height);
+      if (!rigid)
+        crossing = std::min(crossing, shape.height / shape.extremes.fastest);
+    };
     for (std::size_t k = 0; k < cells_->shapes.size(); ++k) {
       const BodyClass &body = bodies().classes[k];
-      const double height = cells_->shapes[k].height;
-      size = std::min(size, height);
-      if (!input.materials[body.material].rigid)
-        crossing =
-            std::min(crossing, height / cells_->shapes[k].extremes.fastest);
+      const bool rigid = input.materials[body.material].rigid;
+      if (!cells_->differ())
+        take(cells_->shapes[k], rigid);
+      else
+        for (const unsigned int b : body.bodies)
+          take(*cells_->shape(b), rigid);
     }
     cell_size_ = communicator.min(size);
     crossing_time_ = communicator.min(crossing);
@@ -208,7 +214,7 @@ namespace nsfd
       return {};
     if (material.kind == MaterialKind::finite_strain)
       return cauchy_stress<dim>(material, input_->plane_stress, gradient);
-    const auto &of_cell = cells_->shape(body).elasticity;
+    const auto &of_cell = cells_->class_shape(body).elasticity;
     if (of_cell.size() == 1)
       return of_cell[0].stress(gradient);
     return LinearElasticity<dim>(
@@ -236,7 +242,7 @@ namespace nsfd
     std::vector<double> nodal(cells_->n_nodal(), 0.);
     loads_->add(*cells_, t, nodal);
     for (std::size_t b = 0; b < bodies().size(); ++b)
-      add_to_unknowns(cells_->body_class(b), cells_->shape(b).modes,
+      add_to_unknowns(cells_->body_class(b), cells_->class_shape(b).modes,
                       nodal.data() + cells_->first_node[b] * dim,
                       forces.data() + bodies().first_dof[b]);
   }
@@ -254,7 +260,7 @@ namespace nsfd
         std::copy_n(z, body.n_dofs, out);
         continue;
       }
-      const Block &R = cells_->shape(b).modes;
+      const Block &R = cells_->class_shape(b).modes;
       for (unsigned int i = 0; i < R.rows; ++i)
         for (unsigned int j = 0; j < R.cols; ++j)
           out[i] += R(i, j) * z[j];
@@ -268,7 +274,8 @@ namespace nsfd
     std::vector<double> unknowns(bodies().n_dofs(), 0.);
     for (std::size_t b = 0; b < bodies().size(); ++b) {
       const auto &body = cells_->body_class(b);
-      const auto &shape = cells_->shape(b);
+      const auto of_body = cells_->shape(b);
+      const BodyShape<dim> &shape = *of_body;
       std::vector<double> nodal(shape.n_nodes * dim);
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         field(cells_->place(b, shape.nodes[i]), unsigned(b),
@@ -290,7 +297,8 @@ namespace nsfd
   {
     double value[dim], gradient[dim * dim];
     for (std::size_t b = 0; b < bodies().size(); ++b) {
-      const auto &shape = cells_->shape(b);
+      const auto of_body = cells_->shape(b);
+      const BodyShape<dim> &shape = *of_body;
       const double *u = nodal.data() + cells_->first_node[b] * dim;
       for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
         std::fill(value, value + dim, 0.);

@@ -44,8 +44,8 @@ namespace nsfd
     bodies.slot_sign.assign(bodies.first_slot.back(), 1);
     // the nearest one; where faces of the cell meet, that of the face of the
     // point
-    const auto slot_of = [&](const std::size_t b, const unsigned int i) {
-      const auto &shape = cells.shape(b);
+    const auto slot_of = [&](const std::size_t b, const BodyShape<dim> &shape,
+                             const unsigned int i) {
       const double tolerance = 1e-7 * shape.corners.back().norm();
       const auto &centre = points.faces[points.face_of[i]].centre;
       // how far the face of the point is out of that of a slot
@@ -94,8 +94,10 @@ namespace nsfd
       for (unsigned int side = 0; side < 2; ++side) {
         if (face.bodies[side] < 0)
           continue;
+        const auto of_body = cells.shape(std::size_t(face.bodies[side]));
         for (unsigned int i = face.first; i < face.first + face.count; ++i) {
-          const std::size_t slot = slot_of(face.bodies[side], i);
+          const std::size_t slot =
+              slot_of(std::size_t(face.bodies[side]), *of_body, i);
           if (bodies.slot_point[slot] < n) {
             bodies.extra_points.emplace_back(slot, i);
             AssertThrow(side == 1 && face.boundary,

@@ -53,7 +53,8 @@ namespace nsfd
     add_volume(cells, t, nodal);
     for (const auto &load : faces_) {
       const auto &boundary = input_.boundaries[load.boundary];
-      const auto &shape = cells.shape(load.body);
+      const auto of_body = cells.shape(load.body);
+      const BodyShape<dim> &shape = *of_body;
       const FaceGeometry<dim> face(shape.reference, shape.corners, load.face);
       Quadrature<dim - 1> quadrature;
       if (face.is_triangle())
@@ -84,7 +85,8 @@ namespace nsfd
                               std::vector<double> &nodal) const
   {
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
-      const auto &shape = cells.shape(b);
+      const auto of_body = cells.shape(b);
+      const BodyShape<dim> &shape = *of_body;
       const auto &material = input_.materials[cells.body_class(b).material];
       for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
         const Point<dim> x = cells.place(b, shape.positions[q]);

@@ -70,7 +70,7 @@ namespace nsfd
             forces_[bodies.first_dof[b] + j] = y[j * lanes + l];
           if (this->front_.acts()) {
             const auto &mean = divergence_[bodies.class_of[b]];
-            const double volume = discretization_.cells().shape(b).volume;
+            const double volume = discretization_.cells().volume(b);
             double now = 0.;
             for (unsigned int j = 0; j < body.n_dofs; ++j)
               now += mean[j] * x[j * lanes + l];

@@ -53,18 +53,34 @@ namespace nsfd
       }
     }
 
-    /** tr eps of a lane. */
+    /** tr eps of all lanes. */
     template <int dim>
-    NSFD_INLINE double dilatation_of(const double *cells,
-                                     const double *stresses,
-                                     const unsigned int l)
+    NSFD_INLINE void dilatation_block(const double *cells,
+                                      const double *stresses, double *result)
     {
-      const double lambda = cells[(dim * dim + 1) * lanes + l],
-                   mu = cells[(dim * dim + 2) * lanes + l];
-      double trace = 0.;
+      const double *lambda = cells + (dim * dim + 1) * lanes,
+                   *mu = lambda + lanes;
+      double trace[lanes] = {};
       for (unsigned int a = 0; a < dim; ++a)
-        trace += stresses[a * lanes + l];
-      return trace / (dim * lambda + 2. * mu);
+        for (unsigned int l = 0; l < lanes; ++l)
+          trace[l] += stresses[a * lanes + l];
+      for (unsigned int l = 0; l < lanes; ++l)
+        result[l] = trace[l] / (dim * lambda[l] + 2. * mu[l]);
+    }
+
+    /** The largest sigma : sigma of the lanes. */
+    template <int dim>
+    NSFD_INLINE double peak_of_block(const double *stresses)
+    {
+      double square[lanes] = {};
+      for (unsigned int s = 0; s < dim * (dim + 1) / 2; ++s)
+        for (unsigned int l = 0; l < lanes; ++l)
+          square[l] += (s < dim ? 1. : 2.) * stresses[s * lanes + l] *
+                       stresses[s * lanes + l];
+      double peak = 0.;
+      for (unsigned int l = 0; l < lanes; ++l)
+        peak = square[l] > peak ? square[l] : peak;
+      return peak;
     }
 
     /** -volume sigma grad N_i of its corners. */
@@ -98,7 +114,8 @@ namespace nsfd
     template <int dim>
     NSFD_INLINE void set_all(const std::size_t n_cells, const double *cells,
                              const unsigned int *of, const double *q,
-                             double *stresses, double *f, FrontViscosity *front)
+                             double *stresses, double *peaks, double *f,
+                             FrontViscosity *front)
     {
       constexpr unsigned int n_corners = dim + 1,
                              n_stresses = dim * (dim + 1) / 2;
@@ -117,11 +134,19 @@ namespace nsfd
           strain_block<dim>(mine, last, q, sigma);
         } else
           strain_block<dim>(mine, corners, q, sigma);
+        peaks[block] = peak_of_block<dim>(sigma);
         double tension[lanes] = {};
-        for (unsigned int l = 0; front && l < count; ++l) {
-          front->update(first + l, dilatation_of<dim>(mine, sigma, l),
-                        mine[dim * dim * lanes + l]);
-          tension[l] = front->tension[first + l];
+        if (front) {
+          double now[lanes];
+          dilatation_block<dim>(mine, sigma, now);
+          const double *volume = mine + dim * dim * lanes;
+          if (count == lanes)
+            front->update_block<lanes>(first, now, volume);
+          else
+            for (unsigned int l = 0; l < count; ++l)
+              front->update(first + l, now[l], volume[l]);
+          for (unsigned int l = 0; l < count; ++l)
+            tension[l] = front->tension[first + l];
         }
         force_block<dim>(mine, sigma, front ? tension : nullptr, F);
         for (unsigned int l = 0; l < count; ++l)
@@ -135,29 +160,40 @@ namespace nsfd
     NSFD_CLONES
     void set_plane(const std::size_t n, const double *cells,
                    const unsigned int *of, const double *q, double *stresses,
-                   double *f, FrontViscosity *front)
+                   double *peaks, double *f, FrontViscosity *front)
     {
-      set_all<2>(n, cells, of, q, stresses, f, front);
+      set_all<2>(n, cells, of, q, stresses, peaks, f, front);
     }
 
     NSFD_CLONES
     void set_space(const std::size_t n, const double *cells,
                    const unsigned int *of, const double *q, double *stresses,
-                   double *f, FrontViscosity *front)
+                   double *peaks, double *f, FrontViscosity *front)
     {
-      set_all<3>(n, cells, of, q, stresses, f, front);
+      set_all<3>(n, cells, of, q, stresses, peaks, f, front);
     }
 
     template <int dim>
     NSFD_INLINE void square_all(const StrengthSites &sites,
-                                const double *stresses, double *squares)
+                                const double *stresses, const double *peaks,
+                                double *squares)
     {
       constexpr unsigned int n_stresses = dim * (dim + 1) / 2;
+      constexpr double quiet =
+          StrengthSites::looked_at * StrengthSites::looked_at;
+      const double *least = sites.least.data();
       const std::size_t n = sites.size();
       const auto *cells = sites.cells.data();
       const double *normals = sites.normal.data(),
                    *weights = sites.shear_weight.data();
       for (std::size_t k = 0; k < n; ++k) {
+        // |(sigma_1 + sigma_2) n / 2| is not above either norm's largest
+        const double peak_1 = peaks[cells[k][0] / lanes],
+                     peak_2 = peaks[cells[k][1] / lanes];
+        if ((peak_1 > peak_2 ? peak_1 : peak_2) < quiet * least[k]) {
+          squares[k] = 0.;
+          continue;
+        }
         double sigma[n_stresses];
         const double *one = stresses +
                             (cells[k][0] / lanes) * n_stresses * lanes +
@@ -183,16 +219,16 @@ namespace nsfd
 
     NSFD_CLONES
     void square_plane(const StrengthSites &sites, const double *stresses,
-                      double *squares)
+                      const double *peaks, double *squares)
     {
-      square_all<2>(sites, stresses, squares);
+      square_all<2>(sites, stresses, peaks, squares);
     }
 
     NSFD_CLONES
     void square_space(const StrengthSites &sites, const double *stresses,
-                      double *squares)
+                      const double *peaks, double *squares)
     {
-      square_all<3>(sites, stresses, squares);
+      square_all<3>(sites, stresses, peaks, squares);
     }
   } // namespace
 
@@ -223,8 +259,10 @@ namespace nsfd
     const std::size_t n_blocks = (n_cells_ + lanes - 1) / lanes;
     cells_.assign(n_blocks * per_cell<dim> * lanes, 0.);
     stresses_.assign(n_blocks * n_stresses * lanes, 0.);
+    peaks_.assign(n_blocks, 0.);
     for (std::size_t b = 0; b < n_cells_; ++b) {
-      const BodyShape<dim> &shape = cells.shape(b);
+      const auto of_body = cells.shape(b);
+      const BodyShape<dim> &shape = *of_body;
       double *mine =
           cells_.data() + (b / lanes) * per_cell<dim> * lanes + b % lanes;
       for (unsigned int i = 1; i <= dim; ++i)
@@ -242,8 +280,8 @@ namespace nsfd
     std::fill(groups.force.begin(), groups.force.end(), 0.);
     (dim == 2 ? set_plane : set_space)(
         n_cells_, cells_.data(), groups.of_corners().data(),
-        groups.displacement.data(), stresses_.data(), groups.force.data(),
-        this->front_.acts() ? &this->front_ : nullptr);
+        groups.displacement.data(), stresses_.data(), peaks_.data(),
+        groups.force.data(), this->front_.acts() ? &this->front_ : nullptr);
   }
 
   template <int dim>
@@ -282,7 +320,7 @@ namespace nsfd
   {
     squares.resize(sites.size());
     (dim == 2 ? square_plane : square_space)(sites, stresses_.data(),
-                                             squares.data());
+                                             peaks_.data(), squares.data());
   }
 
   template <int dim>

@@ -33,5 +33,6 @@ namespace nsfd
     std::vector<double> cells_;
     /// by block: sigma_xx, yy(, zz), xy(, xz, yz), Pa
     std::vector<double> stresses_;
+    std::vector<double> peaks_; ///< by block: the largest sigma : sigma, Pa^2
   };
 } // namespace nsfd

@@ -25,7 +25,8 @@ namespace nsfd
       for_all_places(discretization.bodies(), points.n_points,
                      [&](const std::size_t body, const unsigned int slot,
                          const std::size_t point, unsigned int) {
-                       const auto &shape = discretization.cells().shape(body);
+                       const auto &shape =
+                           discretization.cells().class_shape(body);
                        if (!(shape.divided >> shape.slot_faces[slot] & 1u))
                          return;
                        result.resize(points.faces.size(), 0);
@@ -45,19 +46,14 @@ namespace nsfd
     if (!acts_)
       return;
     const Cells<dim> &cells = discretization.cells();
-    const auto frequency = frequencies_of_classes(cells);
-    std::vector<double> of_class;
-    for (std::size_t k = 0; k < cells.shapes.size(); ++k) {
-      const BodyShape<dim> &shape = cells.shapes[k];
-      const double omega = frequency[k];
-      double bulk = 0.;
-      for (const auto &local : shape.elasticity)
-        bulk = std::max(bulk, local.lambda + 2. * local.mu / dim);
-      of_class.push_back(omega > 0. ? 2. * share * bulk / omega : 0.);
-    }
     const std::size_t n = cells.bodies.size();
-    for (std::size_t b = 0; b < n; ++b)
-      eta_.push_back(of_class[cells.bodies.class_of[b]]);
+    const auto frequency = frequencies_of_bodies(cells);
+    for (std::size_t b = 0; b < n; ++b) {
+      double bulk = 0.;
+      for (const auto &local : cells.class_shape(b).elasticity)
+        bulk = std::max(bulk, local.lambda + 2. * local.mu / dim);
+      eta_.push_back(frequency[b] > 0. ? 2. * share * bulk / frequency[b] : 0.);
+    }
     tension.assign(n, 0.);
     dilatation = rate = viscosity = present_viscosity = tension;
     terms_.assign(4 * n, 0.);

@@ -3,6 +3,7 @@
 #include "ghost_cells.h"
 
 #include "core/communicator.h"
+#include "core/instruction_sets.h"
 #include "discretization/discretization.h"
 
 #include <algorithm>
@@ -90,6 +91,57 @@ namespace nsfd
       tension[cell] = next * D;
       dilatation[cell] = now;
       rate[cell] = D;
+    }
+
+    /** The same, to the last bit, of @p n cells one after the other. */
+    template <unsigned int n>
+    NSFD_INLINE void update_block(const std::size_t first, const double *now,
+                                  const double *volume)
+    {
+      if (holds || !(h_ > 0.)) {
+        for (unsigned int l = 0; l < n; ++l)
+          update(first + l, now[l], volume[l]);
+        return;
+      }
+      // all in arrays that nothing else can be: loops over lanes
+      const double h = h_, kick = kick_;
+      double V[n], x[n], p[n], d[n], before[n], last[n], limit[n];
+      for (unsigned int l = 0; l < n; ++l) {
+        V[l] = volume[l];
+        x[l] = now[l];
+        p[l] = tension[first + l];
+        d[l] = dilatation[first + l];
+        before[l] = present_viscosity[first + l];
+        last[l] = rate[first + l];
+        limit[l] = viscosity[first + l];
+      }
+      double D[n], next[n], terms[4][n];
+      for (unsigned int l = 0; l < n; ++l) {
+        D[l] = (x[l] - d[l]) / h;
+        before[l] = kick * before[l];
+      }
+      for (unsigned int l = 0; l < n; ++l) {
+        const double ratio = last[l] / (D[l] != 0. ? D[l] : 1.);
+        const double r = D[l] != 0. ? ratio : 0.;
+        const double least = -before[l] / h * r * (2. + r);
+        next[l] = limit[l] < least ? least : limit[l];
+      }
+      for (unsigned int l = 0; l < n; ++l) {
+        const double sum = last[l] + D[l];
+        terms[0][l] = V[l] * p[l] * D[l];
+        terms[1][l] = V[l] * next[l] * D[l] * D[l];
+        terms[2][l] = V[l] * next[l] * D[l] * x[l];
+        terms[3][l] =
+            V[l] / 4. *
+            (before[l] * sum * sum - (before[l] - h * next[l]) * D[l] * D[l]);
+        p[l] = next[l] * D[l];
+      }
+      for (unsigned int row = 0; row < 4; ++row)
+        std::copy_n(terms[row], n, &terms_[row * eta_.size() + first]);
+      std::copy_n(next, n, &present_viscosity[first]);
+      std::copy_n(p, n, &tension[first]);
+      std::copy_n(x, n, &dilatation[first]);
+      std::copy_n(D, n, &rate[first]);
     }
 
     /** Tensions stay what they are: those of a checkpoint. */

@@ -44,7 +44,7 @@ namespace nsfd
       for_all_places(bodies, none,
                      [&](const std::size_t body, const unsigned int slot,
                          const std::size_t point, unsigned int) {
-                       const auto &faces = cells.shape(body).slot_faces;
+                       const auto &faces = cells.class_shape(body).slot_faces;
                        const unsigned int face = faces[slot];
                        const auto first =
                            std::find(faces.begin(), faces.end(), face);

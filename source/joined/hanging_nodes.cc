@@ -1,5 +1,7 @@
 #include "hanging_nodes.h"
 
+#include "cell_forces.h"
+
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
 
@@ -59,7 +61,7 @@ namespace nsfd
   {
     const auto nodes = lobatto_nodes(cells);
     const auto n = unsigned(nodes.size());
-    const auto &shape = cells.shape(cell);
+    const auto &shape = cells.class_shape(cell);
     const unsigned int face = shape.slot_faces[slot];
     std::array<std::vector<double>, dim> along;
     for (unsigned int d = 0; d < dim; ++d)
@@ -137,8 +139,8 @@ namespace nsfd
     const unsigned int n = cells.element->degree + 1;
     for (std::size_t b = 0; b < cells.bodies.size(); ++b)
       for (unsigned int f = 0; f < 2 * dim; ++f)
-        for (unsigned int i = 0; i < cells.shape(b).n_nodes; ++i)
-          if ((cells.shape(b).divided >> f & 1u) && is_on_face(i, n, f))
+        for (unsigned int i = 0; i < cells.class_shape(b).n_nodes; ++i)
+          if ((cells.class_shape(b).divided >> f & 1u) && is_on_face(i, n, f))
             flags_[cells.first_node[b] + i] |= loaded;
     if (layer_) {
       const unsigned int n_nodes = cells.element->n_dofs_per_cell();
@@ -357,6 +359,14 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         force[c] += shares[l * dim + c];
     }
+  }
+
+  template <int dim>
+  void HangingNodes<dim>::set_forces(CellForces<dim> &forces,
+                                     CornerGroups<dim> &groups) const
+  {
+    forces.set_forces(groups);
+    collect(groups, groups.force, groups.shares);
   }
 
   template <int dim>

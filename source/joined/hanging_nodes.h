@@ -9,6 +9,9 @@
 
 namespace nsfd
 {
+  template <int dim>
+  class CellForces;
+
   /**
    * The trace of a cell of quads or hexes at a slot: nodes of the cell on that
    * face and their polynomials, without those that are 0.
@@ -79,6 +82,8 @@ namespace nsfd
      */
     double mass_share() const;
 
+    /** Of cells, on the groups that move by themselves. Collective. */
+    void set_forces(CellForces<dim> &forces, CornerGroups<dim> &groups) const;
     /** C^T of forces on groups; @p shares is what corners got. Collective. */
     void collect(const CornerGroups<dim> &groups, std::vector<double> &forces,
                  std::vector<double> &shares) const;

@@ -33,8 +33,9 @@ namespace nsfd
     mass_.resize(node_.size());
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
       const std::size_t first = cells.first_node[b];
+      const auto shape = cells.shape(b);
       for (std::size_t i = first; i < cells.first_node[b + 1]; ++i)
-        mass_[i] = lumped_mass(cells.shape(b), unsigned(i - first));
+        mass_[i] = lumped_mass(*shape, unsigned(i - first));
     }
     find_corners(discretization, ghosts);
     const auto own =
@@ -66,7 +67,7 @@ namespace nsfd
         [&](const std::size_t body, const unsigned int slot,
             const std::size_t point, const unsigned int side) {
           const int i = nodes[cells.bodies.class_of[body]][slot];
-          const auto &shape = cells.shape(body);
+          const auto &shape = cells.class_shape(body);
           if (shape.divided >> shape.slot_faces[slot] & 1u) {
             between_sizes_.resize(n, 0);
             between_sizes_[point] = 1;

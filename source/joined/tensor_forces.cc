@@ -166,7 +166,8 @@ namespace nsfd
       const std::size_t index = b / lanes, lane = b % lanes;
       const std::size_t cell =
           std::min(first_cell_[index] + lane, first_cell_[index + 1] - 1);
-      const auto &shape = cells.shape(cell);
+      const auto of_body = cells.shape(cell);
+      const BodyShape<dim> &shape = *of_body;
       for (unsigned int subset = 1; subset < 1u << dim; ++subset)
         for (unsigned int c = 0; c < dim; ++c)
           maps_[index * per_map + ((subset - 1) * dim + c) * lanes + lane] =
@@ -215,23 +216,23 @@ namespace nsfd
     const Cells<dim> &cells = discretization_.cells();
     const std::size_t n = discretization_.points().n_points;
     place_.of_point.assign(n, {{0, 0}});
-    for_all_places(cells.bodies, n,
-                   [&](const std::size_t body, const unsigned int slot,
-                       const std::size_t point, const unsigned int side) {
-                     const unsigned int corner = mesh.corners(point)[side],
-                                        face =
-                                            cells.shape(body).slot_faces[slot];
-                     if (corner != JoinedMesh<dim>::none) {
-                       place_.of_point[point][side] = place_in_faces(
-                           corner - unsigned(cells.first_node[body]), face);
-                       return;
-                     }
-                     place_.of_point[point][side] = hangs;
-                     for (const auto &[node, value] :
-                          trace_at(cells, unsigned(body), slot))
-                       place_.between[unsigned(point)].emplace_back(
-                           place_in_faces(node, face), value);
-                   });
+    for_all_places(
+        cells.bodies, n,
+        [&](const std::size_t body, const unsigned int slot,
+            const std::size_t point, const unsigned int side) {
+          const unsigned int corner = mesh.corners(point)[side],
+                             face = cells.class_shape(body).slot_faces[slot];
+          if (corner != JoinedMesh<dim>::none) {
+            place_.of_point[point][side] =
+                place_in_faces(corner - unsigned(cells.first_node[body]), face);
+            return;
+          }
+          place_.of_point[point][side] = hangs;
+          for (const auto &[node, value] :
+               trace_at(cells, unsigned(body), slot))
+            place_.between[unsigned(point)].emplace_back(
+                place_in_faces(node, face), value);
+        });
   }
 
   template <int dim>

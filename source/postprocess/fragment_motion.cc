@@ -186,15 +186,14 @@ namespace nsfd
     masses_.clear();
     for (const auto &body : discretization_.bodies().classes) {
       auto &mass = masses_.emplace_back();
-      if (body.bodies.empty())
+      if (body.bodies.empty() || discretization_.cells().differ())
         continue;
-      const auto &shape = discretization_.cells().shape(body.bodies[0]);
+      const auto of_body = discretization_.cells().shape(body.bodies[0]);
+      const BodyShape<dim> &shape = *of_body;
       const Block &nodal = body.rigid ? shape.nodal_mass : body.mass;
       for (unsigned int i = 0; i < shape.n_nodes; ++i)
         for (unsigned int j = 0; j < shape.n_nodes; ++j)
-          mass.push_back(nodal.rows > 0 ? nodal(i * dim, j * dim)
-                         : i == j       ? lumped_mass(shape, i)
-                                        : 0.);
+          mass.push_back(nodal(i * dim, j * dim));
     }
   }
 
@@ -204,9 +203,18 @@ namespace nsfd
                                       const std::vector<double> &velocity) const
       -> Body
   {
-    const auto &shape = discretization_.cells().shape(cell);
-    const auto &mass = masses_[discretization_.bodies().class_of[cell]];
+    const auto of_body = discretization_.cells().shape(cell);
+    const BodyShape<dim> &shape = *of_body;
     const unsigned int n = shape.n_nodes;
+    thread_local std::vector<double> lumped;
+    if (discretization_.cells().differ()) {
+      lumped.assign(n * n, 0.);
+      for (unsigned int i = 0; i < n; ++i)
+        lumped[i * n + i] = lumped_mass(shape, i);
+    }
+    const auto &mass = discretization_.cells().differ()
+                           ? lumped
+                           : masses_[discretization_.bodies().class_of[cell]];
     const auto corner = discretization_.cells().corners[cell][0];
     const std::size_t first = discretization_.cells().first_node[cell] * dim;
     thread_local std::vector<Vec3> x, v;
@@ -308,7 +316,7 @@ namespace nsfd
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
       Amounts &sum = sums[pieces.of_cell(c)];
       ++sum.cells;
-      sum.volume.add(discretization_.cells().shape(c).volume);
+      sum.volume.add(discretization_.cells().volume(c));
     }
     for (const Body &body : bodies) {
       Amounts &sum = sums[pieces.of_cell(body.cell)];

@@ -56,7 +56,8 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
     const MovingBodies<dim> *moving_;
-    std::vector<std::vector<double>> masses_; ///< by class, node x node
+    std::vector<std::vector<double>> masses_; ///< by class, node x node;
+                                              ///< none where cells differ()
     std::vector<double> first_beta_;
   };
 } // namespace nsfd

@@ -15,6 +15,7 @@
 #include "report.h"
 #include "summary_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -115,6 +116,21 @@ namespace nsfd
             state.step % output.fields_every_steps == 0);
   }
 
+  /**
+   * Keeps every second one where there are too many pictures, or more polygons
+   * than some 300 MB hold.
+   */
+  template <int dim>
+  void RunOutput<dim>::thin_snapshots()
+  {
+    constexpr std::size_t most = 24, most_polygons = 600000;
+    const std::size_t n = std::max<std::size_t>(
+        1, snapshots_.empty() ? 0 : snapshots_.back().polygons.size());
+    if (snapshots_.size() > std::clamp<std::size_t>(most_polygons / n, 2, most))
+      for (std::size_t k = 1; k < snapshots_.size(); ++k)
+        snapshots_.erase(snapshots_.begin() + long(k));
+  }
+
   template <int dim>
   bool RunOutput<dim>::write_if_due(const State &state, const double time_step,
                                     const Fragments<dim> &fragments,
@@ -136,9 +152,7 @@ namespace nsfd
         fragments_->write(state, fragments);
       if (output.report) {
         snapshots_.push_back(fields_->snapshot(state, fragments));
-        if (snapshots_.size() > 24) // keep every second one
-          for (std::size_t k = 1; k < snapshots_.size(); ++k)
-            snapshots_.erase(snapshots_.begin() + long(k));
+        thin_snapshots();
       }
       charge_memory("fields and curves");
     }
@@ -212,7 +226,7 @@ namespace nsfd
 
   template <int dim>
   void RunOutput<dim>::write_summary(const Summary &summary,
-                                     const Certificate &certificate) const
+                                     const Certificate &certificate)
   {
     if (!communicator_.is_root())
       return;
@@ -229,7 +243,7 @@ namespace nsfd
 
   template <int dim>
   void RunOutput<dim>::write_page(const Summary &summary,
-                                  const RunFindings &findings) const
+                                  const RunFindings &findings)
   {
     Report report;
     report.title = input_.title;
@@ -239,7 +253,7 @@ namespace nsfd
     report.findings = findings;
     report.history = history_;
     report.reaction_names = driven_;
-    report.snapshots = snapshots_;
+    report.snapshots = std::move(snapshots_);
     report.parameters = input_.echo;
     write_report(input_.output.directory + "/report.html", report);
   }

@@ -71,8 +71,7 @@ namespace nsfd
     void serialize(Archive &archive);
 
     /** summary.json and the report; nothing except on rank 0. */
-    void write_summary(const Summary &summary,
-                       const Certificate &certificate) const;
+    void write_summary(const Summary &summary, const Certificate &certificate);
 
     /** CPU seconds spent on fields and pictures. */
     double cpu() const { return cpu_; }
@@ -84,7 +83,8 @@ namespace nsfd
     void keep(const HistoryRow &row);
     void write_descriptions() const;
     void serialize_history(Archive &archive);
-    void write_page(const Summary &summary, const RunFindings &findings) const;
+    void thin_snapshots();
+    void write_page(const Summary &summary, const RunFindings &findings);
 
     const SceneInput &input_;
     const RunInfo info_;

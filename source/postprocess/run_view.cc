@@ -217,7 +217,7 @@ namespace nsfd
       const unsigned int b = slots[k].body, s = slots[k].slot;
       const Sampler<dim> &sampler = mesh_.slots_of(b);
       const double weight =
-          discretization_.cells().shape(b).slot_normals[s].norm();
+          discretization_.cells().shape(b)->slot_normals[s].norm();
       if (!motion_.state()) {
         terms[k] = weight;
         continue;
@@ -267,7 +267,8 @@ namespace nsfd
   {
     const auto &now = motion_.middle();
     for (const unsigned int b : mesh_.cells_in(centre, radius)) {
-      const BodyShape<dim> &shape = discretization_.cells().shape(b);
+      const auto of_body = discretization_.cells().shape(b);
+      const BodyShape<dim> &shape = *of_body;
       const auto &material =
           input_.materials[discretization_.cells().body_class(b).material];
       const std::size_t node = discretization_.cells().first_node[b] * dim;

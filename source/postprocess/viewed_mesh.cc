@@ -31,9 +31,9 @@ namespace nsfd
     reach_.clear();
     for (unsigned int b = 0; b < discretization_.bodies().size(); ++b) {
       double reach = 0.;
+      const Point<dim> centre = discretization_.cells().centre(b);
       for (const auto &corner : discretization_.cells().corners[b])
-        reach =
-            std::max(reach, corner.distance(discretization_.cells().centre(b)));
+        reach = std::max(reach, corner.distance(centre));
       reach_.push_back(reach);
     }
   }
@@ -57,13 +57,13 @@ namespace nsfd
   template <int dim>
   const Sampler<dim> &ViewedMesh<dim>::slots_of(const unsigned int body) const
   {
-    const BodyShape<dim> &shape = discretization_.cells().shape(body);
-    const auto known = samplers_.find(&shape);
+    const unsigned int k = discretization_.bodies().class_of[body];
+    const auto known = samplers_.find(k);
     if (known != samplers_.end())
       return known->second;
     return samplers_
-        .emplace(&shape, Sampler<dim>(*discretization_.cells().element,
-                                      shape.slot_places))
+        .emplace(k, Sampler<dim>(*discretization_.cells().element,
+                                 discretization_.cells().shapes[k].slot_places))
         .first->second;
   }
 
@@ -75,7 +75,7 @@ namespace nsfd
     std::vector<Slot> slots;
     const auto add_face = [&](const unsigned int body,
                               const unsigned int face) {
-      const auto &faces = discretization_.cells().shape(body).slot_faces;
+      const auto &faces = discretization_.cells().class_shape(body).slot_faces;
       for (unsigned int s = 0; s < faces.size(); ++s)
         if (faces[s] == face)
           slots.push_back({body, s});

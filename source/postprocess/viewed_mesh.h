@@ -64,6 +64,6 @@ namespace nsfd
     std::vector<double> reach_; ///< of a body around its centre, m
     /// per boundary block: body and number of its face
     std::vector<std::vector<std::array<unsigned int, 2>>> boundary_faces_;
-    mutable std::map<const BodyShape<dim> *, Sampler<dim>> samplers_;
+    mutable std::map<unsigned int, Sampler<dim>> samplers_; ///< by class
   };
 } // namespace nsfd

@@ -170,7 +170,7 @@ namespace nsfd
       };
       for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
         BodyMeasures &body = result[number(b)];
-        body.volume += discretization.cells().shape(b).volume;
+        body.volume += discretization.cells().volume(b);
         body.width =
             std::min(body.width,
                      width<dim>(reference, discretization.cells().corners[b]));
@@ -209,13 +209,10 @@ namespace nsfd
   {
     const auto &bodies = discretization_.bodies();
     gradients_.clear();
-    if (!input_.large_motion)
-      for (const BodyClass &body : bodies.classes)
-        gradients_.push_back(
-            body.bodies.empty()
-                ? std::vector<double>()
-                : gradient_rows(discretization_.cells().shape(body.bodies[0]),
-                                body));
+    if (!input_.large_motion && !discretization_.cells().differ())
+      for (std::size_t k = 0; k < bodies.classes.size(); ++k)
+        gradients_.push_back(gradient_rows(discretization_.cells().shapes[k],
+                                           bodies.classes[k]));
     double largest = 0.;
     for (unsigned int b = 0; b < bodies.size(); ++b)
       for (const auto &corner : discretization_.cells().corners[b])
@@ -250,8 +247,33 @@ namespace nsfd
   void Extremes<dim>::look_at_cells(const State &state)
   {
     const auto &bodies = discretization_.bodies();
+    const auto &cells = discretization_.cells();
     // strains by the sum of squares first, which is never less
     double square = strain_.value * strain_.value;
+    const auto look_at = [&](const Tensor<2, dim> &G, const unsigned int b,
+                             const bool rigid) {
+      const double turned = angle(G);
+      if (!(turned <= rotation_.value))
+        raise(rotation_, turned, state.time, in_space(cells.centre(b)));
+      const auto strain = symmetrize(G);
+      if (!rigid && !(strain * strain <= square)) {
+        raise(strain_, largest_principal(G), state.time,
+              in_space(cells.centre(b)));
+        square = strain_.value * strain_.value;
+      }
+    };
+    if (cells.differ() && !input_.large_motion)
+      for (unsigned int b = 0; b < bodies.size(); ++b) {
+        // of linear displacements: from the edges to those of their ends
+        const double *u = state.displacement.data() + bodies.first_dof[b];
+        Tensor<2, dim> X, U;
+        for (unsigned int v = 1; v <= dim; ++v)
+          for (unsigned int c = 0; c < dim; ++c) {
+            X[c][v - 1] = cells.corners[b][v][c] - cells.corners[b][0][c];
+            U[c][v - 1] = u[v * dim + c] - u[c];
+          }
+        look_at(U * invert(X), b, false);
+      }
     for (std::size_t k = 0; k < gradients_.size(); ++k) {
       const BodyClass &body = bodies.classes[k];
       const std::size_t n = body.n_dofs,
@@ -265,16 +287,7 @@ namespace nsfd
             for (unsigned int d = 0; d < dim; ++d, row += n)
               for (std::size_t j = 0; j < n; ++j)
                 G[c][d] += row[j] * u[j];
-          const double turned = angle(G);
-          if (!(turned <= rotation_.value))
-            raise(rotation_, turned, state.time,
-                  in_space(discretization_.cells().centre(b)));
-          const auto strain = symmetrize(G);
-          if (!body.rigid && !(strain * strain <= square)) {
-            raise(strain_, largest_principal(G), state.time,
-                  in_space(discretization_.cells().centre(b)));
-            square = strain_.value * strain_.value;
-          }
+          look_at(G, b, body.rigid);
         }
       }
     }

@@ -62,7 +62,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
     /// per class: displacement gradients (place, component, direction) x
-    /// unknown, row by row
+    /// unknown, row by row; none where cells differ()
     std::vector<std::vector<double>> gradients_;
     Peak rotation_, strain_, stride_;
     bool has_stride_ = false;

@@ -81,10 +81,11 @@ namespace nsfd
       const auto &bodies = discretization.bodies();
       for (const BodyClass &body : bodies.classes)
         for (const unsigned int b : body.bodies) {
-          const double speed = discretization.cells().shape(b).extremes.fastest;
+          const double speed =
+              discretization.cells().class_shape(b).extremes.fastest;
           if (!body.rigid && speed > 0.)
             longest = std::max(longest,
-                               discretization.cells().shape(b).height / speed);
+                               discretization.cells().shape(b)->height / speed);
         }
       return communicator.max(longest);
     }

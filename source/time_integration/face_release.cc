@@ -36,9 +36,9 @@ namespace nsfd
           !input.interfaces[origin.block].law)
         continue;
       const auto &block = input.interfaces[origin.block];
-      const bool whole =
-          cells.shape(std::size_t(face.bodies[0])).reference.is_simplex() ||
-          input.discretization.degree == 1;
+      const bool whole = cells.class_shape(std::size_t(face.bodies[0]))
+                             .reference.is_simplex() ||
+                         input.discretization.degree == 1;
       sites_.first_of_face.push_back(sites_.size());
       double least = infinity;
       for (unsigned int k = 0; k < (whole ? 1 : face.count); ++k) {

@@ -93,7 +93,7 @@ namespace nsfd
       hanging_.follow(*groups_);
     }
     supports_.find(*groups_);
-    set_forces();
+    hanging_.set_forces(*forces_, *groups_);
     front_ = forces_->front().finish(communicator_);
     if (discretization_.loads().any())
       set_loads(state.time);
@@ -118,14 +118,6 @@ namespace nsfd
     return ghosts_.without(std::move(state));
   }
 
-  /** On the groups that move by themselves. Collective. */
-  template <int dim>
-  void Leapfrog<dim>::set_forces()
-  {
-    forces_->set_forces(*groups_);
-    hanging_.collect(*groups_, groups_->force, groups_->shares);
-  }
-
   /** v.M v/2. Collective. */
   template <int dim>
   double Leapfrog<dim>::kinetic_energy()
@@ -135,6 +127,40 @@ namespace nsfd
     for (std::size_t k = 0; k < terms_.size(); ++k)
       terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
     return ghosts_.sum(g, terms_);
+  }
+
+  /** Of the groups, before they move; all sums at once. Collective. */
+  template <int dim>
+  void Leapfrog<dim>::set_energies(const double kick, const double h,
+                                   const double last, Energies &energies)
+  {
+    const auto &g = *groups_;
+    const std::size_t n = g.force.size();
+    const bool loaded = !loads_.of_groups.empty(), changed = h != last;
+    const std::size_t n_rows = 3 + (loaded ? 2 : 0) + (changed ? 1 : 0);
+    terms_.resize(n_rows * n);
+    double *const rows = terms_.data();
+    for (std::size_t i = 0, k = 0; i < g.size(); ++i)
+      for (unsigned int c = 0; c < dim; ++c, ++k) {
+        const double v = g.velocity[k], f = g.force[k];
+        rows[k] = g.mass[i] * v * v / 2.;
+        rows[n + k] = f * v;
+        rows[2 * n + k] = f * g.displacement[k];
+      }
+    for (std::size_t k = 0; loaded && k < n; ++k) {
+      rows[3 * n + k] = loads_.of_groups[k] * g.velocity[k];
+      rows[4 * n + k] = loads_.of_groups[k] * old_velocity_[k];
+    }
+    for (std::size_t k = 0; changed && k < n; ++k)
+      rows[(n_rows - 1) * n + k] = g.force[k] * old_velocity_[k];
+    const auto sums = ghosts_.sums(g, terms_, n_rows);
+    energies.kinetic = sums[0];
+    energies.power = sums[1];
+    energies.stored = -sums[2] / 2.;
+    if (loaded)
+      energies.work = kick / 2. * (sums[3] + sums[4]);
+    if (changed)
+      energies.numerical = -(last - h) / 4. * (sums[1] - sums.back());
   }
 
   template <int dim>
@@ -277,7 +303,6 @@ namespace nsfd
       const Charge charge(Cost::laws);
       report.released = let_go();
     }
-    double of_change = 0.;
     {
       const Charge charge(Cost::free_motion);
       if (discretization_.loads().depend_on_time() && old.time != loads_.time)
@@ -298,32 +323,20 @@ namespace nsfd
       check_.check_solution(h, old.time, report.solver, outcome.worst);
     }
     const Charge charge(Cost::energy_balance);
-    const auto &f = g.force;
     Energies energies;
-    if (h != last)
-      of_change =
-          (last - h) / 4. *
-          (ghosts_.dot(g, f, g.velocity) - ghosts_.dot(g, f, old_velocity_));
-    energies.numerical = -of_change;
-    energies.stored = -ghosts_.dot(g, f, g.displacement) / 2.;
-    energies.power = ghosts_.dot(g, f, g.velocity);
-    if (!loads_.of_groups.empty())
-      energies.work = kick / 2. *
-                      (ghosts_.dot(g, loads_.of_groups, g.velocity) +
-                       ghosts_.dot(g, loads_.of_groups, old_velocity_));
+    set_energies(kick, h, last, energies);
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
     points_.add_impulses(supports_.row_of_group(), g, supports_.rows());
     energies.work += supports_.work(communicator_, kick, old_velocity_, g);
-    energies.kinetic = kinetic_energy();
     {
       const Charge moving(Cost::update);
       old_displacement_.swap(g.displacement);
-      g.displacement.resize(f.size());
-      for (std::size_t k = 0; k < f.size(); ++k)
+      g.displacement.resize(g.force.size());
+      for (std::size_t k = 0; k < g.force.size(); ++k)
         g.displacement[k] = old_displacement_[k] + h * g.velocity[k];
       hanging_.follow(g);
       forces_->front().begin_step(h, kick);
-      set_forces();
+      hanging_.set_forces(*forces_, *groups_);
     }
     const auto front = forces_->front().finish(communicator_);
     energies.numerical += (last - h) / 4. * (front_.after - front.before);
@@ -333,7 +346,7 @@ namespace nsfd
     energies.kinetic -= h / 4. * front.after;
     energies.numerical += (kick - last) / 4. * front_.after;
     energies.viscous = front.taken;
-    energies.power_after = ghosts_.dot(g, f, g.velocity) + front.after;
+    energies.power_after = ghosts_.dot(g, g.force, g.velocity) + front.after;
     front_ = front;
     try {
       book(old, h, energies, next, report);

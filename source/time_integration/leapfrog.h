@@ -96,8 +96,8 @@ namespace nsfd
     void show_at(State &state, const std::vector<unsigned int> &place) const;
     void serialize_all(Archive &archive);
     void set_loads(double time);
-    void set_forces();
     double kinetic_energy();
+    void set_energies(double kick, double h, double last, Energies &energies);
     void gather(std::size_t node);
     unsigned int let_go();
     void count(const typename LeapfrogPoints<dim>::Outcome &mine,

@@ -84,9 +84,19 @@ namespace nsfd
   double LeapfrogGhosts<dim>::sum(const CornerGroups<dim> &groups,
                                   std::vector<double> &terms) const
   {
-    for (const unsigned int group : groups.not_counted())
-      std::fill_n(&terms[std::size_t(group) * dim], dim, 0.);
-    return communicator_.sum(terms);
+    return sums(groups, terms, 1)[0];
+  }
+
+  template <int dim>
+  std::vector<double> LeapfrogGhosts<dim>::sums(const CornerGroups<dim> &groups,
+                                                std::vector<double> &terms,
+                                                const std::size_t rows) const
+  {
+    const std::size_t n = groups.size() * dim;
+    for (std::size_t row = 0; row < rows; ++row)
+      for (const unsigned int group : groups.not_counted())
+        std::fill_n(&terms[row * n + std::size_t(group) * dim], dim, 0.);
+    return communicator_.sums(terms.data(), rows, n);
   }
 
   template <int dim>

@@ -56,6 +56,10 @@ namespace nsfd
     /** Sums over the groups of all ranks. Collective. */
     double sum(const CornerGroups<dim> &groups,
                std::vector<double> &terms) const;
+    /** Of rows of terms one after the other, which may change. */
+    std::vector<double> sums(const CornerGroups<dim> &groups,
+                             std::vector<double> &terms,
+                             std::size_t rows) const;
     double dot(const CornerGroups<dim> &groups, const std::vector<double> &a,
                const std::vector<double> &b) const;
 

@@ -82,7 +82,7 @@ namespace nsfd
     front.serialize(archive, discretization_.bodies().first_dof);
     if (archive.reads() && front.acts()) {
       front.holds = true;
-      set_forces();
+      hanging_.set_forces(*forces_, *groups_);
       front.holds = false;
     }
     archive.numbers("front", front_.before, front_.after, front_.stored,

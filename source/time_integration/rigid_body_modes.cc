@@ -73,10 +73,10 @@ namespace nsfd
       std::vector<double> moments((dim + 1) * n_bodies, 0.);
       for (unsigned int b = 0; b < n_bodies; ++b)
         if (ours(b)) {
-          moments[b] = discretization.cells().shape(b).volume;
+          moments[b] = discretization.cells().volume(b);
           for (unsigned int c = 0; c < dim; ++c)
             moments[(c + 1) * n_bodies + b] =
-                discretization.cells().shape(b).volume *
+                discretization.cells().volume(b) *
                 discretization.cells().centre(b)[c];
         }
       const auto sums = communicator.sums(moments.data(), dim + 1, n_bodies);

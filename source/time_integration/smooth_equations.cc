@@ -141,8 +141,9 @@ namespace nsfd
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const unsigned int m =
           discretization_.cells().body_class(unsigned(b)).material;
-      mass += discretization_.cells().shape(unsigned(b)).extremes.densest *
-              discretization_.cells().shape(unsigned(b)).volume;
+      mass +=
+          discretization_.cells().class_shape(unsigned(b)).extremes.densest *
+          discretization_.cells().volume(unsigned(b));
       if (!input_.materials[m].rigid)
         speed = std::max(speed, discretization_.extremes(m).fastest);
     }

@@ -124,7 +124,7 @@ namespace nsfd
     for (std::size_t b = 0; b < n; ++b) {
       for (unsigned int c = 0; c < dim; ++c)
         mine[b * width + c] = discretization_.cells().centre(unsigned(b))[c];
-      mine[b * width + 15] = discretization_.cells().shape(unsigned(b)).volume;
+      mine[b * width + 15] = discretization_.cells().volume(unsigned(b));
     }
     const auto add = [&](const unsigned int body, const unsigned int at,
                          const double share, const double *values,
@@ -137,7 +137,7 @@ namespace nsfd
         discretization_.to_nodal(state.displacement),
         [&](const unsigned int b, const dealii::Point<dim> &x, const double JxW,
             const double *value, const double *gradient) {
-          const double share = JxW / discretization_.cells().shape(b).volume;
+          const double share = JxW / discretization_.cells().volume(b);
           add(b, 3, share, value, dim);
           add(b, 9, share, stresses.visit(b, x, gradient).data(), 6);
         });
@@ -146,7 +146,7 @@ namespace nsfd
         discretization_.to_nodal(state.velocity),
         [&](const unsigned int b, const dealii::Point<dim> &, const double JxW,
             const double *value, const double *rate) {
-          const double share = JxW / discretization_.cells().shape(b).volume;
+          const double share = JxW / discretization_.cells().volume(b);
           add(b, 6, share, value, dim);
           if (is_viscous)
             add(b, 9, share, discretization_.viscous_stress(b, rate).data(), 6);

@@ -81,9 +81,9 @@ end
       const auto &cells = scene.discretization->cells();
       place.resize(groups.size());
       for (std::size_t b = 0; b < cells.bodies.size(); ++b)
-        for (unsigned int i = 0; i < cells.shape(b).n_nodes; ++i)
+        for (unsigned int i = 0; i < cells.class_shape(b).n_nodes; ++i)
           place[groups.of(cells.first_node[b] + i)] =
-              cells.place(b, cells.shape(b).nodes[i]);
+              cells.place(b, cells.class_shape(b).nodes[i]);
       hangs.resize(groups.size());
       for (const auto &tie : hanging.ties())
         hangs[tie.group] = 1;

@@ -48,7 +48,7 @@ namespace nsfd::test
       for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
         const std::size_t first = cells.bodies.first_dof[b];
         for (unsigned int j = 0; j < cells.body_class(b).n_dofs; ++j)
-          sum[j % dim] += lumped_mass(cells.shape(b), j / dim) *
+          sum[j % dim] += lumped_mass(*cells.shape(b), j / dim) *
                           this->state.velocity[first + j];
       }
       return sum;

@@ -107,8 +107,8 @@ namespace nsfd::test_hanging_motion
       std::map<std::pair<long, long>, double> result;
       const auto &cells = run.discretization->cells();
       for (std::size_t b = 0; b < cells.bodies.size(); ++b)
-        for (unsigned int i = 0; i < cells.shape(b).n_nodes; ++i) {
-          const auto x = cells.place(b, cells.shape(b).nodes[i]);
+        for (unsigned int i = 0; i < cells.class_shape(b).n_nodes; ++i) {
+          const auto x = cells.place(b, cells.class_shape(b).nodes[i]);
           result[{std::lround(1e4 * x[0]), std::lround(1e4 * x[1])}] =
               run.state.velocity[cells.bodies.first_dof[b] + 2 * i];
         }

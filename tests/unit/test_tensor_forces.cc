@@ -110,7 +110,7 @@ end
       dealii::Point<dim> node(const std::size_t b, const unsigned int i) const
       {
         const auto &cells = this->discretization->cells();
-        return cells.place(b, cells.shape(b).nodes[i]);
+        return cells.place(b, cells.shape(b)->nodes[i]);
       }
 
       JoinedMesh<dim> mesh;
@@ -215,7 +215,7 @@ end
       const auto &shapes = pair.discretization->cells();
       std::vector<char> inside(pair.groups.size(), 1);
       for (std::size_t b = 0; b < shapes.bodies.size(); ++b)
-        for (unsigned int i = 0; i < shapes.shape(b).n_nodes; ++i) {
+        for (unsigned int i = 0; i < shapes.class_shape(b).n_nodes; ++i) {
           const auto x = pair.node(b, i);
           const auto group = pair.groups.of(unsigned(shapes.first_node[b]) + i);
           for (unsigned int c = 0; c < dim; ++c) {
@@ -293,7 +293,8 @@ end
       const auto &of_cells = scene.discretization->cells();
       double error = 0., norm = 0.;
       for (std::size_t b = 0; b < of_cells.bodies.size(); ++b) {
-        const auto &shape = of_cells.shape(b);
+        const auto of_body = of_cells.shape(b);
+        const BodyShape<dim> &shape = *of_body;
         const double *u = &state.displacement[of_cells.bodies.first_dof[b]];
         for (std::size_t q = 0; q < shape.JxW.size(); ++q) {
           double value = 0.;

@@ -108,7 +108,8 @@ end
         if (i >= points.n_points)
           continue;
         ++n_found;
-        const auto &shape = cells.shape(b);
+        const auto of_body = cells.shape(b);
+        const BodyShape<3> &shape = *of_body;
         const std::size_t local = s - bodies.first_slot[b];
         const Vector x =
             Vector(cells.corners[b][0]) + Vector(shape.slot_positions[local]);
