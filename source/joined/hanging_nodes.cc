@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <stdexcept>
 
 namespace nsfd
 {
@@ -92,6 +93,12 @@ namespace nsfd
       return;
     set_rows();
     set_flags();
+    bool chain = false;
+    for (const unsigned int corner : master_)
+      chain = chain || hangs(corner);
+    if (layer ? layer->cells().anywhere(chain) : chain)
+      throw std::runtime_error("a mesh has neighbours whose sizes differ by "
+                               "more than a factor of two");
     set_held();
     if (!layer)
       return;

@@ -43,7 +43,11 @@ namespace nsfd
   class HangingNodes
   {
   public:
-    /** @p layer of the cells, null on one rank, outlives it. Collective. */
+    /**
+     * @p layer of the cells, null on one rank, outlives it. Collective.
+     * @throws std::runtime_error where what is followed hangs itself: not in
+     * meshes whose neighbours, over corners too, differ by one level at most.
+     */
     HangingNodes(const Discretization<dim> &discretization,
                  const JoinedMesh<dim> &mesh, const GhostLayer<dim> *layer);
 

@@ -26,7 +26,7 @@ namespace nsfd
   /** Faces that cannot let go because a node of smaller cells hangs there. */
   struct HeldFaces {
     double share = 0.; ///< the largest traction over the strength
-    std::string place; ///< "(1, 2) in all"
+    std::string place; ///< "(1, 2) of Interface: all"
   };
 
   /** What a run knows of itself when it ends. */

@@ -191,9 +191,9 @@ namespace nsfd
         facts.held.emplace();
         facts.held->share = held->share;
         if (held->share > 0.)
-          facts.held->place =
-              fmt::format("({:.6g}) in {}", fmt::join(held->centre, ", "),
-                          input.interfaces[held->block].name);
+          facts.held->place = fmt::format("({:.6g}) of Interface: {}",
+                                          fmt::join(held->centre, ", "),
+                                          input.interfaces[held->block].name);
       }
     extremes.fill(facts);
     facts.follows_jumps =

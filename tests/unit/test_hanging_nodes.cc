@@ -77,6 +77,26 @@ namespace nsfd::test_hanging_nodes
                            "Indicator: middle/cell size=0.2"}));
     }
 
+    // Neither on lattices nor where three or five cells meet, at cells of four
+    // sizes: it would be refused.
+    TEST(HangingNodes, FollowNodesThatMove)
+    {
+      std::string ball = test::refined_plate;
+      const auto corners = ball.find("  set lower corner"),
+                 end = ball.find("end\nsubsection Adaptivity");
+      ball.replace(corners, end - corners, "  set refinements = 1\n");
+      const std::vector<std::string> finer = {
+          "Mesh/type=hyper_ball", "Mesh/arguments=0, 0 : 1 : false",
+          "Adaptivity/levels=3", "Indicator: middle/cell size=0.06",
+          "Indicator: middle/region=(x - 0.3)^2 + (y - 0.25)^2 + (z - 0.1)^2 < "
+          "0.04"};
+      auto in_space = finer;
+      in_space[1] = "Mesh/arguments=0, 0, 0 : 1 : false";
+      in_space.push_back("dimension=3");
+      EXPECT_NO_THROW((test::Scene<2>(ball, finer)));
+      EXPECT_NO_THROW((test::Scene<3>(ball, in_space)));
+    }
+
     /** Masses are positive; they, and forces of any kind, have the sum and the
         moment that they had. */
     template <int dim>
