@@ -39,7 +39,7 @@ namespace nsfd
 
   double highest_frequency(const BodyClass &body)
   {
-    if (body.rigid)
+    if (body.undeformed)
       return 0.;
     // of L^{-1} K L^{-T}, M = L L^T
     const Block L = cholesky(body.mass);

@@ -38,12 +38,11 @@ namespace nsfd
       scene.time.front_viscosity = reader.number_in(
           *front, "front viscosity", "0.2", units::none, Range::closed(0., 1.));
     for (const MaterialInput &material : scene.materials)
-      if (material.rigid || material.is_viscous())
+      if (material.is_viscous())
         reader.error("scheme",
-                     fmt::format("scheme = explicit is for elastic bodies, "
-                                 "and material `{}` is {}",
-                                 material.name,
-                                 material.rigid ? "rigid" : "viscous"),
+                     fmt::format("scheme = explicit is for elastic and rigid "
+                                 "bodies, and material `{}` is viscous",
+                                 material.name),
                      "write scheme = moreau-jean");
     for (InterfaceInput &interface : scene.interfaces) {
       refuse_lift(reader, interface);

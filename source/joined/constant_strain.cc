@@ -64,7 +64,7 @@ namespace nsfd
       double trace = 0.;
       for (unsigned int a = 0; a < dim; ++a)
         trace += stresses[a * lanes + l];
-      return trace / (dim * lambda + 2. * mu);
+      return mu > 0. ? trace / (dim * lambda + 2. * mu) : 0.;
     }
 
     /** -volume sigma grad N_i of its corners. */
@@ -206,8 +206,8 @@ namespace nsfd
       const MaterialInput &material =
           discretization.input().materials[body.material];
       if (!cells.shapes[k].reference.is_simplex() ||
-          cells.shapes[k].n_nodes != dim + 1 || body.rigid ||
-          material.transverse || material.graded || material.is_viscous())
+          cells.shapes[k].n_nodes != dim + 1 || material.transverse ||
+          material.graded || material.is_viscous())
         return false;
     }
     return true;
@@ -231,6 +231,8 @@ namespace nsfd
         for (unsigned int d = 0; d < dim; ++d)
           mine[((i - 1) * dim + d) * lanes] = shape.gradients[i][d];
       mine[dim * dim * lanes] = shape.volume;
+      if (shape.elasticity.empty())
+        continue; // rigid: no stress
       mine[(dim * dim + 1) * lanes] = shape.elasticity[0].lambda;
       mine[(dim * dim + 2) * lanes] = shape.elasticity[0].mu;
     }

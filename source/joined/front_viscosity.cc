@@ -44,8 +44,11 @@ namespace nsfd
     terms_.assign(4 * n, 0.);
 
     std::vector<std::array<int, 2>> pairs;
+    const auto deforms = [&](const int b) {
+      return b >= 0 && !cells.body_class(std::size_t(b)).undeformed;
+    };
     for (const auto &face : discretization.points().faces)
-      if (!face.boundary && face.bodies[0] >= 0 && face.bodies[1] >= 0)
+      if (!face.boundary && deforms(face.bodies[0]) && deforms(face.bodies[1]))
         pairs.push_back(face.bodies);
     first_neighbor_.assign(n + 1, 0);
     for (const auto &pair : pairs)

@@ -53,6 +53,8 @@ namespace nsfd
 
     const Discretization<dim> &discretization_;
     StrengthSites sites_;
+    std::vector<double> share_; ///< of sites: traction over the mean that is
+                                ///< computed, 2 beside a rigid cell
     std::vector<typename LeapfrogPoints<dim>::Factors> factors_; ///< of sites
     std::vector<int> site_of_; ///< by point, -1: it never lets go
     std::vector<double> squares_, old_squares_; ///< of this step and the last

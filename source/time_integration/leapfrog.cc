@@ -1,14 +1,14 @@
 #include "leapfrog.h"
 
-#include "ghost_states.h"
 #include "initial_state.h"
 #include "point_name.h"
 #include "step_data.h"
 
 #include "core/cost.h"
 #include "core/stopwatch.h"
+#include "discretization/cells.h"
 #include "discretization/loads.h"
-#include "nsfd/core/archive.h"
+#include "joined/rigid_clusters.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -28,6 +28,38 @@ namespace nsfd
     {
       return kind == PointKind::bonded || kind == PointKind::rigid ||
              kind == PointKind::prescribed;
+    }
+
+    bool has_rigid_cells(const SceneInput &input)
+    {
+      return std::any_of(
+          input.materials.begin(), input.materials.end(),
+          [](const MaterialInput &material) { return material.rigid; });
+    }
+
+    /** A law between two rigid cells holds them from the start: they have no
+        stress that would tell when it is needed. */
+    template <int dim>
+    void hold_between_rigid_cells(const Discretization<dim> &discretization,
+                                  std::vector<std::uint8_t> &intact,
+                                  State &state)
+    {
+      for (const auto &face : discretization.points().faces) {
+        const PointOrigin origin = discretization.origins()[face.first];
+        const auto is_rigid = [&](const int b) {
+          return b >= 0 &&
+                 discretization.cells().body_class(std::size_t(b)).undeformed;
+        };
+        if (face.count == 0 || !is_interface(origin) ||
+            !discretization.input().interfaces[origin.block].law ||
+            !is_rigid(face.bodies[0]) || !is_rigid(face.bodies[1]))
+          continue;
+        for (unsigned int i = face.first; i < face.first + face.count; ++i)
+          if (intact[i]) {
+            intact[i] = 0;
+            state.kind[i] = PointKind::rigid;
+          }
+      }
     }
 
     /** Without what only steps of all points need. */
@@ -115,10 +147,17 @@ namespace nsfd
           mesh_.is_whole(mesh_.node_of_point(i)))
         points_.add(unsigned(i), faces_.factors(unsigned(i)), state);
     groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
+    rigid_.reset();
+    if (has_rigid_cells(input_))
+      rigid_ = std::make_unique<RigidGroups<dim>>(
+          discretization_, mesh_, communicator_, ghosts_.cells(),
+          rigid_clusters(discretization_, mesh_, communicator_, ghosts_.cells(),
+                         intact));
     faces_.start(std::move(intact));
     groups_->gather(state.displacement, groups_->displacement);
     groups_->gather(state.velocity, groups_->velocity);
-    supports_.find(*groups_);
+    ghosts_.fetch_motion(*groups_);
+    find_supports();
     forces_->set_forces(*groups_);
     front_ = forces_->front().finish(communicator_);
     if (discretization_.loads().any())
@@ -136,7 +175,12 @@ namespace nsfd
       if (intact[i])
         state.kind[i] = PointKind::bonded;
     }
+    hold_between_rigid_cells(discretization_, intact, state);
     take(state, std::move(intact));
+    if (rigid_) {
+      rigid_->check(input_.time.end, *groups_, supports_);
+      rigid_->start(*groups_);
+    }
     state.bond_traction.assign(state.jump.size(), 0.);
     show_at(state, {});
     const auto &g = *groups_;
@@ -147,6 +191,15 @@ namespace nsfd
     return ghosts_.without(std::move(state));
   }
 
+  template <int dim>
+  void Leapfrog<dim>::find_supports()
+  {
+    if (rigid_)
+      rigid_->find(*groups_, supports_);
+    else
+      supports_.find(*groups_, {});
+  }
+
   /** v.M v/2. Collective. */
   template <int dim>
   double Leapfrog<dim>::kinetic_energy()
@@ -155,7 +208,8 @@ namespace nsfd
     terms_.resize(g.velocity.size());
     for (std::size_t k = 0; k < terms_.size(); ++k)
       terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
-    return ghosts_.sum(g, terms_);
+    const double of_bodies = rigid_ ? rigid_->kinetic_energy(g, terms_) : 0.;
+    return ghosts_.sum(g, terms_) + of_bodies;
   }
 
   template <int dim>
@@ -232,8 +286,8 @@ namespace nsfd
         cut_support |= groups_->of(corner) < supports_.mask().size() &&
                        supports_.mask()[groups_->of(corner)] != 0;
     }
-    if (cut_support)
-      supports_.find(*groups_);
+    if (rigid_ ? communicator_.any(cut_support) : cut_support)
+      find_supports();
     supports_.resize(groups_->size());
     return n_released;
   }
@@ -259,6 +313,18 @@ namespace nsfd
           g.velocity[i * dim + c] +=
               kick / g.mass[i] * loads_.of_groups[i * dim + c];
     supports_.set_velocities(time, h, kick, g.force, loads_.of_groups, g);
+    if (rigid_)
+      rigid_->set_velocities(time, h, kick, g.force, loads_.of_groups,
+                             supports_, g);
+  }
+
+  /** To the velocities before the step. */
+  template <int dim>
+  void Leapfrog<dim>::go_back()
+  {
+    old_velocity_.swap(groups_->velocity);
+    if (rigid_)
+      rigid_->go_back();
   }
 
   /** What all ranks have done at the nodes. Collective. */
@@ -311,7 +377,7 @@ namespace nsfd
     count(outcome, report);
     ghosts_.finish(g);
     if (!report.solver.converged) {
-      old_velocity_.swap(g.velocity);
+      go_back();
       check_.check_solution(h, old.time, report.solver, outcome.worst);
     }
     const Charge charge(Cost::energy_balance);
@@ -331,6 +397,8 @@ namespace nsfd
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
     points_.add_impulses(supports_.row_of_group(), g, supports_.rows());
     energies.work += supports_.work(communicator_, kick, old_velocity_, g);
+    if (rigid_)
+      energies.work += rigid_->work(kick, supports_);
     energies.kinetic = kinetic_energy();
     {
       const Charge moving(Cost::update);
@@ -356,7 +424,7 @@ namespace nsfd
     } catch (const StepRejected &rejected) {
       // the state before it is what the run can still show
       old_displacement_.swap(g.displacement);
-      old_velocity_.swap(g.velocity);
+      go_back();
       throw StepRejected(rejected.what(), StepRejected::Cure::none);
     }
     report.separates = communicator_.any(points_.accept());
@@ -408,91 +476,6 @@ namespace nsfd
     const TakenStep step{old, next, h, scale, 0};
     check_.check_balance(step, report);
     check_.watch_energy(step, report);
-  }
-
-  /** Bodies and tractions with ghosts, points where they have a place. */
-  template <int dim>
-  void Leapfrog<dim>::show_at(State &state,
-                              const std::vector<unsigned int> &place) const
-  {
-    groups_->scatter(groups_->displacement, state.displacement);
-    groups_->scatter(groups_->velocity, state.velocity);
-    points_.show(state, place);
-    const auto &origins = discretization_.origins();
-    state.bond_traction.resize(origins.size() * dim);
-    faces_.show(*forces_, state.bond_traction);
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-      if (origins[i].kind != PointOrigin::Kind::motion)
-        continue;
-      const unsigned int at = place.empty() ? unsigned(i) : place[i];
-      if (at == unsigned(-1))
-        continue;
-      const unsigned int group = groups_->of(mesh_.a_corner(i));
-      for (unsigned int c = 0; c < dim; ++c) { // its axes are x, y, z
-        state.jump[std::size_t(at) * dim + c] =
-            groups_->displacement[group * dim + c];
-        state.relative_velocity[std::size_t(at) * dim + c] =
-            groups_->velocity[group * dim + c];
-      }
-    }
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::show(State &state) const
-  {
-    show_at(state, ghosts_.own_points());
-    const auto *layer = ghosts_.layer();
-    if (!layer)
-      return;
-    state.displacement = layer->own_unknowns(state.displacement);
-    state.velocity = layer->own_unknowns(state.velocity);
-    state.bond_traction = layer->own_points(state.bond_traction, dim);
-  }
-
-  template <int dim>
-  void
-  Leapfrog<dim>::fill_counters(std::map<std::string, double> &counters) const
-  {
-    counters["node_problems"] = double(counters_.problems);
-    counters["gauss_seidel_sweeps"] = double(counters_.sweeps);
-    counters["newton"] = double(counters_.newton);
-    counters["released_points"] = double(counters_.released);
-    counters["active_points"] =
-        double(communicator_.sum_integer(points_.n_counted()));
-    counters["node_problems_above_1e-12"] = double(counters_.loose);
-    counters["groups"] = double(communicator_.sum_integer(
-        groups_ ? groups_->size() - groups_->not_counted().size() : 0));
-    counters["worst_excess_over_strength"] =
-        communicator_.max(counters_.excess);
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::serialize(Archive &archive)
-  {
-    if (!ghosts_.layer())
-      return serialize_all(archive);
-    GhostArchive<dim> all(*ghosts_.layer(), archive);
-    serialize_all(all);
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::serialize_all(Archive &archive)
-  {
-    const Archive::Part part(archive, "leapfrog");
-    counters_.excess = communicator_.max(counters_.excess);
-    archive.numbers("excess", counters_.excess);
-    faces_.serialize(archive);
-    points_.serialize(archive);
-    auto &front = forces_->front();
-    front.serialize(archive, discretization_.bodies().first_dof);
-    if (archive.reads() && front.acts()) {
-      front.holds = true;
-      forces_->set_forces(*groups_);
-      front.holds = false;
-    }
-    archive.numbers("front", front_.before, front_.after, front_.stored,
-                    front_.taken);
-    archive.common("reactions", supports_.reactions());
   }
 
   template class Leapfrog<2>;

@@ -4,6 +4,7 @@
 #include "leapfrog_ghosts.h"
 #include "leapfrog_points.h"
 #include "prescribed_groups.h"
+#include "rigid_groups.h"
 #include "step_check.h"
 #include "time_integrator.h"
 
@@ -81,12 +82,14 @@ namespace nsfd
     void take(const State &state, std::vector<std::uint8_t> intact);
     void show_at(State &state, const std::vector<unsigned int> &place) const;
     void serialize_all(Archive &archive);
+    void find_supports();
     void set_loads(double time);
     double kinetic_energy();
     void gather(std::size_t node);
     unsigned int let_go();
     void count(const typename LeapfrogPoints<dim>::Outcome &mine,
                StepReport &report);
+    void go_back();
     void move_freely(double kick, double time, double h);
     void book(const State &old, double h, const Energies &bodies, State &next,
               StepReport &report);
@@ -105,6 +108,7 @@ namespace nsfd
     LeapfrogPoints<dim> points_;
     StepCheck check_;
     std::unique_ptr<CornerGroups<dim>> groups_;
+    std::unique_ptr<RigidGroups<dim>> rigid_; ///< null: there are none
     /// N; empty: none
     struct {
       std::vector<double> of_corners, of_groups;
