@@ -372,6 +372,9 @@ namespace nsfd
       const Charge charge(Cost::solver);
       outcome =
           points_.solve(h, last, supports_.mask(), input_.solver.tolerance, g);
+      if (rigid_)
+        points_.solve_rigid(input_.solver.tolerance, communicator_, *rigid_, g,
+                            outcome);
     }
     ghosts_.start(g);
     count(outcome, report);

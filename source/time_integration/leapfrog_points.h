@@ -15,6 +15,8 @@ namespace nsfd
 {
   class Archive;
   struct SceneInput;
+  template <int dim>
+  class RigidGroups;
 
   /**
    * The points of faces that have let go, and of obstacles, in the steps of
@@ -59,6 +61,13 @@ namespace nsfd
     Outcome solve(double time_step, double last,
                   const std::vector<std::uint8_t> &prescribed, double tolerance,
                   CornerGroups<dim> &groups);
+    /** Then those at @p rigid bodies, which solve() leaves: if these are free,
+        all in one, see CoupledNodes. Adds to @p outcome. Collective.
+        @throws std::runtime_error on all ranks where two of them touch, or one
+        an obstacle. */
+    void solve_rigid(double tolerance, const Communicator &communicator,
+                     RigidGroups<dim> &rigid, CornerGroups<dim> &groups,
+                     Outcome &outcome);
 
     /** What the points did in the step that was solved: sums over them, J. */
     struct Balance {
@@ -102,6 +111,7 @@ namespace nsfd
       std::size_t node;
       std::vector<unsigned int> points; ///< all active ones here
       bool is_new = true;               ///< points or groups have changed
+      bool is_rigid = false;            ///< there is a group of a rigid body
       NodeProblem<dim> problem;
       std::vector<unsigned int> groups; ///< of the problem
       /// of either chain
@@ -117,18 +127,16 @@ namespace nsfd
     void set_point(unsigned int a);
     void collect(Node &node, const std::vector<std::uint8_t> &prescribed,
                  const CornerGroups<dim> &groups);
-    void set_rule(double time_step, double last);
-    bool may_be_elastic(const Node &node) const;
     bool solve_elastic(Node &node);
     bool turn_friction(std::size_t first);
-    bool is_beyond_unique(unsigned int a,
-                          const PointEnergies<dim> &energies) const;
     void account_point(unsigned int a, std::size_t row, Balance &balance);
     void account_spring(unsigned int a, std::size_t row, Balance &balance);
     void keep_jump(unsigned int a, bool held);
     void keep(unsigned int a, const PointEnergies<dim> &energies);
-    std::array<double, dim> relative(unsigned int a,
-                                     const CornerGroups<dim> &groups) const;
+    void set_velocities(std::size_t first, const CornerGroups<dim> &groups);
+    void begin(Node &node, const CornerGroups<dim> &groups);
+    void solve_node(Node &node, double tolerance, CornerGroups<dim> &groups,
+                    Outcome &outcome);
 
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;

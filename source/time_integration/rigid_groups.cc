@@ -89,8 +89,45 @@ namespace nsfd
         for (unsigned int i = 0; i < n; ++i)
           body.velocity[i] += y * column[i];
       }
+      body.without = body.velocity;
     }
     scatter(groups);
+  }
+
+  template <int dim>
+  std::vector<std::array<double, dim>>
+  RigidGroups<dim>::columns(const unsigned int group, std::size_t &first) const
+  {
+    const Member &member = members_[std::size_t(member_[group])];
+    const Body &body = bodies_[member.body];
+    first = body.first_free;
+    std::vector<std::array<double, dim>> result(body.free.size());
+    for (std::size_t k = 0; k < result.size(); ++k)
+      for (unsigned int c = 0; c < dim; ++c)
+        result[k][c] = product(member.R[c], body.free[k]);
+    return result;
+  }
+
+  template <int dim>
+  void RigidGroups<dim>::move(const std::vector<double> &y,
+                              CornerGroups<dim> &groups)
+  {
+    for (Body &body : bodies_) {
+      body.velocity = body.without;
+      for (std::size_t k = 0; k < body.free.size(); ++k)
+        for (unsigned int i = 0; i < n_motions; ++i)
+          body.velocity[i] += y[body.first_free + k] * body.free[k][i];
+    }
+    scatter(groups);
+  }
+
+  template <int dim>
+  double RigidGroups<dim>::size_of_motion() const
+  {
+    double sum = 0.;
+    for (const Body &body : bodies_)
+      sum += product(body.without, times(body.mass, body.without));
+    return sum;
   }
 
   template <int dim>

@@ -62,6 +62,22 @@ namespace nsfd
                         const PrescribedGroups<dim> &supports,
                         CornerGroups<dim> &groups);
 
+    /** Of all bodies: what supports leave free. */
+    std::size_t n_free() const { return n_free_; }
+    bool takes(const unsigned int group) const
+    {
+      return group < member_.size() && member_[group] >= 0;
+    }
+    /** By free unknown of the body of a group that it takes, the first of which
+        is @p first: the velocity of the group. */
+    std::vector<std::array<double, dim>> columns(unsigned int group,
+                                                 std::size_t &first) const;
+    /** Velocities without impulses of points, and what the free unknowns @p y,
+        sqrt(J), add to them. */
+    void move(const std::vector<double> &y, CornerGroups<dim> &groups);
+    /** v.M v of the bodies without impulses of points, J. */
+    double size_of_motion() const;
+
     /**
      * Work of the impulses that the motions ask for, J; adds to the reactions
      * of @p supports, which has the impulses of the points in its rows.
@@ -96,8 +112,9 @@ namespace nsfd
       Matrix inverse_of_rows{}; ///< G^+
       std::vector<Motion> free; ///< columns of E
       bool is_held = false;     ///< there are rows
-      Motion velocity{}, before{};
-      Motion given{};           ///< k R^T f, N s
+      std::size_t first_free = 0;
+      Motion velocity{}, before{}, without{}; ///< without: points
+      Motion given{};                         ///< k R^T f, N s
       std::vector<Motion> rows; ///< sums of C by driven boundary and component
     };
 
@@ -121,5 +138,6 @@ namespace nsfd
     std::vector<Body> bodies_;
     std::vector<Member> members_;
     std::vector<int> member_; ///< by group, -1: none
+    std::size_t n_free_ = 0;
   };
 } // namespace nsfd

@@ -210,6 +210,8 @@ namespace nsfd
             column[i] = Q[i][k];
         }
       normalise<n>(body.mass, body.free);
+      body.first_free = b == 0 ? 0 : n_free_;
+      n_free_ = body.first_free + body.free.size();
     }
   }
 

@@ -48,7 +48,8 @@ end
     struct JoinedRow {
       std::string name;
       std::vector<std::string> set;
-      bool is_scene = false; ///< of prm/verification, or the square
+      /// of prm/verification or prm/benchmarks, or the square
+      bool is_scene = false;
     };
 
     void PrintTo(const JoinedRow &row, std::ostream *stream)
@@ -84,6 +85,8 @@ end
         {"spall_square", {"Mesh/cells=60, 1"}, true},
         {"plate_impact", {"Mesh/cells=80, 1"}, true},
         {"bar_wall", {"Mesh/cells=40, 1"}, true},
+        {"dcb_dynamic", {"Constants/fine=2", "Time/end=1"}, true},
+        {"rigid_punch", {"Time/end=15 us"}, true},
     };
 
     class JoinedRanksTest : public testing::TestWithParam<JoinedRow>
@@ -95,8 +98,9 @@ end
   {
     const JoinedRow &row = GetParam();
     const Workspace workspace;
-    const auto file =
-        row.is_scene ? scene(row.name) : workspace.path() / "square.prm";
+    const auto file = !row.is_scene ? workspace.path() / "square.prm"
+                      : row.name == "rigid_punch" ? benchmark(row.name)
+                                                  : scene(row.name);
     if (!row.is_scene)
       write_text(file, square);
     std::vector<std::string> set = {"Time/scheme=explicit", "Time/step=auto"};

@@ -87,6 +87,8 @@ namespace end_to_end::test_restart
         {"explicit_triangles",
          with(torn, {"Mesh/type=crossed triangles", "Mesh/cells=6, 6",
                      "Interface: all/friction=0.3", "Time/end=16 ns"})},
+        {"explicit_rigid",
+         {benchmark("rigid_punch"), {"Constants/n=6", "Time/end=15 us"}}},
         {"rubbing", rubbing},
         {"rubbing_iterations",
          with(rubbing, {"Constants/n=4", "Mesh/cells=4, 4", assembled, cg})},
