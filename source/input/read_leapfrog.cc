@@ -37,13 +37,6 @@ namespace nsfd
     if (front && front->text() != "auto")
       scene.time.front_viscosity = reader.number_in(
           *front, "front viscosity", "0.2", units::none, Range::closed(0., 1.));
-    for (const MaterialInput &material : scene.materials)
-      if (material.is_viscous())
-        reader.error("scheme",
-                     fmt::format("scheme = explicit is for elastic and rigid "
-                                 "bodies, and material `{}` is viscous",
-                                 material.name),
-                     "write scheme = moreau-jean");
     for (InterfaceInput &interface : scene.interfaces) {
       refuse_lift(reader, interface);
       if (interface.crack_pressure)

@@ -207,7 +207,7 @@ namespace nsfd
           discretization.input().materials[body.material];
       if (!cells.shapes[k].reference.is_simplex() ||
           cells.shapes[k].n_nodes != dim + 1 || material.transverse ||
-          material.graded || material.is_viscous())
+          material.graded)
         return false;
     }
     return true;

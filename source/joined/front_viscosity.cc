@@ -16,8 +16,6 @@ namespace nsfd
     constexpr double sharp = 0.15;
   } // namespace
 
-  double step_share(const double b) { return std::sqrt(1. + b * b) - b; }
-
   template <int dim>
   FrontViscosity::FrontViscosity(const Discretization<dim> &discretization,
                                  const double share, const GhostCells *ghosts)

@@ -83,7 +83,7 @@ namespace nsfd
       const MaterialInput &material =
           discretization.input().materials[body.material];
       if (!cells.shapes[k].reference.is_hyper_cube() || material.transverse ||
-          material.graded || material.is_viscous())
+          material.graded)
         return false;
     }
     const unsigned int degree = discretization.input().discretization.degree;

@@ -135,6 +135,30 @@ namespace nsfd
     return local;
   }
 
+  /** With what viscous materials add. */
+  template <int dim>
+  std::array<double, dim>
+  FaceRelease<dim>::traction(const CellForces<dim> &forces,
+                             const std::size_t site) const
+  {
+    auto t = forces.traction(sites_, site);
+    const auto *viscous = forces.viscous();
+    if (!viscous)
+      return t;
+    const auto &weight = discretization_.points().weight;
+    const unsigned int first = sites_.first_point[site],
+                       last = first + sites_.n_points[site];
+    double length = 0.;
+    for (unsigned int i = first; i < last; ++i)
+      length += weight[i];
+    for (unsigned int i = first; i < last; ++i) {
+      const auto more = viscous->traction(i);
+      for (unsigned int c = 0; c < dim; ++c)
+        t[c] += weight[i] / length * more[c];
+    }
+    return t;
+  }
+
   template <int dim>
   auto FaceRelease<dim>::reached(const CellForces<dim> &forces, double &excess)
       -> std::vector<unsigned int>
@@ -142,6 +166,12 @@ namespace nsfd
     std::vector<unsigned int> released;
     old_squares_.swap(squares_);
     forces.squared_tractions(sites_, squares_);
+    if (const auto *viscous = forces.viscous())
+      for (std::size_t k = 0; k < sites_.size(); ++k)
+        if (std::isfinite(sites_.limit[k]) &&
+            (viscous->acts_in(sites_.cells[k][0]) ||
+             viscous->acts_in(sites_.cells[k][1])))
+          squares_[k] = sites_.square(k, traction(forces, k));
     old_squares_.resize(squares_.size(), infinity); // nothing has grown
     constexpr double seen = StrengthSites::looked_at,
                      least = (too_far + seen) / 2.;
@@ -151,8 +181,7 @@ namespace nsfd
       const LawPoint here = law(k);
       double share = share_[k] * std::sqrt(squares_[k]) / here.strength();
       if (here.law().mixed()) {
-        const auto t =
-            in_frame(sites_.first_point[k], forces.traction(sites_, k));
+        const auto t = in_frame(sites_.first_point[k], traction(forces, k));
         share = share_[k] * here.template effective_traction<dim>(t[0], &t[1]) /
                 here.strength();
       }
@@ -191,7 +220,7 @@ namespace nsfd
       const unsigned int first = sites_.first_point[k];
       if (!intact_[first])
         continue;
-      auto t = forces.traction(sites_, k);
+      auto t = traction(forces, k);
       for (double &of_t : t)
         of_t *= share_[k];
       for (unsigned int i = first; i < first + sites_.n_points[k]; ++i) {

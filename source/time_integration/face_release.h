@@ -49,6 +49,8 @@ namespace nsfd
     LawPoint law(std::size_t site) const;
     std::array<double, dim> in_frame(std::size_t point,
                                      const std::array<double, dim> &t) const;
+    std::array<double, dim> traction(const CellForces<dim> &forces,
+                                     std::size_t site) const;
     void let_go(std::size_t site, std::vector<unsigned int> &released);
 
     const Discretization<dim> &discretization_;

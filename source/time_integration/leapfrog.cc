@@ -159,6 +159,8 @@ namespace nsfd
     ghosts_.fetch_motion(*groups_);
     find_supports();
     forces_->set_forces(*groups_);
+    if (auto *viscous = forces_->viscous())
+      viscous->set(*groups_);
     front_ = forces_->front().finish(communicator_);
     if (discretization_.loads().any())
       set_loads(state.time);
@@ -250,6 +252,8 @@ namespace nsfd
         if (!loads_.of_groups.empty())
           loads_.of_groups[g.of(corner) * dim + c] = 0.;
       }
+    if (auto *viscous = forces_->viscous())
+      viscous->gather(node, g);
     for (const unsigned int corner : mesh_.corners_of_node(node)) {
       const auto force = forces_->corner_force(corner, g);
       for (unsigned int c = 0; c < dim; ++c) {
@@ -307,15 +311,16 @@ namespace nsfd
         g.velocity[i * dim + c] =
             old_velocity_[i * dim + c] + share * g.force[i * dim + c];
     }
-    if (!loads_.of_groups.empty())
+    auto *viscous = forces_->viscous();
+    const std::vector<double> &given =
+        viscous ? viscous->with(loads_.of_groups) : loads_.of_groups;
+    if (!given.empty())
       for (std::size_t i = 0; i < g.size(); ++i)
         for (unsigned int c = 0; c < dim; ++c)
-          g.velocity[i * dim + c] +=
-              kick / g.mass[i] * loads_.of_groups[i * dim + c];
-    supports_.set_velocities(time, h, kick, g.force, loads_.of_groups, g);
+          g.velocity[i * dim + c] += kick / g.mass[i] * given[i * dim + c];
+    supports_.set_velocities(time, h, kick, g.force, given, g);
     if (rigid_)
-      rigid_->set_velocities(time, h, kick, g.force, loads_.of_groups,
-                             supports_, g);
+      rigid_->set_velocities(time, h, kick, g.force, given, supports_, g);
   }
 
   /** To the velocities before the step. */
@@ -420,6 +425,8 @@ namespace nsfd
     energies.kinetic -= h / 4. * front.after;
     energies.numerical += (kick - last) / 4. * front_.after;
     energies.viscous = front.taken;
+    if (forces_->viscous())
+      damp(h, last, energies);
     energies.power_after = ghosts_.dot(g, f, g.velocity) + front.after;
     front_ = front;
     try {
@@ -432,53 +439,6 @@ namespace nsfd
     }
     report.separates = communicator_.any(points_.accept());
     return report;
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::book(const State &old, const double h,
-                           const Energies &bodies, State &next,
-                           StepReport &report)
-  {
-    const auto balance = points_.account(communicator_);
-    next.step = old.step + 1;
-    next.time = old.time + h;
-    next.last_step = h;
-    EnergyLines &energy = next.energy;
-    energy = old.energy;
-    // h^2 v.K v / 8
-    const double share = h / 8. * (bodies.power - bodies.power_after);
-    energy.kinetic = bodies.kinetic - share;
-    energy.elastic = bodies.stored - h / 2. * bodies.power + share;
-    energy.cohesive += balance.stored;
-    energy.damage += balance.damage;
-    energy.friction += balance.friction;
-    energy.impact += balance.impact;
-    energy.viscous += balance.viscous + bodies.viscous;
-    energy.numerical += balance.numerical + bodies.numerical;
-    energy.work += bodies.work;
-    next.broken_area = old.broken_area + balance.broken;
-    next.positive_friction_work =
-        old.positive_friction_work + balance.positive_friction;
-    next.initial_energy = old.initial_energy;
-    next.penetration = std::max(old.penetration, balance.penetration);
-    next.penetration_excess =
-        std::max(old.penetration_excess,
-                 balance.penetration - 1e-12 * discretization_.extent());
-    next.rigid_drift = old.rigid_drift;
-    next.viscous_traction = old.viscous_traction;
-    next.pressure_work = old.pressure_work;
-    report.active = balance.active;
-    report.beyond_unique = balance.beyond_unique;
-    report.changes = balance.changes;
-    report.changes.taken[std::size_t(WatchedLine::scheme)] =
-        energy.numerical - old.energy.numerical;
-    report.changes.taken[std::size_t(WatchedLine::viscous)] =
-        energy.viscous - old.energy.viscous;
-    close_balance(old, next, report);
-    const double scale = 4. * std::abs(energy.kinetic);
-    const TakenStep step{old, next, h, scale, 0};
-    check_.check_balance(step, report);
-    check_.watch_energy(step, report);
   }
 
   template class Leapfrog<2>;

@@ -91,6 +91,7 @@ namespace nsfd
                StepReport &report);
     void go_back();
     void move_freely(double kick, double time, double h);
+    void damp(double h, double last, Energies &energies);
     void book(const State &old, double h, const Energies &bodies, State &next,
               StepReport &report);
 

@@ -4,10 +4,76 @@
 
 #include "nsfd/core/archive.h"
 
-// What a run shows of Leapfrog and keeps of it.
+#include <algorithm>
+#include <cmath>
+
+// What Leapfrog books of a step, shows and keeps.
 
 namespace nsfd
 {
+  /** Takes what viscous materials take, and sets their next forces. */
+  template <int dim>
+  void Leapfrog<dim>::damp(const double h, const double last,
+                           Energies &energies)
+  {
+    const auto &g = *groups_;
+    ViscousForces<dim> &viscous = *forces_->viscous();
+    const double a = -ghosts_.dot(g, viscous.of_groups(), old_velocity_),
+                 b = -ghosts_.dot(g, viscous.of_groups(), g.velocity);
+    viscous.set(g);
+    const double c = -ghosts_.dot(g, viscous.of_groups(), g.velocity);
+    energies.viscous += (h + last) / 8. * std::max(0., a + 2. * b + c);
+    energies.kinetic -= h / 4. * c;
+    energies.numerical += (h - last) / 8. * (a + c);
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::book(const State &old, const double h,
+                           const Energies &bodies, State &next,
+                           StepReport &report)
+  {
+    const auto balance = points_.account(communicator_);
+    next.step = old.step + 1;
+    next.time = old.time + h;
+    next.last_step = h;
+    EnergyLines &energy = next.energy;
+    energy = old.energy;
+    // h^2 v.K v / 8
+    const double share = h / 8. * (bodies.power - bodies.power_after);
+    energy.kinetic = bodies.kinetic - share;
+    energy.elastic = bodies.stored - h / 2. * bodies.power + share;
+    energy.cohesive += balance.stored;
+    energy.damage += balance.damage;
+    energy.friction += balance.friction;
+    energy.impact += balance.impact;
+    energy.viscous += balance.viscous + bodies.viscous;
+    energy.numerical += balance.numerical + bodies.numerical;
+    energy.work += bodies.work;
+    next.broken_area = old.broken_area + balance.broken;
+    next.positive_friction_work =
+        old.positive_friction_work + balance.positive_friction;
+    next.initial_energy = old.initial_energy;
+    next.penetration = std::max(old.penetration, balance.penetration);
+    next.penetration_excess =
+        std::max(old.penetration_excess,
+                 balance.penetration - 1e-12 * discretization_.extent());
+    next.rigid_drift = old.rigid_drift;
+    next.viscous_traction = old.viscous_traction;
+    next.pressure_work = old.pressure_work;
+    report.active = balance.active;
+    report.beyond_unique = balance.beyond_unique;
+    report.changes = balance.changes;
+    report.changes.taken[std::size_t(WatchedLine::scheme)] =
+        energy.numerical - old.energy.numerical;
+    report.changes.taken[std::size_t(WatchedLine::viscous)] =
+        energy.viscous - old.energy.viscous;
+    close_balance(old, next, report);
+    const double scale = 4. * std::abs(energy.kinetic);
+    const TakenStep step{old, next, h, scale, 0};
+    check_.check_balance(step, report);
+    check_.watch_energy(step, report);
+  }
+
   /** Bodies and tractions with ghosts, points where they have a place. */
   template <int dim>
   void Leapfrog<dim>::show_at(State &state,
@@ -96,6 +162,9 @@ namespace nsfd
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
+  template void Leapfrog<dim>::damp(double, double, Energies &);               \
+  template void Leapfrog<dim>::book(const State &, double, const Energies &,   \
+                                    State &, StepReport &);                    \
   template void Leapfrog<dim>::show(State &) const;                            \
   template void Leapfrog<dim>::show_at(                                        \
       State &, const std::vector<unsigned int> &) const;                       \

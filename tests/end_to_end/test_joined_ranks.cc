@@ -85,6 +85,10 @@ end
         {"spall_square", {"Mesh/cells=60, 1"}, true},
         {"plate_impact", {"Mesh/cells=80, 1"}, true},
         {"bar_wall", {"Mesh/cells=40, 1"}, true},
+        {"viscous",
+         {"dimension=2", "Time/end=9 ns",
+          "Material: bulk/shear viscosity=20 mPa*s",
+          "Material: bulk/bulk viscosity=50 mPa*s"}},
         {"dcb_dynamic", {"Constants/fine=2", "Time/end=1"}, true},
         {"rigid_punch", {"Time/end=15 us"}, true},
     };
