@@ -39,12 +39,6 @@ namespace nsfd
           *front, "front viscosity", "0.2", units::none, Range::closed(0., 1.));
     for (InterfaceInput &interface : scene.interfaces) {
       refuse_lift(reader, interface);
-      if (interface.crack_pressure)
-        reader.error("scheme",
-                     fmt::format("scheme = explicit has no pressure in "
-                                 "cracks, and `{}` has one",
-                                 interface.name),
-                     "write scheme = moreau-jean");
       // what holds two cells together are their common nodes
       if (interface.intact == IntactFaces::rigid)
         interface.intact = IntactFaces::bonded;

@@ -87,18 +87,6 @@ namespace nsfd
   }
 
   template <int dim>
-  const std::vector<double> &
-  ViscousForces<dim>::with(const std::vector<double> &loads)
-  {
-    if (loads.empty())
-      return of_groups_;
-    sum_.resize(loads.size());
-    for (std::size_t k = 0; k < sum_.size(); ++k)
-      sum_[k] = loads[k] + of_groups_[k];
-    return sum_;
-  }
-
-  template <int dim>
   std::array<double, dim>
   ViscousForces<dim>::traction(const std::size_t point) const
   {

@@ -30,8 +30,6 @@ namespace nsfd
 
     /** dim values per group, N. */
     const std::vector<double> &of_groups() const { return of_groups_; }
-    /** And @p loads, which may be none. */
-    const std::vector<double> &with(const std::vector<double> &loads);
 
     bool acts_in(const std::size_t cell) const
     {
@@ -44,7 +42,7 @@ namespace nsfd
   private:
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
-    std::vector<double> of_corners_, of_groups_, sum_;
+    std::vector<double> of_corners_, of_groups_;
     std::vector<double> tractions_;           ///< on the outward normal, Pa
     std::vector<std::size_t> first_traction_; ///< per body, and the end
     std::vector<std::array<std::size_t, 2>> place_; ///< by point, of body 1, 2

@@ -106,6 +106,8 @@ namespace nsfd
         })
   {
     ghosts_.set_mesh(mesh_);
+    loads_.of_cracks =
+        LeapfrogPressure<dim>::make(input, discretization_, mesh_);
   }
 
   template <int dim>
@@ -296,6 +298,29 @@ namespace nsfd
     return n_released;
   }
 
+  /** On groups: loads, of viscous materials and of fluid in cracks; or none. */
+  template <int dim>
+  const std::vector<double> &Leapfrog<dim>::given_forces(const double time)
+  {
+    const auto *viscous = forces_->viscous();
+    auto *cracks = loads_.of_cracks.get();
+    if (!viscous && !cracks)
+      return loads_.of_groups;
+    loads_.sum = loads_.of_groups;
+    loads_.sum.resize(groups_->force.size(), 0.);
+    const auto add = [this](const std::vector<double> &more) {
+      for (std::size_t k = 0; k < more.size(); ++k)
+        loads_.sum[k] += more[k];
+    };
+    if (viscous)
+      add(viscous->of_groups());
+    if (cracks) {
+      cracks->set(time, points_.chains(), *groups_);
+      add(cracks->of_groups());
+    }
+    return loads_.sum;
+  }
+
   /** Without points: v- + k (f + F)/m, or what is prescribed. */
   template <int dim>
   void Leapfrog<dim>::move_freely(const double kick, const double time,
@@ -311,9 +336,7 @@ namespace nsfd
         g.velocity[i * dim + c] =
             old_velocity_[i * dim + c] + share * g.force[i * dim + c];
     }
-    auto *viscous = forces_->viscous();
-    const std::vector<double> &given =
-        viscous ? viscous->with(loads_.of_groups) : loads_.of_groups;
+    const std::vector<double> &given = given_forces(time);
     if (!given.empty())
       for (std::size_t i = 0; i < g.size(); ++i)
         for (unsigned int c = 0; c < dim; ++c)
@@ -321,15 +344,6 @@ namespace nsfd
     supports_.set_velocities(time, h, kick, g.force, given, g);
     if (rigid_)
       rigid_->set_velocities(time, h, kick, g.force, given, supports_, g);
-  }
-
-  /** To the velocities before the step. */
-  template <int dim>
-  void Leapfrog<dim>::go_back()
-  {
-    old_velocity_.swap(groups_->velocity);
-    if (rigid_)
-      rigid_->go_back();
   }
 
   /** What all ranks have done at the nodes. Collective. */
@@ -361,6 +375,11 @@ namespace nsfd
     StepReport report;
     const double last = old.last_step, kick = (h + last) / 2.;
     auto &g = *groups_;
+    const auto go_back = [&] {
+      old_velocity_.swap(g.velocity);
+      if (rigid_)
+        rigid_->go_back();
+    };
     {
       const Charge charge(Cost::laws);
       report.released = let_go();
@@ -402,6 +421,11 @@ namespace nsfd
       energies.work = kick / 2. *
                       (ghosts_.dot(g, loads_.of_groups, g.velocity) +
                        ghosts_.dot(g, loads_.of_groups, old_velocity_));
+    if (loads_.of_cracks)
+      energies.pressure_work =
+          kick / 2. *
+          (ghosts_.dot(g, loads_.of_cracks->of_groups(), g.velocity) +
+           ghosts_.dot(g, loads_.of_cracks->of_groups(), old_velocity_));
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
     points_.add_impulses(supports_.row_of_group(), g, supports_.rows());
     energies.work += supports_.work(communicator_, kick, old_velocity_, g);

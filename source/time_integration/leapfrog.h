@@ -3,6 +3,7 @@
 #include "face_release.h"
 #include "leapfrog_ghosts.h"
 #include "leapfrog_points.h"
+#include "leapfrog_pressure.h"
 #include "prescribed_groups.h"
 #include "rigid_groups.h"
 #include "step_check.h"
@@ -76,7 +77,7 @@ namespace nsfd
     struct Energies {
       double kinetic = 0., stored = 0., work = 0., numerical = 0.;
       double power = 0., power_after = 0.; ///< of the elastic forces
-      double viscous = 0.;
+      double viscous = 0., pressure_work = 0.;
     };
 
     void take(const State &state, std::vector<std::uint8_t> intact);
@@ -89,7 +90,7 @@ namespace nsfd
     unsigned int let_go();
     void count(const typename LeapfrogPoints<dim>::Outcome &mine,
                StepReport &report);
-    void go_back();
+    const std::vector<double> &given_forces(double time);
     void move_freely(double kick, double time, double h);
     void damp(double h, double last, Energies &energies);
     void book(const State &old, double h, const Energies &bodies, State &next,
@@ -114,6 +115,8 @@ namespace nsfd
     struct {
       std::vector<double> of_corners, of_groups;
       double time = 0.;
+      std::unique_ptr<LeapfrogPressure<dim>> of_cracks; ///< or null
+      std::vector<double> sum; ///< where there are several kinds
     } loads_;
 
     std::vector<double> old_velocity_, old_displacement_, terms_;

@@ -94,11 +94,7 @@ namespace nsfd
                       const CornerGroups<dim> &groups,
                       std::vector<double> &rows) const;
 
-    /** See LeapfrogChains. */
-    void show(State &state, const std::vector<unsigned int> &place) const
-    {
-      chains_.show(state, place);
-    }
+    const LeapfrogChains<dim> &chains() const { return chains_; }
     /** The chain that is not shown, of points that have been add()ed. */
     void serialize(Archive &archive)
     {

@@ -48,7 +48,7 @@ namespace nsfd
     energy.impact += balance.impact;
     energy.viscous += balance.viscous + bodies.viscous;
     energy.numerical += balance.numerical + bodies.numerical;
-    energy.work += bodies.work;
+    energy.work += bodies.work + bodies.pressure_work;
     next.broken_area = old.broken_area + balance.broken;
     next.positive_friction_work =
         old.positive_friction_work + balance.positive_friction;
@@ -59,7 +59,7 @@ namespace nsfd
                  balance.penetration - 1e-12 * discretization_.extent());
     next.rigid_drift = old.rigid_drift;
     next.viscous_traction = old.viscous_traction;
-    next.pressure_work = old.pressure_work;
+    next.pressure_work = old.pressure_work + bodies.pressure_work;
     report.active = balance.active;
     report.beyond_unique = balance.beyond_unique;
     report.changes = balance.changes;
@@ -81,7 +81,7 @@ namespace nsfd
   {
     groups_->scatter(groups_->displacement, state.displacement);
     groups_->scatter(groups_->velocity, state.velocity);
-    points_.show(state, place);
+    points_.chains().show(state, place);
     const auto &origins = discretization_.origins();
     state.bond_traction.resize(origins.size() * dim);
     faces_.show(*forces_, state.bond_traction);
@@ -105,6 +105,8 @@ namespace nsfd
   void Leapfrog<dim>::show(State &state) const
   {
     show_at(state, ghosts_.own_points());
+    if (loads_.of_cracks)
+      loads_.of_cracks->show(points_.chains(), ghosts_.own_points(), state);
     const auto *layer = ghosts_.layer();
     if (!layer)
       return;

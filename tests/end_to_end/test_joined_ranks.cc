@@ -89,6 +89,9 @@ end
          {"dimension=2", "Time/end=9 ns",
           "Material: bulk/shear viscosity=20 mPa*s",
           "Material: bulk/bulk viscosity=50 mPa*s"}},
+        {"pressure",
+         {"dimension=2", "Time/end=9 ns",
+          "Interface: all/crack pressure=20 MPa * (1 + x / 10 um)"}},
         {"dcb_dynamic", {"Constants/fine=2", "Time/end=1"}, true},
         {"rigid_punch", {"Time/end=15 us"}, true},
     };
