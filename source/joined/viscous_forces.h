@@ -13,8 +13,8 @@ namespace nsfd
    *
    * The first part is never negative. The second one is what the kinetic energy
    * of the scheme holds: it is less by h |v|_C^2/4; where steps change, (h -
-   * h_last)(|v-|_C^2 + |v+|_C^2)/8 is numerical. v.(M - h^2 K/4 - h C/2) v > 0
-   * bounds the step.
+   * h_last)(|v-|_C^2 + |v+|_C^2)/8 is numerical, but for the first one. v.(M -
+   * h^2 K/4 - h C/2) v > 0 bounds the step.
    */
   template <int dim>
   class ViscousForces

@@ -1,12 +1,12 @@
 #include "leapfrog.h"
 
 #include "initial_state.h"
+#include "joined_points.h"
 #include "point_name.h"
 #include "step_data.h"
 
 #include "core/cost.h"
 #include "core/stopwatch.h"
-#include "discretization/cells.h"
 #include "discretization/loads.h"
 #include "joined/rigid_clusters.h"
 #include "nsfd/scene/scene_input.h"
@@ -21,45 +21,6 @@ namespace nsfd
     bool is_interface(const PointOrigin &origin)
     {
       return origin.kind == PointOrigin::Kind::interface;
-    }
-
-    /** Before anything has let go: what is joined. */
-    bool is_joined(const PointKind kind)
-    {
-      return kind == PointKind::bonded || kind == PointKind::rigid ||
-             kind == PointKind::prescribed;
-    }
-
-    bool has_rigid_cells(const SceneInput &input)
-    {
-      return std::any_of(
-          input.materials.begin(), input.materials.end(),
-          [](const MaterialInput &material) { return material.rigid; });
-    }
-
-    /** A law between two rigid cells holds them from the start: they have no
-        stress that would tell when it is needed. */
-    template <int dim>
-    void hold_between_rigid_cells(const Discretization<dim> &discretization,
-                                  std::vector<std::uint8_t> &intact,
-                                  State &state)
-    {
-      for (const auto &face : discretization.points().faces) {
-        const PointOrigin origin = discretization.origins()[face.first];
-        const auto is_rigid = [&](const int b) {
-          return b >= 0 &&
-                 discretization.cells().body_class(std::size_t(b)).undeformed;
-        };
-        if (face.count == 0 || !is_interface(origin) ||
-            !discretization.input().interfaces[origin.block].law ||
-            !is_rigid(face.bodies[0]) || !is_rigid(face.bodies[1]))
-          continue;
-        for (unsigned int i = face.first; i < face.first + face.count; ++i)
-          if (intact[i]) {
-            intact[i] = 0;
-            state.kind[i] = PointKind::rigid;
-          }
-      }
     }
 
     /** Without what only steps of all points need. */
@@ -108,6 +69,18 @@ namespace nsfd
     ghosts_.set_mesh(mesh_);
     loads_.of_cracks =
         LeapfrogPressure<dim>::make(input, discretization_, mesh_);
+    if (!has_rigid_cells(input))
+      return;
+    State state = ghosts_.with(initial_state());
+    const auto intact = joined_points(discretization_, state);
+    CornerGroups<dim> groups(mesh_, intact);
+    groups.gather(state.displacement, groups.displacement);
+    RigidGroups<dim> rigid(discretization_, mesh_, communicator,
+                           ghosts_.cells(),
+                           rigid_clusters(discretization_, mesh_, communicator,
+                                          ghosts_.cells(), intact));
+    rigid.find(groups, supports_);
+    rigid.check(input.time.end, groups, supports_);
   }
 
   template <int dim>
@@ -171,20 +144,10 @@ namespace nsfd
   template <int dim>
   State Leapfrog<dim>::start_from(const State &given)
   {
-    const auto &origins = discretization_.origins();
     State state = ghosts_.with(given);
-    std::vector<std::uint8_t> intact(origins.size());
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-      intact[i] = is_interface(origins[i]) && is_joined(state.kind[i]);
-      if (intact[i])
-        state.kind[i] = PointKind::bonded;
-    }
-    hold_between_rigid_cells(discretization_, intact, state);
-    take(state, std::move(intact));
-    if (rigid_) {
-      rigid_->check(input_.time.end, *groups_, supports_);
+    take(state, joined_points(discretization_, state));
+    if (rigid_)
       rigid_->start(*groups_);
-    }
     state.bond_traction.assign(state.jump.size(), 0.);
     show_at(state, {});
     const auto &g = *groups_;
@@ -399,6 +362,10 @@ namespace nsfd
       if (rigid_)
         points_.solve_rigid(input_.solver.tolerance, communicator_, *rigid_, g,
                             outcome);
+      if (outcome.impossible) {
+        go_back();
+        throw StepRejected(outcome.impossible, StepRejected::Cure::none);
+      }
     }
     ghosts_.start(g);
     count(outcome, report);

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace nsfd
 {
@@ -389,7 +388,8 @@ namespace nsfd
       outcome.loose += report.loose;
       if (!(report.residual <= outcome.residual)) {
         outcome.residual = report.residual;
-        outcome.worst = chains_.point[report.worst];
+        if (first < moved_.size()) // else it is on other ranks
+          outcome.worst = chains_.point[report.worst];
       }
       outcome.converged =
           outcome.converged && ((report.converged && report.loose == 0) ||
@@ -397,11 +397,11 @@ namespace nsfd
       set_velocities(first, groups);
       if (communicator.any(!report.converged || report.loose > 0) &&
           communicator.any(stiff))
-        throw std::runtime_error(
+        outcome.impossible =
             "a rigid body that is free has met another one, a support or an "
             "obstacle: in scheme = explicit its points need cells that deform "
-            "on the other side; write scheme = moreau-jean");
-    } while (communicator.any(turn_friction(first)));
+            "on the other side; write scheme = moreau-jean";
+    } while (!outcome.impossible && communicator.any(turn_friction(first)));
   }
 
   template <int dim>

@@ -49,8 +49,9 @@ namespace nsfd
       bool converged = true;
       double residual = 0.;
       unsigned int sweeps = 0, newton = 0, problems = 0;
-      unsigned int loose = 0; ///< problems not solved to round-off
-      std::size_t worst = 0;  ///< point of the mesh
+      unsigned int loose = 0;           ///< problems not solved to round-off
+      std::size_t worst = 0;            ///< point of the mesh
+      const char *impossible = nullptr; ///< why no step goes on from here
     };
     /**
      * The problems of all nodes, from the velocities of the groups without
@@ -62,9 +63,8 @@ namespace nsfd
                   const std::vector<std::uint8_t> &prescribed, double tolerance,
                   CornerGroups<dim> &groups);
     /** Then those at @p rigid bodies, which solve() leaves: if these are free,
-        all in one, see CoupledNodes. Adds to @p outcome. Collective.
-        @throws std::runtime_error on all ranks where two of them touch, or one
-        an obstacle. */
+        all in one, see CoupledNodes. Adds to @p outcome: two of them, or
+        one and an obstacle, do not touch. Collective. */
     void solve_rigid(double tolerance, const Communicator &communicator,
                      RigidGroups<dim> &rigid, CornerGroups<dim> &groups,
                      Outcome &outcome);

@@ -24,7 +24,8 @@ namespace nsfd
     const double c = -ghosts_.dot(g, viscous.of_groups(), g.velocity);
     energies.viscous += (h + last) / 8. * std::max(0., a + 2. * b + c);
     energies.kinetic -= h / 4. * c;
-    energies.numerical += (h - last) / 8. * (a + c);
+    (last > 0. ? energies.numerical : energies.viscous) +=
+        (h - last) / 8. * (a + c);
   }
 
   template <int dim>

@@ -173,6 +173,68 @@ end
                   1e-5 - 0.1 * std::abs(alpha) / 2., 1e-8 * 1e-5);
     }
 
+    const std::string grips = R"(
+set dimension = 2
+subsection Mesh
+  set type         = crossed triangles
+  set upper corner = 4, 1
+  set cells        = 16, 4
+end
+subsection Material: grip one
+  set where   = x < 0.5
+  set model   = rigid
+  set density = 1
+end
+subsection Material: grip two
+  set where   = x > 3.5
+  set model   = rigid
+  set density = 1
+end
+subsection Material: strip
+  set model         = linear elastic
+  set Young modulus = 1000
+  set Poisson ratio = 0.3
+  set density       = 1
+end
+subsection Interface: law
+  set where     = all
+  set law       = camacho-ortiz
+  set strength  = 2
+  set toughness = 0.004
+  set friction  = 0.3
+end
+subsection Boundary: left
+  set displacement x = 0
+  set displacement y = 0
+end
+subsection Boundary: right
+  set displacement x = 0.02 * t - 0.01 * t * (y - 0.5)
+  set displacement y = 0.01 * t * (x - 4)
+end
+subsection Time
+  set end    = 0.6
+  set step   = auto
+  set scheme = explicit
+end
+)";
+
+    // a law everywhere: each grip is one body, and its border lets go by the
+    // traction of the strip
+    TEST(RigidGroups, GripsPullAndTurn)
+    {
+      Steps<2> run(grips);
+      expect_balance(run);
+      EXPECT_GE(run.state.broken_area, 1.);
+      EXPECT_GE(run.state.energy.damage, 0.004 * run.state.broken_area);
+    }
+
+    TEST(RigidGroups, RefusesMotionOfDeformingBodies)
+    {
+      EXPECT_THROW(
+          Steps<2>(grips, {"Boundary: right/displacement y=0.01 * t * y"}),
+          std::exception);
+    }
+
     // everything at once, in space: what breaks, rubs and strikes
     TEST(RigidGroups, PunchBreaksPlate)
     {
