@@ -5,6 +5,7 @@
 
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 
@@ -130,23 +131,40 @@ namespace nsfd
       squares[k] = sites.square(k, traction(sites, k));
   }
 
+  namespace
+  {
+    template <int dim>
+    std::unique_ptr<CellForces<dim>>
+    elastic_forces(const Discretization<dim> &discretization,
+                   const JoinedMesh<dim> &mesh, FrontViscosity front,
+                   const GhostCells *ghosts)
+    {
+      const auto everywhere = [&](const bool here) {
+        return ghosts ? !ghosts->anywhere(!here) : here;
+      };
+      if (everywhere(ConstantStrainForces<dim>::fits(discretization)))
+        return std::make_unique<ConstantStrainForces<dim>>(discretization,
+                                                           std::move(front));
+      if (everywhere(TensorForces<dim>::fits(discretization)))
+        return std::make_unique<TensorForces<dim>>(discretization, mesh,
+                                                   std::move(front));
+      return std::make_unique<BlockForces<dim>>(discretization, mesh,
+                                                std::move(front));
+    }
+  } // namespace
+
   template <int dim>
   std::unique_ptr<CellForces<dim>>
   make_cell_forces(const Discretization<dim> &discretization,
                    const JoinedMesh<dim> &mesh, FrontViscosity front,
                    const GhostCells *ghosts)
   {
-    const auto everywhere = [&](const bool here) {
-      return ghosts ? !ghosts->anywhere(!here) : here;
-    };
-    if (everywhere(ConstantStrainForces<dim>::fits(discretization)))
-      return std::make_unique<ConstantStrainForces<dim>>(discretization,
-                                                         std::move(front));
-    if (everywhere(TensorForces<dim>::fits(discretization)))
-      return std::make_unique<TensorForces<dim>>(discretization, mesh,
-                                                 std::move(front));
-    return std::make_unique<BlockForces<dim>>(discretization, mesh,
-                                              std::move(front));
+    auto forces =
+        elastic_forces(discretization, mesh, std::move(front), ghosts);
+    if (discretization.input().has_viscous_bodies())
+      forces->set_viscous(
+          std::make_unique<ViscousForces<dim>>(discretization, mesh));
+    return forces;
   }
 
   template class BlockForces<2>;

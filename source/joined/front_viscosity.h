@@ -173,7 +173,4 @@ namespace nsfd
     std::vector<double> terms_;
     double h_ = 0., kick_ = 0.;
   };
-
-  /** What of the longest step is left with a share @p b of critical damping. */
-  double step_share(double b);
 } // namespace nsfd
