@@ -1,5 +1,6 @@
 #include "viscous_forces.h"
 
+#include "block_products.h"
 #include "hanging_nodes.h"
 
 #include "discretization/cells.h"
@@ -39,37 +40,18 @@ namespace nsfd
                                const HangingNodes<dim> &hanging)
   {
     const Bodies &bodies = discretization_.bodies();
-    std::vector<double> x, y, t;
-    for (const BodyClass &body : bodies.classes) {
-      if (body.damping.rows == 0)
-        continue;
-      const unsigned int n_tractions = body.viscous_traction.rows;
-      x.assign(std::size_t(body.n_dofs) * lanes, 0.);
-      y.resize(std::size_t(padded(body.n_dofs)) * lanes);
-      t.resize(std::size_t(padded(n_tractions)) * lanes);
-      for (std::size_t first = 0; first < body.bodies.size(); first += lanes) {
-        const auto count =
-            unsigned(std::min<std::size_t>(lanes, body.bodies.size() - first));
-        for (unsigned int l = 0; l < count; ++l) {
-          const std::size_t dof = bodies.first_dof[body.bodies[first + l]];
-          for (unsigned int j = 0; j < body.n_dofs; ++j)
-            x[j * lanes + l] =
-                groups.velocity[groups.of((dof + j) / dim) * dim + j % dim];
-        }
-        multiply_lanes(body.damping.values.data(), body.n_dofs, body.n_dofs,
-                       x.data(), y.data());
-        if (n_tractions > 0)
-          multiply_lanes(body.viscous_traction.values.data(), n_tractions,
-                         body.n_dofs, x.data(), t.data());
-        for (unsigned int l = 0; l < count; ++l) {
-          const unsigned int b = body.bodies[first + l];
+    for_block_products(
+        bodies, groups, groups.velocity, &BodyClass::damping,
+        &BodyClass::viscous_traction,
+        [&](const unsigned int b, const unsigned int l,
+            const std::vector<double> &, const std::vector<double> &y,
+            const std::vector<double> &t) {
+          const BodyClass &body = bodies.classes[bodies.class_of[b]];
           for (unsigned int j = 0; j < body.n_dofs; ++j)
             of_corners_[bodies.first_dof[b] + j] = -y[j * lanes + l];
-          for (unsigned int j = 0; j < n_tractions; ++j)
+          for (unsigned int j = 0; j < body.viscous_traction.rows; ++j)
             tractions_[first_traction_[b] + j] = t[j * lanes + l];
-        }
-      }
-    }
+        });
     of_groups_.assign(groups.size() * dim, 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
