@@ -5,7 +5,6 @@
 #include "tensor_forces.h"
 
 #include "discretization/cells.h"
-#include "discretization/point_places.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -17,7 +16,8 @@ namespace nsfd
                                 const JoinedMesh<dim> &mesh,
                                 FrontViscosity front)
       : CellForces<dim>(std::move(front)), discretization_(discretization),
-        mesh_(mesh), forces_(mesh.n_corners() * dim)
+        mesh_(mesh), forces_(mesh.n_corners() * dim),
+        tractions_(discretization, &BodyClass::traction)
   {
     for (const BodyShape<dim> &shape : discretization.cells().shapes) {
       auto &mean = divergence_.emplace_back(shape.n_nodes * dim, 0.);
@@ -26,20 +26,6 @@ namespace nsfd
           mean[j] += shape.JxW[q] / shape.volume *
                      shape.gradients[q * shape.n_nodes + j / dim][j % dim];
     }
-    const Bodies &bodies = discretization.bodies();
-    const std::size_t n = discretization.points().n_points;
-    first_traction_.push_back(0);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      first_traction_.push_back(
-          first_traction_.back() +
-          bodies.classes[bodies.class_of[b]].traction.rows);
-    tractions_.assign(first_traction_.back(), 0.);
-    place_.assign(n, {{0, 0}});
-    for_all_places(bodies, n,
-                   [&](const std::size_t body, const unsigned int slot,
-                       const std::size_t point, const unsigned int side) {
-                     place_[point][side] = first_traction_[body] + slot * dim;
-                   });
   }
 
   template <int dim>
@@ -67,7 +53,7 @@ namespace nsfd
               forces[j] += volume * this->front_.tension[b] * mean[j];
           }
           for (unsigned int j = 0; j < body.traction.rows; ++j)
-            tractions_[first_traction_[b] + j] = t[j * lanes + l];
+            tractions_.of_body(b)[j] = t[j * lanes + l];
         });
     std::fill(groups.force.begin(), groups.force.end(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
@@ -98,11 +84,11 @@ namespace nsfd
     double length = 0.;
     for (unsigned int i = first; i < last; ++i)
       length += weight[i];
-    for (unsigned int i = first; i < last; ++i)
+    for (unsigned int i = first; i < last; ++i) {
+      const auto mean = tractions_.mean(i);
       for (unsigned int c = 0; c < dim; ++c)
-        result[c] +=
-            weight[i] / length *
-            (tractions_[place_[i][0] + c] - tractions_[place_[i][1] + c]) / 2.;
+        result[c] += weight[i] / length * mean[c];
+    }
     return result;
   }
 

@@ -26,10 +26,6 @@ namespace nsfd
     const JoinedMesh<dim> &mesh_;
     std::vector<double> forces_;                  ///< K q by corner
     std::vector<std::vector<double>> divergence_; ///< mean of a class, 1/m
-    /// traction on the outward normal at every slot of every body, Pa
-    std::vector<double> tractions_;
-    std::vector<std::size_t> first_traction_; ///< per body
-    /// by point: where it is in `tractions_`, of body 1 and of body 2
-    std::vector<std::array<std::size_t, 2>> place_;
+    BodyTractions<dim> tractions_;
   };
 } // namespace nsfd

@@ -4,7 +4,6 @@
 #include "hanging_nodes.h"
 
 #include "discretization/cells.h"
-#include "discretization/point_places.h"
 
 #include <algorithm>
 
@@ -14,25 +13,9 @@ namespace nsfd
   ViscousForces<dim>::ViscousForces(const Discretization<dim> &discretization,
                                     const JoinedMesh<dim> &mesh)
       : discretization_(discretization), mesh_(mesh),
-        of_corners_(mesh.n_corners() * dim, 0.)
+        of_corners_(mesh.n_corners() * dim, 0.),
+        tractions_(discretization, &BodyClass::viscous_traction)
   {
-    const Bodies &bodies = discretization.bodies();
-    const std::size_t n = discretization.points().n_points;
-    first_traction_.push_back(0);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      first_traction_.push_back(
-          first_traction_.back() +
-          bodies.classes[bodies.class_of[b]].viscous_traction.rows);
-    // the last place is of bodies without
-    tractions_.assign(first_traction_.back() + dim, 0.);
-    place_.assign(n, {{first_traction_.back(), first_traction_.back()}});
-    for_all_places(bodies, n,
-                   [&](const std::size_t body, const unsigned int slot,
-                       const std::size_t point, const unsigned int side) {
-                     if (acts_in(body))
-                       place_[point][side] =
-                           first_traction_[body] + std::size_t(slot) * dim;
-                   });
   }
 
   template <int dim>
@@ -50,7 +33,7 @@ namespace nsfd
           for (unsigned int j = 0; j < body.n_dofs; ++j)
             of_corners_[bodies.first_dof[b] + j] = -y[j * lanes + l];
           for (unsigned int j = 0; j < body.viscous_traction.rows; ++j)
-            tractions_[first_traction_[b] + j] = t[j * lanes + l];
+            tractions_.of_body(b)[j] = t[j * lanes + l];
         });
     of_groups_.assign(groups.size() * dim, 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
@@ -72,18 +55,6 @@ namespace nsfd
         of_groups_[groups.of(corner) * dim + c] +=
             of_corners_[std::size_t(corner) * dim + c];
     hanging.add_shares(node, groups, shares_, of_groups_);
-  }
-
-  template <int dim>
-  std::array<double, dim>
-  ViscousForces<dim>::traction(const std::size_t point) const
-  {
-    std::array<double, dim> t;
-    for (unsigned int c = 0; c < dim; ++c)
-      t[c] = (tractions_[place_[point][0] + c] -
-              tractions_[place_[point][1] + c]) /
-             2.;
-    return t;
   }
 
   template class ViscousForces<2>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "body_tractions.h"
 #include "corner_groups.h"
 
 namespace nsfd
@@ -38,19 +39,20 @@ namespace nsfd
 
     bool acts_in(const std::size_t cell) const
     {
-      return first_traction_[cell + 1] > first_traction_[cell];
+      return tractions_.acts_in(cell);
     }
     /** Traction at a point on the normal from body 1 to body 2: the mean of
        both sides, Pa. */
-    std::array<double, dim> traction(std::size_t point) const;
+    std::array<double, dim> traction(const std::size_t point) const
+    {
+      return tractions_.mean(point);
+    }
 
   private:
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     std::vector<double> of_corners_, of_groups_;
-    std::vector<double> shares_;              ///< see HangingNodes
-    std::vector<double> tractions_;           ///< on the outward normal, Pa
-    std::vector<std::size_t> first_traction_; ///< per body, and the end
-    std::vector<std::array<std::size_t, 2>> place_; ///< by point, of body 1, 2
+    std::vector<double> shares_; ///< see HangingNodes
+    BodyTractions<dim> tractions_;
   };
 } // namespace nsfd
