@@ -107,14 +107,21 @@ namespace nsfd
       const double bound = facts.penetration_bound + noise;
       Line line = line_of("penetration", facts.penetration, bound,
                           within(facts.penetration_excess <= noise));
-      line.value = length_text(facts.penetration);
-      line.bound = "at most " + length_text(bound);
+      // a point may be deeper than its own bound and not than that of all
+      if (line.verdict == Verdict::bad) {
+        line.number = facts.penetration_excess;
+        line.limit = noise;
+      }
+      print_both(line, 3, "at most ",
+                 [](const double value, const unsigned int digits) {
+                   return engineering(value, "m", digits);
+                 });
       if (line.verdict == Verdict::bad) {
         line.remark = fmt::format(
             "a point is {} deeper than what its last closing explains: it "
             "closes again and again without opening, or bodies overlap at the "
-            "start",
-            length_text(facts.penetration_excess));
+            "start; the deepest {}",
+            line.value, length_text(facts.penetration));
         if (!facts.automatic_steps)
           line.remark += "; shorten Time/step";
       }

@@ -34,8 +34,7 @@ namespace nsfd
     {
       Line line = line_of("strain", peak.value, largest_strain,
                           within(peak.value <= largest_strain));
-      line.value = fmt::format("{:.3g} %", 100. * peak.value);
-      line.bound = fmt::format("at most {:.3g} %", 100. * largest_strain);
+      print_both(line, "{:.3g} %", "at most ", 100.);
       if (line.verdict == Verdict::bad)
         line.remark = "a cell is strained " + at(peak) +
                       " by more than motion = small is right for: set motion "
@@ -65,8 +64,7 @@ namespace nsfd
       const bool at_once = theta >= 1.;
       Line line = line_of("joints", speed, largest_joint_speed,
                           within(speed <= largest_joint_speed || at_once));
-      line.value = fmt::format("{:.3g} %", 100. * speed);
-      line.bound = fmt::format("at most {:.3g} %", 100. * largest_joint_speed);
+      print_both(line, "{:.3g} %", "at most ", 100.);
       if (line.verdict == Verdict::bad)
         line.remark = fmt::format(
             "rigidly joined points differ in velocity at t = 0: the "

@@ -28,6 +28,37 @@ namespace nsfd
     return line;
   }
 
+  /**
+   * Number and limit of @p line as @p print gives them, with @p digits or,
+   * where it is bad, as many more as tell them apart.
+   */
+  template <typename Print>
+  void print_both(CertificateLine &line, unsigned int digits,
+                  const char *relation, const Print &print)
+  {
+    std::string limit;
+    do {
+      line.value = print(*line.number, digits);
+      limit = print(*line.limit, digits);
+    } while (line.verdict == CertificateLine::Verdict::bad &&
+             line.value == limit && ++digits < 17);
+    line.bound = relation + limit;
+  }
+
+  /** The same, of @p factor times both; @p format begins with `{:.` and one
+      digit. */
+  inline void print_both(CertificateLine &line, const std::string &format,
+                         const char *relation, const double factor = 1.)
+  {
+    print_both(
+        line, unsigned(format[3] - '0'), relation,
+        [&](const double value, const unsigned int digits) {
+          return fmt::format(
+              fmt::runtime("{:." + std::to_string(digits) + format.substr(4)),
+              factor * value);
+        });
+  }
+
   /** With @p verdict: NaN is never within a bound. */
   inline CertificateLine line_of(const std::string &name, const double number,
                                  const double limit,
@@ -39,9 +70,8 @@ namespace nsfd
     line.name = name;
     line.number = number;
     line.limit = limit;
-    line.value = fmt::format(fmt::runtime(format), number);
-    line.bound = relation + fmt::format(fmt::runtime(format), limit);
     line.verdict = verdict;
+    print_both(line, format, relation);
     return line;
   }
 

@@ -328,6 +328,35 @@ namespace nsfd::test_certificate
     EXPECT_EQ(n, 13u);
   }
 
+  // just beyond its bound: as many digits as show it
+  TEST(Certificate, TellsWhatIsBadFromItsBound)
+  {
+    RunFacts facts = good_facts();
+    facts.residual = 1.001e-8;
+    facts.given[0].share = 1.04e-9;
+    facts.balance_residual = 1e-9 * (1. + 1e-12);
+    facts.limits.strain->value = 0.05001;
+    facts.penetration = facts.penetration_bound = 1.38e-6;
+    facts.penetration_excess = 1.38e-6;
+    const Certificate certificate = certify(facts);
+    const auto texts = [&](const char *name) {
+      const auto &it = line(certificate, name);
+      EXPECT_EQ(it.verdict, Verdict::bad) << name;
+      return it.value + " " + it.bound;
+    };
+    EXPECT_EQ(texts("residual"), "1.001e-08 at most 1.000e-08");
+    EXPECT_EQ(texts("given by time scheme"), "1.04e-09 at most 1.00e-09");
+    EXPECT_EQ(texts("balance residual"),
+              "1.000000000001e-09 at most 1.000000000000e-09");
+    EXPECT_EQ(texts("strain"), "5.001 % at most 5 %");
+    // of a point beyond its own bound, not of that of all
+    EXPECT_EQ(texts("penetration"), "1.38 µm at most 10.0 pm");
+    facts = good_facts();
+    facts.penetration_excess = 1.0001 * *line(certificate, "penetration").limit;
+    const auto near = line(certify(facts), "penetration");
+    EXPECT_NE(near.value, near.bound.substr(8));
+  }
+
   TEST(Certificate, BreaksNoLineBehindANumber)
   {
     EXPECT_EQ(wrapped("it is 12 m away", 2, 10), "  it is\n  12 m\n  away\n");
