@@ -108,9 +108,18 @@ namespace nsfd
         reader.integer("levels", "2", 0, 12,
                        "the smallest cell is 2^levels times smaller than that "
                        "of the mesh; 0: the mesh stays as it is");
+    const bool changes = scene.time.scheme != Scheme::leapfrog;
     adaptivity.coarsen_every =
-        reader.integer("coarsen every steps", "10", 0, 1000000,
+        reader.integer("coarsen every steps", changes ? "10" : "0", 0, 1000000,
                        "cells without damage may be coarsened; 0: never");
+    if (!changes && adaptivity.coarsen_every > 0)
+      reader.error(
+          "coarsen every steps",
+          fmt::format("with scheme = explicit the mesh does not change "
+                      "in a run yet: cells would not grow again every "
+                      "{} steps",
+                      adaptivity.coarsen_every),
+          "write 0, or scheme = moreau-jean or symplectic");
     adaptivity.constant_modulus =
         reader.choice("springs", "constant modulus",
                       {"constant modulus", "constant stiffness"},
@@ -124,7 +133,7 @@ namespace nsfd
       if (auto indicator = read_indicator(*block, errors))
         adaptivity.indicators.push_back(std::move(indicator));
     const auto &found = adaptivity.indicators;
-    if (scene.time.scheme == Scheme::leapfrog &&
+    if (!changes &&
         !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
           return indicator->is_fixed();
         }))

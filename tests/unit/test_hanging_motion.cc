@@ -304,6 +304,11 @@ end
       EXPECT_NE(problem({"Indicator: middle/type=energy"})
                     .find("does not change in a run"),
                 std::string::npos);
+      EXPECT_EQ(problem({"Adaptivity/coarsen every steps=0"}), "none");
+      const std::string coarse = problem({"Adaptivity/coarsen every steps=20"});
+      for (const char *part :
+           {"coarsen every steps", "20 steps", "write 0", "moreau-jean"})
+        EXPECT_NE(coarse.find(part), std::string::npos) << coarse;
     }
   } // namespace
 } // namespace nsfd::test_hanging_motion
