@@ -29,6 +29,7 @@ namespace nsfd
                    "maximum bisections", "largest overshoot"},
                   "scheme = explicit has none");
     scene.time.largest_overshoot = std::numeric_limits<double>::infinity();
+    scene.time.maximum_bisections = 0; // see Leapfrog
     const auto front = reader.raw(
         "front viscosity", "auto",
         "share of critical damping where the rate of strain jumps between "

@@ -146,7 +146,8 @@ namespace nsfd
       }
       if (report_.starts == most_starts)
         break;
-      if (follow())
+      // S may jump where it is asked once more
+      if (follow() && error_ <= control * system_.scale())
         return true;
       start_again();
     }

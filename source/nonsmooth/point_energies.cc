@@ -106,8 +106,9 @@ namespace nsfd
     const PointDamage<dim> damage(problem, i);
     const Reach end = damage.reach(jump);
     set_tractions<dim>(problem, i,
-                       problem.rule == CohesionRule::exact ? damage.secant(end)
-                                                           : frozen.secant,
+                       problem.rule == CohesionRule::exact && !frozen.held
+                           ? damage.secant(end)
+                           : frozen.secant,
                        velocity, result);
     result.history = damage.history_after(end);
     result.beta = damage.beta(result.history);

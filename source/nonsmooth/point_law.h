@@ -20,7 +20,8 @@ namespace nsfd
   struct FrozenPoint {
     Secant secant;
     double threshold = 0.; ///< s, friction impulse bound
-    double lift = 0.; ///< of the contact by sliding, m/s: U_N >= target + lift
+    double lift = 0.;  ///< of the contact by sliding, m/s: U_N >= target + lift
+    bool held = false; ///< the law is this secant wherever the step ends
 
     bool is_rigid() const { return std::isinf(secant.normal); }
   };

@@ -42,7 +42,7 @@ namespace nsfd
     serialize_state(archive);
     serialize_parts(archive, found.same_solver && has_solvers_);
     if (!found.same_steps)
-      parts_.steps.renew_steps(parts_.state.time);
+      parts_.steps.renew_steps(parts_.state);
     parts_.recorder.serialize_files(archive); // the first to touch a file
   }
 

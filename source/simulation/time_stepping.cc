@@ -112,15 +112,20 @@ namespace nsfd
   }
 
   template <int dim>
-  void TimeStepping<dim>::renew_steps(const double time)
+  void TimeStepping<dim>::renew_steps(const State &state)
   {
+    const double time = state.time;
     const double end =
         is_first_of_two() ? input_.statics->until : input_.time.end;
     if (!(end > time * (1. + 1e-12)))
       throw BadCheckpoint(fmt::format(
           "Time/end = {:.6g} s is not after t = {:.6g} s", end, time));
-    model_.control = is_first_of_two() ? model_.load_control(input_, time)
-                                       : model_.dynamic_control(input_, time);
+    if (input_.time.scheme == Scheme::leapfrog && state.last_step > 0.)
+      model_.control = std::make_unique<StepControl>(
+          StepControl::of_length(state.last_step, end, time));
+    else
+      model_.control = is_first_of_two() ? model_.load_control(input_, time)
+                                         : model_.dynamic_control(input_, time);
   }
 
   template class TimeStepping<2>;

@@ -65,7 +65,7 @@ namespace nsfd
     /** What solvers keep from step to step. Collective. */
     void serialize_solvers(Archive &archive);
     /** Other steps, or to another end. Errors raised: BadCheckpoint. */
-    void renew_steps(double time);
+    void renew_steps(const State &state);
 
   private:
     void hand_over(State &state);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace nsfd
 {
@@ -98,13 +99,13 @@ namespace nsfd
   {
     const auto &g = *groups_;
     const std::size_t n = g.force.size();
-    const bool changed = h != last;
+    const bool first = last == 0.;
     std::vector<const std::vector<double> *> loads; // given and in cracks
     if (!loads_.of_groups().empty())
       loads.push_back(&loads_.of_groups());
     if (loads_.cracks())
       loads.push_back(&loads_.cracks()->of_groups());
-    const std::size_t n_rows = 3 + 2 * loads.size() + (changed ? 1 : 0);
+    const std::size_t n_rows = 3 + 2 * loads.size() + (first ? 1 : 0);
     terms_.resize(n_rows * n);
     double *const rows = terms_.data();
     for (std::size_t i = 0, k = 0; i < g.size(); ++i)
@@ -122,7 +123,7 @@ namespace nsfd
           row[k] = (*load)[k] * (*velocity)[k];
         row += n;
       }
-    for (std::size_t k = 0; changed && k < n; ++k)
+    for (std::size_t k = 0; first && k < n; ++k)
       row[k] = g.force[k] * before_.velocity[k];
     const double of_bodies = rigid_ ? rigid_->kinetic_energy(g, terms_) : 0.;
     const auto sums = ghosts_.sums(g, terms_, n_rows);
@@ -135,8 +136,8 @@ namespace nsfd
       const std::size_t at = 1 + 2 * loads.size();
       energies.pressure_work = kick / 2. * (sums[at] + sums[at + 1]);
     }
-    if (changed)
-      energies.numerical = -(last - h) / 4. * (sums[1] - sums.back());
+    if (first)
+      energies.numerical = h / 4. * (sums[1] - sums.back());
   }
 
   /** Forces and loads on the groups of a node that has split. */
@@ -221,19 +222,23 @@ namespace nsfd
   void Leapfrog<dim>::count(const typename LeapfrogPoints<dim>::Outcome &mine,
                             StepReport &report)
   {
-    const double here[6] = {double(mine.problems),   double(mine.sweeps),
+    const double here[7] = {double(mine.problems),   double(mine.sweeps),
                             double(mine.newton),     double(mine.loose),
-                            double(report.released), double(!mine.converged)};
-    const auto all = communicator_.sums(here, 6, 1);
+                            double(report.released), double(!mine.converged),
+                            double(mine.held)};
+    const auto all = communicator_.sums(here, 7, 1);
     counters_.problems += std::uint64_t(all[0]);
     counters_.sweeps += std::uint64_t(all[1]);
     counters_.newton += std::uint64_t(all[2]);
     counters_.loose += std::uint64_t(all[3]);
     counters_.released += std::uint64_t(all[4]);
+    counters_.held += std::uint64_t(all[6]);
+    counters_.excess = std::max(counters_.excess, mine.excess);
     report.solver.sweeps = unsigned(all[1]);
     report.solver.newton = unsigned(all[2]);
     report.released = unsigned(all[4]);
     report.solver.converged = all[5] == 0.;
+    report.beyond_unique = all[6] > 0.;
     report.solver.residual = communicator_.max(mine.residual);
   }
 
@@ -244,6 +249,8 @@ namespace nsfd
     const Stopwatch watch(counters_.seconds);
     StepReport report;
     const double last = old.last_step, kick = (h + last) / 2.;
+    if (last > 0. && h != last)
+      throw std::logic_error("explicit steps have one length");
     auto &g = *groups_;
     const auto go_back = [&] {
       before_.velocity.swap(g.velocity);
@@ -277,7 +284,8 @@ namespace nsfd
     ghosts_.finish(g);
     if (!report.solver.converged) {
       go_back();
-      check_.check_solution(h, old.time, report.solver, outcome.worst);
+      check_.check_solution(h, old.time, report.solver, outcome.worst,
+                            StepRejected::Cure::none);
     }
     const Charge charge(Cost::energy_balance);
     Energies energies;
@@ -298,12 +306,10 @@ namespace nsfd
       hanging_.set_forces(*forces_, *groups_);
     }
     const auto front = forces_->front().finish(communicator_);
-    energies.numerical += (last - h) / 4. * (front_.after - front.before);
     energies.stored -= front_.stored / 2.;
     energies.power += front.before;
     // the part of the kinetic energy that the viscosity holds
     energies.kinetic -= h / 4. * front.after;
-    energies.numerical += (kick - last) / 4. * front_.after;
     energies.viscous = front.taken;
     if (forces_->viscous())
       damp(h, last, energies);

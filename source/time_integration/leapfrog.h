@@ -23,17 +23,24 @@ namespace nsfd
    *
    *   M (v_{k+1/2} - v_{k-1/2}) = k f(q_k) + P,   q_{k+1} = q_k + h v_{k+1/2},
    *
-   * k = (h_last + h)/2. Faces whose mean traction has reached the strength let
-   * go before the forces of a step act; their points, contact and friction are
-   * implicit in small problems at the nodes, so that only the free cells bound
-   * the step. For any loads and any impulses,
+   * k = h, and h/2 in the first step. Faces whose mean traction has reached the
+   * strength let go before the forces of a step act; their points, contact and
+   * friction are implicit in small problems at the nodes, so that only the free
+   * cells bound the step. For any loads and any impulses,
    *
    *   E_{k+1/2} = v.M v/2 + U(q_k) - (h/2) f.v
    *             = v.(M - h^2 K/4) v/2 + U(q_k + h v/2)
    *
    * changes by the sum of P.(v+ + v-)/2; the two parts on the right are the
-   * kinetic and elastic energy of the state. Where h changes, (h_last - h)/4
-   * f.(v+ - v-) is numerical.
+   * kinetic and elastic energy of the state. The first step takes
+   * h/4 f.(v+ - v-), which is numerical.
+   *
+   * All steps have the same length. With v_k = v_{k-1/2} + (h/2) M^-1 f,
+   *
+   *   E = v_k.M v_k/2 + U(q_k) - (h^2/8) f.M^-1 f,
+   *
+   * so that no step shorter than the last one could leave q_k without energy
+   * from nothing where bodies come to rest, v_k = 0: whatever its velocity.
    */
   template <int dim>
   class Leapfrog final : public TimeIntegrator<dim>
@@ -133,7 +140,7 @@ namespace nsfd
     struct Counters {
       double excess = 0.; ///< of a traction over the strength, less 1
       unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0,
-                         loose = 0;
+                         loose = 0, held = 0;
       double seconds = 0.; ///< of steps
     } counters_;
   };

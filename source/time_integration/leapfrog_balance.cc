@@ -171,8 +171,6 @@ namespace nsfd
       p.jump_old[a * dim + c] = held ? 0. : p.jump_free[a * dim + c] + h * U[c];
     if (chains_.closed[a])
       p.jump_old[a * dim] = p.jump_free[a * dim] + h * p.target[a];
-    if (p.theta > 0.5 && p.theta < 1. && p.compression_stiffness[a] == 0.)
-      chains_.released[a] = std::max(chains_.released[a], -p.jump_old[a * dim]);
     if (chains_.closed[a]) {
       double square = 0.;
       for (unsigned int c = 1; c < dim; ++c)

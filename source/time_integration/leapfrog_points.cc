@@ -4,10 +4,12 @@
 #include "energy_safe_sliding.h"
 
 #include "discretization/discretization.h"
+#include "joined/held_nodes.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace nsfd
 {
@@ -43,6 +45,14 @@ namespace nsfd
           return false;
       }
       return true;
+    }
+
+    template <int dim>
+    void take_held(const HeldNodes<dim> &held, LeapfrogChains<dim> &chains,
+                   typename LeapfrogPoints<dim>::Outcome &outcome)
+    {
+      held.mark(chains.solution);
+      outcome.excess = std::max(outcome.excess, held.excess(chains.impulse));
     }
   } // namespace
 
@@ -156,9 +166,6 @@ namespace nsfd
     const double u = p.jump_free[a * dim], U = chains_.old_velocity[a * dim];
     chains_.turned[a] = 0;
     p.target[a] = -(u + chains_.released[a]) / h;
-    // a longer step than the last one: no overlap would cost energy
-    if (p.theta > 0.5 && p.theta < 1. && U > 0.)
-      p.target[a] = std::min(p.target[a], -U);
     const double e = p.kind[a] == PointKind::free
                          ? p.interactions[p.interaction[a]].restitution
                          : 0.;
@@ -221,11 +228,13 @@ namespace nsfd
 
   /**
    * Friction that opposes the velocity of the end of a step gives energy where
-   * sliding turns round in it: such points oppose the mean from then on. True
+   * sliding turns round in it: such points oppose the mean from then on, which
+   * never gives any; or @p all that rub, where the problem was not solved. True
    * if there are new ones.
    */
   template <int dim>
-  bool LeapfrogPoints<dim>::turn_friction(const std::size_t first)
+  bool LeapfrogPoints<dim>::turn_friction(const std::size_t first,
+                                          const bool all)
   {
     OneStepProblem<dim> &p = chains_.problem;
     bool turned = false;
@@ -241,7 +250,7 @@ namespace nsfd
       double size = 0.;
       for (unsigned int c = 1; c < dim; ++c)
         size += std::abs(P[c]) * (std::abs(U[c]) + std::abs(before[c]));
-      if (work <= 1e-9 * size)
+      if (work <= 1e-9 * size && !all)
         continue;
       turned = true;
       chains_.turned[a] = 1;
@@ -303,26 +312,41 @@ namespace nsfd
     }
     springs_.resize(moved_.size(), nullptr);
     free_ = node.problem.velocity;
-    do {
+    std::optional<HeldNodes<dim>> held;
+    NodeReport report;
+    const auto solve = [&] {
       node.problem.velocity = free_;
-      const NodeReport report =
-          solver_.solve(chains_.problem, chains_.frame, node.problem,
-                        chains_.impulse, chains_.solution);
+      report = solver_.solve(chains_.problem, chains_.frame, node.problem,
+                             chains_.impulse, chains_.solution);
       if (mesh_.counts(node.node)) {
         outcome.sweeps += report.sweeps;
         outcome.newton += report.newton;
-        outcome.loose += !report.converged;
         ++outcome.problems;
       }
-      if (!(report.residual <= outcome.residual)) {
-        outcome.residual = report.residual;
-        outcome.worst = chains_.point[moved_[first]];
+      return report.converged || report.residual <= tolerance;
+    };
+    bool solved;
+    do {
+      solved = solve();
+      if (!solved && !held) {
+        held.emplace(chains_.problem);
+        held->hold(node.problem);
+        solved = held->any() && solve();
       }
-      outcome.converged = outcome.converged &&
-                          (report.converged || report.residual <= tolerance);
       take_velocities();
       set_velocities(first, groups);
-    } while (turn_friction(first));
+    } while (turn_friction(first, !solved));
+    outcome.converged = outcome.converged && solved;
+    if (mesh_.counts(node.node))
+      outcome.loose += !report.converged;
+    if (!(report.residual <= outcome.residual)) {
+      outcome.residual = report.residual;
+      outcome.worst = chains_.point[moved_[first]];
+    }
+    if (held && held->any()) {
+      outcome.held += mesh_.counts(node.node);
+      take_held<dim>(*held, chains_, outcome);
+    }
   }
 
   template <int dim>
@@ -379,21 +403,33 @@ namespace nsfd
     if (!communicator.any(!nodes.empty()))
       return;
     springs_.resize(moved_.size(), nullptr);
+    std::vector<const NodeProblem<dim> *> problems;
+    unsigned int n_counted = 0;
+    for (const auto &node : nodes) {
+      problems.push_back(node.problem);
+      n_counted += node.counts;
+    }
     Coupled coupled(communicator, rigid, solver_, chains_, groups,
                     std::move(nodes));
-    do {
-      const auto report = coupled.solve();
+    std::optional<HeldNodes<dim>> held;
+    typename Coupled::Report report;
+    const auto solve = [&] {
+      report = coupled.solve();
       outcome.sweeps += report.sweeps;
       outcome.newton += report.newton;
-      outcome.loose += report.loose;
-      if (!(report.residual <= outcome.residual)) {
-        outcome.residual = report.residual;
-        if (first < moved_.size()) // else it is on other ranks
-          outcome.worst = chains_.point[report.worst];
+      return (report.converged && report.loose == 0) ||
+             report.residual <= tolerance;
+    };
+    bool solved;
+    do {
+      solved = solve();
+      if (!held && communicator.any(!solved)) {
+        held.emplace(chains_.problem);
+        for (const auto *problem : problems)
+          held->hold(*problem);
+        if (communicator.any(held->any()))
+          solved = solve();
       }
-      outcome.converged =
-          outcome.converged && ((report.converged && report.loose == 0) ||
-                                report.residual <= tolerance);
       set_velocities(first, groups);
       if (communicator.any(!report.converged || report.loose > 0) &&
           communicator.any(stiff))
@@ -401,7 +437,19 @@ namespace nsfd
             "a rigid body that is free has met another one, a support or an "
             "obstacle: in scheme = explicit its points need cells that deform "
             "on the other side; write scheme = moreau-jean";
-    } while (!outcome.impossible && communicator.any(turn_friction(first)));
+    } while (!outcome.impossible &&
+             communicator.any(turn_friction(first, communicator.any(!solved))));
+    outcome.converged = outcome.converged && solved;
+    outcome.loose += report.loose;
+    if (!(report.residual <= outcome.residual)) {
+      outcome.residual = report.residual;
+      if (first < moved_.size()) // else it is on other ranks
+        outcome.worst = chains_.point[report.worst];
+    }
+    if (held && communicator.any(held->any())) {
+      outcome.held += n_counted;
+      take_held<dim>(*held, chains_, outcome);
+    }
   }
 
   template <int dim>

@@ -49,8 +49,10 @@ namespace nsfd
       bool converged = true;
       double residual = 0.;
       unsigned int sweeps = 0, newton = 0, problems = 0;
-      unsigned int loose = 0;           ///< problems not solved to round-off
-      std::size_t worst = 0;            ///< point of the mesh
+      unsigned int loose = 0; ///< problems not solved to round-off
+      unsigned int held = 0;  ///< solved with HeldNodes
+      double excess = 0.;     ///< of what these hold over the strength, less 1
+      std::size_t worst = 0;  ///< point of the mesh
       const char *impossible = nullptr; ///< why no step goes on from here
     };
     /**
@@ -124,7 +126,7 @@ namespace nsfd
     void collect(Node &node, const std::vector<std::uint8_t> &prescribed,
                  const CornerGroups<dim> &groups);
     bool solve_elastic(Node &node);
-    bool turn_friction(std::size_t first);
+    bool turn_friction(std::size_t first, bool all);
     void account_point(unsigned int a, std::size_t row, Balance &balance);
     void account_spring(unsigned int a, std::size_t row, Balance &balance);
     void keep_jump(unsigned int a, bool held);

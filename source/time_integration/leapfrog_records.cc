@@ -24,8 +24,8 @@ namespace nsfd
     const double c = -ghosts_.dot(g, viscous.of_groups(), g.velocity);
     energies.viscous += (h + last) / 8. * std::max(0., a + 2. * b + c);
     energies.kinetic -= h / 4. * c;
-    (last > 0. ? energies.numerical : energies.viscous) +=
-        (h - last) / 8. * (a + c);
+    if (last == 0.)
+      energies.viscous += h / 8. * (a + c);
   }
 
   template <int dim>
@@ -62,7 +62,7 @@ namespace nsfd
     next.viscous_traction = old.viscous_traction;
     next.pressure_work = old.pressure_work + bodies.pressure_work;
     report.active = balance.active;
-    report.beyond_unique = balance.beyond_unique;
+    report.beyond_unique |= balance.beyond_unique;
     report.changes = balance.changes;
     report.changes.taken[std::size_t(WatchedLine::scheme)] =
         energy.numerical - old.energy.numerical;
@@ -127,6 +127,7 @@ namespace nsfd
     counters["active_points"] =
         double(communicator_.sum_integer(points_.n_counted()));
     counters["node_problems_above_1e-12"] = double(counters_.loose);
+    counters["held_node_problems"] = double(counters_.held);
     counters["groups"] = double(communicator_.sum_integer(
         groups_ ? groups_->size() - groups_->not_counted().size() : 0));
     counters["worst_excess_over_strength"] =

@@ -17,15 +17,18 @@ namespace nsfd
 
   void StepCheck::check_solution(const double h, const double time,
                                  const SolverReport &report,
-                                 const std::size_t worst_point) const
+                                 const std::size_t worst_point,
+                                 const StepRejected::Cure cure) const
   {
     if (report.converged)
       return;
-    throw StepRejected(fmt::format(
-        "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "
-        "after {} Newton steps and {} sweeps; worst face {}",
-        h, time, report.residual, report.newton, report.sweeps,
-        describe_(worst_point)));
+    throw StepRejected(
+        fmt::format(
+            "the step of {:.4g} at t = {:.6g} was not solved: residual {:.2e} "
+            "after {} Newton steps and {} sweeps; worst face {}",
+            h, time, report.residual, report.newton, report.sweeps,
+            describe_(worst_point)),
+        cure);
   }
 
   void StepCheck::check_balance(const TakenStep &step, const StepReport &report)

@@ -27,9 +27,10 @@ namespace nsfd
     StepCheck(const SceneInput &input, Describe describe);
 
     /** @throws StepRejected if it was not solved to the tolerance. */
-    void check_solution(double time_step, double time,
-                        const SolverReport &report,
-                        std::size_t worst_point) const;
+    void check_solution(
+        double time_step, double time, const SolverReport &report,
+        std::size_t worst_point,
+        StepRejected::Cure cure = StepRejected::Cure::shorter_step) const;
 
     /** Energies add up for any impulses, unless these have lost their digits.
         @throws StepRejected */

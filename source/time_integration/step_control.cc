@@ -25,6 +25,15 @@ namespace nsfd
     base_ = (end - start) / double(n_base_);
   }
 
+  StepControl StepControl::of_length(const double step, const double end,
+                                     const double start)
+  {
+    StepControl control(end, step, 0, start);
+    control.base_ = step;
+    control.end_ = start + double(control.n_base_) * step;
+    return control;
+  }
+
   double StepControl::time() const
   {
     if (finished())

@@ -18,6 +18,10 @@ namespace nsfd
     StepControl(double end, double base, unsigned int maximum_bisections,
                 double start = 0.);
 
+    /** From @p start on by steps of exactly @p step, until the first of them
+        that does not end before @p end. */
+    static StepControl of_length(double step, double end, double start);
+
     bool finished() const { return base_count_ == n_base_; }
     double time() const;
     /** The end of the present step. */

@@ -375,6 +375,34 @@ namespace end_to_end::test_restart
   }
 
   // Exit code 3 stores the last good state: a solver that can goes on from it.
+  // Explicit steps keep their length on the way to another end.
+  TEST(Restart, ExplicitStepsToAnotherEnd)
+  {
+    const Workspace workspace;
+    const Launch first = {benchmark("fracture_extrinsic"),
+                          {"Mesh/cells=8, 8", "Time/end=4 ns",
+                           "Time/scheme=explicit", "Time/step=auto",
+                           "Output/checkpoint every steps=10"}};
+    const Result before = good_run(workspace, "run", first);
+    Launch longer = first;
+    longer.set[1] = "Time/end=7.77 ns";
+    const Result after = resume(workspace, "run", longer);
+    ASSERT_TRUE(after.completed()) << after.description();
+    const auto &t = after.history["time"];
+    const double h = before.history["time"][1];
+    EXPECT_NEAR(t.back() - t[t.size() - 2], h, 1e-9 * h);
+    EXPECT_GE(t.back(), 7.77e-9 * (1. - 1e-12));
+    EXPECT_LT(t.back(), 7.77e-9 + h);
+    EXPECT_LT(
+        after.summary["certificate"]["lines"]["given by time scheme"]["value"],
+        1e-14);
+    Launch shorter = longer;
+    shorter.set[3] = "Time/step=1 ps";
+    const Result refused = resume(workspace, "run", shorter);
+    EXPECT_EQ(refused.outcome.exit_code, 1);
+    EXPECT_NE(refused.outcome.err.find("Time/step"), std::string::npos);
+  }
+
   TEST(Restart, AfterAStepThatFailed)
   {
     const Workspace workspace;

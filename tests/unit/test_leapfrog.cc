@@ -167,19 +167,34 @@ end
       }
     }
 
-    // Of steps whose length changes while it is pulled, with and without front
-    // viscosity.
-    TEST(Leapfrog, BalanceClosesWhereStepsChange)
+    // The energy that is kept depends on the length.
+    TEST(Leapfrog, StepsHaveOneLength)
     {
-      for (const char *viscosity : {"0", "0.3"}) {
-        Steps<2> run(square,
-                     {std::string("Time/front viscosity=") + viscosity});
-        double residual = 0.;
-        for (unsigned int k = 0; k < 110; ++k)
-          residual = std::max(
-              residual, run.step(k % 7 == 3 ? 0.25 : 1.).balance_residual);
-        EXPECT_GT(run.state.energy.damage, 0.);
-        EXPECT_LT(residual, 1e-12);
+      Steps<2> run(square);
+      run.step(0.5);
+      EXPECT_THROW(run.step(0.25), std::logic_error);
+      EXPECT_THROW(run.step(1.), std::logic_error);
+      EXPECT_NO_THROW(run.step(0.5));
+    }
+
+    // Free vibration, from steps of any length: what the first one takes is all
+    // that is numerical.
+    TEST(Leapfrog, FreeVibrationKeepsItsEnergy)
+    {
+      for (const double share : {1., 0.37}) {
+        Steps<2> run(test::standing_bar,
+                     {"Mesh/upper corner=1, 0.1", "Mesh/cells=10, 1",
+                      "Time/front viscosity=0"});
+        run.step(share);
+        const EnergyLines first = run.state.energy;
+        EXPECT_GE(first.numerical, 0.);
+        const double energy = first.kinetic + first.elastic;
+        for (unsigned int k = 0; k < 500; ++k) {
+          run.step(share);
+          const EnergyLines &e = run.state.energy;
+          ASSERT_NEAR(e.kinetic + e.elastic, energy, 1e-12 * energy);
+          ASSERT_EQ(e.numerical, first.numerical);
+        }
       }
     }
 

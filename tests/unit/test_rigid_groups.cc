@@ -288,8 +288,7 @@ end
         EXPECT_NEAR(after[c], before[c], 1e-12 * size);
       EXPECT_GT(run.state.energy.damage, 0.);
       EXPECT_GT(run.state.energy.friction, 0.);
-      // round-off, but for a share of the way of a step that was shortened
-      EXPECT_LT(run.state.penetration, 0.02 * 30. * run.time_step);
+      EXPECT_LT(run.state.penetration, 1e-14 * 0.04); // m, of 40 mm
     }
   } // namespace
 } // namespace nsfd::test_rigid_groups

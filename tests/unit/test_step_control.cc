@@ -22,6 +22,20 @@ TEST(StepControl, BaseStepMeetsTheEnd)
   EXPECT_EQ(control.time(), 1.);
 }
 
+// Of a run that goes on to another end, with the steps that it has.
+TEST(StepControl, KeepsALengthBeyondTheEnd)
+{
+  StepControl control = StepControl::of_length(0.3, 2., 1.);
+  EXPECT_EQ(control.step(), 0.3);
+  unsigned int n = 0;
+  for (; !control.finished(); ++n)
+    control.accept();
+  EXPECT_EQ(n, 4u);
+  EXPECT_DOUBLE_EQ(control.time(), 2.2);
+  EXPECT_FALSE(control.bisect());
+  EXPECT_EQ(StepControl::of_length(0.1, 1.3, 1.).step(), 0.1);
+}
+
 // Down as far as the limit asks for at once, up one level per step where the
 // time is a multiple of the longer step.
 TEST(StepControl, DownAtOnceUpOneLevelPerStep)

@@ -46,30 +46,29 @@ end
         "dimension=3", "Mesh/type=tetrahedra", "Mesh/lower corner=0, 0, 0",
         "Mesh/upper corner=1, 0.25, 0.25", "Mesh/cells=4, 1, 1"};
 
-    /** What a free body has is kept or taken, near the bound of the step, and
-        where steps change. */
+    /** What a free body has is kept or taken, near the bound of the step and
+        far below it. */
     template <int dim>
     void expect_loss(const std::vector<std::string> &overrides)
     {
-      for (const bool changing : {false, true}) {
+      for (const double share : {0.999 / 0.9, 0.4}) {
         Steps<dim> run(bar, overrides);
         const double start = run.state.energy.kinetic;
         const auto momentum = run.momentum();
         double residual = 0.;
         for (unsigned int k = 0; k < 400; ++k) {
           const EnergyLines before = run.state.energy;
-          const double share = changing && k % 3 == 0 ? 0.4 : 0.999 / 0.9;
           residual = std::max(residual, run.step(share).balance_residual);
           const EnergyLines &after = run.state.energy;
           EXPECT_GE(after.viscous, before.viscous);
           EXPECT_GE(after.kinetic, 0.);
           EXPECT_GE(after.elastic, 0.);
-          if (!changing && k > 0) {
+          if (k > 0) {
             EXPECT_EQ(after.numerical, before.numerical);
           }
         }
         EXPECT_LT(residual, 1e-13);
-        EXPECT_GT(run.state.energy.viscous, 0.5 * start);
+        EXPECT_GT(run.state.energy.viscous, (share < 1. ? 0.2 : 0.5) * start);
         const auto now = run.momentum();
         for (unsigned int c = 0; c < dim; ++c)
           EXPECT_NEAR(now[c], momentum[c], 1e-16);
