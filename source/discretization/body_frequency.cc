@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <queue>
 #include <set>
 
 namespace nsfd
@@ -217,12 +218,44 @@ namespace nsfd
     return result;
   }
 
+  template <int dim>
+  std::vector<double> shortest_steps(const Cells<dim> &cells, const double b,
+                                     const std::size_t n, const double factor)
+  {
+    if (!cells.differ())
+      return longest_steps(cells, b);
+    auto result = frequencies_of_bodies(cells);
+    for (double &x : result)
+      x = longest_step(x, b);
+    std::vector<unsigned int> order(result.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](const unsigned int one, const unsigned int two) {
+                return result[one] < result[two];
+              });
+    std::priority_queue<double> shortest; // the n first ones of those known
+    double least = std::numeric_limits<double>::infinity();
+    for (const unsigned int i : order) {
+      if (shortest.size() == n && result[i] > shortest.top() &&
+          result[i] > factor * least)
+        break; // bounds only grow from here
+      result[i] = longest_step(highest_frequency(*cells.shape(i)), b);
+      least = std::min(least, result[i]);
+      shortest.push(result[i]);
+      if (shortest.size() > n)
+        shortest.pop();
+    }
+    return result;
+  }
+
 #define NSFD_INSTANTIATE(dim)                                                  \
   template double highest_frequency(const BodyShape<dim> &);                   \
   template double frequency_bound(const BodyShape<dim> &);                     \
   template std::vector<double> frequencies_of_bodies(const Cells<dim> &);      \
   template double highest_frequency(const Cells<dim> &);                       \
-  template std::vector<double> longest_steps(const Cells<dim> &, double)
+  template std::vector<double> longest_steps(const Cells<dim> &, double);      \
+  template std::vector<double> shortest_steps(const Cells<dim> &, double,      \
+                                              std::size_t, double)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

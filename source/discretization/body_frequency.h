@@ -45,4 +45,12 @@ namespace nsfd
    */
   template <int dim>
   std::vector<double> longest_steps(const Cells<dim> &cells, double b);
+
+  /**
+   * The same where it is among the @p n shortest, or at most @p factor times
+   * the shortest one; of others not more than that, and more than those.
+   */
+  template <int dim>
+  std::vector<double> shortest_steps(const Cells<dim> &cells, double b,
+                                     std::size_t n, double factor);
 } // namespace nsfd

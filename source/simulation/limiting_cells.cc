@@ -45,8 +45,11 @@ namespace nsfd
   {
     if (input.time.scheme != Scheme::leapfrog)
       return "";
+    constexpr double near = 1.1;
     const Cells<dim> &cells = discretization.cells();
-    const auto steps = longest_steps(cells, input.front_viscosity());
+    const std::size_t n_cells = communicator.sum_integer(cells.bodies.size());
+    const auto steps =
+        shortest_steps(cells, input.front_viscosity(), n_cells / 100 + 2, near);
     std::vector<BoundedCell<dim>> own;
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
       if (!std::isfinite(steps[b]))
@@ -62,12 +65,12 @@ namespace nsfd
       return "";
     std::sort(all.begin(), all.end());
     const BoundedCell<dim> &worst = all.front();
-    const auto n_near =
-        std::size_t(std::partition_point(all.begin(), all.end(),
-                                         [&](const BoundedCell<dim> &cell) {
-                                           return cell.step <= 1.1 * worst.step;
-                                         }) -
-                    all.begin());
+    const auto n_near = std::size_t(
+        std::partition_point(all.begin(), all.end(),
+                             [&](const BoundedCell<dim> &cell) {
+                               return cell.step <= near * worst.step;
+                             }) -
+        all.begin());
     const std::size_t n_left_out =
         std::min(all.size() - 1, (all.size() + 99) / 100);
     const double ratio = all[n_left_out].step / worst.step;

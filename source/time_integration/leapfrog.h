@@ -101,7 +101,7 @@ namespace nsfd
       double viscous = 0., pressure_work = 0.;
     };
 
-    void take(const State &state, std::vector<std::uint8_t> intact);
+    void take(const State &state, std::vector<std::uint8_t> intact, bool start);
     void show_at(State &state, const std::vector<unsigned int> &place) const;
     void serialize_all(Archive &archive);
     void find_supports();

@@ -52,9 +52,11 @@ namespace nsfd
     return ghosts_.without(std::move(state));
   }
 
-  /** The motion and the points of @p state, with ghosts. */
+  /** The motion and the points of @p state, with ghosts; rigid bodies get their
+      velocities if they @p start. */
   template <int dim>
-  void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact)
+  void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact,
+                           const bool start)
   {
     const auto &origins = discretization_.origins();
     for (std::size_t i = 0; i < intact.size(); ++i)
@@ -78,6 +80,8 @@ namespace nsfd
       hanging_.follow(*groups_);
     }
     find_supports();
+    if (rigid_ && start)
+      rigid_->start(*groups_);
     hanging_.set_forces(*forces_, *groups_);
     if (auto *viscous = forces_->viscous())
       viscous->set(*groups_, hanging_);
@@ -89,9 +93,7 @@ namespace nsfd
   State Leapfrog<dim>::start_from(const State &given)
   {
     State state = ghosts_.with(given);
-    take(state, joined_points(discretization_, state));
-    if (rigid_)
-      rigid_->start(*groups_);
+    take(state, joined_points(discretization_, state), true);
     state.bond_traction.assign(state.jump.size(), 0.);
     show_at(state, {});
     const auto &g = *groups_;
@@ -115,7 +117,7 @@ namespace nsfd
     for (std::size_t i = 0; i < origins.size(); ++i)
       intact[i] =
           is_interface(origins[i]) && state.kind[i] == PointKind::bonded;
-    take(state, std::move(intact));
+    take(state, std::move(intact), false);
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \

@@ -287,6 +287,33 @@ end
       EXPECT_LT(tension_behind_front("auto"), 0.05);
     }
 
+    // Exact where a step may be among the shortest, a bound of others.
+    TEST(Leapfrog, KnowsTheCellsThatDecideTheStep)
+    {
+      auto overrides = tetrahedra;
+      overrides.back() = "Mesh/cells=5, 5, 5";
+      overrides.push_back("Mesh/distortion=0.25");
+      const Steps<3> run(square, overrides);
+      const auto &cells = run.discretization->cells();
+      ASSERT_TRUE(cells.differ());
+      const auto all = longest_steps(cells, 0.2);
+      constexpr std::size_t n = 10;
+      const auto found = shortest_steps(cells, 0.2, n, 1.1);
+      auto sorted = all;
+      std::sort(sorted.begin(), sorted.end());
+      const double known = std::max(sorted[n - 1], 1.1 * sorted[0]);
+      std::size_t n_bounds = 0;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_LE(found[i], all[i]);
+        EXPECT_EQ(found[i] <= known, all[i] <= known);
+        if (all[i] <= known) {
+          EXPECT_EQ(found[i], all[i]);
+        }
+        n_bounds += found[i] < all[i];
+      }
+      EXPECT_GT(n_bounds, all.size() / 2);
+    }
+
     // Two quads side by side: eight corners at six nodes.
     TEST(CornerGroups, SplitWhereLinksLetGo)
     {

@@ -99,6 +99,25 @@ end
       EXPECT_NEAR(run.momentum()[0], 1e-4, 1e-15);
     }
 
+    // Nodes that a rigid mass shares with a viscous bar move with it from the
+    // start: there is no rate of strain in which its viscosity could act.
+    TEST(RigidGroups, StartsViscousBarsWithoutForce)
+    {
+      Steps<2> run(strike,
+                   {"Interface: touch/where=x > 2",
+                    "Material: mass/initial velocity x=0.01 + 0.005 * cos(2 * "
+                    "pi * y / 0.02)",
+                    "Material: bar/initial velocity x=0.01",
+                    "Material: bar/shear viscosity=1e-3",
+                    "Material: bar/bulk viscosity=1e-3"});
+      EXPECT_NEAR(velocity_at(run, -0.0525)[0], 0.01, 1e-15);
+      const double start = run.state.energy.kinetic;
+      for (unsigned int k = 0; k < 3; ++k)
+        run.step();
+      EXPECT_LT(run.state.energy.viscous, 1e-14 * start);
+      EXPECT_NEAR(run.state.energy.kinetic, start, 1e-13 * start);
+    }
+
     // the cells of a rigid body do not enter the bound of the step
     TEST(RigidGroups, DoesNotShortenTheStep)
     {
