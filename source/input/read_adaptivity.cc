@@ -38,7 +38,7 @@ namespace nsfd
                           [](const auto &material) { return material.rigid; }),
           "cells of rigid bodies cannot be refined",
           "make all materials elastic, or remove the section Adaptivity");
-      refuse(scene.statics.has_value(),
+      refuse(scene.statics && scene.time.scheme != Scheme::leapfrog,
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");
       refuse(scene.time.scheme == Scheme::arkode,

@@ -19,6 +19,31 @@ namespace nsfd
                                  block.name),
                      "remove it, or write scheme = moreau-jean");
     }
+
+    /** What an equilibrium of joined cells does not know yet. */
+    void refuse_start(SectionReader &reader, const SceneInput &scene)
+    {
+      const auto refuse = [&reader](const std::string &what) {
+        reader.error("start",
+                     "the equilibrium that scheme = explicit starts from has "
+                     "no " +
+                         what,
+                     "write given, or scheme = moreau-jean");
+      };
+      for (const MaterialInput &material : scene.materials)
+        if (material.rigid)
+          refuse(fmt::format("rigid bodies yet, and material `{}` is rigid",
+                             material.name));
+      for (const InterfaceInput &block : scene.interfaces) {
+        if (block.law_name == "elastic" ||
+            (block.law && !block.law->extrinsic()))
+          refuse(fmt::format("springs yet, and {} of Interface: {} is one",
+                             block.law_name, block.name));
+        if (block.crack_pressure)
+          refuse(fmt::format(
+              "pressure in cracks yet, and Interface: {} has one", block.name));
+      }
+    }
   } // namespace
 
   void read_leapfrog(SectionReader &reader, SceneInput &scene)
@@ -47,8 +72,6 @@ namespace nsfd
     for (const ObstacleInput &obstacle : scene.obstacles)
       refuse_lift(reader, obstacle);
     if (scene.statics)
-      reader.error("start",
-                   "scheme = explicit does not start from an equilibrium yet",
-                   "write given");
+      refuse_start(reader, scene);
   }
 } // namespace nsfd

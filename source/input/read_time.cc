@@ -68,7 +68,8 @@ namespace nsfd
     }
 
     /** Laws with rates, and contacts that sliding moves. */
-    void refuse_rates(SectionReader &reader, const SceneInput &scene)
+    void refuse_rates(SectionReader &reader, const SceneInput &scene,
+                      const bool has_common_nodes)
     {
       const auto refuse_lift = [&reader](const auto &block) {
         if (block.sliding.lifts())
@@ -79,7 +80,7 @@ namespace nsfd
                        "remove them, or start as given");
       };
       for (const InterfaceInput &interface : scene.interfaces) {
-        if (interface.intact == IntactFaces::bonded)
+        if (interface.intact == IntactFaces::bonded && !has_common_nodes)
           reader.error("start",
                        fmt::format("equilibria with bonded faces (`{}`) are "
                                    "not available",
@@ -123,8 +124,9 @@ namespace nsfd
 
     /** An equilibrium at the start, and what it cannot go with. */
     bool read_start(SectionReader &reader, const SceneInput &scene,
-                    const bool quasi_static)
+                    const std::string &scheme)
     {
+      const bool quasi_static = scheme == "quasi-static";
       const std::string start =
           reader.choice("start", quasi_static ? "equilibrium" : "given",
                         {"given", "equilibrium"}, "given or equilibrium");
@@ -157,7 +159,7 @@ namespace nsfd
                      "write given, and let the scene come to rest");
         return true;
       }
-      refuse_rates(reader, scene);
+      refuse_rates(reader, scene, scheme == "explicit");
       for (const MaterialInput &material : scene.materials)
         for (unsigned int c = 0; c < scene.dimension; ++c)
           if (!material.initial_velocity[c].is_zero()) {
@@ -380,7 +382,7 @@ namespace nsfd
       return;
     check_viscosity(reader, scene, scheme);
     const bool quasi_static = scheme == "quasi-static";
-    if (read_start(reader, scene, quasi_static)) {
+    if (read_start(reader, scene, scheme)) {
       scene.statics.emplace();
       scene.statics->tolerance =
           reader.number("equilibrium tolerance", "1e-11", units::none,

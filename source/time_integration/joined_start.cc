@@ -68,6 +68,33 @@ namespace nsfd
     return intact;
   }
 
+  template <int dim>
+  void set_jumps(const Discretization<dim> &discretization,
+                 const JoinedMesh<dim> &mesh, State &state)
+  {
+    const auto &points = discretization.points();
+    state.jump.assign(points.n_points * dim, 0.);
+    state.relative_velocity.assign(points.n_points * dim, 0.);
+    for (std::size_t i = 0; i < points.n_points; ++i) {
+      if (mesh.between_sizes(i))
+        continue; // one follows the other
+      for (unsigned int side = 0; side < 2; ++side) {
+        const unsigned int corner = mesh.corners(i)[side];
+        if (corner == JoinedMesh<dim>::none)
+          continue;
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c) {
+            const double share =
+                (side == 0 ? -1. : 1.) * points.frame[(i * dim + r) * dim + c];
+            state.jump[i * dim + r] +=
+                share * state.displacement[corner * dim + c];
+            state.relative_velocity[i * dim + r] +=
+                share * state.velocity[corner * dim + c];
+          }
+      }
+    }
+  }
+
   namespace
   {
     /** Of what hangs nothing is prescribed that is not where it hangs from. */
@@ -161,6 +188,8 @@ namespace nsfd
 #define NSFD_INSTANTIATE(dim)                                                  \
   template std::vector<std::uint8_t> joined_points(                            \
       const Discretization<dim> &, State &);                                   \
+  template void set_jumps(const Discretization<dim> &,                         \
+                          const JoinedMesh<dim> &, State &);                   \
   template void check_hanging(const Communicator &,                            \
                               const Discretization<dim> &,                     \
                               const JoinedMesh<dim> &, State &,                \

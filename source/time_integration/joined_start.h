@@ -25,6 +25,11 @@ namespace nsfd
   std::vector<std::uint8_t>
   joined_points(const Discretization<dim> &discretization, State &state);
 
+  /** Jumps and relative velocities of all points, of the motion of @p state. */
+  template <int dim>
+  void set_jumps(const Discretization<dim> &discretization,
+                 const JoinedMesh<dim> &mesh, State &state);
+
   /**
    * That what joins cells of two sizes lasts in a run from @p state.
    * @throws std::runtime_error with a sentence for the user, on all ranks.

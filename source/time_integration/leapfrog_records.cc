@@ -105,6 +105,8 @@ namespace nsfd
   template <int dim>
   void Leapfrog<dim>::show(State &state) const
   {
+    if (!groups_)
+      return; // it could not start
     show_at(state, ghosts_.own_points());
     if (loads_.cracks())
       loads_.cracks()->show(points_.chains(), ghosts_.own_points(), state);

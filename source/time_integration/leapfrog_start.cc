@@ -1,6 +1,7 @@
 #include "leapfrog.h"
 
 #include "initial_state.h"
+#include "joined_equilibrium.h"
 #include "joined_start.h"
 
 #include "joined/rigid_clusters.h"
@@ -24,32 +25,15 @@ namespace nsfd
   State Leapfrog<dim>::initial_state() const
   {
     State state = initial_motion(input_, discretization_);
+    set_jumps(discretization_, mesh_, state);
     const auto &points = discretization_.points();
-    state.jump.assign(points.n_points * dim, 0.);
-    state.relative_velocity.assign(points.n_points * dim, 0.);
-    for (std::size_t i = 0; i < points.n_points; ++i) {
-      if (mesh_.between_sizes(i))
-        continue; // one follows the other
-      for (unsigned int side = 0; side < 2; ++side) {
-        const unsigned int corner = mesh_.corners(i)[side];
-        if (corner == JoinedMesh<dim>::none)
-          continue;
-        for (unsigned int r = 0; r < dim; ++r)
-          for (unsigned int c = 0; c < dim; ++c) {
-            const double share =
-                (side == 0 ? -1. : 1.) * points.frame[(i * dim + r) * dim + c];
-            state.jump[i * dim + r] +=
-                share * state.displacement[corner * dim + c];
-            state.relative_velocity[i * dim + r] +=
-                share * state.velocity[corner * dim + c];
-          }
-      }
-    }
     set_points(input_, discretization_, all_, state);
     for (std::size_t i = 0; i < points.n_points; ++i)
       if (!state.two_sided[i]) // contact holds where it is
         state.released_overlap[i] = std::max(0., -state.jump[i * dim]);
-    return ghosts_.without(std::move(state));
+    State own = ghosts_.without(std::move(state));
+    own.bond_traction.assign(own.jump.size(), 0.);
+    return own;
   }
 
   /** The motion and the points of @p state, with ghosts; rigid bodies get their
@@ -93,8 +77,11 @@ namespace nsfd
   State Leapfrog<dim>::start_from(const State &given)
   {
     State state = ghosts_.with(given);
+    if (input_.statics)
+      JoinedEquilibrium<dim>(input_, communicator_, discretization_, mesh_,
+                             ghosts_, hanging_, *forces_)
+          .find(state);
     take(state, joined_points(discretization_, state), true);
-    state.bond_traction.assign(state.jump.size(), 0.);
     show_at(state, {});
     const auto &g = *groups_;
     terms_.resize(g.velocity.size());

@@ -71,6 +71,16 @@ namespace nsfd
   }
 
   template <int dim>
+  void PrescribedGroups<dim>::set_places(const double time,
+                                         CornerGroups<dim> &groups) const
+  {
+    for (const PrescribedRow &row : all_)
+      if (const auto *place = motion_.displacement(row.point, row.component))
+        groups.displacement[std::size_t(row.group) * dim + row.component] =
+            motion_.at(*place, row.point, time);
+  }
+
+  template <int dim>
   double PrescribedGroups<dim>::velocity(const PrescribedRow &row,
                                          const double time, const double h,
                                          const CornerGroups<dim> &groups) const

@@ -51,6 +51,9 @@ namespace nsfd
                         const std::vector<double> &loads,
                         CornerGroups<dim> &groups);
 
+    /** Takes them to where they are to be at @p time, if a place is given. */
+    void set_places(double time, CornerGroups<dim> &groups) const;
+
     const std::vector<PrescribedRow> &rigid_rows() const { return rigid_; }
     /** What @p row asks for in the step from @p time over @p h. */
     double velocity(const PrescribedRow &row, double time, double h,
