@@ -33,7 +33,7 @@ namespace nsfd
              "tetrahedra have no non-conforming faces",
              "take such a mesh, or `split simplices = true`");
       refuse(
-          scene.time.scheme != Scheme::leapfrog &&
+          !scene.time.scheme.at_nodes &&
               std::any_of(scene.materials.begin(), scene.materials.end(),
                           [](const auto &material) { return material.rigid; }),
           "cells of rigid bodies cannot be refined",
@@ -41,11 +41,11 @@ namespace nsfd
       refuse(scene.statics.has_value(),
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");
-      refuse(scene.time.scheme == Scheme::arkode,
+      refuse(scene.time.scheme.smooth,
              "the mesh does not change with scheme = arkode",
              "write scheme = moreau-jean or symplectic");
       // one per level, and two for the penalty of bonds at non-conforming faces
-      refuse(scene.time.scheme == Scheme::explicit_moreau_jean &&
+      refuse(scene.time.scheme.explicit_forces &&
                  scene.adaptivity->levels + 2 > scene.time.maximum_bisections,
              fmt::format("the stable step of the explicit scheme halves with "
                          "every level, and {} bisections are allowed",
@@ -124,7 +124,7 @@ namespace nsfd
       if (auto indicator = read_indicator(*block, errors))
         adaptivity.indicators.push_back(std::move(indicator));
     const auto &found = adaptivity.indicators;
-    if (scene.time.scheme == Scheme::leapfrog &&
+    if (scene.time.scheme.at_nodes &&
         !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
           return indicator->is_fixed();
         }))

@@ -43,7 +43,7 @@ namespace nsfd
                              const Discretization<dim> &discretization,
                              const Communicator &communicator)
   {
-    if (input.time.scheme != Scheme::leapfrog)
+    if (!input.time.scheme.at_nodes)
       return "";
     const Cells<dim> &cells = discretization.cells();
     const auto steps = longest_steps(cells, input.front_viscosity());

@@ -77,7 +77,7 @@ namespace nsfd
   void TimeStepping<dim>::fill_counters(std::map<std::string, double> &c) const
   {
     controller_.fill_counters(c);
-    if (model_.smooth_motion) // summaries have the same keys
+    if (model_.other && model_.stepper) // summaries have the same keys
       model_.stepper->fill_counters(c);
     for (const TimeIntegrator<dim> *one : model_.integrators())
       one->fill_counters(c);
