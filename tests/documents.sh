@@ -10,6 +10,7 @@
 #   index      doc/README.md links every document of doc/
 #   comments   doc/*.md that sources, scenes and scripts name exist
 #   layers     doc/code_tour.md shows every folder of source/LAYERS
+#   release    CMakeLists.txt, CITATION.cff and CHANGELOG.md have one version
 set -eu
 
 scratch=$(mktemp -d)
@@ -185,5 +186,12 @@ for layer in $(sed '/^#/d; s/ .*//' source/LAYERS); do
     status=1
   fi
 done
+released=$(sed -n 's/^project(nsfd VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)
+cited=$(sed -n 's/^version: *//p' CITATION.cff)
+changed=$(sed -n 's/^## \([0-9.]*\)$/\1/p' CHANGELOG.md | head -n 1)
+if [ -z "$released" ] || [ "$released $released" != "$cited $changed" ]; then
+  echo "version: CMakeLists.txt $released, CITATION.cff $cited, CHANGELOG.md $changed"
+  status=1
+fi
 [ $status -ne 0 ] || echo "$# documents: links, files and names are there"
 exit $status

@@ -70,7 +70,7 @@ namespace nsfd
   StateTransfer<dim>::StateTransfer(const SceneInput &input,
                                     Mesh &triangulation,
                                     const MeshState<dim> &mesh)
-      : input_(input), triangulation_(triangulation), memory_(input),
+      : input_(input), triangulation_(triangulation), history_(input),
         shift_(input, mesh), old_(mesh),
         body_of_(bodies_of_cells(triangulation)),
         offset_(beyond_motion(input, mesh)),
@@ -116,10 +116,10 @@ namespace nsfd
       if (!all_faces && !lies_on_face(child, face_no))
         continue;
       const std::size_t first = parcel.size();
-      parcel.resize(first + memory_.size());
-      memory_.store(old_.discretization, old_.state, point,
-                    &offset_[point * dim], &parcel[first]);
-      parcel[first + PointMemory<dim>::face] = face_no;
+      parcel.resize(first + history_.size());
+      history_.store(old_.discretization, old_.state, point,
+                     &offset_[point * dim], &parcel[first]);
+      parcel[first + PointHistory<dim>::face] = face_no;
     }
   }
 
@@ -238,17 +238,18 @@ namespace nsfd
   }
 
   /**
-   * The nearest memory on the same face of the cell; of equally near ones the
+   * The nearest history on the same face of the cell; of equally near ones the
    * most damaged. Null where there is none; @p inside: the face is new, inside
    * an old cell.
    */
   template <int dim>
-  const double *
-  StateTransfer<dim>::memory_of(const Received &received,
-                                const unsigned int face_no, const std::size_t i,
-                                const MeshState<dim> &fresh, bool &inside) const
+  const double *StateTransfer<dim>::history_of(const Received &received,
+                                               const unsigned int face_no,
+                                               const std::size_t i,
+                                               const MeshState<dim> &fresh,
+                                               bool &inside) const
   {
-    using Memory = PointMemory<dim>;
+    using Row = PointHistory<dim>;
     inside = received.status == Mesh::CELL_REFINE &&
              !lies_on_face(received.child, face_no);
     if (inside)
@@ -258,20 +259,20 @@ namespace nsfd
     const double *x = &fresh.discretization.points().position[i * dim];
     const double *best = nullptr;
     double nearest = std::numeric_limits<double>::max();
-    for (std::size_t at = first_memory(parcel); at < parcel.size();
-         at += memory_.size()) {
+    for (std::size_t at = first_history(parcel); at < parcel.size();
+         at += history_.size()) {
       const double *row = &parcel[at];
-      if (unsigned(row[Memory::face]) != face_no ||
-          int(row[Memory::origin_kind]) != int(origin.kind) ||
-          unsigned(row[Memory::origin_block]) != origin.block)
+      if (unsigned(row[Row::face]) != face_no ||
+          int(row[Row::origin_kind]) != int(origin.kind) ||
+          unsigned(row[Row::origin_block]) != origin.block)
         continue;
       double distance = 0.;
       for (unsigned int c = 0; c < dim; ++c)
-        distance += std::pow(row[Memory::position + c] - x[c], 2);
+        distance += std::pow(row[Row::position + c] - x[c], 2);
       const bool near = distance < nearest * (1. - 1e-6);
       const bool as_near = distance < nearest * (1. + 1e-6);
       if (best == nullptr || near ||
-          (as_near && row[Memory::beta] < best[Memory::beta])) {
+          (as_near && row[Row::beta] < best[Row::beta])) {
         best = row;
         nearest = distance;
       }
@@ -288,9 +289,9 @@ namespace nsfd
                                        const double *row, const std::size_t i,
                                        State &state) const
   {
-    using Memory = PointMemory<dim>;
+    using Row = PointHistory<dim>;
     const PointOrigin origin = fresh.discretization.origins()[i];
-    const double before = row[Memory::compliance], now = origin.compliance;
+    const double before = row[Row::compliance], now = origin.compliance;
     if (before == now || state.kind[i] != PointKind::cohesive)
       return;
     const auto &law = input_.interfaces[origin.block].law;
@@ -310,7 +311,7 @@ namespace nsfd
         state.beta[i] = std::min(state.beta[i], beta);
       const double share = (beta / before) / (state.beta[i] / now);
       for (unsigned int c = 0; c < dim; ++c) {
-        const double jump = row[Memory::jump + c];
+        const double jump = row[Row::jump + c];
         state.jump[i * dim + c] =
             c == 0 && jump < 0. && !state.two_sided[i] ? jump : share * jump;
       }
@@ -339,7 +340,7 @@ namespace nsfd
   template <int dim>
   State StateTransfer<dim>::finish(const MeshState<dim> &fresh) const
   {
-    using Memory = PointMemory<dim>;
+    using Row = PointHistory<dim>;
     const auto &points = fresh.discretization.points();
     const std::size_t n = points.n_points;
     State state = fresh.state;
@@ -348,11 +349,11 @@ namespace nsfd
                                      state.jump.data());
     fresh.delassus.relative_velocity(state.velocity.data(),
                                      state.relative_velocity.data());
-    memory_.resize(n, state);
+    history_.resize(n, state);
 
     // rows of both sides of every point; the first entry says what it is
     enum Kind { none, kept, inside_a_cell };
-    const unsigned int size = memory_.size();
+    const unsigned int size = history_.size();
     std::array<std::vector<double>, 2> rows;
     rows.fill(std::vector<double>(n * size, double(none)));
     for_all_places(
@@ -361,27 +362,27 @@ namespace nsfd
             const std::size_t point, const unsigned int side) {
           bool inside = false;
           double *row = &rows[side][point * size];
-          const double *memory = memory_of(received_[body],
-                                           fresh.discretization.cells()
-                                               .class_shape(unsigned(body))
-                                               .slot_faces[slot],
-                                           point, fresh, inside);
-          if (memory)
-            std::copy_n(memory, size, row);
-          row[Memory::face] = memory ? kept : inside ? inside_a_cell : none;
+          const double *history = history_of(received_[body],
+                                             fresh.discretization.cells()
+                                                 .class_shape(unsigned(body))
+                                                 .slot_faces[slot],
+                                             point, fresh, inside);
+          if (history)
+            std::copy_n(history, size, row);
+          row[Row::face] = history ? kept : inside ? inside_a_cell : none;
         });
     fresh.delassus.exchange({{rows[0].data(), rows[1].data()}}, size);
 
     for (std::size_t i = 0; i < n; ++i) {
       const bool boundary = points.faces[points.face_of[i]].boundary;
       const double *row = &rows[boundary ? 1 : 0][i * size];
-      switch (Kind(int(row[Memory::face]))) {
+      switch (Kind(int(row[Row::face]))) {
       case kept:
-        memory_.restore(row, points.weight[i], i, state);
+        history_.restore(row, points.weight[i], i, state);
         for (unsigned int c = 0; c < dim; ++c)
-          state.jump[i * dim + c] += row[Memory::offset + c];
+          state.jump[i * dim + c] += row[Row::offset + c];
         set_springs(fresh, row, i, state);
-        if (row[Memory::compliance] !=
+        if (row[Row::compliance] !=
             fresh.discretization.origins()[i].compliance)
           record_opening(fresh.problem, i, state);
         break;

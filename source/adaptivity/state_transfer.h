@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh_view.h"
-#include "point_memory.h"
+#include "point_history.h"
 #include "spring_shift.h"
 
 #include <deal.II/distributed/tria.h>
@@ -66,18 +66,18 @@ namespace nsfd
     void set_motion(const MeshState<dim> &fresh, State &state) const;
     void set_springs(const MeshState<dim> &fresh, const double *row,
                      std::size_t point, State &state) const;
-    static std::size_t first_memory(const Parcel &parcel)
+    static std::size_t first_history(const Parcel &parcel)
     {
       return 1 + 2 * std::size_t(parcel[0]) + n_translations;
     }
-    const double *memory_of(const Received &received, unsigned int face_no,
-                            std::size_t point, const MeshState<dim> &fresh,
-                            bool &inside) const;
+    const double *history_of(const Received &received, unsigned int face_no,
+                             std::size_t point, const MeshState<dim> &fresh,
+                             bool &inside) const;
 
     const SceneInput &input_;
     Mesh &triangulation_;
     unsigned int handle_ = 0;
-    const PointMemory<dim> memory_;
+    const PointHistory<dim> history_;
     const SpringShift<dim> shift_;
     // of the old mesh, while it lives; its state lives until the end
     const MeshState<dim> old_;

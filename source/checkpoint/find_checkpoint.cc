@@ -90,9 +90,8 @@ namespace nsfd
       for (const auto &change : parameter_changes(then, input.echo)) {
         if (change.name == "Output/directory")
           continue;
-        const bool allowed =
-            change.allowed() && (input.time.scheme != Scheme::leapfrog ||
-                                 change.name != "Time/step");
+        const bool allowed = change.allowed() && (!input.time.scheme.at_nodes ||
+                                                  change.name != "Time/step");
         (allowed ? accepted : refused) += "  " + change.text() + "\n";
         found.same_solver = found.same_solver && !change.is_in("Solver");
         found.same_steps = found.same_steps && !change.is_in("Time");

@@ -49,7 +49,7 @@ namespace nsfd
       /**
        * The common perpendicular, with a signed length: below zero the edges
        * have passed through each other. Which way is out is said by the facets,
-       * not by the sign: two convex bodies are parted by a plane along both
+       * not by the sign: two convex bodies are separated by a plane along both
        * edges exactly if its normal is one of the normals around each of them.
        */
       bool find(EdgePair<3> &pair) const

@@ -108,7 +108,7 @@ namespace nsfd
                                         input.discretization.degree + 1)),
         face_rule_(interface_quadrature<dim>(
             input.discretization, element.reference_cell().is_simplex())),
-        no_blocks_(input.time.scheme == Scheme::leapfrog &&
+        no_blocks_(input.time.scheme.at_nodes &&
                    element.reference_cell().is_simplex() &&
                    input.discretization.degree == 1 &&
                    std::none_of(input.materials.begin(), input.materials.end(),
@@ -138,8 +138,8 @@ namespace nsfd
     set_elasticity(shape, material);
     body.material = material;
     body.undeformed = input.rigid;
-    body.rigid = input.rigid && !input_.large_motion &&
-                 input_.time.scheme != Scheme::leapfrog;
+    body.rigid =
+        input.rigid && !input_.large_motion && !input_.time.scheme.at_nodes;
     set_slots(shape);
     if (has_no_blocks()) {
       body.n_slots = unsigned(shape.slot_positions.size());
@@ -147,7 +147,7 @@ namespace nsfd
       return;
     }
     // joined cells of a rigid body have its inertia, not that of their nodes
-    const bool joined = input_.time.scheme == Scheme::leapfrog;
+    const bool joined = input_.time.scheme.at_nodes;
     body.mass = mass(shape, input_.discretization.lumped_mass &&
                                 !(joined && input.rigid));
     body.trace = trace(shape);

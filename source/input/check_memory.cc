@@ -39,7 +39,7 @@ namespace nsfd
           dim *
           std::pow(double(scene.discretization.interface_points), dim - 1.);
       const double mesh = dim == 2 ? 600. : 1200.;
-      if (scene.time.scheme == Scheme::leapfrog) // joined cells have no blocks
+      if (scene.time.scheme.at_nodes) // joined cells have no blocks
         return mesh + 650. * n_points;
       const double point = (dim == 2 ? 600. : 1200.) + 16. * n_unknowns;
       const double matrix =

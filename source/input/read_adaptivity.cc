@@ -33,19 +33,19 @@ namespace nsfd
              "tetrahedra have no non-conforming faces",
              "take such a mesh, or `split simplices = true`");
       refuse(
-          scene.time.scheme != Scheme::leapfrog &&
+          !scene.time.scheme.at_nodes &&
               std::any_of(scene.materials.begin(), scene.materials.end(),
                           [](const auto &material) { return material.rigid; }),
           "cells of rigid bodies cannot be refined",
           "make all materials elastic, or remove the section Adaptivity");
-      refuse(scene.statics && scene.time.scheme != Scheme::leapfrog,
+      refuse(scene.statics && !scene.time.scheme.at_nodes,
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");
-      refuse(scene.time.scheme == Scheme::arkode,
+      refuse(scene.time.scheme.smooth,
              "the mesh does not change with scheme = arkode",
              "write scheme = moreau-jean or symplectic");
       // one per level, and two for the penalty of bonds at non-conforming faces
-      refuse(scene.time.scheme == Scheme::explicit_moreau_jean &&
+      refuse(scene.time.scheme.explicit_forces &&
                  scene.adaptivity->levels + 2 > scene.time.maximum_bisections,
              fmt::format("the stable step of the explicit scheme halves with "
                          "every level, and {} bisections are allowed",
@@ -108,7 +108,7 @@ namespace nsfd
         reader.integer("levels", "2", 0, 12,
                        "the smallest cell is 2^levels times smaller than that "
                        "of the mesh; 0: the mesh stays as it is");
-    const bool changes = scene.time.scheme != Scheme::leapfrog;
+    const bool changes = !scene.time.scheme.at_nodes;
     adaptivity.coarsen_every =
         reader.integer("coarsen every steps", changes ? "10" : "0", 0, 1000000,
                        "cells without damage may be coarsened; 0: never");

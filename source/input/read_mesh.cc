@@ -196,10 +196,10 @@ namespace nsfd
     {
       const unsigned int degree = scene.discretization.degree;
       const bool simplices = has_simplices(scene);
-      const unsigned int highest = simplices                               ? 2
-                                   : scene.dimension == 2                  ? 8
-                                   : scene.time.scheme == Scheme::leapfrog ? 6
-                                                                           : 4;
+      const unsigned int highest = simplices                    ? 2
+                                   : scene.dimension == 2       ? 8
+                                   : scene.time.scheme.at_nodes ? 6
+                                                                : 4;
       if (degree <= highest)
         return;
       const char *const reason =
@@ -300,7 +300,7 @@ namespace nsfd
     input.degree = reader.integer("degree", "1", 1, absurd_degree,
                                   "of the polynomials in a cell");
     check_degree(reader, scene);
-    const bool at_nodes = scene.time.scheme == Scheme::leapfrog;
+    const bool at_nodes = scene.time.scheme.at_nodes;
     input.lumped_mass =
         reader.choice("mass", at_nodes ? "lumped" : "consistent",
                       {"consistent", "lumped"},

@@ -219,6 +219,7 @@ namespace nsfd
     for (const std::string &name : mesh_type_names())
       parts.push_back(
           {"mesh", name, MeshTypeRegistry::instance().entries().at(name).text});
+    append("time scheme", known_time_schemes());
     append("solver", known_solvers());
     for (const auto &[name, text] : contact_solvers())
       parts.push_back({"solver of stored problems", name, text});

@@ -48,8 +48,6 @@ namespace nsfd
    * own for it; read_time() reads it, and reports what is wrong with it.
    */
   void look_at_scheme(const ParameterFile &file, SceneInput &scene);
-  /** Entries of section `Time` with scheme = explicit, and what it refuses. */
-  void read_leapfrog(SectionReader &reader, SceneInput &scene);
 
   void read_materials(ParameterFile &file, InputErrors &errors,
                       SceneInput &scene);
@@ -163,6 +161,7 @@ namespace nsfd
   };
   std::vector<NamedText> known_plain_laws();
   std::vector<NamedText> known_bulk_models();
+  std::vector<NamedText> known_time_schemes();
 
   /** `auto` and the registered ones. */
   std::vector<NamedText> known_solvers();

@@ -58,16 +58,16 @@ namespace nsfd
     }
 
     /** alpha, then p. */
-    J2Flow::Memory read_memory(const double *history)
+    J2Flow::InternalVariables read_variables(const double *history)
     {
-      J2Flow::Memory memory;
-      std::copy_n(history, 6, memory.alpha.begin());
-      memory.equivalent = history[6];
-      return memory;
+      J2Flow::InternalVariables variables;
+      std::copy_n(history, 6, variables.alpha.begin());
+      variables.equivalent = history[6];
+      return variables;
     }
 
-    void write_memory(const J2Flow::Memory &old, const J2Flow::Step &step,
-                      double *history)
+    void write_variables(const J2Flow::InternalVariables &old,
+                         const J2Flow::Step &step, double *history)
     {
       const Strain alpha = sum(old.alpha, 1., step.plastic_strain);
       std::copy_n(alpha.begin(), 6, history);
@@ -122,20 +122,20 @@ namespace nsfd
 
       double energy(const Voigt<dim> &C, const double *history) const override
       {
-        const auto memory = read_memory(history);
+        const auto variables = read_variables(history);
         return this->flow_.energy(
-            sum(in_space<dim>(C, 0.5, 0.), -1., memory.alpha), memory);
+            sum(in_space<dim>(C, 0.5, 0.), -1., variables.alpha), variables);
       }
 
       bool step(const Way &way, const bool with_tangent, Step &result,
                 double *history) const override
       {
-        const auto memory = read_memory(way.history);
+        const auto variables = read_variables(way.history);
         J2Flow::Step step;
         if (!this->flow_.step(
-                sum(in_space<dim>(way.C0, 0.5, 0.), -1., memory.alpha),
-                sum(in_space<dim>(way.C1, 0.5, 0.), -1., memory.alpha), memory,
-                way.time_step, way.theta, with_tangent, step))
+                sum(in_space<dim>(way.C0, 0.5, 0.), -1., variables.alpha),
+                sum(in_space<dim>(way.C1, 0.5, 0.), -1., variables.alpha),
+                variables, way.time_step, way.theta, with_tangent, step))
           return false;
         this->put_losses(step, result);
         result.S = of_space<dim>(step.stress);
@@ -145,7 +145,7 @@ namespace nsfd
               result.tangent[i * n_entries<dim> + j] =
                   step.tangent[in_space<dim>(i) * 6 + in_space<dim>(j)] / 2.;
         if (history)
-          write_memory(memory, step, history);
+          write_variables(variables, step, history);
         return true;
       }
 
@@ -158,7 +158,7 @@ namespace nsfd
             C[voigt_place<dim>(a, b)] =
                 gradient[a * dim + b] + gradient[b * dim + a];
         return this->flow_.stress(
-            sum(in_space<dim>(C, 0.5, 0.), -1., read_memory(history).alpha));
+            sum(in_space<dim>(C, 0.5, 0.), -1., read_variables(history).alpha));
       }
 
       double equivalent_strain(const double *history) const override
@@ -188,19 +188,19 @@ namespace nsfd
         const Spectrum e = elastic(C, read_matrix(history));
         if (!e.positive())
           return std::numeric_limits<double>::infinity();
-        return this->flow_.energy(e.half_log(), read_memory(history + 9));
+        return this->flow_.energy(e.half_log(), read_variables(history + 9));
       }
 
       bool step(const Way &way, const bool with_tangent, Step &result,
                 double *history) const override
       {
         const Mat3 G = read_matrix(way.history);
-        const auto memory = read_memory(way.history + 9);
+        const auto variables = read_variables(way.history + 9);
         const Spectrum start = elastic(way.C0, G), end = elastic(way.C1, G);
         if (!start.positive() || !end.positive())
           return false;
         J2Flow::Step step;
-        if (!this->flow_.step(start.half_log(), end.half_log(), memory,
+        if (!this->flow_.step(start.half_log(), end.half_log(), variables,
                               way.time_step, way.theta, with_tangent, step))
           return false;
         this->put_losses(step, result);
@@ -224,7 +224,7 @@ namespace nsfd
           }
         if (history) {
           write_matrix(step.flow > 0. ? flown(G, end, step) : G, history);
-          write_memory(memory, step, history + 9);
+          write_variables(variables, step, history + 9);
         }
         return true;
       }

@@ -138,13 +138,14 @@ namespace nsfd
                                 : overstress(rate) / (rate_exponent_ * rate);
   }
 
-  double J2Flow::energy(const Strain &elastic, const Memory &memory) const
+  double J2Flow::energy(const Strain &elastic,
+                        const InternalVariables &variables) const
   {
-    const double p = memory.equivalent, x = exponent_ * p;
+    const double p = variables.equivalent, x = exponent_ * p;
     const double saturated =
         x > 0. ? saturation_ / exponent_ * (x + std::expm1(-x)) : 0.;
     return contract<3>(elastic, times_modulus(elastic)) / 2. +
-           kinematic_ / 3. * contract<3>(memory.alpha, memory.alpha) +
+           kinematic_ / 3. * contract<3>(variables.alpha, variables.alpha) +
            isotropic_ / 2. * p * p + saturated;
   }
 
@@ -227,16 +228,16 @@ namespace nsfd
   }
 
   bool J2Flow::step(const Strain &start, const Strain &trial,
-                    const Memory &memory, const double time_step,
+                    const InternalVariables &variables, const double time_step,
                     const double theta, const bool with_tangent,
                     Step &result) const
   {
-    const Strain beta = middle(memory.alpha), s_start = times_modulus(start),
+    const Strain beta = middle(variables.alpha), s_start = times_modulus(start),
                  change = combine(1., trial, -1., start),
                  eta_start = combine(1., s_start, -1., beta);
     Surface surface;
     if (!find_surface(split(combine(1., times_modulus(trial), -1., beta)),
-                      memory.equivalent, time_step, surface))
+                      variables.equivalent, time_step, surface))
       return false;
     result.flow = surface.flow;
     result.plastic = result.viscous = result.numerical = 0.;
@@ -255,7 +256,7 @@ namespace nsfd
     result.stress = combine(1., s_start, theta, jump);
     result.numerical = (theta - 0.5) * contract<3>(jump, change);
     if (surface.flow > 0.) {
-      const double p = memory.equivalent, dp = surface.flow;
+      const double p = variables.equivalent, dp = surface.flow;
       const double R_0 = hardening(p), R_1 = hardening(p + dp),
                    chord = mean_hardening(p, dp) - (R_0 + R_1) / 2.;
       const double over = contract<3>(surface.normal, eta_start) - yield_ - R_0;
@@ -277,7 +278,7 @@ namespace nsfd
     }
     if (with_tangent) {
       if (surface.flow > 0.)
-        set_tangent(surface, memory, change, eta_start, theta, result);
+        set_tangent(surface, variables, change, eta_start, theta, result);
       else
         result.tangent = elastic_tangent(theta);
     }
@@ -285,11 +286,12 @@ namespace nsfd
   }
 
   /** Differentials of all of step() along each entry of the trial. */
-  void J2Flow::set_tangent(const Surface &surface, const Memory &memory,
+  void J2Flow::set_tangent(const Surface &surface,
+                           const InternalVariables &variables,
                            const Strain &change, const Strain &eta_start,
                            const double theta, Step &result) const
   {
-    const double p = memory.equivalent, dp = surface.flow, q = surface.q,
+    const double p = variables.equivalent, dp = surface.flow, q = surface.q,
                  x = surface.ratio, Y = surface.slope;
     const Strain &N = surface.normal, direction = times_modulus(N);
     std::array<double, 2> A;

@@ -36,7 +36,7 @@ namespace nsfd
            const PlasticInput &plastic);
 
     /** What the material keeps besides its elastic strain. */
-    struct Memory {
+    struct InternalVariables {
       Strain alpha{};         ///< sum of plastic strains
       double equivalent = 0.; ///< p
     };
@@ -54,13 +54,14 @@ namespace nsfd
      * From the elastic strain @p start to @p trial, which the end would have
      * without flow. False where numbers are not finite.
      */
-    bool step(const Strain &start, const Strain &trial, const Memory &memory,
-              double time_step, double theta, bool with_tangent,
-              Step &result) const;
+    bool step(const Strain &start, const Strain &trial,
+              const InternalVariables &variables, double time_step,
+              double theta, bool with_tangent, Step &result) const;
 
     Strain stress(const Strain &elastic) const;
     /** Of elastic strain and hardening, J per volume. */
-    double energy(const Strain &elastic, const Memory &memory) const;
+    double energy(const Strain &elastic,
+                  const InternalVariables &variables) const;
     /** Tangent without flow, for theta. */
     Tangent elastic_tangent(double theta) const;
     double modulus() const { return lambda_ + 2. * mu_; }
@@ -81,7 +82,7 @@ namespace nsfd
     double overstress_slope(double rate) const;
     bool find_surface(const Parts &trial, double p, double time_step,
                       Surface &surface) const;
-    void set_tangent(const Surface &surface, const Memory &memory,
+    void set_tangent(const Surface &surface, const InternalVariables &variables,
                      const Strain &change, const Strain &eta_start,
                      double theta, Step &result) const;
 

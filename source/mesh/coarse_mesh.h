@@ -66,7 +66,8 @@ namespace nsfd
    */
   CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh);
 
-  /** Empty mesh, stray values, inverted and degenerate cells, glued faces. */
+  /** Empty mesh, stray values, inverted and degenerate cells, doubly joined
+   * faces. */
   template <int dim>
   void check(const CoarseMesh<dim> &mesh, std::vector<std::string> &problems);
 

@@ -17,7 +17,7 @@ namespace nsfd
   {
     // tension behind a compressive front is then at most 4 % of its amplitude
     constexpr double automatic = 0.2;
-    if (time.scheme != Scheme::leapfrog)
+    if (!time.scheme.at_nodes)
       return 0.;
     if (time.front_viscosity)
       return *time.front_viscosity;

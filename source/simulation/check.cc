@@ -176,7 +176,7 @@ namespace nsfd
            "the fracture energy is right, stresses at a crack front are not");
       const double needed = std::ceil(points_wanted / edges);
       std::string text;
-      if (needed <= most_points && input.time.scheme != Scheme::leapfrog)
+      if (needed <= most_points && !input.time.scheme.at_nodes)
         text = fmt::format("`set interface points = {:g}`, or ", needed);
       change(text +
              fmt::format(
@@ -217,7 +217,7 @@ namespace nsfd
            "conflict on any mesh: faces stiff enough to add no compliance are "
            "too strong to be resolved");
       const double enough = std::ceil(points * bounds.lower / bounds.upper);
-      if (input.time.scheme == Scheme::leapfrog) // points are at the nodes
+      if (input.time.scheme.at_nodes) // points are at the nodes
         change(fmt::format("extrinsic laws, which add no compliance, or "
                            "{:g} points on an edge and another scheme",
                            enough));
@@ -272,7 +272,7 @@ namespace nsfd
                                step <= unique ? "below" : "above;"));
       if (step <= unique)
         return;
-      const double safe = MoreauJean<dim>::bound_share * unique;
+      const double safe = StepLimits::bound_share * unique;
       if (input.time.step_kind == StepKind::automatic) {
         line("", "`step = auto` shortens it where a point softens");
         const double bisections = std::ceil(std::log2(step / safe));

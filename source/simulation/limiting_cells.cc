@@ -43,7 +43,7 @@ namespace nsfd
                              const Discretization<dim> &discretization,
                              const Communicator &communicator)
   {
-    if (input.time.scheme != Scheme::leapfrog)
+    if (!input.time.scheme.at_nodes)
       return "";
     constexpr double near = 1.1;
     const Cells<dim> &cells = discretization.cells();

@@ -3,8 +3,7 @@
 #include "adaptivity/initial_mesh.h"
 #include "model_checks.h"
 #include "print_problems.h"
-#include "time_integration/linear_moreau_jean.h"
-#include "time_integration/newton_moreau_jean.h"
+#include "time_integration/time_scheme.h"
 
 #include "core/cost.h"
 #include "discretization/node_coordinates.h"
@@ -60,25 +59,19 @@ namespace nsfd
       return problems;
     charge_memory("bodies and points");
     choose_path(input);
-    if (input.time.scheme == Scheme::leapfrog) {
-      build_leapfrog(input, communicator, problems);
-      if (problems.empty())
+    if (!input.time.scheme.at_nodes) {
+      build_delassus(input, communicator);
+      if (input.time.scheme.explicit_forces)
         check_stability(input, communicator, problems);
-      return problems;
+      if (!problems.empty())
+        return problems;
+      charge_memory("blocks of the bodies");
     }
-    build_delassus(input, communicator);
-    if (input.time.scheme == Scheme::explicit_moreau_jean)
-      check_stability(input, communicator, problems);
+    build_integrators(input, communicator, problems);
     if (!problems.empty())
       return problems;
-    charge_memory("blocks of the bodies");
-    method = input.time.scheme == Scheme::arkode
-                 ? "arkode"
-                 : solver_name(input.solver.method, "cascade");
-    build_stepper(input);
-    if (input.time.scheme == Scheme::arkode)
-      smooth_motion = std::make_unique<SmoothMotion<dim>>(
-          input, *discretization, *delassus);
+    if (input.time.scheme.at_nodes)
+      check_stability(input, communicator, problems);
     if (input.statics)
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
@@ -88,30 +81,50 @@ namespace nsfd
     return problems;
   }
 
+  /** Cells of other ranks around those of this one; null on one rank. */
   template <int dim>
-  void Model<dim>::build_leapfrog(const SceneInput &input,
-                                  const Communicator &communicator,
-                                  std::vector<std::string> &problems)
+  std::unique_ptr<const GhostLayer<dim>>
+  Model<dim>::ghost_layer(const SceneInput &input,
+                          const Communicator &communicator)
   {
-    method = "node by node";
-    std::unique_ptr<const GhostLayer<dim>> layer;
-    if (communicator.size() > 1) {
-      std::vector<std::string> warnings; // as before
-      const auto materials = material_indices<dim>(
-          input, *groups, *triangulation, problems, warnings);
-      layer = std::make_unique<const GhostLayer<dim>>(
-          communicator, *discretization,
-          std::make_unique<const Discretization<dim>>(
-              communicator, *triangulation, *groups, materials, input,
-              CellSet::with_ghosts));
-    }
+    if (communicator.size() == 1)
+      return nullptr;
+    std::vector<std::string> problems, warnings; // as before
+    const auto materials = material_indices<dim>(input, *groups, *triangulation,
+                                                 problems, warnings);
+    return std::make_unique<const GhostLayer<dim>>(
+        communicator, *discretization,
+        std::make_unique<const Discretization<dim>>(
+            communicator, *triangulation, *groups, materials, input,
+            CellSet::with_ghosts));
+  }
+
+  /** What takes the steps, as the scheme says. */
+  template <int dim>
+  void Model<dim>::build_integrators(const SceneInput &input,
+                                     const Communicator &communicator,
+                                     std::vector<std::string> &problems)
+  {
+    const auto scheme = find_time_scheme(input.time.scheme_name);
+    method = scheme->solver();
+    if (method.empty())
+      method = solver_name(input.solver.method, "cascade");
+    if (delassus && !moving && !inelastic)
+      solver = make_solver<dim>(input, "cascade");
     try {
-      leapfrog = std::make_unique<Leapfrog<dim>>(
-          input, *discretization, communicator, std::move(layer));
+      auto built = scheme->template build<dim>(
+          {input, communicator, *discretization, delassus.get(), bonded,
+           moving.get(), inelastic.get(), solver.get(),
+           [&] { return ghost_layer(input, communicator); }});
+      stepper = std::move(built.stepper);
+      other = std::move(built.other);
     } catch (const std::runtime_error &error) {
       problems.push_back(error.what());
       return;
     }
+    leapfrog = dynamic_cast<Leapfrog<dim> *>(other.get());
+    if (!leapfrog)
+      return;
     charge_memory("blocks of the bodies");
     const double share = leapfrog->mass_share();
     if (share > 1.) { // masses of nodes that follow others lie differently
@@ -133,33 +146,12 @@ namespace nsfd
   }
 
   template <int dim>
-  void Model<dim>::build_stepper(const SceneInput &input)
-  {
-    if (moving)
-      stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
-                                                        *moving, *delassus);
-    else if (inelastic)
-      stepper = std::make_unique<NewtonMoreauJean<dim>>(input, *discretization,
-                                                        *inelastic, *delassus);
-    else {
-      solver = make_solver<dim>(input, "cascade");
-      stepper = std::make_unique<LinearMoreauJean<dim>>(
-          input, *discretization, *delassus, *solver, bonded);
-    }
-  }
-
-  template <int dim>
   std::vector<TimeIntegrator<dim> *> Model<dim>::integrators() const
   {
     std::vector<TimeIntegrator<dim> *> all;
     if (equilibria)
       all.push_back(equilibria.get());
-    if (smooth_motion)
-      all.push_back(smooth_motion.get());
-    else if (leapfrog)
-      all.push_back(leapfrog.get());
-    else
-      all.push_back(stepper.get());
+    all.push_back(other ? other.get() : stepper.get());
     return all;
   }
 
@@ -180,14 +172,14 @@ namespace nsfd
                                           materials, input);
     build_delassus(input, communicator);
     delassus->continue_counters(delassus_counters);
-    if (input.time.scheme == Scheme::explicit_moreau_jean) {
+    if (input.time.scheme.explicit_forces) {
       const double limit = stable_limit(input, communicator,
                                         step_of_smallest_cells(communicator));
       control->limit(limit);
       control->set_ceiling(limit);
     }
     delassus->reinit(control->step(), input.time.bulk_theta());
-    build_stepper(input);
+    build_integrators(input, communicator, problems);
     stepper->continue_counters(timings, stepper_counters);
   }
 
@@ -224,11 +216,10 @@ namespace nsfd
     const double crossing = discretization->crossing_time();
     if (input.iterates())
       path = "local";
-    else if (input.time.scheme == Scheme::leapfrog)
+    else if (input.time.scheme.at_nodes)
       path = "nodes";
     else if (input.has_bonded_faces())
-      path = input.time.scheme == Scheme::explicit_moreau_jean ? "local"
-                                                               : "assembled";
+      path = input.time.scheme.explicit_forces ? "local" : "assembled";
     else if (input.solver.path != "auto")
       path = input.solver.path;
     else
@@ -255,16 +246,11 @@ namespace nsfd
           make_moving_delassus<dim>(communicator, inelastic->bodies(), points);
       return;
     }
-    if (input.has_bonded_faces() &&
-        input.time.scheme == Scheme::explicit_moreau_jean) {
+    if (input.has_bonded_faces() && input.time.scheme.explicit_forces) {
       auto joined =
           make_explicit_bonded_delassus<dim>(communicator, bodies, points);
       bonded = joined.get();
       delassus = std::move(joined);
-      return;
-    }
-    if (input.time.scheme == Scheme::leapfrog) {
-      delassus = make_local_delassus<dim>(communicator, bodies, points);
       return;
     }
     if (input.has_bonded_faces()) {

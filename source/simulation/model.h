@@ -8,8 +8,8 @@
 #include "time_integration/leapfrog.h"
 #include "time_integration/moreau_jean.h"
 #include "time_integration/quasi_static.h"
-#include "time_integration/smooth_motion.h"
 #include "time_integration/step_control.h"
+#include "time_integration/time_integrator.h"
 
 #include <memory>
 #include <string>
@@ -37,10 +37,11 @@ namespace nsfd
     std::string method; ///< name of the nonsmooth solver
     /// of a linear stepper; others make one for every problem
     std::unique_ptr<NonsmoothSolver<dim>> solver;
-    std::unique_ptr<MoreauJean<dim>> stepper;         ///< null with `leapfrog`
-    std::unique_ptr<SmoothMotion<dim>> smooth_motion; ///< in its place, or null
-    std::unique_ptr<Leapfrog<dim>> leapfrog;          ///< in its place, or null
-    std::unique_ptr<QuasiStatic<dim>> equilibria;     ///< before it, or null
+    /// has the points and the initial state, or null with `leapfrog`
+    std::unique_ptr<MoreauJean<dim>> stepper;
+    std::unique_ptr<TimeIntegrator<dim>> other;   ///< in its place, or null
+    Leapfrog<dim> *leapfrog = nullptr;            ///< the same, or null
+    std::unique_ptr<QuasiStatic<dim>> equilibria; ///< before it, or null
 
     /** At t = 0. */
     State initial_state() const;
@@ -95,9 +96,10 @@ namespace nsfd
     void choose_path(const SceneInput &input);
     void build_delassus(const SceneInput &input,
                         const Communicator &communicator);
-    void build_stepper(const SceneInput &input);
-    void build_leapfrog(const SceneInput &input,
-                        const Communicator &communicator,
-                        std::vector<std::string> &problems);
+    void build_integrators(const SceneInput &input,
+                           const Communicator &communicator,
+                           std::vector<std::string> &problems);
+    std::unique_ptr<const GhostLayer<dim>>
+    ghost_layer(const SceneInput &input, const Communicator &communicator);
   };
 } // namespace nsfd

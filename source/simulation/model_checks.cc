@@ -91,7 +91,7 @@ namespace nsfd
                              const Communicator &communicator,
                              std::vector<std::string> &problems)
   {
-    if (input.time.scheme == Scheme::leapfrog)
+    if (input.time.scheme.at_nodes)
       return; // rigid cells that are joined are one body
     const auto &points = model.discretization->points();
     const auto is_rigid = [&](const int body) {

@@ -43,7 +43,7 @@ namespace nsfd
                          "crosses a cell; write the step as a time");
       return;
     }
-    if (input.time.scheme == Scheme::leapfrog)
+    if (input.time.scheme.at_nodes)
       explicit_limit = communicator.min(limit_of_cells(input, *discretization));
     const bool quasi_static = input.statics && input.statics->steps;
     // more are a slip of the pen, and are counted in 32 bits
@@ -88,7 +88,7 @@ namespace nsfd
                                   const Communicator &communicator,
                                   const double enough)
   {
-    if (input.time.scheme == Scheme::leapfrog)
+    if (input.time.scheme.at_nodes)
       return explicit_limit;
     if (!bonded)
       return communicator.min(stable_step(discretization->bodies()));
@@ -127,7 +127,7 @@ namespace nsfd
   template <int dim>
   double Model<dim>::dynamic_step(const SceneInput &input) const
   {
-    if (input.time.scheme == Scheme::leapfrog &&
+    if (input.time.scheme.at_nodes &&
         input.time.step_kind == StepKind::automatic)
       return 0.9 * explicit_limit;
     return input.time.step * (input.time.step_kind == StepKind::time

@@ -174,12 +174,10 @@ namespace nsfd
       const auto more = integrator.stage_seconds();
       stages.insert(stages.end(), more.begin(), more.end());
     };
-    if (model.smooth_motion)
-      add(*model.smooth_motion);
+    if (model.other)
+      add(*model.other);
     if (model.equilibria)
       add(*model.equilibria);
-    if (model.leapfrog)
-      add(*model.leapfrog);
     if (model.stepper)
       add(*model.stepper);
     stages.emplace_back("output", output);

@@ -102,7 +102,7 @@ namespace nsfd
       case WatchedLine::supports:
         return "lower Solver/tolerance; joints may be redundant";
       case WatchedLine::scheme:
-        return time.scheme == Scheme::explicit_moreau_jean
+        return time.scheme.explicit_forces
                    ? "set step to a shorter time, or scheme = moreau-jean"
                : time.cohesion_rule != CohesionRule::exact && !input.statics
                    ? "set cohesion rule = exact"
@@ -138,10 +138,9 @@ namespace nsfd
           given.bound += share(watch.noise);
         if (line == WatchedLine::scheme)
           // that of the leapfrog only gives where its steps change their length
-          given.bound =
-              never_gives(line, input) || input.time.scheme == Scheme::leapfrog
-                  ? energy_round_off + share(watch.noise)
-                  : of_pure_rules;
+          given.bound = never_gives(line, input) || input.time.scheme.at_nodes
+                            ? energy_round_off + share(watch.noise)
+                            : of_pure_rules;
         given.advice = advice_of(line, input);
         result.push_back(std::move(given));
       }
@@ -202,7 +201,7 @@ namespace nsfd
         input.statics && input.statics->at_jump == SolutionJump::relax;
     facts.maximum_bisections = input.time.maximum_bisections;
     facts.automatic_steps = input.time.step_kind == StepKind::automatic;
-    facts.explicit_steps = input.time.scheme == Scheme::leapfrog;
+    facts.explicit_steps = input.time.scheme.at_nodes;
     facts.beyond_unique = counter("steps_beyond_uniqueness");
     facts.solution_jumps = counter("solution_jumps");
     facts.rejected = counter("rejected_steps");

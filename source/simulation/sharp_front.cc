@@ -67,9 +67,7 @@ namespace nsfd
                               ? time.step * discretization.crossing_time()
                               : 0.;
       const double numerical =
-          time.scheme == Scheme::moreau_jean
-              ? std::max(0., time.bulk_theta() - 0.5) * step / crossing
-              : 0.;
+          std::max(0., time.bulk_theta() - 0.5) * step / crossing;
       return least / (modulus * crossing) + numerical;
     }
 

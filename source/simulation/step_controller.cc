@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 namespace nsfd
@@ -16,60 +17,48 @@ namespace nsfd
     return fmt::format("{}", fmt::join(bad_formulas(communicator), "; "));
   }
 
-  /** Down the step levels at once where points soften, up one level per step.
-   */
   template <int dim>
-  void StepController<dim>::choose_step(const TimeIntegrator<dim> &integrator,
+  void StepController<dim>::choose_step(const StepLimits &limits,
                                         const State &state)
   {
     auto &control = *model_.control;
-    double limit = integrator.automatic_step(state, control.base_step());
+    double limit = std::numeric_limits<double>::infinity();
+    bool any = false;
+    for (const auto &rule : rules_)
+      if (const auto longest =
+              rule->longest({input_.time, limits, control, state})) {
+        limit = std::min(limit, *longest);
+        any = true;
+      }
+    if (!any)
+      return;
     if (control.time() < redo_until_)
       limit = std::min(limit, redo_step_);
     control.limit(limit);
     control.set_ceiling(limit);
   }
 
-  /**
-   * `step = auto`: a point came to soften in a step that is too long for it.
-   * True if the step is to be repeated, with shorter ones to its end.
-   */
+  /** True if the step is to be taken again, by the first rule that says so. */
   template <int dim>
-  bool StepController<dim>::is_beyond_uniqueness(
-      const TimeIntegrator<dim> &integrator, const StepReport &report,
-      const State &state, const State &next)
+  bool StepController<dim>::is_too_long(const StepLimits &limits,
+                                        const StepReport &report,
+                                        const State &state, const State &next)
   {
     auto &control = *model_.control;
-    if (input_.time.step_kind != StepKind::automatic || !report.beyond_unique ||
-        !control.can_bisect())
+    if (!control.can_bisect())
       return false;
-    const double h = control.step();
-    const double unique = integrator.unique_step(state, next);
-    if (h < unique)
-      return false; // by laws alone that no step is short enough for
-    redo_until_ = control.time() + h * (1. - 1e-9);
-    redo_step_ = MoreauJean<dim>::bound_share * unique;
-    control.limit(redo_step_);
-    ++overshoots_;
-    return true;
-  }
-
-  /**
-   * A bonded point went too far beyond its strength. True if the step is to be
-   * taken again, to where the first of them reaches it; three levels down the
-   * step levels a front is steeper than the mesh resolves.
-   */
-  template <int dim>
-  bool StepController<dim>::overshoots(const StepReport &report)
-  {
-    auto &control = *model_.control;
-    if (report.overshoot <= input_.time.largest_overshoot ||
-        control.level() >= 3 || !control.can_bisect())
-      return false;
-    const double h = control.step();
-    control.limit(std::clamp(report.share, 0.125, 0.5) * h);
-    ++overshoots_;
-    return true;
+    for (const auto &rule : rules_)
+      if (const auto shorter = rule->repeat(
+              {input_.time, limits, control, state}, report, next)) {
+        if (shorter->to_end) {
+          redo_until_ = control.time() + control.step() * (1. - 1e-9);
+          redo_step_ = shorter->length;
+        }
+        control.limit(shorter->length);
+        ++repeated_;
+        return true;
+      }
+    return false;
   }
 
   template <int dim>
@@ -105,8 +94,7 @@ namespace nsfd
       -> Outcome
   {
     auto &control = *model_.control;
-    if (input_.time.step_kind == StepKind::automatic)
-      choose_step(integrator, state);
+    choose_step(integrator, state);
     StepRequest step;
     step.length = control.step();
     step.end = control.next_time();
@@ -131,10 +119,8 @@ namespace nsfd
     failure = bad_formulas_text(communicator_);
     if (!failure.empty())
       return Outcome::failed;
-    return is_beyond_uniqueness(integrator, report, state, next) ||
-                   overshoots(report)
-               ? Outcome::again
-               : Outcome::taken;
+    return is_too_long(integrator, report, state, next) ? Outcome::again
+                                                        : Outcome::taken;
   }
 
   template <int dim>
@@ -142,7 +128,7 @@ namespace nsfd
   StepController<dim>::fill_counters(std::map<std::string, double> &c) const
   {
     c["rejected_steps"] = rejected_;
-    c["redone_steps"] = overshoots_;
+    c["redone_steps"] = repeated_;
   }
 
   template <int dim>

@@ -2,6 +2,7 @@
 
 #include "model.h"
 
+#include "time_integration/step_rule.h"
 #include "time_integration/time_integrator.h"
 
 #include <map>
@@ -11,9 +12,8 @@ namespace nsfd
 {
   /**
    * How long a step of time is: the base step, bisected where a step is
-   * rejected, where `step = auto` asks for one that has a single solution, or
-   * where bonded points went too far beyond their strength. The step levels of
-   * bisected steps itself is Model::control.
+   * rejected or where a rule asks for a shorter one, see StepRule. The step
+   * levels of bisected steps are Model::control.
    */
   template <int dim>
   class StepController
@@ -21,7 +21,8 @@ namespace nsfd
   public:
     StepController(const SceneInput &input, Model<dim> &model,
                    const Communicator &communicator)
-        : input_(input), model_(model), communicator_(communicator)
+        : input_(input), model_(model), communicator_(communicator),
+          rules_(step_rules(input.time))
     {
     }
 
@@ -49,20 +50,19 @@ namespace nsfd
     void serialize(Archive &archive);
 
   private:
-    void choose_step(const TimeIntegrator<dim> &integrator, const State &state);
-    bool is_beyond_uniqueness(const TimeIntegrator<dim> &integrator,
-                              const StepReport &report, const State &state,
-                              const State &next);
-    bool overshoots(const StepReport &report);
+    void choose_step(const StepLimits &limits, const State &state);
+    bool is_too_long(const StepLimits &limits, const StepReport &report,
+                     const State &state, const State &next);
     Outcome shorten(const TimeIntegrator<dim> &integrator,
                     const StepRejected &rejected, std::string &failure);
 
     const SceneInput &input_;
     Model<dim> &model_;
     const Communicator &communicator_;
-    unsigned int rejected_ = 0, overshoots_ = 0;
+    const StepRules rules_;
+    unsigned int rejected_ = 0, repeated_ = 0;
     unsigned int attempts_ = 0; ///< at the present step, all rejected
-    double redo_until_ = 0., redo_step_ = 0.; ///< s
+    double redo_until_ = 0., redo_step_ = 0.; ///< s, by a rule
   };
 
   /** Sentences on formulas that gave no number; empty if none. Collective. */

@@ -77,7 +77,7 @@ namespace nsfd
   void TimeStepping<dim>::fill_counters(std::map<std::string, double> &c) const
   {
     controller_.fill_counters(c);
-    if (model_.smooth_motion) // summaries have the same keys
+    if (model_.other && model_.stepper) // summaries have the same keys
       model_.stepper->fill_counters(c);
     for (const TimeIntegrator<dim> *one : model_.integrators())
       one->fill_counters(c);
@@ -120,7 +120,7 @@ namespace nsfd
     if (!(end > time * (1. + 1e-12)))
       throw BadCheckpoint(fmt::format(
           "Time/end = {:.6g} s is not after t = {:.6g} s", end, time));
-    if (input_.time.scheme == Scheme::leapfrog && state.last_step > 0.)
+    if (input_.time.scheme.at_nodes && state.last_step > 0.)
       model_.control = std::make_unique<StepControl>(
           StepControl::of_length(state.last_step, end, time));
     else

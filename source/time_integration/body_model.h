@@ -69,8 +69,8 @@ namespace nsfd
     /** Of the bodies in the step to @p next, whose motion is known; what
         materials keep goes there. */
     virtual BodyEnergies account(State &next) const = 0;
-    /** Points and bodies are booked in @p next: what is left. */
-    virtual void book_rest(State &, StepReport &) const {}
+    /** Points and bodies are accounted for in @p next: what is left. */
+    virtual void account_rest(State &, StepReport &) const {}
     /** The step is accepted: what later ones need to know of it. */
     virtual void accept(State &) {}
 

@@ -33,7 +33,7 @@ namespace nsfd
     const auto &bodies = discretization.bodies();
     const auto places = point_places(bodies, n);
     std::vector<double> coordinates;
-    const bool at_nodes = input.time.scheme == Scheme::leapfrog;
+    const bool at_nodes = input.time.scheme.at_nodes;
     first_.assign(1, 0);
     for (std::size_t i = 0; i < n; ++i) {
       if (boundary_of(input, discretization, i)) {

@@ -63,7 +63,7 @@ namespace nsfd
     case WatchedLine::scheme:
       // springs of two stiffnesses turn with their frames in large motions, and
       // flow at finite strain has no exact balance of a step
-      return time.scheme == Scheme::moreau_jean && !scene.large_motion &&
+      return time.scheme.theta_scheme && !scene.large_motion &&
              time.cohesion_rule == CohesionRule::exact &&
              !scene.has_bonded_faces();
     default:

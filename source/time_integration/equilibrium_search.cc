@@ -145,7 +145,7 @@ namespace nsfd
     report.stable = relaxation_->softening() < 1.;
     const EnergyLeft left =
         balance_->account(*relaxation_, forces_old, old, next, report.step);
-    report.left_over = left.energy;
+    report.released_energy = left.energy;
     report.jumps =
         !report.stable || std::abs(left.energy) > jump_share * left.turnover;
     const auto [seen, point] = relaxation_->laws().least_passage(next, path);
@@ -266,14 +266,14 @@ namespace nsfd
   void EquilibriumSearch<dim>::refuse_rigid_body_modes(const State &old,
                                                        const double time)
   {
-    const std::string loose = rigid_body_modes(discretization_, communicator_,
+    const std::string modes = rigid_body_modes(discretization_, communicator_,
                                                old, relaxation_->residual());
-    if (loose.empty())
+    if (modes.empty())
       return;
     throw StepRejected(
         fmt::format("no equilibrium at t = {:.6g}: the loads are not balanced, "
                     "and nothing holds {}",
-                    time, loose));
+                    time, modes));
   }
 
   /**

@@ -18,10 +18,10 @@ namespace nsfd
   /** An equilibrium, and how it lies to the one before it. */
   struct EquilibriumReport {
     StepReport step;
-    double left_over = 0.; ///< energy that the cohesion did not take, J
-    bool stable = true;    ///< softening leaves some stiffness everywhere
-    bool jumps = false;    ///< not stable, or what is left over or missing is
-                           ///< no small part of what the step has moved
+    double released_energy = 0.; ///< energy that the cohesion did not take, J
+    bool stable = true;          ///< softening leaves some stiffness everywhere
+    bool jumps = false; ///< not stable, or what is left over or missing is
+                        ///< no small part of what the step has moved
     /// a point is beyond the peak of its law, and was never pulled as far as a
     /// hundredth below it
     bool skips_peak = false;
@@ -31,7 +31,7 @@ namespace nsfd
     std::string place; ///< of the face that is worst in this
 
     /** No continuation, but what may follow one: downhill, over the peak. */
-    bool may_follow() const { return !skips_peak && left_over >= 0.; }
+    bool may_follow() const { return !skips_peak && released_energy >= 0.; }
     bool accepted() const { return !jumps && !skips_peak; }
   };
 

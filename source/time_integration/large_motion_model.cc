@@ -393,7 +393,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void LargeMotionModel<dim>::book_rest(State &next, StepReport &report) const
+  void LargeMotionModel<dim>::account_rest(State &next,
+                                           StepReport &report) const
   {
     const Communicator &all = parts_.delassus.communicator();
     next.energy.work +=

@@ -42,7 +42,7 @@ namespace nsfd
     void finish(const LawEvaluation<dim> &evaluation,
                 State &next) const override;
     BodyEnergies account(State &next) const override;
-    void book_rest(State &next, StepReport &report) const override;
+    void account_rest(State &next, StepReport &report) const override;
     void accept(State &next) override;
 
     StepPoints<dim> points() override;

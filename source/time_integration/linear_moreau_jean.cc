@@ -24,7 +24,7 @@ namespace nsfd
       : MoreauJean<dim>(input, discretization, delassus), solver_(solver),
         bonded_(bonded)
   {
-    if (input.time.scheme == Scheme::explicit_moreau_jean)
+    if (input.time.scheme.explicit_forces)
       elastic_forces_ = std::make_unique<ElasticForces<dim>>(delassus);
     if (input.has_bonded_faces())
       bulk_ = std::make_unique<BulkTraction<dim>>(delassus);

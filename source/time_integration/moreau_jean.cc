@@ -44,7 +44,8 @@ namespace nsfd
   double MoreauJean<dim>::automatic_step(const State &state,
                                          const double time_step) const
   {
-    return uniqueness_->next_step(problem_, state, time_step, bound_share);
+    return uniqueness_->next_step(problem_, state, time_step,
+                                  StepLimits::bound_share);
   }
 
   template <int dim>

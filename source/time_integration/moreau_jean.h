@@ -48,8 +48,6 @@ namespace nsfd
      */
     double unique_step(const State &state) const;
     double unique_step(const State &old, const State &next) const override;
-    /** Share of unique_step() that `step = auto` takes. */
-    static constexpr double bound_share = 0.95;
     double automatic_step(const State &state, double time_step) const override;
 
     const std::vector<double> &reactions() const override;

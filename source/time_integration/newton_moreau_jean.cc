@@ -179,7 +179,7 @@ namespace nsfd
     bodies_->finish(*evaluation, next);
     this->balance_->account(points.problem, *evaluation, points.origins,
                             bodies_->account(next), points.old, next, report);
-    bodies_->book_rest(next, report);
+    bodies_->account_rest(next, report);
     const TakenStep step{old, next, h, energy_scale_, evaluation->worst_point};
     this->check_.check_balance(step, report);
     this->check_.watch_energy(step, report);

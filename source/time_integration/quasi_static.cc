@@ -55,11 +55,11 @@ namespace nsfd
       first_jump_ = old.time;
     const bool may_follow = found && equilibrium.may_follow();
     if (may_follow) {
-      released_ += equilibrium.left_over;
+      released_ += equilibrium.released_energy;
       what = fmt::format(
           "solution jump between t = {:.8g} and {:.8g}: no equilibrium "
           "continues the last one, {:.6g} J are released; worst face {}",
-          old.time, step.end, equilibrium.left_over, equilibrium.place);
+          old.time, step.end, equilibrium.released_energy, equilibrium.place);
     } else if (found && equilibrium.skips_peak)
       what = fmt::format(
           "no equilibrium was found between t = {:.8g} and {:.8g} that does "
@@ -71,7 +71,7 @@ namespace nsfd
       what = fmt::format(
           "no equilibrium was found at t = {:.8g} that the energy at t = "
           "{:.8g} suffices for: {:.6g} J are missing; worst face {}",
-          step.end, old.time, -equilibrium.left_over, equilibrium.place);
+          step.end, old.time, -equilibrium.released_energy, equilibrium.place);
     else
       what = fmt::format("solution jump after t = {:.8g}: {}", old.time, what);
     if (statics_.at_jump != SolutionJump::relax || !may_follow)

@@ -16,7 +16,7 @@ namespace nsfd
   SceneInput static_scene(const SceneInput &input)
   {
     SceneInput scene = input;
-    scene.time.scheme = Scheme::moreau_jean;
+    scene.time.scheme = SchemeTraits();
     scene.time.theta = 1.;
     scene.time.cohesion_rule = CohesionRule::end_point;
     scene.time.contact_target = ContactTarget::position;

@@ -61,7 +61,7 @@ namespace nsfd
     const auto &bodies = discretization.bodies();
     const unsigned int n_bodies = unsigned(bodies.size());
     std::string name;
-    double largest = 0.5; // share of the forces left over that makes it loose
+    double largest = 0.5; // of the unbalanced forces, above which it moves
     std::vector<double> size(residual.size());
     for (std::size_t k = 0; k < residual.size(); ++k)
       size[k] = std::abs(residual[k]);

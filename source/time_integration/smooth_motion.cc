@@ -50,11 +50,11 @@ namespace nsfd
   void SmoothMotion<dim>::Equations::integrate(const double t, const double h,
                                                Vector &y)
   {
-    const double tolerance = this->input_.time.tolerance;
+    const double tolerance = this->input_.time.smooth.tolerance;
     using Solver = dealii::SUNDIALS::ARKode<Vector>;
     const typename Solver::AdditionalData data(
         t, t + h, std::min(this->scales_.inner_step, h), 2. * h, 1e-12 * h,
-        this->input_.time.order, 10, false, false, true, 0, tolerance,
+        this->input_.time.smooth.order, 10, false, false, true, 0, tolerance,
         tolerance);
     Solver solver(data, this->communicator_.mpi());
     void *memory = nullptr;
@@ -77,7 +77,7 @@ namespace nsfd
                                 Vector &out) {
       return guard([&] { this->evaluate(at, in, out); });
     };
-    if (this->input_.time.implicit_pairs) {
+    if (this->input_.time.smooth.implicit) {
       solver.implicit_function = rate;
       solver.jacobian_times_vector = [](const Vector &, Vector &, double,
                                         const Vector &,

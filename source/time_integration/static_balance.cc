@@ -14,10 +14,10 @@ namespace nsfd
       damage,
       friction,
       positive_friction,
-      rest,      ///< of the work of the mean forces, with either sign
-      released,  ///< of overlaps that damage has turned into contacts
-      left_over, ///< the part of `rest` that cohesion has
-      moved,     ///< |work| of the mean forces in cohesion and joints
+      rest,          ///< of the work of the mean forces, with either sign
+      released,      ///< of overlaps that damage has turned into contacts
+      cohesive_rest, ///< the part of `rest` that cohesion has
+      moved,         ///< |work| of the mean forces in cohesion and joints
       motion,
       pressure_work,
       broken,
@@ -167,7 +167,7 @@ namespace nsfd
       const double over = cohesive_work - spent - dissipated;
       put(rest, i, over);
       put(released, i, w * energies.overlap_released);
-      put(left_over, i, over);
+      put(cohesive_rest, i, over);
       put(moved, i, std::abs(cohesive_work));
       if (i < problem_.n_owned && std::abs(over) > left.worst) {
         left.worst = std::abs(over);
@@ -286,7 +286,7 @@ namespace nsfd
     close_balance(old, next, report);
 
     EnergyLeft left = points.left;
-    left.energy = sums[left_over];
+    left.energy = sums[cohesive_rest];
     left.turnover = std::max({std::abs(work), sums[moved], sums[damage],
                               std::abs(energy.elastic - old.energy.elastic)});
     return left;

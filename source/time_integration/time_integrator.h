@@ -69,17 +69,40 @@ namespace nsfd
     std::string note;      ///< for the user, where there is something to say
   };
 
+  /** How long steps may be, as far as an integrator knows. */
+  class StepLimits
+  {
+  public:
+    virtual ~StepLimits() = default;
+
+    /** What `step = auto` takes from @p state, at most @p time_step (s). */
+    virtual double automatic_step(const State &state, double time_step) const
+    {
+      (void)state;
+      return time_step;
+    }
+    /**
+     * Up to which length (s) a step has one solution, by the points that
+     * softened between @p old and @p next.
+     */
+    virtual double unique_step(const State &old, const State &next) const
+    {
+      (void)old, (void)next;
+      return std::numeric_limits<double>::infinity();
+    }
+    /** Share of unique_step() that `step = auto` takes. */
+    static constexpr double bound_share = 0.95;
+  };
+
   /**
    * What takes a state over a step of time. Moreau-Jean in small motions,
    * around bodies of finite strain or with internal variables, smooth motion by
    * ARKODE, and equilibria from one load to the next implement it.
    */
   template <int dim>
-  class TimeIntegrator
+  class TimeIntegrator : public StepLimits
   {
   public:
-    virtual ~TimeIntegrator() = default;
-
     /**
      * What its first step starts from where the scene, or the integrator before
      * it, gives @p given. Collective. Errors raised: StepRejected.
@@ -122,22 +145,6 @@ namespace nsfd
     virtual bool keeps_motion() const { return false; }
     /** Brings them up to date in @p state, the last one. */
     virtual void show(State &state) const { (void)state; }
-
-    /** What `step = auto` takes from @p state, at most @p time_step (s). */
-    virtual double automatic_step(const State &state, double time_step) const
-    {
-      (void)state;
-      return time_step;
-    }
-    /**
-     * Up to which length (s) a step has one solution, by the points that
-     * softened between @p old and @p next.
-     */
-    virtual double unique_step(const State &old, const State &next) const
-    {
-      (void)old, (void)next;
-      return std::numeric_limits<double>::infinity();
-    }
 
     /** Force on each driven boundary in the last step, N, dim per boundary. */
     virtual const std::vector<double> &reactions() const = 0;

@@ -267,8 +267,8 @@ namespace nsfd
     const auto &points = discretization_.points();
     const std::size_t n = points.n_owned;
     std::vector<double> terms(4 * n, 0.);
-    const bool at_middle = time_.scheme != Scheme::arkode &&
-                           time_.cohesion_rule == CohesionRule::exact;
+    const bool at_middle =
+        !time_.scheme.smooth && time_.cohesion_rule == CohesionRule::exact;
     const double mean_time = state.time - (at_middle ? time_step_ / 2. : 0.);
     for (std::size_t i = 0; i < n; ++i) {
       if (discretization_.origins()[i].kind != PointOrigin::Kind::interface ||

@@ -2,7 +2,7 @@
 # Tables of the results pages, as Markdown on standard output:
 #   sh tests/benchmarks/tables.sh solver   work per step of the pulse scene
 #   sh tests/benchmarks/tables.sh orders   L2 error of the standing mode
-#   sh tests/benchmarks/tables.sh cost     fracture everywhere, time by part
+#   sh tests/benchmarks/tables.sh cost     fracture everywhere, cost of a step
 #   sh tests/benchmarks/tables.sh paths    local against assembled path
 #   sh tests/benchmarks/tables.sh crack    crack that runs and stops
 #   sh tests/benchmarks/tables.sh procedures  three ways to update damage
@@ -65,8 +65,23 @@ orders)
     done
   done ;;
 cost)
-  ./nsfd prm/benchmarks/fracture_everywhere.prm --output "$out/run" --force |
-    sed -n '/steps, /,/energy:/p' ;;
+  echo "| run | ms of CPU per step | Newton | Krylov | rejected of all steps |"
+  echo "|---|---|---|---|---|"
+  row() { # row NAME [options]
+    name=$1
+    shift
+    run prm/benchmarks/fracture_everywhere.prm --set Output/fields=false "$@"
+    awk -v n="$name" -v s="$(value steps)" -v t="$(value loop_cpu_seconds)" \
+      -v i="$(value newton)" -v k="$(value krylov)" \
+      -v r="$(value rejected_steps)" 'BEGIN {
+      printf "| %s | %.1f | %.1f | %.0f | %d of %d |\n",
+        n, 1e3 * t / s, i / s, k / s, r, s }'
+  }
+  row "intact, waves (first 6 ns)" --set "Time/end=6 ns"
+  row "to 45 ns, broken at 30 ns, no friction" --set "Interface: all/friction=0"
+  row "the same with friction 0.3"
+  row "the same, strengths scattered by 10 %" \
+    --set "Interface: all/strength scatter=0.1" ;;
 paths)
   echo "| Courant number | local: CG per step, ms per step | assembled: CG per step, ms per step |"
   echo "|---|---|---|"

@@ -72,16 +72,17 @@ namespace test_j2_flow
 
     void go(const Strain &to, const double h = 1., const double theta = 0.5)
     {
-      const Strain start = sum(strain, -1., memory.alpha),
-                   trial = sum(to, -1., memory.alpha);
-      const double before = flow.energy(start, memory);
-      ASSERT_TRUE(flow.step(start, trial, memory, h, theta, false, step));
-      memory.alpha = sum(memory.alpha, 1., step.plastic_strain);
-      memory.equivalent += step.flow;
+      const Strain start = sum(strain, -1., variables.alpha),
+                   trial = sum(to, -1., variables.alpha);
+      const double before = flow.energy(start, variables);
+      ASSERT_TRUE(flow.step(start, trial, variables, h, theta, false, step));
+      variables.alpha = sum(variables.alpha, 1., step.plastic_strain);
+      variables.equivalent += step.flow;
       const double work = contract<3>(step.stress, sum(to, -1., strain));
       strain = to;
-      stress = flow.stress(sum(strain, -1., memory.alpha));
-      const double stored = flow.energy(sum(strain, -1., memory.alpha), memory);
+      stress = flow.stress(sum(strain, -1., variables.alpha));
+      const double stored =
+          flow.energy(sum(strain, -1., variables.alpha), variables);
       plastic += step.plastic;
       viscous += step.viscous;
       numerical += step.numerical;
@@ -93,7 +94,7 @@ namespace test_j2_flow
     }
 
     J2Flow flow;
-    J2Flow::Memory memory;
+    J2Flow::InternalVariables variables;
     J2Flow::Step step;
     Strain strain{}, stress{};
     double plastic = 0., viscous = 0., numerical = 0., defect = 0.,
@@ -135,9 +136,9 @@ namespace test_j2_flow
         const double sigma = p > 0. ? yield + H * p : way * young;
         bar.go(uniaxial(sigma, p));
         expect_uniaxial(bar.stress, sigma);
-        EXPECT_NEAR(bar.memory.equivalent, p, 1e-12);
+        EXPECT_NEAR(bar.variables.equivalent, p, 1e-12);
       }
-      EXPECT_NEAR(bar.plastic, yield * bar.memory.equivalent,
+      EXPECT_NEAR(bar.plastic, yield * bar.variables.equivalent,
                   1e-12 * bar.plastic);
       EXPECT_LT(bar.defect, 1e-13);
       EXPECT_LT(std::abs(bar.numerical), 1e-14 * bar.plastic);
@@ -178,7 +179,7 @@ namespace test_j2_flow
           expect_uniaxial(bar.stress, H * alpha + sign * yield);
         }
         p += std::abs(turn - before);
-        EXPECT_NEAR(bar.memory.equivalent, p, 1e-12);
+        EXPECT_NEAR(bar.variables.equivalent, p, 1e-12);
       }
       EXPECT_NEAR(bar.plastic, yield * p, 1e-10 * yield * p);
       EXPECT_LT(bar.defect, 1e-13);
@@ -205,7 +206,7 @@ namespace test_j2_flow
       Driven point(plastic);
       for (const double e : {-0.2, 0.3}) {
         point.go({e, e, e, 0., 0., 0.});
-        EXPECT_EQ(point.memory.equivalent, 0.);
+        EXPECT_EQ(point.variables.equivalent, 0.);
         const double bulk = young / (3. * (1. - 2. * poisson));
         EXPECT_NEAR(point.stress[0], 3. * bulk * e, 1e-12 * bulk);
       }
@@ -222,7 +223,7 @@ namespace test_j2_flow
       strain[2] = 0.; // nobody asks for it
       bar.go(strain);
       expect_uniaxial(bar.stress, sigma);
-      EXPECT_NEAR(bar.memory.alpha[2], -p / 2., 1e-12);
+      EXPECT_NEAR(bar.variables.alpha[2], -p / 2., 1e-12);
     }
     EXPECT_LT(bar.defect, 1e-13);
     // both ways at once: q = sigma, R = H p, X = K p
@@ -232,7 +233,7 @@ namespace test_j2_flow
     sheet.go({e, e, 0., 0., 0., 0.});
     EXPECT_NEAR(sheet.stress[0], sigma, 1e-10 * yield);
     EXPECT_NEAR(sheet.stress[1], sigma, 1e-10 * yield);
-    EXPECT_NEAR(sheet.memory.equivalent, p, 1e-12);
+    EXPECT_NEAR(sheet.variables.equivalent, p, 1e-12);
   }
 
   // ------------------------------------------------------------ viscoplastic
@@ -360,19 +361,19 @@ namespace test_j2_flow
             ASSERT_GE(point.step.numerical,
                       theta == 0.5 ? 0. : -1e-12 * point.largest);
             const double radius =
-                yield + c.plastic.isotropic * point.memory.equivalent -
+                yield + c.plastic.isotropic * point.variables.equivalent -
                 c.plastic.saturation_stress *
                     std::expm1(-c.plastic.saturation_exponent *
-                               point.memory.equivalent);
+                               point.variables.equivalent);
             const Strain centre =
-                sum({}, 2. / 3. * c.plastic.kinematic, point.memory.alpha);
+                sum({}, 2. / 3. * c.plastic.kinematic, point.variables.alpha);
             ASSERT_LT(von_mises(sum(point.stress, -1., centre)),
                       radius * (1. + 1e-12) +
                           1e-15 * (young + c.plastic.kinematic) * 10.);
           }
-          ASSERT_NEAR(point.memory.alpha[0] + point.memory.alpha[1] +
-                          point.memory.alpha[2],
-                      0., 1e-12 * (1. + point.memory.equivalent));
+          ASSERT_NEAR(point.variables.alpha[0] + point.variables.alpha[1] +
+                          point.variables.alpha[2],
+                      0., 1e-12 * (1. + point.variables.equivalent));
         }
         EXPECT_LT(point.defect, 1e-11);
         EXPECT_GT(point.plastic, 0.);
@@ -391,19 +392,19 @@ namespace test_j2_flow
         const Strain to = sum(k % 5 ? point.strain : Strain{}, 1.,
                               chance.strain(chance.log_uniform(1e-5, 0.01)));
         const double h = chance.log_uniform(1e-3, 1e2), theta = 0.6;
-        const J2Flow::Memory memory = point.memory;
-        const Strain start = sum(point.strain, -1., memory.alpha),
-                     trial = sum(to, -1., memory.alpha),
+        const J2Flow::InternalVariables variables = point.variables;
+        const Strain start = sum(point.strain, -1., variables.alpha),
+                     trial = sum(to, -1., variables.alpha),
                      along = chance.strain(1.);
         point.go(to, h, theta);
         J2Flow::Step here, up, down;
         ASSERT_TRUE(
-            point.flow.step(start, trial, memory, h, theta, true, here));
+            point.flow.step(start, trial, variables, h, theta, true, here));
         const double d = 1e-7 * size(trial);
-        point.flow.step(start, sum(trial, d, along), memory, h, theta, false,
+        point.flow.step(start, sum(trial, d, along), variables, h, theta, false,
                         up);
-        point.flow.step(start, sum(trial, -d, along), memory, h, theta, false,
-                        down);
+        point.flow.step(start, sum(trial, -d, along), variables, h, theta,
+                        false, down);
         if ((up.flow > 0.) != (down.flow > 0.))
           continue; // across a kink
         flowing += here.flow > 0.;

@@ -59,10 +59,7 @@ namespace nsfd
     std::optional<AdaptivityInput> adaptivity;
     std::vector<ObservableInput> observables;
     /** In the run; joined cells of explicit steps are refined before it. */
-    bool mesh_changes() const
-    {
-      return adaptivity && time.scheme != Scheme::leapfrog;
-    }
+    bool mesh_changes() const { return adaptivity && !time.scheme.at_nodes; }
     bool has_viscous_bodies() const
     {
       for (const auto &material : materials)

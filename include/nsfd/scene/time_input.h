@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <string>
 
 namespace nsfd
 {
@@ -14,15 +16,32 @@ namespace nsfd
   };
   enum class StepKind { time, courant, automatic };
 
-  enum class Scheme {
-    moreau_jean,
-    explicit_moreau_jean, ///< with the forces of the bodies at t_k
-    leapfrog, ///< explicit, joined cells share nodes with lumped mass
-    arkode    ///< smooth scenes, by SUNDIALS
+  /** What the other parts of a scene ask about its time integrator. */
+  struct SchemeTraits {
+    /// a theta scheme in the bodies: the energy balance of a step is exact
+    bool theta_scheme = true;
+    /// the forces of the bodies are those at t_k: the step is bounded, and
+    /// velocities are those of the middle of a step
+    bool explicit_forces = false;
+    /// joined cells share nodes with lumped mass, and the points are at nodes;
+    /// explicit, too
+    bool at_nodes = false;
+    /// nothing opens, closes or slips: there is no contact problem
+    bool smooth = false;
+
+    bool has_stable_step() const { return explicit_forces || at_nodes; }
+  };
+
+  /** Runge-Kutta pairs of smooth motion. */
+  struct SmoothInput {
+    bool implicit = false; ///< SDIRK, else explicit pairs
+    unsigned int order = 5;
+    double tolerance = 1e-9; ///< error of a step over the largest motion
   };
 
   struct TimeInput {
-    Scheme scheme = Scheme::moreau_jean;
+    std::string scheme_name = "moreau-jean"; ///< as the file writes it
+    SchemeTraits scheme;
     double end = 0.;
     StepKind step_kind = StepKind::courant;
     /// s, or Courant number h c_p / L; the largest step for `auto`
@@ -33,20 +52,14 @@ namespace nsfd
     ContactTarget contact_target = ContactTarget::energy_safe;
     Sliding sliding = Sliding::energy_safe;
     unsigned int maximum_bisections = 10;
-    double largest_overshoot = 0.05; ///< of the strength of a bonded point
-    /// of scheme = arkode: implicit (SDIRK) or explicit Runge-Kutta pairs,
-    /// their order and the error per step relative to the largest motion
+    /// of a bonded point over its strength
+    double largest_overshoot = std::numeric_limits<double>::infinity();
     /// of scheme = explicit: nothing is `auto`
     std::optional<double> front_viscosity;
-    bool implicit_pairs = false;
-    unsigned int order = 5;
-    double tolerance = 1e-9;
+    SmoothInput smooth; ///< of scheme = arkode
 
     /** Weight of the new velocity in the forces of the bodies. */
-    double bulk_theta() const
-    {
-      return scheme == Scheme::explicit_moreau_jean ? 0. : theta;
-    }
+    double bulk_theta() const { return scheme.explicit_forces ? 0. : theta; }
 
     /**
      * How long the forces of the bodies act in a step of length @p h behind one
@@ -57,15 +70,10 @@ namespace nsfd
      */
     double kick(const double h, const double last) const
     {
-      return scheme == Scheme::explicit_moreau_jean && last > 0.
-                 ? (h + last) / 2.
-                 : h;
+      return scheme.explicit_forces && last > 0. ? (h + last) / 2. : h;
     }
 
     /** Weight of the new velocity in the work of impulses and loads. */
-    double work_theta() const
-    {
-      return scheme == Scheme::explicit_moreau_jean ? 0.5 : theta;
-    }
+    double work_theta() const { return scheme.explicit_forces ? 0.5 : theta; }
   };
 } // namespace nsfd

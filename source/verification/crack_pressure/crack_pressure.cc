@@ -9,10 +9,10 @@ namespace nsfd
   using namespace cases;
 
   /**
-   * Pressure p in an open crack across a bar of free ends, from t = 0: each lip
-   * carries the traction p and moves at p/Z, Z = rho c, away from the other,
-   * until waves come back from the ends; the pressure has then done the work
-   * 2 p^2 t/Z per area, all of it in waves of compression p.
+   * Pressure p in an open crack across a bar of free ends, from t = 0: each
+   * face carries the traction p and moves at p/Z, Z = rho c, away from the
+   * other, until waves come back from the ends; the pressure has then done the
+   * work 2 p^2 t/Z per area, all of it in waves of compression p.
    */
   class CrackPressureCase final : public VerificationCase
   {

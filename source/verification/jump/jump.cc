@@ -64,9 +64,9 @@ namespace nsfd
         compare_force(*view.row, view.time);
       if (broken) {
         grip_at_break_ = grip_(x_, 0., 0., view.time);
-        left_over_ = (law_ ? view.row->energy.numerical - numerical_
-                           : mechanical_energy(*view.row)) /
-                     area_;
+        released_ = (law_ ? view.row->energy.numerical - numerical_
+                          : mechanical_energy(*view.row)) /
+                    area_;
       }
       numerical_ = view.row->energy.numerical;
     }
@@ -75,7 +75,7 @@ namespace nsfd
     {
       errors["broken"] = grip_at_break_ > 0. ? 0. : 1.;
       errors["grip"] = relative_error(grip_at_break_, grip_at_jump_);
-      errors["excess"] = std::abs(left_over_ - excess_) / toughness_;
+      errors["excess"] = std::abs(released_ - excess_) / toughness_;
       if (law_)
         errors["force"] = force_;
       errors["exact_grip_over_R_k"] = grip_at_jump_ / scale_;
@@ -84,14 +84,14 @@ namespace nsfd
 
     void serialize(Archive &archive) override
     {
-      archive.numbers("found", grip_at_break_, left_over_, numerical_, force_);
+      archive.numbers("found", grip_at_break_, released_, numerical_, force_);
     }
 
   private:
     Expression grip_;
     double x_ = 0., area_ = 0., toughness_ = 0., scale_ = 0.;
     double grip_at_jump_ = 0., excess_ = 0.;
-    double grip_at_break_ = 0., left_over_ = 0.;
+    double grip_at_break_ = 0., released_ = 0.;
     std::shared_ptr<const CohesiveLaw> law_; // with quasi-static steps
     double stiffness_ = 0., u_at_jump_ = 0., numerical_ = 0., force_ = 0.;
     unsigned int n_components_ = 2;

@@ -31,7 +31,7 @@ namespace nsfd
       frequency_ = std::sqrt(input.discretization.lumped_mass ? 2. : 3.) *
                    bar.speed / extent(input, 0);
       theta_ = input.time.theta;
-      known_ = input.time.scheme == Scheme::moreau_jean;
+      known_ = input.time.scheme.theta_scheme;
     }
 
     bool wants_cells() const override { return true; }

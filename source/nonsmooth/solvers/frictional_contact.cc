@@ -296,7 +296,7 @@ namespace nsfd
     };
 
     template <int dim>
-    class ContactsAlone final : public AssembledSteps<dim>
+    class FrictionalContact final : public AssembledSteps<dim>
     {
     protected:
       const ContactSolver &assembled() const override { return solver_; }
@@ -339,12 +339,12 @@ namespace nsfd
         add<ContactMethod::projected_gradient>(
             "projected gradient", "accelerated, with restarts, W assembled")};
 
-    using ContactsAlone2 = ContactsAlone<2>;
-    using ContactsAlone3 = ContactsAlone<3>;
-    NSFD_REGISTER(SolverRegistry<2>, ContactsAlone2, "frictional contact",
+    using FrictionalContact2 = FrictionalContact<2>;
+    using FrictionalContact3 = FrictionalContact<3>;
+    NSFD_REGISTER(SolverRegistry<2>, FrictionalContact2, "frictional contact",
                   "contact and friction of rigid bodies by the solvers of "
                   "stored problems, else the cascade");
-    NSFD_REGISTER(SolverRegistry<3>, ContactsAlone3, "frictional contact",
+    NSFD_REGISTER(SolverRegistry<3>, FrictionalContact3, "frictional contact",
                   "contact and friction of rigid bodies by the solvers of "
                   "stored problems, else the cascade");
   } // namespace

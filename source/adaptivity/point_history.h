@@ -12,10 +12,10 @@ namespace nsfd
    * belongs to, and its history. Rows of one state have the same length.
    */
   template <int dim>
-  class PointMemory
+  class PointHistory
   {
   public:
-    explicit PointMemory(const SceneInput &input);
+    explicit PointHistory(const SceneInput &input);
 
     static constexpr unsigned int face = 0, origin_kind = 1, origin_block = 2,
                                   position = 3, offset = 3 + dim,

@@ -1,4 +1,4 @@
-#include "point_memory.h"
+#include "point_history.h"
 
 #include "state/point_fields.h"
 
@@ -8,7 +8,7 @@ namespace nsfd
 {
   template <int dim>
   template <typename Visit>
-  void PointMemory<dim>::for_fields(Visit &&visit) const
+  void PointHistory<dim>::for_fields(Visit &&visit) const
   {
     std::size_t k = 0;
     for_point_fields(
@@ -19,7 +19,7 @@ namespace nsfd
   }
 
   template <int dim>
-  PointMemory<dim>::PointMemory(const SceneInput &input) : size_(history)
+  PointHistory<dim>::PointHistory(const SceneInput &input) : size_(history)
   {
     for_point_fields([&](const PointField &field, const auto &...) {
       used_.push_back(field.life != PointField::Life::step &&
@@ -29,9 +29,9 @@ namespace nsfd
   }
 
   template <int dim>
-  void PointMemory<dim>::store(const Discretization<dim> &discretization,
-                               const State &state, const std::size_t i,
-                               const double *jump_offset, double *row) const
+  void PointHistory<dim>::store(const Discretization<dim> &discretization,
+                                const State &state, const std::size_t i,
+                                const double *jump_offset, double *row) const
   {
     const auto &points = discretization.points();
     const PointOrigin origin = discretization.origins()[i];
@@ -51,8 +51,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void PointMemory<dim>::restore(const double *row, const double weight,
-                                 const std::size_t i, State &state) const
+  void PointHistory<dim>::restore(const double *row, const double weight,
+                                  const std::size_t i, State &state) const
   {
     for (unsigned int c = 0; c < dim; ++c)
       state.impulse[i * dim + c] = row[impulse + c] * weight;
@@ -64,13 +64,13 @@ namespace nsfd
   }
 
   template <int dim>
-  void PointMemory<dim>::resize(const std::size_t n, State &state) const
+  void PointHistory<dim>::resize(const std::size_t n, State &state) const
   {
     for_fields([&](const PointField &, const auto member) {
       (state.*member).resize(n);
     });
   }
 
-  template class PointMemory<2>;
-  template class PointMemory<3>;
+  template class PointHistory<2>;
+  template class PointHistory<3>;
 } // namespace nsfd
