@@ -2,6 +2,7 @@
 
 #include "body_matrix.h"
 #include "condensed.h"
+#include "conforming_solver.h"
 #include "linear_algebra/factor_limits.h"
 #include "sparse_assembly.h"
 
@@ -9,6 +10,8 @@
 #include "nsfd/core/archive.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace nsfd
@@ -17,6 +20,7 @@ namespace nsfd
   {
     /// of iterations: the energy balance shows what a product with W leaves
     constexpr double tight = 1e-12;
+    constexpr long long most = std::numeric_limits<long long>::max();
 
     template <int dim>
     class Bonded final : public BondedDelassus<dim>
@@ -37,18 +41,21 @@ namespace nsfd
       void apply(Operator op, const double *x, double *y) const override;
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
+      bool join_motion(std::vector<double> &x) override;
+      std::vector<char>
+      opens_with(const std::vector<std::uint8_t> &bonded) override
+      {
+        return conforming_->jumping(joined_by(bonded));
+      }
       void serialize(Archive &archive) override;
 
     private:
-      void bonds_changed() override
-      {
-        valid_ = joined_valid_ = is_joined_ = false;
-      }
+      void bonds_changed() override;
+      std::vector<char>
+      joined_by(const std::vector<std::uint8_t> &bonded) const;
       void solve(const double *b, double *x) const;
       void solve(SpdSolver &solver, const double *b, double *x) const;
-      void conform() const;
-      void prepare(SpdSolver &solver, const SparseRows &matrix,
-                   SparseRows &kept) const;
+      void prepare(SpdSolver &solver, const SparseRows &matrix) const;
       void update() const;
       bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
       double least_compliance(std::size_t row, double W) const;
@@ -57,23 +64,19 @@ namespace nsfd
       void prepare_joined();
 
       mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
-      std::unique_ptr<ConformingSpace> conforming_; ///< null: factors need none
-      std::unique_ptr<SpdSolver> factor_;           ///< of M_hat
+      std::unique_ptr<ConformingSpace> conforming_;
+      std::unique_ptr<SpdSolver> factor_; ///< of M_hat
       std::unique_ptr<SpdSolver> joined_; ///< of A = M_hat + H^T D^{-1} H
-      mutable SparseRows factor_matrix_, joined_matrix_;
-      mutable bool is_joined_ = false; ///< for the step and the bonds
-      mutable bool valid_ = false;     ///< factor_
+      mutable bool valid_ = false;        ///< factor_
       bool joined_valid_ = false;
       /// the system was factored as a dense one: W may be condensed later,
       /// within the iterations of a system prepared without
       bool dense_system_ = false;
-      mutable std::size_t n_solves_ = 0;     ///< with the present factor
-      mutable CondensedDelassus condensed_;  ///< W of the rows, if it pays
-      std::vector<double> D_;                ///< of the system to precondition
-      std::vector<double> inverse_D_;        ///< of the one that was factored
-      std::vector<double> inverse_D_coarse_; ///< of the joined space (`cg`)
-      unsigned long long coarse_version_ = 0;
-      std::vector<double> diagonal_; ///< of W, from above
+      mutable std::size_t n_solves_ = 0;    ///< with the present factor
+      mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
+      std::vector<double> D_;               ///< of the system to precondition
+      std::vector<double> inverse_D_;       ///< of the one that was factored
+      std::vector<double> diagonal_;        ///< of W, from above
       /// applications after which a new factor is cheaper than going on
       static constexpr unsigned int patience = 12;
       mutable unsigned int n_applied_ = 0; ///< since the last system
@@ -97,62 +100,83 @@ namespace nsfd
       matrix_ = std::make_unique<BodyMatrix<dim>>(
           bodies, points, point_traces(*this, sum - mine, true),
           this->bulk_.bonds(), sum - mine);
-      const auto n = communicator.sum_integer(bodies.n_dofs());
-      const bool direct = solver == "direct" ||
-                          (solver == "auto" &&
-                           static_cast<long long>(n) <= largest_factor<dim>);
-      if (!direct) {
-        const SparseAssembly<dim> nodes(communicator, bodies, points,
-                                        coordinates);
-        conforming_ = std::make_unique<ConformingSpace>(
-            communicator, dim, nodes.unknowns(), nodes.node_pairs());
-      }
+      const SparseAssembly<dim> nodes(communicator, bodies, points,
+                                      coordinates);
+      conforming_ = std::make_unique<ConformingSpace>(
+          communicator, dim, nodes.unknowns(), nodes.node_pairs());
       for (auto *one : {&factor_, &joined_})
-        *one = direct ? make_cholesky_solver(communicator)
-                      : make_two_level_cg(communicator, bodies.first_dof,
-                                          largest_coarse_factor<dim>);
+        *one = make_conforming_solver(communicator, solver == "direct" ? most
+                                                    : solver == "cg"
+                                                        ? 0
+                                                        : largest_factor<dim>);
+      bonds_changed();
     }
 
-    /**
-     * Nodes are one across faces that are bonded all over. The coarse matrix
-     * stays as long as the step and the bonds do.
-     */
+    /** Faces that are bonded all over, node to node. */
     template <int dim>
-    void Bonded<dim>::conform() const
+    std::vector<char>
+    Bonded<dim>::joined_by(const std::vector<std::uint8_t> &bonded) const
     {
-      if (is_joined_)
-        return;
-      std::vector<char> faces;
-      for (const auto &face : this->points_.faces)
-        faces.push_back(
-            std::all_of(this->bonded_.begin() + face.first,
-                        this->bonded_.begin() + face.first + face.count,
-                        [](const std::uint8_t bonded) { return bonded != 0; }));
-      conforming_->conform(faces);
-      conforming_->touch();
-      is_joined_ = true;
+      std::vector<char> joined(this->points_.faces.size(), 0);
+      for (std::size_t f = 0; f < joined.size(); ++f) {
+        const auto &face = this->points_.faces[f];
+        const auto first = bonded.begin() + face.first,
+                   last = first + face.count;
+        joined[f] =
+            conforming_->is_complete(f) &&
+            std::all_of(first, last, [](const std::uint8_t b) { return b; });
+      }
+      return joined;
     }
 
     template <int dim>
-    void Bonded<dim>::prepare(SpdSolver &solver, const SparseRows &matrix,
-                              SparseRows &kept) const
+    void Bonded<dim>::bonds_changed()
+    {
+      valid_ = joined_valid_ = false;
+      this->shares_nodes_ = joined_by(this->bonded_);
+      for (std::size_t f = 0; f < this->shares_nodes_.size(); ++f)
+        if (this->shares_nodes_[f])
+          std::fill_n(this->penalised_.begin() + this->points_.faces[f].first,
+                      this->points_.faces[f].count, 0);
+      conforming_->conform(this->shares_nodes_);
+    }
+
+    template <int dim>
+    void Bonded<dim>::prepare(SpdSolver &solver, const SparseRows &matrix) const
     {
       const Charge charge(Cost::preconditioner);
       const bool first = solver.counters().factorisations == 0;
-      if (conforming_) { // iterations go on looking at their matrix
-        conform();
-        kept = matrix;
-        solver.prepare(kept, conforming_->space(), first);
-      } else
-        solver.prepare(matrix, CoarseSpace(), first);
+      solver.prepare(matrix, conforming_->space(), first);
       ++this->counters_.global_factorisations;
+    }
+
+    template <int dim>
+    bool Bonded<dim>::join_motion(std::vector<double> &x)
+    {
+      const auto mass = make_conforming_solver(this->communicator_, most);
+      mass->prepare(matrix_->assemble({0., 0.}, this->penalised_, nullptr),
+                    conforming_->space(), true);
+      std::vector<double> momentum(x.size()), joined(x.size());
+      this->apply(Operator::mass, x.data(), momentum.data());
+      mass->solve(momentum.data(), joined.data(), tight);
+      double size = 0., change = 0.;
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        size = std::max(size, std::abs(x[k]));
+        change = std::max(change, std::abs(joined[k] - x[k]));
+      }
+      // what has no jump but for round-off keeps its bits
+      if (!(this->communicator_.max(change) >
+            1e-12 * this->communicator_.max(size)))
+        return false;
+      x = std::move(joined);
+      return true;
     }
 
     template <int dim>
     void Bonded<dim>::reinit(const double time_step, const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
-        valid_ = joined_valid_ = is_joined_ = false;
+        valid_ = joined_valid_ = false;
       DelassusOperator<dim>::reinit(time_step, theta);
     }
 
@@ -164,8 +188,7 @@ namespace nsfd
         return;
       prepare(*factor_,
               matrix_->assemble(this->shares(this->time_step_, this->theta_),
-                                this->bonded_, nullptr),
-              factor_matrix_);
+                                this->penalised_, nullptr));
       valid_ = true;
       n_solves_ = 0;
       condensed_.clear();
@@ -320,13 +343,8 @@ namespace nsfd
     {
       prepare(*joined_,
               matrix_->assemble(this->shares(this->time_step_, this->theta_),
-                                this->bonded_, inverse_D_.data()),
-              joined_matrix_);
+                                this->penalised_, inverse_D_.data()));
       joined_valid_ = true;
-      if (conforming_ && coarse_version_ != conforming_->space().version) {
-        coarse_version_ = conforming_->space().version;
-        inverse_D_coarse_ = inverse_D_;
-      }
     }
 
     /**
@@ -345,10 +363,9 @@ namespace nsfd
                       n_applied);
       archive.points("D", D_);
       archive.points("springs", inverse_D_);
-      archive.points("springs_of_conforming_space", inverse_D_coarse_);
       if (!archive.reads())
         return;
-      bonds_changed();
+      valid_ = joined_valid_ = false;
       condensed_.clear();
       if (factored)
         update();
@@ -357,13 +374,7 @@ namespace nsfd
         condense();
       }
       if (joined) {
-        const std::vector<double> springs(inverse_D_);
         set_diagonal();
-        if (conforming_) { // and with it inverse_D_coarse_
-          inverse_D_ = inverse_D_coarse_;
-          prepare_joined();
-          inverse_D_ = springs;
-        }
         prepare_joined();
       }
       n_solves_ = n_solves;

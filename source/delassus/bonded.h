@@ -10,8 +10,11 @@
 namespace nsfd
 {
   /**
-   * Bodies joined through the bulk at bonded points by the symmetric interior
-   * penalty method: these points have no row in W; instead
+   * Bodies joined at bonded points, which have no row in W. In implicit steps
+   * bodies whose face is bonded all over, node to node, share their nodes.
+   * Where that cannot be (explicit bodies, faces of two sizes, rigid bodies,
+   * faces of which a part has let go) the symmetric interior penalty method
+   * joins them through the bulk,
    *
    *     K = sum of body stiffnesses
    *         + sum over bonded points w ( t.[v] + [u].t(v) + eta [u].[v] ),
@@ -39,14 +42,35 @@ namespace nsfd
 
     void apply(Operator op, const double *x, double *y) const override;
 
+    /**
+     * The motion @p x to the nearest one, in the norm of the mass, in which
+     * bodies that share nodes move together. True if it has changed.
+     * Collective.
+     */
+    virtual bool join_motion(std::vector<double> & /*x*/) { return false; }
+
+    /** By face: bodies share the nodes of it. */
+    const std::vector<char> &shares_nodes() const { return shares_nodes_; }
+    /**
+     * By face: its sides can part once @p bonded are all bonds that are left.
+     * Collective.
+     */
+    virtual std::vector<char>
+    opens_with(const std::vector<std::uint8_t> & /*bonded*/)
+    {
+      return std::vector<char>(this->points_.faces.size(), 1);
+    }
+
     void serialize(Archive &archive) override;
 
   protected:
-    /** Other points are bonded now. */
+    /** Other points are bonded now; all of them are in penalised_. */
     virtual void bonds_changed() {}
 
     const BulkTraction<dim> bulk_;
-    std::vector<std::uint8_t> bonded_; ///< per point
+    std::vector<std::uint8_t> bonded_;    ///< per point
+    std::vector<std::uint8_t> penalised_; ///< those of the interior penalty
+    std::vector<char> shares_nodes_;      ///< by face
 
   private:
     void add_bonds(bool viscous, const double *x, double *y) const;

@@ -46,8 +46,10 @@ namespace nsfd
   template <int dim>
   void LinearMoreauJean<dim>::complete(State &state) const
   {
-    if (bonded_)
+    if (bonded_) {
       bonded_->set_bonds(bonded_points(state));
+      join_motion(*bonded_, state);
+    }
     set_energies(this->delassus_, this->problem_, state);
     if (bulk_)
       set_bond_tractions(*bulk_, state);
@@ -131,7 +133,9 @@ namespace nsfd
     this->check_.check_balance(step, report);
     relate_defect(energy_scale, next, report);
     if (bulk_) {
-      const BondReport bonds = release_bonds(this->problem_, *bulk_, old, next);
+      const BondReport bonds =
+          release_bonds(this->problem_, *bulk_, *bonded_,
+                        this->input_.discretization.degree == 1, old, next);
       report.released = bonds.released;
       report.overshoot = bonds.overshoot;
       report.share = bonds.share;
