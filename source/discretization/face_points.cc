@@ -411,76 +411,11 @@ namespace nsfd
     return result;
   }
 
-  template <int dim>
-  void fill_slots(const InterfacePoints<dim> &points, Cells<dim> &cells)
-  {
-    Bodies &bodies = cells.bodies;
-    const auto n = unsigned(points.n_points);
-    bodies.slot_point.assign(bodies.first_slot.back(), n);
-    bodies.slot_sign.assign(bodies.first_slot.back(), 1);
-    // the nearest one; where faces of the cell meet, that of the face of the
-    // point
-    const auto slot_of = [&](const std::size_t b, const BodyShape<dim> &shape,
-                             const unsigned int i) {
-      const double tolerance = 1e-7 * shape.corners.back().norm();
-      const auto &centre = points.faces[points.face_of[i]].centre;
-      // how far the face of the point is out of that of a slot
-      const auto offset = [&](const std::size_t s) {
-        double height = 0.;
-        for (unsigned int c = 0; c < dim; ++c)
-          height +=
-              shape.slot_normals[s][c] *
-              (centre[c] - cells.corners[b][0][c] - shape.slot_positions[s][c]);
-        return std::abs(height) / shape.slot_normals[s].norm();
-      };
-      std::size_t best = 0;
-      double distance = std::numeric_limits<double>::max();
-      for (std::size_t s = 0; s < shape.slot_positions.size(); ++s) {
-        double d = 0.;
-        for (unsigned int c = 0; c < dim; ++c) {
-          const double x = cells.corners[b][0][c] + shape.slot_positions[s][c] -
-                           points.position[i * dim + c];
-          d += x * x;
-        }
-        if (d < distance - tolerance * tolerance ||
-            (d < distance + tolerance * tolerance &&
-             offset(s) < offset(best) - tolerance)) {
-          distance = d;
-          best = s;
-        }
-      }
-      AssertThrow(std::sqrt(distance) < 100. * tolerance,
-                  ExcMessage("a face point has no place on its cell"));
-      return bodies.first_slot[b] + best;
-    };
-
-    for (const auto &face : points.faces)
-      for (unsigned int side = 0; side < 2; ++side) {
-        if (face.bodies[side] < 0)
-          continue;
-        const auto of_body = cells.shape(std::size_t(face.bodies[side]));
-        for (unsigned int i = face.first; i < face.first + face.count; ++i) {
-          const std::size_t slot =
-              slot_of(std::size_t(face.bodies[side]), *of_body, i);
-          if (bodies.slot_point[slot] < n) {
-            bodies.extra_points.emplace_back(slot, i);
-            AssertThrow(side == 1 && face.boundary,
-                        ExcMessage("two interface points on one slot"));
-          } else {
-            bodies.slot_point[slot] = i;
-            bodies.slot_sign[slot] = side == 1 ? 1 : -1;
-          }
-        }
-      }
-    std::sort(bodies.extra_points.begin(), bodies.extra_points.end());
-  }
-
 #define NSFD_INSTANTIATE(dim)                                                  \
   template FacePoints<dim> make_face_points(                                   \
       const Communicator &, const Triangulation<dim> &,                        \
       const MeshGroups<dim> &, const std::vector<unsigned int> &,              \
-      const std::vector<unsigned int> &, const SceneInput &, CellSet);         \
-  template void fill_slots(const InterfacePoints<dim> &, Cells<dim> &)
+      const std::vector<unsigned int> &, const SceneInput &, CellSet)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

@@ -39,12 +39,9 @@ namespace nsfd
       refuse(scene.statics.has_value(),
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");
-      refuse(scene.time.scheme == Scheme::leapfrog,
-             "the mesh does not change with scheme = explicit yet",
-             "write scheme = moreau-jean or explicit");
       refuse(scene.time.scheme == Scheme::arkode,
              "the mesh does not change with scheme = arkode",
-             "write scheme = moreau-jean or explicit");
+             "write scheme = moreau-jean or symplectic");
       // one per level, and two for the penalty of bonds at non-conforming faces
       refuse(scene.time.scheme == Scheme::explicit_moreau_jean &&
                  scene.adaptivity->levels + 2 > scene.time.maximum_bisections,
@@ -124,6 +121,16 @@ namespace nsfd
     for (ParameterSection *block : blocks)
       if (auto indicator = read_indicator(*block, errors))
         adaptivity.indicators.push_back(std::move(indicator));
+    const auto &found = adaptivity.indicators;
+    if (scene.time.scheme == Scheme::leapfrog &&
+        !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
+          return indicator->is_fixed();
+        }))
+      reader.error("levels",
+                   "with scheme = explicit the mesh does not change in a run "
+                   "yet: it is refined before it",
+                   "take indicators of type = region alone, or write scheme = "
+                   "moreau-jean or symplectic");
     if (blocks.empty())
       reader.error("levels", "no indicator says where cells are to be small",
                    "add for example: subsection Indicator: front / set type = "

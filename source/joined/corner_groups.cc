@@ -84,8 +84,17 @@ namespace nsfd
     for (const unsigned int corner : corners)
       mass[of_[corner]] = 0.;
     for (const unsigned int corner : corners)
-      mass[of_[corner]] += mesh_.mass(corner);
+      mass[of_[corner]] += mass_of(corner);
     return true;
+  }
+
+  template <int dim>
+  void CornerGroups<dim>::set_masses(std::vector<double> of_corners)
+  {
+    masses_ = std::move(of_corners);
+    std::fill(mass.begin(), mass.end(), 0.);
+    for (std::size_t i = 0; i < of_.size(); ++i)
+      mass[of_[i]] += masses_[i];
   }
 
   template <int dim>

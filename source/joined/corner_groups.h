@@ -35,6 +35,9 @@ namespace nsfd
      */
     bool split(std::size_t node, const std::vector<std::uint8_t> &intact);
 
+    /** Of the corners, instead of those of the mesh. */
+    void set_masses(std::vector<double> of_corners);
+
     /** Mass-weighted means of what the corners have, dim values each. */
     void gather(const std::vector<double> &of_corners,
                 std::vector<double> &of_groups) const;
@@ -45,12 +48,20 @@ namespace nsfd
     std::vector<double> mass; ///< kg, or kg/m in the plane
     /// dim components per group: m, m/s and N
     std::vector<double> displacement, velocity, force;
+    /// N, of `force`: what corners got from hanging nodes, see HangingNodes
+    std::vector<double> shares;
 
   private:
     const std::vector<unsigned int> &
     components(std::size_t node, const std::vector<std::uint8_t> &intact);
 
+    double mass_of(const std::size_t corner) const
+    {
+      return masses_.empty() ? mesh_.mass(corner) : masses_[corner];
+    }
+
     const JoinedMesh<dim> &mesh_;
+    std::vector<double> masses_; ///< by corner; empty: those of the mesh
     std::vector<unsigned int> of_;
     std::vector<unsigned int> component_; ///< of the corners of a node
     std::vector<unsigned int> not_counted_;

@@ -2,6 +2,7 @@
 
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
+#include "discretization/point_places.h"
 #include "nsfd/core/archive.h"
 
 #include <algorithm>
@@ -14,6 +15,25 @@ namespace nsfd
   {
     /// jump of the rate from which a front is sharp: that of waves of 8 cells
     constexpr double sharp = 0.15;
+
+    /** By face: body 2 is larger than body 1; empty: nowhere. */
+    template <int dim>
+    std::vector<char> larger_cells(const Discretization<dim> &discretization)
+    {
+      const auto &points = discretization.points();
+      std::vector<char> result;
+      for_all_places(discretization.bodies(), points.n_points,
+                     [&](const std::size_t body, const unsigned int slot,
+                         const std::size_t point, unsigned int) {
+                       const auto &shape =
+                           discretization.cells().class_shape(body);
+                       if (!(shape.divided >> shape.slot_faces[slot] & 1u))
+                         return;
+                       result.resize(points.faces.size(), 0);
+                       result[points.face_of[point]] = 1;
+                     });
+      return result;
+    }
   } // namespace
 
   double step_share(const double b) { return std::sqrt(1. + b * b) - b; }
@@ -38,21 +58,33 @@ namespace nsfd
     dilatation = rate = viscosity = present_viscosity = tension;
     terms_.assign(4 * n, 0.);
 
-    std::vector<std::array<int, 2>> pairs;
-    for (const auto &face : discretization.points().faces)
-      if (!face.boundary && face.bodies[0] >= 0 && face.bodies[1] >= 0)
-        pairs.push_back(face.bodies);
+    const auto &faces = discretization.points().faces;
+    std::vector<std::size_t> pairs;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      if (!faces[f].boundary && faces[f].bodies[0] >= 0 &&
+          faces[f].bodies[1] >= 0)
+        pairs.push_back(f);
     first_neighbor_.assign(n + 1, 0);
-    for (const auto &pair : pairs)
-      for (const int b : pair)
+    for (const std::size_t f : pairs)
+      for (const int b : faces[f].bodies)
         ++first_neighbor_[std::size_t(b) + 1];
     std::partial_sum(first_neighbor_.begin(), first_neighbor_.end(),
                      first_neighbor_.begin());
     neighbor_.resize(first_neighbor_.back());
+    const auto larger = larger_cells(discretization);
+    if (!larger.empty())
+      weight_.assign(neighbor_.size(), 1.);
     auto next = first_neighbor_;
-    for (const auto &pair : pairs)
-      for (unsigned int side = 0; side < 2; ++side)
-        neighbor_[next[std::size_t(pair[side])]++] = unsigned(pair[1 - side]);
+    for (const std::size_t f : pairs)
+      for (unsigned int side = 0; side < 2; ++side) {
+        const auto &pair = faces[f].bodies;
+        const std::size_t k = next[std::size_t(pair[side])]++;
+        neighbor_[k] = unsigned(pair[1 - side]);
+        // a rate that is linear in space has no second difference: centres
+        // are 3/2 of the smaller cell apart, 3/4 of the larger one
+        if (!larger.empty() && larger[f])
+          weight_[k] = side == 0 ? 2. / 3. : 4. / 3. / (1u << (dim - 1));
+      }
     // ghosts have neighbours that are not here
     std::vector<double> n_neighbors;
     for (std::size_t b = 0; b < n; ++b)
@@ -71,8 +103,13 @@ namespace nsfd
     for (std::size_t k = first_neighbor_[cell]; k < first_neighbor_[cell + 1];
          ++k) {
       const double other = rate[neighbor_[k]];
-      jump += other - rate[cell];
-      size += std::abs(other) + std::abs(rate[cell]);
+      if (weight_.empty()) {
+        jump += other - rate[cell];
+        size += std::abs(other) + std::abs(rate[cell]);
+        continue;
+      }
+      jump += weight_[k] * (other - rate[cell]);
+      size += weight_[k] * (std::abs(other) + std::abs(rate[cell]));
     }
     const double ratio = size > 0. ? jump / size : 0.;
     const double share = std::min(1., std::abs(ratio) / sharp);

@@ -168,6 +168,7 @@ namespace nsfd
     std::vector<double> eta_;            ///< Pa s
     std::vector<std::size_t> first_neighbor_;
     std::vector<unsigned int> neighbor_;
+    std::vector<double> weight_;     ///< beside it; empty: all cells are alike
     std::vector<unsigned int> ends_; ///< cells with one neighbour
     std::vector<double> terms_;
     double h_ = 0., kick_ = 0.;

@@ -11,25 +11,47 @@ namespace nsfd
 {
   namespace
   {
+    /** Slots of every face, and of none more than that. */
+    template <int dim>
+    std::size_t most_at_a_face(const Cells<dim> &cells)
+    {
+      std::size_t most = 1;
+      for (const auto &shape : cells.shapes)
+        for (const unsigned int face : shape.slot_faces)
+          most = std::max(
+              most, std::size_t(std::count(shape.slot_faces.begin(),
+                                           shape.slot_faces.end(), face)));
+      return most;
+    }
+
     /**
      * Points by cell, slot and, where several are at one slot, their order:
-     * @p per_slot of them, @p n_slots slots per cell. The same for a cell in
-     * each discretization that has it.
+     * @p per_slot of them, @p per_face slots at each of @p n_faces. The same
+     * for a cell in each discretization that has it: beyond a ghost there may
+     * be cells of two sizes that only its own rank knows.
      */
     template <int dim>
     std::vector<unsigned int>
     points_at_slots(const Discretization<dim> &discretization,
-                    const std::size_t n_slots, const std::size_t per_slot)
+                    const std::size_t n_faces, const std::size_t per_face,
+                    const std::size_t per_slot)
     {
+      const Cells<dim> &cells = discretization.cells();
       const Bodies &bodies = discretization.bodies();
       const auto none = unsigned(discretization.points().n_points);
-      std::vector<unsigned int> result(bodies.size() * n_slots * per_slot,
-                                       none);
+      std::vector<unsigned int> result(
+          bodies.size() * n_faces * per_face * per_slot, none);
       for_all_places(bodies, none,
                      [&](const std::size_t body, const unsigned int slot,
                          const std::size_t point, unsigned int) {
-                       auto place = result.begin() +
-                                    long((body * n_slots + slot) * per_slot);
+                       const auto &faces = cells.class_shape(body).slot_faces;
+                       const unsigned int face = faces[slot];
+                       const auto first =
+                           std::find(faces.begin(), faces.end(), face);
+                       const std::size_t at =
+                           (body * n_faces + face) * per_face +
+                           (slot - std::size_t(first - faces.begin()));
+                       auto place = result.begin() + long(at * per_slot);
                        while (*place != none)
                          ++place;
                        *place = unsigned(point);
@@ -49,13 +71,6 @@ namespace nsfd
       return most;
     }
 
-    std::size_t most_slots(const Bodies &bodies)
-    {
-      std::size_t most = 0;
-      for (const BodyClass &body : bodies.classes)
-        most = std::max<std::size_t>(most, body.n_slots);
-      return most;
-    }
   } // namespace
 
   template <int dim>
@@ -81,13 +96,14 @@ namespace nsfd
   template <int dim>
   void GhostLayer<dim>::match_points()
   {
-    const auto n_slots =
-        std::size_t(communicator_.max(double(most_slots(all_->bodies()))));
+    constexpr std::size_t n_faces = 2 * dim; // of simplices fewer
+    const auto per_face =
+        std::size_t(communicator_.max(double(most_at_a_face(all_->cells()))));
     const auto per_slot =
         std::size_t(communicator_.max(double(most_at_a_slot(all_->bodies()))));
-    n_per_cell_ = n_slots * per_slot;
-    points_of_cell_ = points_at_slots(*all_, n_slots, per_slot);
-    const auto of_own = points_at_slots(own_, n_slots, per_slot);
+    n_per_cell_ = n_faces * per_face * per_slot;
+    points_of_cell_ = points_at_slots(*all_, n_faces, per_face, per_slot);
+    const auto of_own = points_at_slots(own_, n_faces, per_face, per_slot);
     const auto none = unsigned(own_.points().n_points);
     point_.assign(none, unsigned(all_->points().n_points));
     for (std::size_t k = 0; k < of_own.size(); ++k)

@@ -3,8 +3,10 @@
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace nsfd
 {
@@ -36,10 +38,8 @@ namespace nsfd
         mass_[i] = lumped_mass(*shape, unsigned(i - first));
     }
     find_corners(discretization, ghosts);
-    std::vector<std::uint8_t> own;
-    for (std::size_t b = 0; ghosts && b < ghosts->size(); ++b)
-      own.insert(own.end(), cells.first_node[b + 1] - cells.first_node[b],
-                 !ghosts->is_ghost(b));
+    const auto own =
+        ghosts ? near_own(cells, *ghosts) : std::vector<std::uint8_t>();
     find_nodes(own);
     sort_corners();
     if (!own.empty())
@@ -62,23 +62,56 @@ namespace nsfd
         nodes[k].push_back(node_at(shape, place));
     }
     bool at_nodes = true;
-    for_all_places(cells.bodies, n,
-                   [&](const std::size_t body, const unsigned int slot,
-                       const std::size_t point, const unsigned int side) {
-                     const int i = nodes[cells.bodies.class_of[body]][slot];
-                     at_nodes = at_nodes && i >= 0;
-                     corners_[point][side] =
-                         unsigned(cells.first_node[body] + std::size_t(i));
-                   });
+    for_all_places(
+        cells.bodies, n,
+        [&](const std::size_t body, const unsigned int slot,
+            const std::size_t point, const unsigned int side) {
+          const int i = nodes[cells.bodies.class_of[body]][slot];
+          const auto &shape = cells.class_shape(body);
+          if (shape.divided >> shape.slot_faces[slot] & 1u) {
+            between_sizes_.resize(n, 0);
+            between_sizes_[point] = 1;
+            if (i < 0) {
+              hanging_.push_back({unsigned(point), none, unsigned(body), slot});
+              return;
+            }
+          }
+          at_nodes = at_nodes && i >= 0;
+          corners_[point][side] =
+              unsigned(cells.first_node[body] + std::size_t(i));
+        });
     if (ghosts ? ghosts->anywhere(!at_nodes) : !at_nodes)
       throw std::runtime_error(
           "joined cells share nodes, and some points of faces are at none: "
           "they need `interface quadrature = gauss lobatto` with one point "
-          "more than the degree, and cells that meet face to face");
+          "more than the degree");
+    for (Hanging &point : hanging_)
+      point.corner = corners_[point.point][0];
+    std::sort(hanging_.begin(), hanging_.end(),
+              [](const Hanging &a, const Hanging &b) {
+                return std::pair(a.cell, a.slot) < std::pair(b.cell, b.slot);
+              });
   }
 
-  /** Corners that links connect, numbered by their first one; @p own by
-      corner, empty if there are no ghosts. */
+  /** By corner: 1 of a cell of this rank; 2 of a ghost, where it hangs from
+      one of them. */
+  template <int dim>
+  std::vector<std::uint8_t>
+  JoinedMesh<dim>::near_own(const Cells<dim> &cells,
+                            const GhostCells &ghosts) const
+  {
+    std::vector<std::uint8_t> own;
+    for (std::size_t b = 0; b < ghosts.size(); ++b)
+      own.insert(own.end(), cells.first_node[b + 1] - cells.first_node[b],
+                 !ghosts.is_ghost(b));
+    for (const Hanging &point : hanging_)
+      if (!own[point.corner] && !ghosts.is_ghost(point.cell))
+        own[point.corner] = 2;
+    return own;
+  }
+
+  /** Corners that links connect, numbered by their first one; @p own as
+      near_own(), empty if there are no ghosts. */
   template <int dim>
   void JoinedMesh<dim>::find_nodes(const std::vector<std::uint8_t> &own)
   {
@@ -133,9 +166,10 @@ namespace nsfd
     for (std::size_t node = 0; node < n_nodes(); ++node)
       for (const unsigned int corner : corners_of_node(node))
         if (own[corner]) {
-          share_[node] = corner == *corners_of_node(node).begin()
-                             ? Share::counted
-                             : Share::whole;
+          share_[node] =
+              corner == *corners_of_node(node).begin() && own[corner] == 1
+                  ? Share::counted
+                  : Share::whole;
           break;
         }
   }

@@ -14,6 +14,8 @@ namespace nsfd
    * The nodes of cells that may hang together. A corner is a node of one cell;
    * the points of a face sit at its nodes and link the corners of its two
    * cells. Corners that links connect, intact or not, are one node of the mesh.
+   * At faces between cells of two sizes only points where both have a node are
+   * links; the others are hanging(): see HangingNodes.
    * Where ghosts are around the cells of a rank, nodes with a corner of one of
    * its own are whole; corners at other nodes stand alone, and move as other
    * ranks say.
@@ -26,8 +28,8 @@ namespace nsfd
 
     /**
      * @throws std::runtime_error where a point is not at a node of its cells:
-     * faces between cells of two sizes, other interface quadratures. The same
-     * on all ranks; @p ghosts of the cells, if there may be some.
+     * other interface quadratures. The same on all ranks; @p ghosts of the
+     * cells, if there may be some.
      */
     explicit JoinedMesh(const Discretization<dim> &discretization,
                         const GhostCells *ghosts = nullptr);
@@ -54,7 +56,22 @@ namespace nsfd
       return node_[a_corner(point)];
     }
 
-    /** All corners of the node are here. */
+    /** A point of a smaller cell at its face with a larger one that has no node
+        there; corners() has the smaller one alone. */
+    struct Hanging {
+      unsigned int point, corner; ///< of the smaller cell
+      unsigned int cell, slot;    ///< of the larger one
+    };
+    /** By the cells and slots. */
+    const std::vector<Hanging> &hanging() const { return hanging_; }
+    /** The face of the point is between cells of two sizes. */
+    bool between_sizes(const std::size_t point) const
+    {
+      return !between_sizes_.empty() && between_sizes_[point] != 0;
+    }
+
+    /** All corners of the node are here: of nodes of the cells of this rank,
+        and of those that hang from them. */
     bool is_whole(const std::size_t node) const
     {
       return share_.empty() || share_[node] != Share::part;
@@ -89,6 +106,8 @@ namespace nsfd
 
     void find_corners(const Discretization<dim> &discretization,
                       const GhostCells *ghosts);
+    std::vector<std::uint8_t> near_own(const Cells<dim> &cells,
+                                       const GhostCells &ghosts) const;
     void find_nodes(const std::vector<std::uint8_t> &own);
     void sort_corners();
     void share_nodes(const std::vector<std::uint8_t> &own);
@@ -97,6 +116,8 @@ namespace nsfd
     std::vector<unsigned int> node_;
     std::vector<double> mass_;
     std::vector<std::array<unsigned int, 2>> corners_;
+    std::vector<Hanging> hanging_;
+    std::vector<std::uint8_t> between_sizes_; ///< by point; empty: none is
     std::vector<std::size_t> first_corner_, first_link_; ///< size n + 1
     std::vector<unsigned int> corner_, link_;
     std::vector<Share> share_; ///< by node; empty: there are no ghosts

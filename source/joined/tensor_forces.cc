@@ -1,5 +1,7 @@
 #include "tensor_forces.h"
 
+#include "hanging_nodes.h"
+
 #include "discretization/cell_geometry.h"
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
@@ -16,6 +18,9 @@ namespace nsfd
 {
   namespace
   {
+    /// a point at no node: see `place_.between`
+    constexpr std::uint16_t hangs = 0xffff;
+
     std::vector<double> transposed(const std::vector<double> &A,
                                    const unsigned int n)
     {
@@ -210,23 +215,37 @@ namespace nsfd
   {
     const Cells<dim> &cells = discretization_.cells();
     const std::size_t n = discretization_.points().n_points;
-    place_.assign(n, {{0, 0}});
-    for_all_places(cells.bodies, n,
-                   [&](const std::size_t body, const unsigned int slot,
-                       const std::size_t point, const unsigned int side) {
-                     const unsigned int face =
-                         cells.class_shape(body).slot_faces[slot];
-                     unsigned int node = mesh.corners(point)[side] -
-                                         unsigned(cells.first_node[body]);
-                     unsigned int in_face = 0, factor = 1;
-                     for (unsigned int d = 0; d < dim; ++d, node /= line_.n)
-                       if (d != face / 2) {
-                         in_face += factor * (node % line_.n);
-                         factor *= line_.n;
-                       }
-                     place_[point][side] =
-                         std::uint16_t(face * (n_nodes_ / line_.n) + in_face);
-                   });
+    place_.of_point.assign(n, {{0, 0}});
+    for_all_places(
+        cells.bodies, n,
+        [&](const std::size_t body, const unsigned int slot,
+            const std::size_t point, const unsigned int side) {
+          const unsigned int corner = mesh.corners(point)[side],
+                             face = cells.class_shape(body).slot_faces[slot];
+          if (corner != JoinedMesh<dim>::none) {
+            place_.of_point[point][side] =
+                place_in_faces(corner - unsigned(cells.first_node[body]), face);
+            return;
+          }
+          place_.of_point[point][side] = hangs;
+          for (const auto &[node, value] :
+               trace_at(cells, unsigned(body), slot))
+            place_.between[unsigned(point)].emplace_back(
+                place_in_faces(node, face), value);
+        });
+  }
+
+  template <int dim>
+  std::uint16_t TensorForces<dim>::place_in_faces(unsigned int node,
+                                                  const unsigned int face) const
+  {
+    unsigned int in_face = 0, factor = 1;
+    for (unsigned int d = 0; d < dim; ++d, node /= line_.n)
+      if (d != face / 2) {
+        in_face += factor * (node % line_.n);
+        factor *= line_.n;
+      }
+    return std::uint16_t(face * (n_nodes_ / line_.n) + in_face);
   }
 
   template <int dim>
@@ -310,10 +329,17 @@ namespace nsfd
     for (unsigned int side = 0; side < 2; ++side) {
       const double *of_cell = tractions(sites.cells[site][side]);
       const double sign = side == 0 ? 0.5 : -0.5;
-      for (unsigned int i = first; i < last; ++i)
+      for (unsigned int i = first; i < last; ++i) {
+        const double share = sign * weight[i] / length;
+        if (place_.of_point[i][side] == hangs) {
+          for (const auto &[place, value] : place_.between.at(i))
+            for (unsigned int c = 0; c < dim; ++c)
+              result[c] += share * value * of_cell[place * dim + c];
+          continue;
+        }
         for (unsigned int c = 0; c < dim; ++c)
-          result[c] +=
-              sign * weight[i] / length * of_cell[place_[i][side] * dim + c];
+          result[c] += share * of_cell[place_.of_point[i][side] * dim + c];
+      }
     }
     return result;
   }

@@ -5,6 +5,9 @@
 
 #include <deal.II/base/aligned_vector.h>
 
+#include <map>
+#include <utility>
+
 namespace nsfd
 {
   template <int dim>
@@ -46,6 +49,7 @@ namespace nsfd
     double distortion(const BodyShape<dim> &shape) const;
     void set_places(const JoinedMesh<dim> &mesh);
     TensorBlock block(std::size_t index) const;
+    std::uint16_t place_in_faces(unsigned int node, unsigned int face) const;
     /** At the nodes of the faces of a cell, dim components each. */
     const double *tractions(std::size_t cell) const;
 
@@ -59,8 +63,13 @@ namespace nsfd
     std::vector<std::size_t> first_cell_; ///< by block, and the end
     std::vector<unsigned int> block_;     ///< by cell
     std::vector<double> volume_;
-    /// by point: which traction of body 1 and of body 2 it has
-    std::vector<std::array<std::uint16_t, 2>> place_;
+    /// which tractions of body 1 and of body 2 a point has
+    struct {
+      std::vector<std::array<std::uint16_t, 2>> of_point;
+      /// of points at no node of body 2: those that they are between
+      std::map<unsigned int, std::vector<std::pair<std::uint16_t, double>>>
+          between;
+    } place_;
 
     const CornerGroups<dim> *groups_ = nullptr; ///< of the last forces
     std::vector<double> forces_;                ///< K q by corner

@@ -19,7 +19,7 @@ namespace nsfd
     if (fragments.count() > 1)
       return true;
     // cells to come may lie at faces of any block
-    if (input.adaptivity)
+    if (input.mesh_changes())
       return std::any_of(
           input.interfaces.begin(), input.interfaces.end(),
           [](const InterfaceInput &block) { return bool(block.law); });

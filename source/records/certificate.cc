@@ -226,6 +226,26 @@ namespace nsfd
       return line;
     }
 
+    Line held_of(const RunFacts &facts)
+    {
+      const HeldFaces &held = *facts.held;
+      Line line = line_of("held faces", held.share, 1.,
+                          within(held.share <= 1.), "{:.3g} of strength");
+      line.bound = "at most 1";
+      if (line.verdict == Verdict::bad)
+        line.remark = fmt::format(
+            "faces between cells of two sizes, and faces with a node in the "
+            "middle of a larger one, cannot open: at {} the traction is {:.2g} "
+            "times the strength; let the small cells reach further",
+            held.place, held.share);
+      else if (held.share == 0.) {
+        line.value = "far below";
+        line.remark = "no face where cells of two sizes meet came near its "
+                      "strength";
+      }
+      return line;
+    }
+
     Line attempts_of(const RunFacts &facts)
     {
       if (accepted(facts) == 0)
@@ -289,6 +309,8 @@ namespace nsfd
     add_given(facts, lines);
     add_uniqueness(facts, lines);
     lines.push_back(zone_of(facts));
+    if (facts.held && facts.softens)
+      lines.push_back(held_of(facts));
     lines.push_back(attempts_of(facts));
     add_motion_limits(facts, lines);
     return certificate;

@@ -23,6 +23,12 @@ namespace nsfd
     std::string advice;            ///< what gives less; may be empty
   };
 
+  /** Faces that cannot let go because a node of smaller cells hangs there. */
+  struct HeldFaces {
+    double share = 0.; ///< the largest traction over the strength
+    std::string place; ///< "(1, 2) of Interface: all"
+  };
+
   /** What a run knows of itself when it ends. */
   struct RunFacts {
     bool completed = false;
@@ -49,6 +55,7 @@ namespace nsfd
     unsigned long long beyond_unique = 0, solution_jumps = 0;
     /// nothing: no point has softened; length 0: between rigid bodies
     std::optional<ZoneResolution> zone;
+    std::optional<HeldFaces> held; ///< nothing: there are none
     unsigned long long rejected = 0, overshoots = 0; ///< attempts
     MotionLimits limits;
   };
@@ -96,6 +103,7 @@ namespace nsfd
    *     uniqueness    no step in which a softening face may have had several
    *                   solutions
    *     cohesive zone points_per_cohesive_length points
+   *     held faces    of joined cells of two sizes: below their strength
    *     attempts      fewer rejected steps than accepted ones
    *     rotation, strain, step length, joints, front
    *                   what the method assumes of a motion, see MotionLimits

@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "adaptivity/initial_mesh.h"
 #include "model_checks.h"
 #include "print_problems.h"
 #include "time_integration/linear_moreau_jean.h"
@@ -60,9 +61,9 @@ namespace nsfd
     charge_memory("bodies and points");
     choose_path(input);
     if (input.time.scheme == Scheme::leapfrog) {
-      check_stability(input, communicator, problems);
+      build_leapfrog(input, communicator, problems);
       if (problems.empty())
-        build_leapfrog(input, communicator, problems);
+        check_stability(input, communicator, problems);
       return problems;
     }
     build_delassus(input, communicator);
@@ -109,8 +110,14 @@ namespace nsfd
           input, *discretization, communicator, std::move(layer));
     } catch (const std::runtime_error &error) {
       problems.push_back(error.what());
+      return;
     }
     charge_memory("blocks of the bodies");
+    const double share = leapfrog->mass_share();
+    if (share > 1.) { // masses of nodes that follow others lie differently
+      explicit_limit /= share;
+      control = dynamic_control(input, 0.);
+    }
   }
 
   template <int dim>
@@ -193,6 +200,8 @@ namespace nsfd
     if (!problems.empty())
       return;
     groups = std::make_unique<MeshGroups<dim>>(input, *triangulation);
+    if (input.adaptivity && !input.mesh_changes())
+      refine_by_place(input, *triangulation);
     charge_memory("mesh");
     std::vector<std::string> warnings;
     const auto materials = material_indices<dim>(input, *groups, *triangulation,

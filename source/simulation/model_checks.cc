@@ -81,7 +81,7 @@ namespace nsfd
       check("Boundary: " + boundary.name, boundary.where);
     for (const auto &obstacle : input.obstacles)
       check("Obstacle: " + obstacle.name, obstacle.where);
-    if (!input.adaptivity) // refined cells have new faces
+    if (!input.mesh_changes()) // refined cells have new faces
       warn_of_unused_interfaces(input, model, communicator);
   }
 

@@ -3,6 +3,9 @@
 #include "nsfd/core/archive.h"
 #include "zone_resolution.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -182,6 +185,15 @@ namespace nsfd
       if (block.law) {
         facts.softens = true;
         facts.brittle |= std::isinf(block.law->steepest_softening());
+      }
+    if (model.leapfrog)
+      if (const auto held = model.leapfrog->held_faces()) {
+        facts.held.emplace();
+        facts.held->share = held->share;
+        if (held->share > 0.)
+          facts.held->place = fmt::format("({:.6g}) of Interface: {}",
+                                          fmt::join(held->centre, ", "),
+                                          input.interfaces[held->block].name);
       }
     extremes.fill(facts);
     facts.follows_jumps =

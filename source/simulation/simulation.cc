@@ -82,7 +82,7 @@ namespace nsfd
         return exit_code::bad_input;
       if (options_.check)
         return check();
-      if (!input_.adaptivity)
+      if (!input_.mesh_changes())
         model_.forget_mesh();
       if (!found && !claim_folder(false))
         return exit_code::bad_input;
@@ -134,7 +134,7 @@ namespace nsfd
         model_.delassus->reinit(model_.control->step(),
                                 input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
-      if (!input_.adaptivity) {
+      if (!input_.mesh_changes()) {
         state_ = model_.initial_state();
         return true;
       }

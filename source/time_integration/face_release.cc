@@ -22,7 +22,8 @@ namespace nsfd
 
   template <int dim>
   FaceRelease<dim>::FaceRelease(const Discretization<dim> &discretization,
-                                const OneStepProblem<dim> &all)
+                                const OneStepProblem<dim> &all,
+                                const HangingNodes<dim> &hanging)
       : discretization_(discretization)
   {
     const auto &points = discretization.points();
@@ -69,6 +70,11 @@ namespace nsfd
                                here.strength() * here.strength());
         least = std::min(least, sites_.limit.back() /
                                     std::max(1., sites_.shear_weight.back()));
+      }
+      if (!hanging.held().empty()) {
+        held_.resize(sites_.size(), hanging.held()[face.first]);
+        // tractions between the nodes of a cell are beyond those at them
+        least /= hanging.spread() * hanging.spread();
       }
       sites_.least.push_back(least);
     }
@@ -150,6 +156,15 @@ namespace nsfd
         share = here.template effective_traction<dim>(t[0], &t[1]) /
                 here.strength();
       }
+      if (!held_.empty() && held_[k]) {
+        if (share > worst_held_.share) {
+          const unsigned int first = sites_.first_point[k];
+          const auto &points = discretization_.points();
+          worst_held_ = {share, points.faces[points.face_of[first]].centre,
+                         discretization_.origins()[first].block};
+        }
+        continue;
+      }
       // what it was below that has not been looked at
       const double before =
           std::max(seen, share * std::sqrt(old_squares_[k] / squares_[k]));
@@ -162,8 +177,40 @@ namespace nsfd
   }
 
   template <int dim>
-  void FaceRelease<dim>::serialize(Archive &archive)
+  auto FaceRelease<dim>::worst_held(const Communicator &communicator) const
+      -> Held
   {
+    // the first one by its coordinates, if several are
+    constexpr double none = std::numeric_limits<double>::max();
+    Held worst = worst_held_;
+    worst.share = communicator.max(worst.share);
+    bool here = worst.share > 0. && worst_held_.share == worst.share;
+    for (double &x : worst.centre) {
+      const double mine = x;
+      x = communicator.min(here ? mine : none);
+      here = here && mine == x;
+    }
+    worst.block = unsigned(communicator.min(here ? worst.block : none));
+    if (!(worst.share > 0.))
+      return {};
+    return worst;
+  }
+
+  template <int dim>
+  void FaceRelease<dim>::serialize(const Communicator &communicator,
+                                   Archive &archive)
+  {
+    if (communicator.any(!held_.empty())) {
+      worst_held_ = worst_held(communicator);
+      std::vector<double> values(worst_held_.centre.begin(),
+                                 worst_held_.centre.end());
+      values.push_back(worst_held_.share);
+      values.push_back(worst_held_.block);
+      archive.common("held", values);
+      std::copy_n(values.begin(), dim, worst_held_.centre.begin());
+      worst_held_.share = values[dim];
+      worst_held_.block = unsigned(values[dim + 1]);
+    }
     std::vector<double> all(discretization_.points().n_points, infinity);
     if (!archive.reads())
       for (std::size_t k = 0; k < squares_.size(); ++k)

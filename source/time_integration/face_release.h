@@ -3,6 +3,7 @@
 #include "leapfrog_points.h"
 
 #include "joined/cell_forces.h"
+#include "joined/hanging_nodes.h"
 
 #include <cstdint>
 #include <vector>
@@ -22,9 +23,11 @@ namespace nsfd
   class FaceRelease
   {
   public:
-    /** @p all are the constant data of the points of the mesh. */
+    /** @p all are the constant data of the points of the mesh; some faces are
+        held by @p hanging nodes. */
     FaceRelease(const Discretization<dim> &discretization,
-                const OneStepProblem<dim> &all);
+                const OneStepProblem<dim> &all,
+                const HangingNodes<dim> &hanging);
 
     /** From now on @p intact (by point) are. */
     void start(std::vector<std::uint8_t> intact);
@@ -39,8 +42,18 @@ namespace nsfd
      */
     std::vector<unsigned int> reached(const CellForces<dim> &forces,
                                       double &excess);
-    /** The tractions of the last step. */
-    void serialize(Archive &archive);
+    /** Of the faces that never let go, the one that was nearest to its strength
+        or furthest beyond it, so far as has been looked at. */
+    struct Held {
+      double share = 0.; ///< traction over strength, 0: below `looked_at`
+      std::array<double, dim> centre{};
+      unsigned int block = 0; ///< of Interface
+    };
+    /** Of all ranks. Collective. */
+    Held worst_held(const Communicator &communicator) const;
+
+    /** The tractions of the last step. Collective. */
+    void serialize(const Communicator &communicator, Archive &archive);
     /** Mean tractions at intact points in their frames, Pa. */
     void show(const CellForces<dim> &forces,
               std::vector<double> &tractions) const;
@@ -57,5 +70,7 @@ namespace nsfd
     std::vector<int> site_of_; ///< by point, -1: it never lets go
     std::vector<double> squares_, old_squares_; ///< of this step and the last
     std::vector<std::uint8_t> intact_;          ///< by point
+    std::vector<std::uint8_t> held_;            ///< by site; empty: none is
+    Held worst_held_;
   };
 } // namespace nsfd

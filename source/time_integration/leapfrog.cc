@@ -1,7 +1,7 @@
 #include "leapfrog.h"
 
 #include "ghost_states.h"
-#include "initial_state.h"
+#include "joined_start.h"
 #include "point_name.h"
 #include "step_data.h"
 
@@ -21,13 +21,6 @@ namespace nsfd
     bool is_interface(const PointOrigin &origin)
     {
       return origin.kind == PointOrigin::Kind::interface;
-    }
-
-    /** Before anything has let go: what is joined. */
-    bool is_joined(const PointKind kind)
-    {
-      return kind == PointKind::bonded || kind == PointKind::rigid ||
-             kind == PointKind::prescribed;
     }
 
     /** Without what only steps of all points need. */
@@ -61,48 +54,24 @@ namespace nsfd
                                    point_data(input, discretization))
                              : nullptr),
         mesh_(discretization_, ghosts_.cells()),
+        hanging_(discretization_, mesh_, ghosts_.layer()),
         forces_(make_cell_forces(discretization_, mesh_,
                                  FrontViscosity(discretization_,
                                                 input.front_viscosity(),
                                                 ghosts_.cells()),
                                  ghosts_.cells())),
-        faces_(discretization_, all_), supports_(input, discretization_, mesh_),
+        faces_(discretization_, all_, hanging_),
+        supports_(input, discretization_, mesh_),
         points_(discretization_, mesh_, all_),
         check_(input, [this](const std::size_t i) {
           return name_of_point<dim>(input_, discretization_.origins(),
                                     discretization_.points().position, i);
         })
   {
-    ghosts_.set_mesh(mesh_);
-  }
-
-  template <int dim>
-  State Leapfrog<dim>::initial_state() const
-  {
-    State state = initial_motion(input_, discretization_);
-    const auto &points = discretization_.points();
-    state.jump.assign(points.n_points * dim, 0.);
-    state.relative_velocity.assign(points.n_points * dim, 0.);
-    for (std::size_t i = 0; i < points.n_points; ++i)
-      for (unsigned int side = 0; side < 2; ++side) {
-        const unsigned int corner = mesh_.corners(i)[side];
-        if (corner == JoinedMesh<dim>::none)
-          continue;
-        for (unsigned int r = 0; r < dim; ++r)
-          for (unsigned int c = 0; c < dim; ++c) {
-            const double share =
-                (side == 0 ? -1. : 1.) * points.frame[(i * dim + r) * dim + c];
-            state.jump[i * dim + r] +=
-                share * state.displacement[corner * dim + c];
-            state.relative_velocity[i * dim + r] +=
-                share * state.velocity[corner * dim + c];
-          }
-      }
-    set_points(input_, discretization_, all_, state);
-    for (std::size_t i = 0; i < points.n_points; ++i)
-      if (!state.two_sided[i]) // contact holds where it is
-        state.released_overlap[i] = std::max(0., -state.jump[i * dim]);
-    return ghosts_.without(std::move(state));
+    ghosts_.set_mesh(mesh_, hanging_);
+    if (hanging_.any())
+      check_hanging(communicator_, discretization_, mesh_,
+                    ghosts_.with(initial_state()), hanging_, supports_);
   }
 
   /** The motion and the points of @p state, with ghosts. */
@@ -112,14 +81,19 @@ namespace nsfd
     const auto &origins = discretization_.origins();
     for (std::size_t i = 0; i < intact.size(); ++i)
       if (!intact[i] && origins[i].kind != PointOrigin::Kind::motion &&
-          mesh_.is_whole(mesh_.node_of_point(i)))
+          mesh_.is_whole(mesh_.node_of_point(i)) &&
+          !hanging_.hangs(mesh_.a_corner(i)))
         points_.add(unsigned(i), faces_.factors(unsigned(i)), state);
     groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
     faces_.start(std::move(intact));
     groups_->gather(state.displacement, groups_->displacement);
     groups_->gather(state.velocity, groups_->velocity);
+    if (hanging_.any()) {
+      hanging_.tie(*groups_);
+      hanging_.follow(*groups_);
+    }
     supports_.find(*groups_);
-    forces_->set_forces(*groups_);
+    hanging_.set_forces(*forces_, *groups_);
     front_ = forces_->front().finish(communicator_);
     if (discretization_.loads().any())
       set_loads(state.time);
@@ -128,14 +102,11 @@ namespace nsfd
   template <int dim>
   State Leapfrog<dim>::start_from(const State &given)
   {
-    const auto &origins = discretization_.origins();
     State state = ghosts_.with(given);
-    std::vector<std::uint8_t> intact(origins.size());
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-      intact[i] = is_interface(origins[i]) && is_joined(state.kind[i]);
+    auto intact = joined_points(discretization_, state);
+    for (std::size_t i = 0; i < intact.size(); ++i)
       if (intact[i])
         state.kind[i] = PointKind::bonded;
-    }
     take(state, std::move(intact));
     state.bond_traction.assign(state.jump.size(), 0.);
     show_at(state, {});
@@ -216,6 +187,7 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         loads_.of_groups[groups_->of(i) * dim + c] +=
             loads_.of_corners[i * dim + c];
+    hanging_.collect(*groups_, loads_.of_groups, loads_.shares);
   }
 
   /** Forces and loads on the groups of a node that has split. */
@@ -239,6 +211,8 @@ namespace nsfd
               loads_.of_corners[corner * dim + c];
       }
     }
+    hanging_.add_shares(node, g, g.shares, g.force);
+    hanging_.add_shares(node, g, loads_.shares, loads_.of_groups);
   }
 
   /**
@@ -282,14 +256,15 @@ namespace nsfd
     const std::size_t n = g.force.size();
     g.velocity.resize(n);
     for (std::size_t i = 0; i < g.size(); ++i) {
-      const double share = kick / g.mass[i];
+      // hanging nodes have no mass: they follow others
+      const double share = g.mass[i] > 0. ? kick / g.mass[i] : 0.;
       for (unsigned int c = 0; c < dim; ++c)
         g.velocity[i * dim + c] =
             old_velocity_[i * dim + c] + share * g.force[i * dim + c];
     }
     if (!loads_.of_groups.empty())
       for (std::size_t i = 0; i < g.size(); ++i)
-        for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int c = 0; g.mass[i] > 0. && c < dim; ++c)
           g.velocity[i * dim + c] +=
               kick / g.mass[i] * loads_.of_groups[i * dim + c];
     supports_.set_velocities(time, h, kick, g.force, loads_.of_groups, g);
@@ -359,8 +334,9 @@ namespace nsfd
       g.displacement.resize(g.force.size());
       for (std::size_t k = 0; k < g.force.size(); ++k)
         g.displacement[k] = old_displacement_[k] + h * g.velocity[k];
+      hanging_.follow(g);
       forces_->front().begin_step(h, kick);
-      forces_->set_forces(g);
+      hanging_.set_forces(*forces_, *groups_);
     }
     const auto front = forces_->front().finish(communicator_);
     energies.numerical += (last - h) / 4. * (front_.after - front.before);
@@ -468,52 +444,6 @@ namespace nsfd
     state.displacement = layer->own_unknowns(state.displacement);
     state.velocity = layer->own_unknowns(state.velocity);
     state.bond_traction = layer->own_points(state.bond_traction, dim);
-  }
-
-  template <int dim>
-  void
-  Leapfrog<dim>::fill_counters(std::map<std::string, double> &counters) const
-  {
-    counters["node_problems"] = double(counters_.problems);
-    counters["gauss_seidel_sweeps"] = double(counters_.sweeps);
-    counters["newton"] = double(counters_.newton);
-    counters["released_points"] = double(counters_.released);
-    counters["active_points"] =
-        double(communicator_.sum_integer(points_.n_counted()));
-    counters["node_problems_above_1e-12"] = double(counters_.loose);
-    counters["groups"] = double(communicator_.sum_integer(
-        groups_ ? groups_->size() - groups_->not_counted().size() : 0));
-    counters["worst_excess_over_strength"] =
-        communicator_.max(counters_.excess);
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::serialize(Archive &archive)
-  {
-    if (!ghosts_.layer())
-      return serialize_all(archive);
-    GhostArchive<dim> all(*ghosts_.layer(), archive);
-    serialize_all(all);
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::serialize_all(Archive &archive)
-  {
-    const Archive::Part part(archive, "leapfrog");
-    counters_.excess = communicator_.max(counters_.excess);
-    archive.numbers("excess", counters_.excess);
-    faces_.serialize(archive);
-    points_.serialize(archive);
-    auto &front = forces_->front();
-    front.serialize(archive, discretization_.bodies().first_dof);
-    if (archive.reads() && front.acts()) {
-      front.holds = true;
-      forces_->set_forces(*groups_);
-      front.holds = false;
-    }
-    archive.numbers("front", front_.before, front_.after, front_.stored,
-                    front_.taken);
-    archive.common("reactions", supports_.reactions());
   }
 
   template class Leapfrog<2>;

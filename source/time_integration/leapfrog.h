@@ -10,6 +10,7 @@
 #include "joined/cell_forces.h"
 
 #include <memory>
+#include <optional>
 
 namespace nsfd
 {
@@ -50,6 +51,19 @@ namespace nsfd
     const OneStepProblem<dim> &points_of_mesh() const
     {
       return own_ ? *own_ : all_;
+    }
+
+    /** What frequencies of free cells, squared, are multiplied with at most. */
+    double mass_share() const
+    {
+      return communicator_.max(hanging_.mass_share());
+    }
+    /** Faces at hanging nodes; nothing: there are none. Collective. */
+    std::optional<typename FaceRelease<dim>::Held> held_faces() const
+    {
+      if (!hanging_.any())
+        return std::nullopt;
+      return faces_.worst_held(communicator_);
     }
 
     State start_from(const State &given) override;
@@ -100,6 +114,7 @@ namespace nsfd
     const OneStepProblem<dim> all_;
     const std::unique_ptr<const OneStepProblem<dim>> own_;
     const JoinedMesh<dim> mesh_;
+    HangingNodes<dim> hanging_;
     const std::unique_ptr<CellForces<dim>> forces_;
     FaceRelease<dim> faces_;
     PrescribedGroups<dim> supports_;
@@ -109,6 +124,7 @@ namespace nsfd
     /// N; empty: none
     struct {
       std::vector<double> of_corners, of_groups;
+      std::vector<double> shares; ///< see HangingNodes
       double time = 0.;
     } loads_;
 

@@ -48,13 +48,14 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogGhosts<dim>::set_mesh(const JoinedMesh<dim> &mesh)
+  void LeapfrogGhosts<dim>::set_mesh(const JoinedMesh<dim> &mesh,
+                                     const HangingNodes<dim> &hanging)
   {
     if (!layer_)
       return;
     std::vector<std::size_t> beyond;
     for (std::size_t i = 0; i < mesh.n_corners(); ++i)
-      if (!mesh.is_whole(mesh.node(i)))
+      if (!mesh.is_whole(mesh.node(i)) && !hanging.hangs(i))
         beyond.push_back(i);
     const unsigned int n_nodes =
         layer_->all().cells().element->n_dofs_per_cell();

@@ -2,6 +2,7 @@
 
 #include "joined/corner_groups.h"
 #include "joined/ghost_layer.h"
+#include "joined/hanging_nodes.h"
 #include "state/state.h"
 
 #include <memory>
@@ -44,8 +45,10 @@ namespace nsfd
     State with(const State &own) const;
     State without(State &&all) const;
 
-    /** Before the first exchange. Collective. */
-    void set_mesh(const JoinedMesh<dim> &mesh);
+    /** Before the first exchange; @p hanging nodes follow others. Collective.
+     */
+    void set_mesh(const JoinedMesh<dim> &mesh,
+                  const HangingNodes<dim> &hanging);
     /** Velocities of nodes that are not whole here, while others are used. */
     void start(const CornerGroups<dim> &groups) const;
     void finish(CornerGroups<dim> &groups) const;

@@ -55,6 +55,11 @@ namespace end_to_end::test_restart
     const std::string assembled = "Solver/path=assembled",
                       cg = "Solver/linear solver=cg";
 
+    const Launch refined =
+        with(torn, {"Adaptivity/levels=2", "Indicator: near/type=region",
+                    "Indicator: near/region=abs(x - 4 um) < 1.5 um && y < 7 um",
+                    "Indicator: near/cell size=0.5 um"});
+
     // whatever a step may leave to the next one
     const std::vector<RestartRow> rows = {
         {"breaking", breaking},
@@ -87,6 +92,7 @@ namespace end_to_end::test_restart
         {"explicit_triangles",
          with(torn, {"Mesh/type=crossed triangles", "Mesh/cells=6, 6",
                      "Interface: all/friction=0.3", "Time/end=16 ns"})},
+        {"explicit_refined", refined},
         {"rubbing", rubbing},
         {"rubbing_iterations",
          with(rubbing, {"Constants/n=4", "Mesh/cells=4, 4", assembled, cg})},
@@ -268,6 +274,7 @@ namespace end_to_end::test_restart
     const std::vector<std::tuple<Launch, unsigned int, unsigned int>> rows = {
         {with(with(torn, joined), {"Mesh/type=crossed triangles"}), 2, 1},
         {with(torn, joined), 1, 3},
+        {with(refined, joined), 2, 3},
         {{benchmark("push_back"), {"Mesh/cells=6, 6", "Time/end=17 ns"}}, 2, 3},
         {{benchmark("heap_of_bricks"), {"Time/end=0.1 s"}}, 3, 1},
         {{scene("plastic_bar"), {"Time/end=10 us"}}, 1, 2}};

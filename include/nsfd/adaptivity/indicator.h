@@ -75,6 +75,8 @@ namespace nsfd
      */
     virtual void limit(const MeshView &view,
                        std::vector<double> &size) const = 0;
+    /** It looks at MeshView::bodies() alone. */
+    virtual bool is_fixed() const { return false; }
   };
 
   using IndicatorRegistry = Registry<Indicator, SectionReader &>;

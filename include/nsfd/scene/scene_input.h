@@ -55,9 +55,14 @@ namespace nsfd
     std::string echo;
     /// only if the scene asks for equilibria
     std::optional<StaticInput> statics;
-    /// only if the mesh follows the motion
+    /// only if the mesh follows the motion, or is refined before it
     std::optional<AdaptivityInput> adaptivity;
     std::vector<ObservableInput> observables;
+    /** In the run; joined cells of explicit steps are refined before it. */
+    bool mesh_changes() const
+    {
+      return adaptivity && time.scheme != Scheme::leapfrog;
+    }
     bool has_viscous_bodies() const
     {
       for (const auto &material : materials)

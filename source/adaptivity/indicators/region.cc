@@ -33,6 +33,8 @@ namespace nsfd
         }
       }
 
+      bool is_fixed() const override { return true; }
+
     private:
       Expression where_;
       double size_;
