@@ -1,8 +1,8 @@
 #include "bonded.h"
 
-#include "body_matrix.h"
 #include "condensed.h"
 #include "conforming_solver.h"
+#include "joined_matrix.h"
 #include "linear_algebra/factor_limits.h"
 #include "sparse_assembly.h"
 
@@ -41,6 +41,9 @@ namespace nsfd
       void apply(Operator op, const double *x, double *y) const override;
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
+      bool solve_linearised(const std::vector<double> &T, bool symmetric,
+                            const std::vector<double> &c,
+                            std::vector<double> &dP) override;
       bool join_motion(std::vector<double> &x) override;
       std::vector<char>
       opens_with(const std::vector<std::uint8_t> &bonded) override
@@ -51,11 +54,14 @@ namespace nsfd
 
     private:
       void bonds_changed() override;
+      void set_bodies() const;
+      void solve_condensed(const std::vector<double> &T,
+                           const std::vector<double> &c,
+                           std::vector<double> &dP);
       std::vector<char>
       joined_by(const std::vector<std::uint8_t> &bonded) const;
       void solve(const double *b, double *x) const;
-      void solve(SpdSolver &solver, const double *b, double *x) const;
-      void prepare(SpdSolver &solver, const SparseRows &matrix) const;
+      void solve(ConformingSolver &solver, const double *b, double *x) const;
       void update() const;
       bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
       double least_compliance(std::size_t row, double W) const;
@@ -63,11 +69,13 @@ namespace nsfd
       void set_diagonal();
       void prepare_joined();
 
-      mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
+      mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
+      mutable bool has_bodies_ = false; ///< matrix_, of the step
       std::unique_ptr<ConformingSpace> conforming_;
-      std::unique_ptr<SpdSolver> factor_; ///< of M_hat
-      std::unique_ptr<SpdSolver> joined_; ///< of A = M_hat + H^T D^{-1} H
-      mutable bool valid_ = false;        ///< factor_
+      std::unique_ptr<ConformingSolver> factor_; ///< of M_hat
+      std::unique_ptr<ConformingSolver>
+          joined_;                 ///< of A = M_hat + H^T D^{-1} H
+      mutable bool valid_ = false; ///< factor_
       bool joined_valid_ = false;
       /// the system was factored as a dense one: W may be condensed later,
       /// within the iterations of a system prepared without
@@ -97,18 +105,18 @@ namespace nsfd
       const long long mine = static_cast<long long>(bodies.n_dofs());
       long long sum = 0;
       MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
-      matrix_ = std::make_unique<BodyMatrix<dim>>(
-          bodies, points, point_traces(*this, sum - mine, true),
+      matrix_ = std::make_unique<JoinedMatrix<dim>>(
+          communicator, bodies, points, point_traces(*this, sum - mine, true),
           this->bulk_.bonds(), sum - mine);
       const SparseAssembly<dim> nodes(communicator, bodies, points,
                                       coordinates);
       conforming_ = std::make_unique<ConformingSpace>(
           communicator, dim, nodes.unknowns(), nodes.node_pairs());
       for (auto *one : {&factor_, &joined_})
-        *one = make_conforming_solver(communicator, solver == "direct" ? most
-                                                    : solver == "cg"
-                                                        ? 0
-                                                        : largest_factor<dim>);
+        *one = std::make_unique<ConformingSolver>(
+            communicator, solver == "direct" ? most
+                          : solver == "cg"   ? 0
+                                             : largest_factor<dim>);
       bonds_changed();
     }
 
@@ -139,26 +147,99 @@ namespace nsfd
           std::fill_n(this->penalised_.begin() + this->points_.faces[f].first,
                       this->points_.faces[f].count, 0);
       conforming_->conform(this->shares_nodes_);
+      matrix_->set_space(conforming_->space(), this->shares_nodes_,
+                         this->penalised_);
+      for (auto *one : {&factor_, &joined_})
+        (*one)->set_space(conforming_->space());
+      has_bodies_ = false;
     }
 
+    /** M_hat in the space, as far as it does not depend on springs. */
     template <int dim>
-    void Bonded<dim>::prepare(SpdSolver &solver, const SparseRows &matrix) const
+    void Bonded<dim>::set_bodies() const
     {
-      const Charge charge(Cost::preconditioner);
-      const bool first = solver.counters().factorisations == 0;
-      solver.prepare(matrix, conforming_->space(), first);
-      ++this->counters_.global_factorisations;
+      if (has_bodies_)
+        return;
+      matrix_->set_bodies(this->shares(this->time_step_, this->theta_));
+      has_bodies_ = true;
+    }
+
+    /** (W + 1/T) dP = c/T on the rows with T > 0, dP = c elsewhere. */
+    template <int dim>
+    void Bonded<dim>::solve_condensed(const std::vector<double> &T,
+                                      const std::vector<double> &c,
+                                      std::vector<double> &dP)
+    {
+      const std::size_t n = c.size();
+      std::vector<double> compliance(n), r(n);
+      dP = c;
+      for (std::size_t k = 0; k < n; ++k) {
+        const double t = T[k * dim + k % dim];
+        compliance[k] = t > 0. && is_row(k) ? 1. / t : -1.;
+        if (t > 0.)
+          dP[k] = 0.;
+      }
+      work_.points.resize(n);
+      condensed_.apply(dP.data(), work_.points.data());
+      for (std::size_t k = 0; k < n; ++k)
+        r[k] = compliance[k] * c[k] - work_.points[k];
+      joined_valid_ = dense_system_ = false;
+      condensed_.factor(compliance);
+      condensed_.solve(r.data(), work_.points.data());
+      for (std::size_t k = 0; k < n; ++k)
+        if (compliance[k] >= 0.)
+          dP[k] = work_.points[k];
+    }
+
+    /** On ranks there is no factor of what is not symmetric. */
+    template <int dim>
+    bool Bonded<dim>::solve_linearised(const std::vector<double> &T,
+                                       const bool symmetric,
+                                       const std::vector<double> &c,
+                                       std::vector<double> &dP)
+    {
+      if (!symmetric && this->communicator_.size() > 1)
+        return false;
+      if (symmetric && condense() && condensed_.can_factor()) {
+        solve_condensed(T, c, dP);
+        return true;
+      }
+      joined_valid_ = false; // its factor is the one of the preconditioner
+      {
+        const Charge charge(Cost::preconditioner);
+        set_bodies();
+        const SparseRows &matrix = matrix_->assemble(T.data(), !symmetric);
+        ++this->counters_.global_factorisations;
+        if (symmetric)
+          joined_->prepare(matrix);
+        else if (!joined_->prepare_unsymmetric(matrix))
+          return false;
+      }
+      const Charge charge(Cost::precondition);
+      work_.rows.resize(this->bodies_.n_dofs());
+      work_.columns.resize(work_.rows.size());
+      work_.points.resize(c.size());
+      this->generalised_impulse(c.data(), work_.rows.data());
+      solve(*joined_, work_.rows.data(), work_.columns.data());
+      this->relative_velocity(work_.columns.data(), work_.points.data());
+      dP = c;
+      for (std::size_t k = 0; k < c.size(); ++k)
+        for (unsigned int e = 0; e < dim; ++e)
+          dP[k] -= T[k * dim + e] * work_.points[k / dim * dim + e];
+      return true;
     }
 
     template <int dim>
     bool Bonded<dim>::join_motion(std::vector<double> &x)
     {
-      const auto mass = make_conforming_solver(this->communicator_, most);
-      mass->prepare(matrix_->assemble({0., 0.}, this->penalised_, nullptr),
-                    conforming_->space(), true);
+      ConformingSolver mass(this->communicator_, most);
+      mass.set_space(conforming_->space());
+      matrix_->set_bodies({0., 0.});
+      has_bodies_ = false;
+      mass.prepare(matrix_->assemble(nullptr));
       std::vector<double> momentum(x.size()), joined(x.size());
       this->apply(Operator::mass, x.data(), momentum.data());
-      mass->solve(momentum.data(), joined.data(), tight);
+      mass.solve(momentum.data(), joined.data(), tight);
       double size = 0., change = 0.;
       for (std::size_t k = 0; k < x.size(); ++k) {
         size = std::max(size, std::abs(x[k]));
@@ -176,7 +257,7 @@ namespace nsfd
     void Bonded<dim>::reinit(const double time_step, const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
-        valid_ = joined_valid_ = false;
+        valid_ = joined_valid_ = has_bodies_ = false;
       DelassusOperator<dim>::reinit(time_step, theta);
     }
 
@@ -186,9 +267,10 @@ namespace nsfd
     {
       if (valid_)
         return;
-      prepare(*factor_,
-              matrix_->assemble(this->shares(this->time_step_, this->theta_),
-                                this->penalised_, nullptr));
+      const Charge charge(Cost::preconditioner);
+      set_bodies();
+      factor_->prepare(matrix_->assemble(nullptr));
+      ++this->counters_.global_factorisations;
       valid_ = true;
       n_solves_ = 0;
       condensed_.clear();
@@ -203,7 +285,8 @@ namespace nsfd
     }
 
     template <int dim>
-    void Bonded<dim>::solve(SpdSolver &solver, const double *b, double *x) const
+    void Bonded<dim>::solve(ConformingSolver &solver, const double *b,
+                            double *x) const
     {
       std::fill(x, x + this->bodies_.n_dofs(), 0.);
       this->counters_.inner_iterations += solver.solve(b, x, tight);
@@ -265,9 +348,14 @@ namespace nsfd
       for (std::size_t k = 0; k < this->bonded_.size() * dim; ++k)
         if (is_row(k))
           rows.push_back(k);
-      // many columns at once cost a quarter of as many single ones
+      // Many columns at once cost a quarter of as many single ones; a product
+      // by the factor reads it twice, and traces of all bodies.
+      const double by_factor = 2. * factor_->n_factor_entries() +
+                               30. * double(this->bodies_.n_dofs());
       if (rows.empty() || rows.size() > CondensedDelassus::largest ||
-          (rows.size() > 64 && 4 * n_solves_ < rows.size()))
+          (rows.size() > 64 &&
+           (4 * n_solves_ < rows.size() ||
+            double(rows.size()) * double(rows.size()) > by_factor)))
         return false;
       const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
       constexpr std::size_t batch = 64; // columns fill the caches
@@ -341,9 +429,12 @@ namespace nsfd
     template <int dim>
     void Bonded<dim>::prepare_joined()
     {
-      prepare(*joined_,
-              matrix_->assemble(this->shares(this->time_step_, this->theta_),
-                                this->penalised_, inverse_D_.data()));
+      set_bodies();
+      std::vector<double> springs(inverse_D_.size() * dim, 0.);
+      for (std::size_t k = 0; k < inverse_D_.size(); ++k)
+        springs[k * dim + k % dim] = inverse_D_[k];
+      joined_->prepare(matrix_->assemble(springs.data()));
+      ++this->counters_.global_factorisations;
       joined_valid_ = true;
     }
 

@@ -1,20 +1,67 @@
 #pragma once
 
+#include "linear_algebra/ghost_values.h"
+#include "linear_algebra/krylov.h"
 #include "linear_algebra/spd_solver.h"
+
+#include <memory>
+#include <vector>
 
 namespace nsfd
 {
+  class Cholesky;
+  class Multigrid;
+  class SparseLU;
+
   /**
-   * Solves among the functions of the space alone,
-   *
-   *     x = P (P^T A P)^{-1} P^T b:
-   *
-   * joined cells with common nodes. P^T A P has a sparse Cholesky factor up to
-   * @p largest_factor unknowns; beyond, conjugate gradients that one V-cycle of
-   * smoothed aggregation preconditions, with the factor's accuracy asked for by
-   * the tolerance of solve().
+   * Solves among the functions of a space alone, x = P A^{-1} P^T b: joined
+   * cells with common nodes. A on the space is given. It has a sparse Cholesky
+   * factor up to a number of unknowns; beyond, conjugate gradients that one
+   * V-cycle of smoothed aggregation preconditions.
    */
-  std::unique_ptr<SpdSolver>
-  make_conforming_solver(const Communicator &communicator,
-                         long long largest_factor);
+  class ConformingSolver
+  {
+  public:
+    ConformingSolver(const Communicator &communicator,
+                     long long largest_factor);
+    ~ConformingSolver();
+
+    /** It is to stay where it is. Collective. */
+    void set_space(const CoarseSpace &space);
+    /** Symmetric, and of the present space. Collective. @throws as Cholesky. */
+    void prepare(const SparseRows &matrix);
+    /** The transpose of one that is not; on one rank. False: it is singular. */
+    bool prepare_unsymmetric(const SparseRows &transposed);
+
+    /** Returns the iterations, 0 for a factor. Collective. */
+    unsigned int solve(const double *b, double *x, double tolerance);
+    /** @p n columns of @p rows values each. */
+    void solve_columns(const double *B, double *X, std::size_t rows,
+                       std::size_t n, double tolerance);
+
+    /** Of the factor, 0: there is none on this rank. */
+    double n_factor_entries() const;
+
+  private:
+    void restrict_to_space(const double *b, double *own);
+    void expand(double *own, double *x);
+    unsigned int iterate(double tolerance);
+
+    const Communicator &communicator_;
+    const long long largest_factor_;
+    const CoarseSpace *space_ = nullptr;
+    /// per unknown: place among own ones of the space, then its ghosts
+    std::vector<int> place_;
+    std::size_t n_own_ = 0;
+    GhostValues exchange_; ///< of the space
+    bool new_pattern_ = true, new_lu_pattern_ = true, unsymmetric_ = false;
+    std::unique_ptr<Cholesky> factor_;
+    std::unique_ptr<SparseLU> lu_;
+    SparseRows lu_matrix_;
+    std::unique_ptr<Multigrid> multigrid_;
+    SparseRows matrix_; ///< for iterations
+    GhostValues of_matrix_;
+    krylov::CgVectors vectors_;
+    std::vector<double> b_, x_; ///< own, with room for ghosts
+  };
 } // namespace nsfd

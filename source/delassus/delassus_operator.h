@@ -112,6 +112,22 @@ namespace nsfd
       return false;
     }
 
+    /**
+     * A Newton step in the velocities of the bodies:
+     *
+     *     (M_hat + H^T T H) dv = H^T c,   dP = c - T H dv,
+     *
+     * T a block of dim x dim per point, row by row, @p symmetric or not. False
+     * where there is no such solver, or this one would not be the best.
+     */
+    virtual bool solve_linearised(const std::vector<double> & /*T*/,
+                                  bool /*symmetric*/,
+                                  const std::vector<double> & /*c*/,
+                                  std::vector<double> & /*dP*/)
+    {
+      return false;
+    }
+
     /** v_free behind the U_free of the problems to come; it stays the owner's.
      */
     void set_free_velocity(const std::vector<double> *v_free)
