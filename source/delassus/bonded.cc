@@ -61,6 +61,8 @@ namespace nsfd
       std::vector<char>
       joined_by(const std::vector<std::uint8_t> &bonded) const;
       void solve(const double *b, double *x) const;
+      void respond(ConformingSolver &solver, const double *impulse,
+                   double *velocity) const;
       void solve(ConformingSolver &solver, const double *b, double *x) const;
       void update() const;
       bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
@@ -216,12 +218,8 @@ namespace nsfd
           return false;
       }
       const Charge charge(Cost::precondition);
-      work_.rows.resize(this->bodies_.n_dofs());
-      work_.columns.resize(work_.rows.size());
       work_.points.resize(c.size());
-      this->generalised_impulse(c.data(), work_.rows.data());
-      solve(*joined_, work_.rows.data(), work_.columns.data());
-      this->relative_velocity(work_.columns.data(), work_.points.data());
+      respond(*joined_, c.data(), work_.points.data());
       dP = c;
       for (std::size_t k = 0; k < c.size(); ++k)
         for (unsigned int e = 0; e < dim; ++e)
@@ -313,10 +311,28 @@ namespace nsfd
         condensed_.apply(impulse, velocity);
         return;
       }
+      update();
+      ++n_solves_;
+      respond(*factor_, impulse, velocity);
+    }
+
+    /** U = H x of the answer x to H^T P. */
+    template <int dim>
+    void Bonded<dim>::respond(ConformingSolver &solver, const double *impulse,
+                              double *velocity) const
+    {
+      if (this->communicator_.size() == 1) { // points that can part alone
+        matrix_->impulse(impulse, work_.rows);
+        this->counters_.inner_iterations +=
+            solver.solve_own(work_.rows, work_.columns, tight);
+        ++this->counters_.global_solves;
+        matrix_->velocity(work_.columns, velocity);
+        return;
+      }
       work_.rows.resize(this->bodies_.n_dofs());
       work_.columns.resize(work_.rows.size());
       this->generalised_impulse(impulse, work_.rows.data());
-      solve(work_.rows.data(), work_.columns.data());
+      solve(solver, work_.rows.data(), work_.columns.data());
       this->relative_velocity(work_.columns.data(), velocity);
     }
 
@@ -349,9 +365,9 @@ namespace nsfd
         if (is_row(k))
           rows.push_back(k);
       // Many columns at once cost a quarter of as many single ones; a product
-      // by the factor reads it twice, and traces of all bodies.
-      const double by_factor = 2. * factor_->n_factor_entries() +
-                               30. * double(this->bodies_.n_dofs());
+      // by the factor reads it twice.
+      const double by_factor =
+          2. * factor_->n_factor_entries() + 10. * double(rows.size());
       if (rows.empty() || rows.size() > CondensedDelassus::largest ||
           (rows.size() > 64 &&
            (4 * n_solves_ < rows.size() ||
@@ -483,13 +499,10 @@ namespace nsfd
       ++n_applied_;
       const std::size_t n = inverse_D_.size();
       work_.points.resize(n);
-      work_.rows.resize(this->bodies_.n_dofs());
-      work_.columns.resize(work_.rows.size());
       for (std::size_t k = 0; k < n; ++k)
         work_.points[k] = D_[k] >= 0. ? inverse_D_[k] * r[k] : 0.;
-      this->generalised_impulse(work_.points.data(), work_.rows.data());
-      solve(*joined_, work_.rows.data(), work_.columns.data());
-      this->relative_velocity(work_.columns.data(), z);
+      const std::vector<double> springs(work_.points);
+      respond(*joined_, springs.data(), z);
       // a principal part of the inverse where the factor knows the row, and the
       // bound of the diagonal where it does not: positive definite together
       for (std::size_t k = 0; k < n; ++k)

@@ -135,18 +135,33 @@ namespace nsfd
     return outcome.iterations;
   }
 
+  /** From b_ to x_. */
+  unsigned int ConformingSolver::solve_here(const double tolerance)
+  {
+    if (!unsymmetric_ && !factor_)
+      return iterate(tolerance);
+    if (unsymmetric_)
+      lu_->solve(b_.data(), x_.data());
+    else
+      factor_->solve(b_.data(), x_.data());
+    return 0;
+  }
+
   unsigned int ConformingSolver::solve(const double *b, double *x,
                                        const double tolerance)
   {
     restrict_to_space(b, b_.data());
-    unsigned int iterations = 0;
-    if (unsymmetric_)
-      lu_->solve(b_.data(), x_.data());
-    else if (factor_)
-      factor_->solve(b_.data(), x_.data());
-    else
-      iterations = iterate(tolerance);
+    const unsigned int iterations = solve_here(tolerance);
     expand(x_.data(), x);
+    return iterations;
+  }
+
+  unsigned int ConformingSolver::solve_own(const Vector &b, Vector &x,
+                                           const double tolerance)
+  {
+    std::copy(b.begin(), b.end(), b_.begin());
+    const unsigned int iterations = solve_here(tolerance);
+    x.assign(x_.begin(), x_.begin() + long(n_own_));
     return iterations;
   }
 

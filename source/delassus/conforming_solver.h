@@ -35,6 +35,9 @@ namespace nsfd
 
     /** Returns the iterations, 0 for a factor. Collective. */
     unsigned int solve(const double *b, double *x, double tolerance);
+    /** The same with own values of the space: x = A^{-1} b. Collective. */
+    unsigned int solve_own(const std::vector<double> &b, std::vector<double> &x,
+                           double tolerance);
     /** @p n columns of @p rows values each. */
     void solve_columns(const double *B, double *X, std::size_t rows,
                        std::size_t n, double tolerance);
@@ -45,6 +48,7 @@ namespace nsfd
   private:
     void restrict_to_space(const double *b, double *own);
     void expand(double *own, double *x);
+    unsigned int solve_here(double tolerance);
     unsigned int iterate(double tolerance);
 
     const Communicator &communicator_;

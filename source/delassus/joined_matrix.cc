@@ -351,6 +351,36 @@ namespace nsfd
     }
   }
 
+  template <int dim>
+  void JoinedMatrix<dim>::impulse(const double *P,
+                                  std::vector<double> &own) const
+  {
+    own.assign(std::size_t(n_own_) * size_, 0.);
+    for (std::size_t i = 0; i < points_.n_points; ++i)
+      for (std::size_t k = first_entry_[i]; k < first_entry_[i + 1]; ++k) {
+        const Entry &entry = entries_[k];
+        double *out = &own[std::size_t(entry.block) * size_];
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int c = 0; c < size_; ++c)
+            out[c] += entry.all[d * size_ + c] * P[i * dim + d];
+      }
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::velocity(const std::vector<double> &x,
+                                   double *U) const
+  {
+    std::fill(U, U + points_.n_points * dim, 0.);
+    for (std::size_t i = 0; i < points_.n_points; ++i)
+      for (std::size_t k = first_entry_[i]; k < first_entry_[i + 1]; ++k) {
+        const Entry &entry = entries_[k];
+        const double *in = &x[std::size_t(entry.block) * size_];
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int c = 0; c < size_; ++c)
+            U[i * dim + d] += entry.all[d * size_ + c] * in[c];
+      }
+  }
+
   /** Rows of other ranks go to them. */
   template <int dim>
   const SparseRows &JoinedMatrix<dim>::finish()

@@ -48,6 +48,12 @@ namespace nsfd
      */
     const SparseRows &assemble(const double *springs, bool transposed = false);
 
+    /** On one rank: H^T P in the space, n_own values that are set. */
+    void impulse(const double *P, std::vector<double> &own) const;
+    /** On one rank: U = H P x of own values @p x; 0 at points that are joined.
+     */
+    void velocity(const std::vector<double> &x, double *U) const;
+
   private:
     /** Consecutive unknowns of the space that are coupled alike. */
     using Block = int;
