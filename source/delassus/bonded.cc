@@ -7,11 +7,13 @@
 #include "sparse_assembly.h"
 
 #include "core/cost.h"
+#include "core/gather.h"
 #include "nsfd/core/archive.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace nsfd
@@ -30,7 +32,7 @@ namespace nsfd
 
       Bonded(const Communicator &communicator, const Bodies &bodies,
              const InterfacePoints<dim> &points, const std::string &solver,
-             const std::vector<double> &coordinates);
+             const std::vector<double> &coordinates, bool share_nodes);
 
       void reinit(double time_step, double theta) override;
       bool bodies_are_apart() const override { return false; }
@@ -45,6 +47,8 @@ namespace nsfd
                             const std::vector<double> &c,
                             std::vector<double> &dP) override;
       bool join_motion(std::vector<double> &x) override;
+      std::vector<std::uint8_t>
+      once_per_node(const std::vector<std::uint8_t> &masks) override;
       std::vector<char>
       opens_with(const std::vector<std::uint8_t> &bonded) override
       {
@@ -73,6 +77,7 @@ namespace nsfd
 
       mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
       mutable bool has_bodies_ = false; ///< matrix_, of the step
+      const bool may_share_;            ///< nodes
       std::unique_ptr<ConformingSpace> conforming_;
       std::unique_ptr<ConformingSolver> factor_; ///< of M_hat
       std::unique_ptr<ConformingSolver>
@@ -99,8 +104,10 @@ namespace nsfd
     Bonded<dim>::Bonded(const Communicator &communicator, const Bodies &bodies,
                         const InterfacePoints<dim> &points,
                         const std::string &solver,
-                        const std::vector<double> &coordinates)
-        : BondedDelassus<dim>(communicator, bodies, points)
+                        const std::vector<double> &coordinates,
+                        const bool share_nodes)
+        : BondedDelassus<dim>(communicator, bodies, points),
+          may_share_(share_nodes)
     {
       // K >= so much of the bodies' own: their blocks bound W from above
       this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
@@ -122,6 +129,44 @@ namespace nsfd
       bonds_changed();
     }
 
+    template <int dim>
+    std::vector<std::uint8_t>
+    Bonded<dim>::once_per_node(const std::vector<std::uint8_t> &masks)
+    {
+      struct Claim {
+        long long node;
+        std::uint64_t key; ///< of the face
+        unsigned int number, point, mask;
+        int rank;
+        bool operator<(const Claim &other) const
+        {
+          return std::tie(node, key, number) <
+                 std::tie(other.node, other.key, other.number);
+        }
+      };
+      std::vector<Claim> claims;
+      for (std::size_t i = 0; i < masks.size(); ++i) {
+        const long long node = masks[i] ? matrix_->node_of_point(i) : -1;
+        if (node < 0)
+          continue;
+        const auto &face = this->points_.faces[this->points_.face_of[i]];
+        claims.push_back({node, face.key, unsigned(i) - face.first, unsigned(i),
+                          masks[i], this->communicator_.rank()});
+      }
+      claims = gather_all(this->communicator_, claims);
+      std::sort(claims.begin(), claims.end());
+      std::vector<std::uint8_t> result = masks;
+      unsigned int said = 0;
+      for (std::size_t k = 0; k < claims.size(); ++k) {
+        if (k == 0 || claims[k].node != claims[k - 1].node)
+          said = 0;
+        if (claims[k].rank == this->communicator_.rank())
+          result[claims[k].point] &= std::uint8_t(~said);
+        said |= claims[k].mask;
+      }
+      return result;
+    }
+
     /** Faces that are bonded all over, node to node. */
     template <int dim>
     std::vector<char>
@@ -133,7 +178,7 @@ namespace nsfd
         const auto first = bonded.begin() + face.first,
                    last = first + face.count;
         joined[f] =
-            conforming_->is_complete(f) &&
+            may_share_ && conforming_->is_complete(f) &&
             std::all_of(first, last, [](const std::uint8_t b) { return b; });
       }
       return joined;
@@ -516,22 +561,21 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::unique_ptr<BondedDelassus<dim>>
-  make_bonded_delassus(const Communicator &communicator, const Bodies &bodies,
-                       const InterfacePoints<dim> &points,
-                       const std::string &solver,
-                       const std::vector<double> &coordinates)
+  std::unique_ptr<BondedDelassus<dim>> make_bonded_delassus(
+      const Communicator &communicator, const Bodies &bodies,
+      const InterfacePoints<dim> &points, const std::string &solver,
+      const std::vector<double> &coordinates, const bool share_nodes)
   {
     return std::make_unique<Bonded<dim>>(communicator, bodies, points, solver,
-                                         coordinates);
+                                         coordinates, share_nodes);
   }
 
   template std::unique_ptr<BondedDelassus<2>>
   make_bonded_delassus<2>(const Communicator &, const Bodies &,
                           const InterfacePoints<2> &, const std::string &,
-                          const std::vector<double> &);
+                          const std::vector<double> &, bool);
   template std::unique_ptr<BondedDelassus<3>>
   make_bonded_delassus<3>(const Communicator &, const Bodies &,
                           const InterfacePoints<3> &, const std::string &,
-                          const std::vector<double> &);
+                          const std::vector<double> &, bool);
 } // namespace nsfd

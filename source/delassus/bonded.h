@@ -61,6 +61,17 @@ namespace nsfd
       return std::vector<char>(this->points_.faces.size(), 1);
     }
 
+    /**
+     * Of the components that are prescribed at points (bit c of @p masks), each
+     * of a node once: by the first point, in an order that all ranks know, that
+     * says it. Collective.
+     */
+    virtual std::vector<std::uint8_t>
+    once_per_node(const std::vector<std::uint8_t> &masks)
+    {
+      return masks;
+    }
+
     void serialize(Archive &archive) override;
 
   protected:
@@ -83,14 +94,14 @@ namespace nsfd
   /**
    * For implicit steps: M_hat with the bonds in it has a factor or is inverted
    * by iterations. @p solver and @p coordinates as in
-   * make_assembled_delassus().
+   * make_assembled_delassus(); without @p share_nodes the interior penalty
+   * method joins all bodies.
    */
   template <int dim>
-  std::unique_ptr<BondedDelassus<dim>>
-  make_bonded_delassus(const Communicator &communicator, const Bodies &bodies,
-                       const InterfacePoints<dim> &points,
-                       const std::string &solver,
-                       const std::vector<double> &coordinates);
+  std::unique_ptr<BondedDelassus<dim>> make_bonded_delassus(
+      const Communicator &communicator, const Bodies &bodies,
+      const InterfacePoints<dim> &points, const std::string &solver,
+      const std::vector<double> &coordinates, bool share_nodes);
 
   /**
    * For explicit bodies, theta = 0, where bonds are forces of the last

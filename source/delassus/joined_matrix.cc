@@ -352,6 +352,16 @@ namespace nsfd
   }
 
   template <int dim>
+  long long JoinedMatrix<dim>::node_of_point(const std::size_t point) const
+  {
+    if (first_entry_[point + 1] != first_entry_[point] + 1)
+      return -1;
+    const Block block = entries_[first_entry_[point]].block;
+    return block < n_own_ ? space_->first / size_ + block
+                          : ghosts_[std::size_t(block - n_own_)];
+  }
+
+  template <int dim>
   void JoinedMatrix<dim>::impulse(const double *P,
                                   std::vector<double> &own) const
   {

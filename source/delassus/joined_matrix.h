@@ -48,6 +48,12 @@ namespace nsfd
      */
     const SparseRows &assemble(const double *springs, bool transposed = false);
 
+    /**
+     * The node, by a number of all ranks, that is all that a point sees: -1
+     * where it sees none, or several.
+     */
+    long long node_of_point(std::size_t point) const;
+
     /** On one rank: H^T P in the space, n_own values that are set. */
     void impulse(const double *P, std::vector<double> &own) const;
     /** On one rank: U = H P x of own values @p x; 0 at points that are joined.

@@ -301,10 +301,12 @@ namespace nsfd
                                   "of the polynomials in a cell");
     check_degree(reader, scene);
     const bool at_nodes = scene.time.scheme == Scheme::leapfrog;
-    // joined cells part at their nodes: with other points there would be more
-    // conditions of contact than motions
+    // Joined cells part at their nodes: with other points there would be more
+    // conditions of contact than motions. Points of a face that is divided in
+    // the run keep what they have inside of it.
     const bool joined =
-        scene.has_bonded_faces() &&
+        scene.has_bonded_faces() && scene.time.scheme == Scheme::moreau_jean &&
+        !reader.has("interface points") && !file.find("Adaptivity") &&
         !(scene.dimension == 3 && has_simplices(scene) && input.degree > 1);
     input.lumped_mass =
         reader.choice("mass", at_nodes ? "lumped" : "consistent",

@@ -362,8 +362,13 @@ namespace nsfd
   {
     const ParameterSection *section = file.find("Time");
     const ParameterEntry *entry = section ? section->find("scheme") : nullptr;
-    if (entry && entry->value.text() == "explicit")
+    const std::string scheme = entry ? entry->value.text() : "";
+    if (scheme == "explicit")
       scene.time.scheme = Scheme::leapfrog;
+    else if (scheme == "symplectic")
+      scene.time.scheme = Scheme::explicit_moreau_jean;
+    else if (scheme == "arkode")
+      scene.time.scheme = Scheme::arkode;
   }
 
   void read_time(ParameterFile &file, InputErrors &errors, SceneInput &scene)
