@@ -62,15 +62,10 @@ namespace nsfd
       const Point<dim> &xi = shape->slot_places[s];
       shape->slot_positions.push_back(corners[0] + J * Tensor<1, dim>(xi));
       // the corner that the face does not have
-      unsigned int opposite = 0;
-      for (unsigned int i = 1; i <= dim; ++i) {
-        double most = 0.;
-        for (std::size_t k = 0; k < n_slots; ++k)
-          most = std::max(most,
-                          shape->slot_places[s / n_slots * n_slots + k][i - 1]);
-        if (most < 1e-12)
-          opposite = i;
-      }
+      unsigned int opposite = dim * (dim + 1) / 2;
+      for (unsigned int v = 0; v < dim; ++v)
+        opposite -=
+            shape->reference.face_to_cell_vertices(shape->slot_faces[s], v, 1);
       shape->slot_normals.push_back(-double(dim) * shape->volume *
                                     face_rule_.weight(unsigned(s % n_slots)) /
                                     whole_face * gradients[opposite]);

@@ -47,6 +47,7 @@ namespace nsfd
   struct BodyClass {
     unsigned int n_dofs = 0, n_slots = 0;
     bool rigid = false;
+    bool undeformed = false; ///< of a rigid material, whatever its unknowns
     unsigned int material = 0;
     Block mass, stiffness, trace; ///< stiffness is empty for rigid bodies
     Block damping;                ///< of viscous materials, else empty

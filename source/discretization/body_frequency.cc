@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -38,10 +39,31 @@ namespace nsfd
     return {{values[at], vectors(n - 1, at)}};
   }
 
+  namespace
+  {
+    /** Of M^{-1} K, also where eigenvalues coincide: no vectors. */
+    double largest_eigenvalue(const Block &M, const Block &K)
+    {
+      const Block L = cholesky(M);
+      const Block A = forward_solve(L, forward_solve(L, K).transposed());
+      dealii::LAPACKFullMatrix<double> matrix(A.rows);
+      for (unsigned int i = 0; i < A.rows; ++i)
+        for (unsigned int j = 0; j < A.rows; ++j)
+          matrix(i, j) = (A(i, j) + A(j, i)) / 2.;
+      matrix.compute_eigenvalues();
+      double largest = 0.;
+      for (unsigned int k = 0; k < A.rows; ++k)
+        largest = std::max(largest, matrix.eigenvalue(k).real());
+      return largest;
+    }
+  } // namespace
+
   double highest_frequency(const BodyClass &body)
   {
-    if (body.rigid)
+    if (body.undeformed)
       return 0.;
+    if (body.damping.rows > 0)
+      return std::sqrt(largest_eigenvalue(body.mass, body.stiffness));
     // of L^{-1} K L^{-T}, M = L L^T
     const Block L = cholesky(body.mass);
     const Block A =
@@ -169,11 +191,38 @@ namespace nsfd
     return highest;
   }
 
+  double longest_step(const double omega, const double b)
+  {
+    return omega > 0. ? 2. / omega * (std::sqrt(1. + b * b) - b)
+                      : std::numeric_limits<double>::infinity();
+  }
+
+  template <int dim>
+  std::vector<double> longest_steps(const Cells<dim> &cells, const double b)
+  {
+    std::vector<double> result(cells.bodies.size());
+    if (cells.differ()) {
+      for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = longest_step(highest_frequency(*cells.shape(i)), b);
+      return result;
+    }
+    for (const BodyClass &body : cells.bodies.classes) {
+      const double omega = highest_frequency(body);
+      double share = b;
+      if (body.damping.rows > 0)
+        share += largest_eigenvalue(body.mass, body.damping) / (2. * omega);
+      for (const unsigned int i : body.bodies)
+        result[i] = longest_step(omega, share);
+    }
+    return result;
+  }
+
 #define NSFD_INSTANTIATE(dim)                                                  \
   template double highest_frequency(const BodyShape<dim> &);                   \
   template double frequency_bound(const BodyShape<dim> &);                     \
   template std::vector<double> frequencies_of_bodies(const Cells<dim> &);      \
-  template double highest_frequency(const Cells<dim> &)
+  template double highest_frequency(const Cells<dim> &);                       \
+  template std::vector<double> longest_steps(const Cells<dim> &, double)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

@@ -33,4 +33,16 @@ namespace nsfd
   /** omega_max over all bodies of this rank. */
   template <int dim>
   double highest_frequency(const Cells<dim> &cells);
+
+  /** The longest explicit step of a body with omega, whose damping is the share
+      @p b of the critical one of that mode: h^2 omega^2/4 + h b omega = 1. */
+  double longest_step(double omega, double b);
+
+  /**
+   * By body: the longest explicit step if it is free, with lumped mass and
+   * the share @p b of critical damping beside that of viscous materials, which
+   * acts with the rate of the step before; infinite of rigid ones.
+   */
+  template <int dim>
+  std::vector<double> longest_steps(const Cells<dim> &cells, double b);
 } // namespace nsfd

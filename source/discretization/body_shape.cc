@@ -137,14 +137,19 @@ namespace nsfd
     set_tables(shape);
     set_elasticity(shape, material);
     body.material = material;
-    body.rigid = input.rigid && !input_.large_motion;
+    body.undeformed = input.rigid;
+    body.rigid = input.rigid && !input_.large_motion &&
+                 input_.time.scheme != Scheme::leapfrog;
     set_slots(shape);
     if (has_no_blocks()) {
       body.n_slots = unsigned(shape.slot_positions.size());
       body.n_dofs = shape.n_nodes * dim;
       return;
     }
-    body.mass = mass(shape);
+    // joined cells of a rigid body have its inertia, not that of their nodes
+    const bool joined = input_.time.scheme == Scheme::leapfrog;
+    body.mass = mass(shape, input_.discretization.lumped_mass &&
+                                !(joined && input.rigid));
     body.trace = trace(shape);
     body.n_slots = unsigned(shape.slot_positions.size());
     body.n_dofs = shape.n_nodes * dim;
@@ -153,6 +158,8 @@ namespace nsfd
     else if (input.rigid) { // nodes that a rigid body moves
       body.stiffness = Block(body.n_dofs, body.n_dofs);
       body.rigid_motions = of_unit_mass(rigid_modes(shape, size), body.mass);
+      if (input_.has_bonded_faces())
+        body.traction = Block(body.n_slots * dim, body.n_dofs);
     } else {
       body.stiffness = stiffness(shape, shape.elasticity);
       body.rigid_motions = of_unit_mass(rigid_modes(shape, size), body.mass);
@@ -283,16 +290,17 @@ namespace nsfd
   }
 
   template <int dim>
-  Block ClassBuilder<dim>::mass(const BodyShape<dim> &shape) const
+  Block ClassBuilder<dim>::mass(const BodyShape<dim> &shape,
+                                const bool lumped) const
   {
     const unsigned int n = shape.n_nodes;
     Block scalar(n, n);
     for (unsigned int q = 0; q < shape.JxW.size(); ++q)
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
-          scalar(i, input_.discretization.lumped_mass ? i : j) +=
-              at_place(shape.moduli, q).density * shape.JxW[q] *
-              shape.values[q * n + i] * shape.values[q * n + j];
+          scalar(i, lumped ? i : j) += at_place(shape.moduli, q).density *
+                                       shape.JxW[q] * shape.values[q * n + i] *
+                                       shape.values[q * n + j];
     Block mass(n * dim, n * dim);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)

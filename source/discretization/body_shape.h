@@ -150,7 +150,7 @@ namespace nsfd
     void set_cell(BodyShape<dim> &shape) const;
     void set_slots(BodyShape<dim> &shape) const;
     void set_elasticity(BodyShape<dim> &shape, unsigned int material) const;
-    Block mass(const BodyShape<dim> &shape) const;
+    Block mass(const BodyShape<dim> &shape, bool lumped) const;
     /** Of @p local at the positions of the quadrature. */
     Block stiffness(const BodyShape<dim> &shape,
                     const std::vector<LinearElasticity<dim>> &local) const;

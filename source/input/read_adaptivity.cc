@@ -32,10 +32,12 @@ namespace nsfd
              "only meshes of quads and hexes can change: triangles and "
              "tetrahedra have no non-conforming faces",
              "take such a mesh, or `split simplices = true`");
-      refuse(std::any_of(scene.materials.begin(), scene.materials.end(),
-                         [](const auto &material) { return material.rigid; }),
-             "cells of rigid bodies cannot be refined",
-             "make all materials elastic, or remove the section Adaptivity");
+      refuse(
+          scene.time.scheme != Scheme::leapfrog &&
+              std::any_of(scene.materials.begin(), scene.materials.end(),
+                          [](const auto &material) { return material.rigid; }),
+          "cells of rigid bodies cannot be refined",
+          "make all materials elastic, or remove the section Adaptivity");
       refuse(scene.statics.has_value(),
              "the mesh of equilibria does not change yet",
              "remove the section Adaptivity, or start from rest");

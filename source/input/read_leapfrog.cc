@@ -37,22 +37,8 @@ namespace nsfd
     if (front && front->text() != "auto")
       scene.time.front_viscosity = reader.number_in(
           *front, "front viscosity", "0.2", units::none, Range::closed(0., 1.));
-    for (const MaterialInput &material : scene.materials)
-      if (material.rigid || material.is_viscous())
-        reader.error("scheme",
-                     fmt::format("scheme = explicit is for elastic bodies, "
-                                 "and material `{}` is {}",
-                                 material.name,
-                                 material.rigid ? "rigid" : "viscous"),
-                     "write scheme = moreau-jean");
     for (InterfaceInput &interface : scene.interfaces) {
       refuse_lift(reader, interface);
-      if (interface.crack_pressure)
-        reader.error("scheme",
-                     fmt::format("scheme = explicit has no pressure in "
-                                 "cracks, and `{}` has one",
-                                 interface.name),
-                     "write scheme = moreau-jean");
       // what holds two cells together are their common nodes
       if (interface.intact == IntactFaces::rigid)
         interface.intact = IntactFaces::bonded;

@@ -1,10 +1,12 @@
 #include "block_forces.h"
 
+#include "block_products.h"
 #include "constant_strain.h"
 #include "tensor_forces.h"
 
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
+#include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 
@@ -44,30 +46,16 @@ namespace nsfd
   void BlockForces<dim>::set_forces(CornerGroups<dim> &groups)
   {
     const Bodies &bodies = discretization_.bodies();
-    std::vector<double> x, y, t;
-    for (const BodyClass &body : bodies.classes) {
-      const bool has_tractions = body.traction.rows > 0;
-      x.assign(std::size_t(body.n_dofs) * lanes, 0.);
-      y.resize(std::size_t(padded(body.n_dofs)) * lanes);
-      t.resize(std::size_t(padded(body.traction.rows)) * lanes);
-      for (std::size_t first = 0; first < body.bodies.size(); first += lanes) {
-        const auto count =
-            unsigned(std::min<std::size_t>(lanes, body.bodies.size() - first));
-        for (unsigned int l = 0; l < count; ++l) {
-          const std::size_t dof = bodies.first_dof[body.bodies[first + l]];
+    for_block_products(
+        bodies, groups, groups.displacement, &BodyClass::stiffness,
+        &BodyClass::traction,
+        [&](const unsigned int b, const unsigned int l,
+            const std::vector<double> &x, const std::vector<double> &y,
+            const std::vector<double> &t) {
+          const BodyClass &body = bodies.classes[bodies.class_of[b]];
+          double *forces = &forces_[bodies.first_dof[b]];
           for (unsigned int j = 0; j < body.n_dofs; ++j)
-            x[j * lanes + l] =
-                groups.displacement[groups.of((dof + j) / dim) * dim + j % dim];
-        }
-        multiply_lanes(body.stiffness.values.data(), body.n_dofs, body.n_dofs,
-                       x.data(), y.data());
-        if (has_tractions)
-          multiply_lanes(body.traction.values.data(), body.traction.rows,
-                         body.n_dofs, x.data(), t.data());
-        for (unsigned int l = 0; l < count; ++l) {
-          const unsigned int b = body.bodies[first + l];
-          for (unsigned int j = 0; j < body.n_dofs; ++j)
-            forces_[bodies.first_dof[b] + j] = y[j * lanes + l];
+            forces[j] = y[j * lanes + l];
           if (this->front_.acts()) {
             const auto &mean = divergence_[bodies.class_of[b]];
             const double volume = discretization_.cells().volume(b);
@@ -76,14 +64,11 @@ namespace nsfd
               now += mean[j] * x[j * lanes + l];
             this->front_.update(b, now, volume);
             for (unsigned int j = 0; j < body.n_dofs; ++j)
-              forces_[bodies.first_dof[b] + j] +=
-                  volume * this->front_.tension[b] * mean[j];
+              forces[j] += volume * this->front_.tension[b] * mean[j];
           }
           for (unsigned int j = 0; j < body.traction.rows; ++j)
             tractions_[first_traction_[b] + j] = t[j * lanes + l];
-        }
-      }
-    }
+        });
     std::fill(groups.force.begin(), groups.force.end(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
@@ -130,23 +115,40 @@ namespace nsfd
       squares[k] = sites.square(k, traction(sites, k));
   }
 
+  namespace
+  {
+    template <int dim>
+    std::unique_ptr<CellForces<dim>>
+    elastic_forces(const Discretization<dim> &discretization,
+                   const JoinedMesh<dim> &mesh, FrontViscosity front,
+                   const GhostCells *ghosts)
+    {
+      const auto everywhere = [&](const bool here) {
+        return ghosts ? !ghosts->anywhere(!here) : here;
+      };
+      if (everywhere(ConstantStrainForces<dim>::fits(discretization)))
+        return std::make_unique<ConstantStrainForces<dim>>(discretization,
+                                                           std::move(front));
+      if (everywhere(TensorForces<dim>::fits(discretization)))
+        return std::make_unique<TensorForces<dim>>(discretization, mesh,
+                                                   std::move(front));
+      return std::make_unique<BlockForces<dim>>(discretization, mesh,
+                                                std::move(front));
+    }
+  } // namespace
+
   template <int dim>
   std::unique_ptr<CellForces<dim>>
   make_cell_forces(const Discretization<dim> &discretization,
                    const JoinedMesh<dim> &mesh, FrontViscosity front,
                    const GhostCells *ghosts)
   {
-    const auto everywhere = [&](const bool here) {
-      return ghosts ? !ghosts->anywhere(!here) : here;
-    };
-    if (everywhere(ConstantStrainForces<dim>::fits(discretization)))
-      return std::make_unique<ConstantStrainForces<dim>>(discretization,
-                                                         std::move(front));
-    if (everywhere(TensorForces<dim>::fits(discretization)))
-      return std::make_unique<TensorForces<dim>>(discretization, mesh,
-                                                 std::move(front));
-    return std::make_unique<BlockForces<dim>>(discretization, mesh,
-                                              std::move(front));
+    auto forces =
+        elastic_forces(discretization, mesh, std::move(front), ghosts);
+    if (discretization.input().has_viscous_bodies())
+      forces->set_viscous(
+          std::make_unique<ViscousForces<dim>>(discretization, mesh));
+    return forces;
   }
 
   template class BlockForces<2>;

@@ -2,6 +2,7 @@
 
 #include "corner_groups.h"
 #include "front_viscosity.h"
+#include "viscous_forces.h"
 
 #include <memory>
 
@@ -74,8 +75,19 @@ namespace nsfd
 
     FrontViscosity &front() { return front_; }
 
+    /** Of viscous materials, by themselves; null if there are none. */
+    ViscousForces<dim> *viscous() { return viscous_.get(); }
+    const ViscousForces<dim> *viscous() const { return viscous_.get(); }
+    void set_viscous(std::unique_ptr<ViscousForces<dim>> forces)
+    {
+      viscous_ = std::move(forces);
+    }
+
   protected:
     FrontViscosity front_;
+
+  private:
+    std::unique_ptr<ViscousForces<dim>> viscous_;
   };
 
   /**

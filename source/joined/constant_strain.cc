@@ -65,7 +65,7 @@ namespace nsfd
         for (unsigned int l = 0; l < lanes; ++l)
           trace[l] += stresses[a * lanes + l];
       for (unsigned int l = 0; l < lanes; ++l)
-        result[l] = trace[l] / (dim * lambda[l] + 2. * mu[l]);
+        result[l] = mu[l] > 0. ? trace[l] / (dim * lambda[l] + 2. * mu[l]) : 0.;
     }
 
     /** The largest sigma : sigma of the lanes. */
@@ -242,8 +242,8 @@ namespace nsfd
       const MaterialInput &material =
           discretization.input().materials[body.material];
       if (!cells.shapes[k].reference.is_simplex() ||
-          cells.shapes[k].n_nodes != dim + 1 || body.rigid ||
-          material.transverse || material.graded || material.is_viscous())
+          cells.shapes[k].n_nodes != dim + 1 || material.transverse ||
+          material.graded)
         return false;
     }
     return true;
@@ -269,6 +269,8 @@ namespace nsfd
         for (unsigned int d = 0; d < dim; ++d)
           mine[((i - 1) * dim + d) * lanes] = shape.gradients[i][d];
       mine[dim * dim * lanes] = shape.volume;
+      if (shape.elasticity.empty())
+        continue; // rigid: no stress
       mine[(dim * dim + 1) * lanes] = shape.elasticity[0].lambda;
       mine[(dim * dim + 2) * lanes] = shape.elasticity[0].mu;
     }

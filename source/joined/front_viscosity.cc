@@ -36,8 +36,6 @@ namespace nsfd
     }
   } // namespace
 
-  double step_share(const double b) { return std::sqrt(1. + b * b) - b; }
-
   template <int dim>
   FrontViscosity::FrontViscosity(const Discretization<dim> &discretization,
                                  const double share, const GhostCells *ghosts)
@@ -59,10 +57,13 @@ namespace nsfd
     terms_.assign(4 * n, 0.);
 
     const auto &faces = discretization.points().faces;
+    const auto deforms = [&](const int b) {
+      return b >= 0 && !cells.body_class(std::size_t(b)).undeformed;
+    };
     std::vector<std::size_t> pairs;
     for (std::size_t f = 0; f < faces.size(); ++f)
-      if (!faces[f].boundary && faces[f].bodies[0] >= 0 &&
-          faces[f].bodies[1] >= 0)
+      if (!faces[f].boundary && deforms(faces[f].bodies[0]) &&
+          deforms(faces[f].bodies[1]))
         pairs.push_back(f);
     first_neighbor_.assign(n + 1, 0);
     for (const std::size_t f : pairs)

@@ -7,6 +7,7 @@
 #include "discretization/discretization.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace nsfd
@@ -71,40 +72,22 @@ namespace nsfd
      * m^3 or m^2. */
     void update(const std::size_t cell, const double now, const double volume)
     {
-      const std::size_t n = eta_.size();
-      if (holds) {
-        dilatation[cell] = now;
-        return;
-      }
-      const double D = h_ > 0. ? (now - dilatation[cell]) / h_ : 0.;
-      const double before = kick_ * present_viscosity[cell];
-      const double sum = rate[cell] + D;
-      const double r = D != 0. ? rate[cell] / D : 0.;
-      const double least = h_ > 0. ? -before / h_ * r * (2. + r) : 0.;
-      const double next = std::max(viscosity[cell], least);
-      terms_[cell] = volume * tension[cell] * D;
-      terms_[n + cell] = volume * next * D * D;
-      terms_[2 * n + cell] = volume * next * D * now;
-      terms_[3 * n + cell] =
-          volume / 4. * (before * sum * sum - (before - h_ * next) * D * D);
-      present_viscosity[cell] = next;
-      tension[cell] = next * D;
-      dilatation[cell] = now;
-      rate[cell] = D;
+      update_block<1>(cell, &now, &volume);
     }
 
-    /** The same, to the last bit, of @p n cells one after the other. */
+    /** The same of @p n cells one after the other. */
     template <unsigned int n>
     NSFD_INLINE void update_block(const std::size_t first, const double *now,
                                   const double *volume)
     {
-      if (holds || !(h_ > 0.)) {
-        for (unsigned int l = 0; l < n; ++l)
-          update(first + l, now[l], volume[l]);
+      if (holds) {
+        std::copy_n(now, n, &dilatation[first]);
         return;
       }
-      // all in arrays that nothing else can be: loops over lanes
-      const double h = h_, kick = kick_;
+      // All in arrays that nothing else can be: loops over lanes. At the start
+      // there was no step: as after an endless one the rate is 0.
+      const double h = h_ > 0. ? h_ : std::numeric_limits<double>::infinity(),
+                   kick = kick_, last_step = h_;
       double V[n], x[n], p[n], d[n], before[n], last[n], limit[n];
       for (unsigned int l = 0; l < n; ++l) {
         V[l] = volume[l];
@@ -131,9 +114,9 @@ namespace nsfd
         terms[0][l] = V[l] * p[l] * D[l];
         terms[1][l] = V[l] * next[l] * D[l] * D[l];
         terms[2][l] = V[l] * next[l] * D[l] * x[l];
-        terms[3][l] =
-            V[l] / 4. *
-            (before[l] * sum * sum - (before[l] - h * next[l]) * D[l] * D[l]);
+        terms[3][l] = V[l] / 4. *
+                      (before[l] * sum * sum -
+                       (before[l] - last_step * next[l]) * D[l] * D[l]);
         p[l] = next[l] * D[l];
       }
       for (unsigned int row = 0; row < 4; ++row)
@@ -173,7 +156,4 @@ namespace nsfd
     std::vector<double> terms_;
     double h_ = 0., kick_ = 0.;
   };
-
-  /** What of the longest step is left with a share @p b of critical damping. */
-  double step_share(double b);
 } // namespace nsfd

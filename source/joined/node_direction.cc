@@ -124,7 +124,8 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           q[c] = -point.impulse[c] - point.direction[c];
       } else {
-        const Vector dU = relative(point, change_);
+        const Vector dU =
+            relative_velocity<dim>(point.frame, point.groups, change_);
         for (unsigned int r = 0; r < dim; ++r) {
           q[r] = -point.direction[r];
           for (unsigned int c = 0; c < dim; ++c)
@@ -202,9 +203,49 @@ namespace nsfd
     return std::isfinite(last);
   }
 
+  template <int dim>
+  bool NodeSystem<dim>::respond(const std::vector<int> &groups,
+                                std::vector<double> &response)
+  {
+    // beside points that hold each other, as in NodeSolver
+    constexpr double soft = 1e-12;
+    const std::size_t n = groups.size() * dim;
+    response.assign(n * n, 0.);
+    linearise();
+    if (n_unknowns_ == 0)
+      return true;
+    double stiffest = 0.;
+    for (std::size_t k = 0; k < n_; ++k)
+      if (points_[k].carries && !invert_slopes(points_[k], soft, stiffest))
+        return false;
+    assemble();
+    if (!matrix_.factorise())
+      return false;
+    for (std::size_t column = 0; column < n; ++column) {
+      for (std::size_t k = 0; k < n_; ++k)
+        points_[k].direction.fill(0.);
+      change_.assign(velocity_.size(), Vector{});
+      change_[std::size_t(groups[column / dim])][column % dim] = 1.;
+      if (!std::isfinite(correct(soft)))
+        return false;
+      for (std::size_t k = 0; k < n_; ++k)
+        for (unsigned int side = 0; side < 2; ++side)
+          for (std::size_t g = 0; g < groups.size(); ++g)
+            if (groups[g] == points_[k].groups[side])
+              for (unsigned int r = 0; r < dim; ++r)
+                for (unsigned int c = 0; c < dim; ++c)
+                  response[(g * dim + c) * n + column] +=
+                      (side == 0 ? -1. : 1.) * points_[k].direction[r] *
+                      points_[k].frame[r * dim + c];
+    }
+    return true;
+  }
+
 #define INSTANTIATE(dim)                                                       \
   template void NodeSystem<dim>::linearise();                                  \
-  template bool NodeSystem<dim>::find_direction(double, bool)
+  template bool NodeSystem<dim>::find_direction(double, bool);                 \
+  template bool NodeSystem<dim>::respond(const std::vector<int> &,             \
+                                         std::vector<double> &)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

@@ -49,6 +49,12 @@ namespace nsfd
                      std::vector<double> &impulses,
                      std::vector<LocalSolution<dim>> &solutions);
 
+    /** Of the problem that was solved last: see NodeSystem. */
+    bool respond(const std::vector<int> &groups, std::vector<double> &response)
+    {
+      return system_.respond(groups, response);
+    }
+
   private:
     NodeSystem<dim> system_;
     NodeReport report_;

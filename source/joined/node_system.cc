@@ -87,15 +87,6 @@ namespace nsfd
     floor_ += 1.6e-5 * speed * speed / added.R;
   }
 
-  /** H v */
-  template <int dim>
-  auto NodeSystem<dim>::relative(const Point &point,
-                                 const std::vector<Vector> &velocity) const
-      -> Vector
-  {
-    return relative_velocity<dim>(point.frame, point.groups, velocity);
-  }
-
   /** v += M^-1 H^T P */
   template <int dim>
   void NodeSystem<dim>::push(const Point &point, const Vector &impulse,
@@ -108,7 +99,8 @@ namespace nsfd
   template <int dim>
   void NodeSystem<dim>::answer(Point &point) const
   {
-    const Vector U = relative(point, velocity_);
+    const Vector U =
+        relative_velocity<dim>(point.frame, point.groups, velocity_);
     for (unsigned int c = 0; c < dim; ++c)
       point.local[c] =
           U[c] - point.R * (point.impulse[c] -

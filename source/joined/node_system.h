@@ -61,6 +61,13 @@ namespace nsfd
      */
     bool find_direction(double soft, bool refine);
 
+    /**
+     * How the impulses on @p groups, whose motion is prescribed, answer to
+     * their velocities, at the solution: kg, row by row in the axes of space.
+     * False if there is no such derivative.
+     */
+    bool respond(const std::vector<int> &groups, std::vector<double> &response);
+
     /** To the kept state plus @p length times the direction. */
     void move(double length);
 
@@ -121,8 +128,6 @@ namespace nsfd
 
     void add(const typename NodeProblem<dim>::Point &point,
              const std::vector<double> &frames);
-    Vector relative(const Point &point,
-                    const std::vector<Vector> &velocity) const;
     void push(const Point &point, const Vector &impulse,
               std::vector<Vector> &velocity) const;
     void answer(Point &point) const;

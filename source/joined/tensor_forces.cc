@@ -87,8 +87,8 @@ namespace nsfd
       const BodyClass &body = cells.bodies.classes[k];
       const MaterialInput &material =
           discretization.input().materials[body.material];
-      if (!cells.shapes[k].reference.is_hyper_cube() || body.rigid ||
-          material.transverse || material.graded || material.is_viscous())
+      if (!cells.shapes[k].reference.is_hyper_cube() || material.transverse ||
+          material.graded)
         return false;
     }
     const unsigned int degree = discretization.input().discretization.degree;
@@ -173,12 +173,14 @@ namespace nsfd
           maps_[index * per_map + ((subset - 1) * dim + c) * lanes + lane] =
               map_entry(shape, subset, c);
       double *moduli = moduli_.data() + index * 3 * lanes + lane;
+      volume_[cell] = shape.volume;
+      if (shape.elasticity.empty())
+        continue; // rigid: no stress
       const auto &law = shape.elasticity[0];
       moduli[0] = law.lambda;
       moduli[lanes] = law.mu;
       const double norm = std::max(2. * law.mu, dim * law.lambda + 2. * law.mu);
       moduli[2 * lanes] = norm * of_class[cells.bodies.class_of[cell]];
-      volume_[cell] = shape.volume;
     }
   }
 

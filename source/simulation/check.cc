@@ -1,6 +1,7 @@
 #include "check.h"
 
 #include "group_report.h"
+#include "limiting_cells.h"
 #include "motion_report.h"
 
 #include "advice.h"
@@ -463,11 +464,13 @@ namespace nsfd
       ask_stepper(input, discretization, *stepper, *delassus, advisor);
     else
       advisor.unique_steps.assign(input.interfaces.size(), 0.);
+    const auto limiting = limiting_cells(input, discretization, communicator);
     if (!communicator.is_root())
       return exit_code::done;
 
     std::cout << fmt::format("{}: checked, nothing is run\n", input.file);
     print_mesh(input, mesh, discretization, counts, step);
+    std::cout << limiting;
     if (advisor.young > 0.)
       advisor.print_stiffness();
     for (unsigned int b = 0; b < input.interfaces.size(); ++b)

@@ -4,6 +4,7 @@
 #include "discretization/body_shape.h"
 #include "discretization/cells.h"
 #include "sharp_front.h"
+#include "thinnest_body.h"
 
 #include "discretization/cell_geometry.h"
 #include "nsfd/core/archive.h"
@@ -12,14 +13,12 @@
 #include "records/engineering.h"
 
 #include <deal.II/base/symmetric_tensor.h>
-#include <deal.II/fe/fe.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace nsfd
 {
@@ -122,66 +121,6 @@ namespace nsfd
       if (!(value <= peak.value) && !std::isnan(peak.value))
         peak = {value, time, place};
     }
-
-    /** Across which a cell is thinnest. */
-    template <int dim>
-    double width(const ReferenceCell &reference,
-                 const std::vector<Point<dim>> &corners)
-    {
-      double result = std::numeric_limits<double>::infinity();
-      for (unsigned int f = 0; f < reference.n_faces(); ++f) {
-        const FaceGeometry<dim> face(reference, corners, f);
-        Point<dim - 1> middle;
-        const unsigned int n = face.corners().size();
-        for (unsigned int d = 0; d < dim - 1; ++d)
-          middle[d] = dim == 3 && n == 3 ? 1. / 3. : 0.5;
-        Tensor<1, dim> normal = face.normal(middle);
-        normal /= normal.norm();
-        double height = 0.;
-        for (const auto &corner : corners)
-          height =
-              std::max(height, -(normal * (corner - face.position(middle))));
-        result = std::min(result, height);
-      }
-      return result;
-    }
-
-    struct BodyMeasures {
-      double volume = 0., surface = 0.;
-      double width = std::numeric_limits<double>::infinity(); ///< of a cell
-    };
-
-    /** Of the bodies of this rank, by their numbers. */
-    template <int dim>
-    std::map<unsigned int, BodyMeasures>
-    measure_bodies(const Discretization<dim> &discretization)
-    {
-      const BodyTable &table = discretization.body_table();
-      const ReferenceCell reference =
-          discretization.cells().element->reference_cell();
-      std::map<unsigned int, BodyMeasures> result;
-      const auto number = [&](const unsigned int cell) {
-        return table.body_of_global(discretization.cells().global_cell[cell]);
-      };
-      const auto measure = [&](const unsigned int cell, const unsigned int f) {
-        return FaceGeometry<dim>(reference,
-                                 discretization.cells().corners[cell], f)
-            .measure();
-      };
-      for (unsigned int b = 0; b < discretization.bodies().size(); ++b) {
-        BodyMeasures &body = result[number(b)];
-        body.volume += discretization.cells().volume(b);
-        body.width =
-            std::min(body.width,
-                     width<dim>(reference, discretization.cells().corners[b]));
-        for (unsigned int f = 0; f < reference.n_faces(); ++f)
-          body.surface += measure(b, f);
-      }
-      for (const InnerFace &face : discretization.inner_faces())
-        result[number(face.bodies[0])].surface -=
-            2. * measure(face.bodies[0], face.faces[0]);
-      return result;
-    }
   } // namespace
 
   template <int dim>
@@ -222,11 +161,8 @@ namespace nsfd
     has_stride_ = input_.large_motion && smallest_thickness() > 0.;
   }
 
-  /**
-   * Of all bodies and obstacles that something may fly through; a body of many
-   * cells is at least as thick as its volume over half of its surface. 0:
-   * there is no such thing.
-   */
+  /** Of all bodies and obstacles that something may fly through. 0: there is no
+      such thing. */
   template <int dim>
   double Extremes<dim>::smallest_thickness() const
   {
@@ -234,11 +170,8 @@ namespace nsfd
     double result = none;
     for (const auto &obstacle : input_.obstacles)
       result = std::min(result, obstacle.shape->thickness(obstacle));
-    if (!input_.contacts.empty()) {
-      for (const auto &[body, whole] : measure_bodies(discretization_))
-        result = std::min(
-            result, std::max(whole.width, 2. * whole.volume / whole.surface));
-    }
+    if (!input_.contacts.empty())
+      result = std::min(result, thinnest_body(discretization_));
     result = communicator_.min(result);
     return std::isfinite(result) ? result : 0.;
   }

@@ -91,6 +91,8 @@ namespace nsfd
                              const Communicator &communicator,
                              std::vector<std::string> &problems)
   {
+    if (input.time.scheme == Scheme::leapfrog)
+      return; // rigid cells that are joined are one body
     const auto &points = model.discretization->points();
     const auto is_rigid = [&](const int body) {
       return body >= 0 && input

@@ -1,7 +1,7 @@
 #include "model.h"
 
 #include "discretization/body_frequency.h"
-#include "joined/front_viscosity.h"
+#include "discretization/cells.h"
 #include "time_integration/stable_step.h"
 
 #include <deal.II/grid/tria.h>
@@ -16,6 +16,22 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Of joined cells, of this rank. */
+    template <int dim>
+    double limit_of_cells(const SceneInput &input,
+                          const Discretization<dim> &discretization)
+    {
+      const auto &cells = discretization.cells();
+      if (!input.has_viscous_bodies())
+        return longest_step(highest_frequency(cells), input.front_viscosity());
+      const auto steps = longest_steps(cells, input.front_viscosity());
+      return steps.empty() ? std::numeric_limits<double>::infinity()
+                           : *std::min_element(steps.begin(), steps.end());
+    }
+  } // namespace
+
   template <int dim>
   void Model<dim>::build_control(const SceneInput &input,
                                  const Communicator &communicator,
@@ -28,9 +44,7 @@ namespace nsfd
       return;
     }
     if (input.time.scheme == Scheme::leapfrog)
-      explicit_limit =
-          2. / communicator.max(highest_frequency(discretization->cells())) *
-          step_share(input.front_viscosity());
+      explicit_limit = communicator.min(limit_of_cells(input, *discretization));
     const bool quasi_static = input.statics && input.statics->steps;
     // more are a slip of the pen, and are counted in 32 bits
     constexpr double most_steps = 1e9;

@@ -36,6 +36,10 @@ namespace nsfd
           !input.interfaces[origin.block].law)
         continue;
       const auto &block = input.interfaces[origin.block];
+      // rigid cells have no stress: the mean is half of what the other one has
+      double sides = 2.;
+      for (const int b : face.bodies)
+        sides -= cells.body_class(std::size_t(b)).undeformed;
       const bool whole = cells.class_shape(std::size_t(face.bodies[0]))
                              .reference.is_simplex() ||
                          input.discretization.degree == 1;
@@ -43,13 +47,12 @@ namespace nsfd
       double least = infinity;
       for (unsigned int k = 0; k < (whole ? 1 : face.count); ++k) {
         const unsigned int i = face.first + k;
-        double strength = all.strength_factor[i],
-               opening = all.opening_factor[i];
+        typename LeapfrogPoints<dim>::Factors of_law = {all.strength_factor[i],
+                                                        all.opening_factor[i]};
         if (whole) {
           const auto factors = point_factors<dim>(block, face.centre.data(),
                                                   discretization.extent());
-          strength = factors.strength;
-          opening = factors.strength / factors.toughness;
+          of_law = {factors.strength, factors.strength / factors.toughness};
         }
         for (unsigned int j = i; j < i + (whole ? face.count : 1); ++j)
           site_of_[j] = int(sites_.size());
@@ -59,15 +62,18 @@ namespace nsfd
             {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}});
         const double *normal = &points.frame[std::size_t(i) * dim * dim];
         sites_.normal.insert(sites_.normal.end(), normal, normal + dim);
-        factors_.push_back({strength, opening});
+        factors_.push_back(of_law);
         const LawPoint here = law(sites_.size() - 1);
         const double shear[2] = {1., 0.};
         const double of_shear =
             here.template effective_traction<dim>(0., shear);
         sites_.shear_weight.push_back(of_shear * of_shear);
         // the surface of two scalars is within the norm of its two ends only
-        sites_.limit.push_back((block.law->mixed() ? 0.5 : 1.) *
-                               here.strength() * here.strength());
+        // between two of them points are held by their law from the start
+        share_.push_back(sides > 0. ? 2. / sides : 1.);
+        const double strength = here.strength() / share_.back();
+        sites_.limit.push_back((block.law->mixed() ? 0.5 : 1.) * strength *
+                               strength);
         least = std::min(least, sites_.limit.back() /
                                     std::max(1., sites_.shear_weight.back()));
       }
@@ -135,6 +141,30 @@ namespace nsfd
     return local;
   }
 
+  /** With what viscous materials add. */
+  template <int dim>
+  std::array<double, dim>
+  FaceRelease<dim>::traction(const CellForces<dim> &forces,
+                             const std::size_t site) const
+  {
+    auto t = forces.traction(sites_, site);
+    const auto *viscous = forces.viscous();
+    if (!viscous)
+      return t;
+    const auto &weight = discretization_.points().weight;
+    const unsigned int first = sites_.first_point[site],
+                       last = first + sites_.n_points[site];
+    double length = 0.;
+    for (unsigned int i = first; i < last; ++i)
+      length += weight[i];
+    for (unsigned int i = first; i < last; ++i) {
+      const auto more = viscous->traction(i);
+      for (unsigned int c = 0; c < dim; ++c)
+        t[c] += weight[i] / length * more[c];
+    }
+    return t;
+  }
+
   template <int dim>
   auto FaceRelease<dim>::reached(const CellForces<dim> &forces, double &excess)
       -> std::vector<unsigned int>
@@ -142,6 +172,12 @@ namespace nsfd
     std::vector<unsigned int> released;
     old_squares_.swap(squares_);
     forces.squared_tractions(sites_, squares_);
+    if (const auto *viscous = forces.viscous())
+      for (std::size_t k = 0; k < sites_.size(); ++k)
+        if (std::isfinite(sites_.limit[k]) &&
+            (viscous->acts_in(sites_.cells[k][0]) ||
+             viscous->acts_in(sites_.cells[k][1])))
+          squares_[k] = sites_.square(k, traction(forces, k));
     old_squares_.resize(squares_.size(), infinity); // nothing has grown
     constexpr double seen = StrengthSites::looked_at,
                      least = (too_far + seen) / 2.;
@@ -149,11 +185,10 @@ namespace nsfd
       if (!(squares_[k] >= least * least * sites_.limit[k]))
         continue;
       const LawPoint here = law(k);
-      double share = std::sqrt(squares_[k]) / here.strength();
+      double share = share_[k] * std::sqrt(squares_[k]) / here.strength();
       if (here.law().mixed()) {
-        const auto t =
-            in_frame(sites_.first_point[k], forces.traction(sites_, k));
-        share = here.template effective_traction<dim>(t[0], &t[1]) /
+        const auto t = in_frame(sites_.first_point[k], traction(forces, k));
+        share = share_[k] * here.template effective_traction<dim>(t[0], &t[1]) /
                 here.strength();
       }
       if (!held_.empty() && held_[k]) {
@@ -232,7 +267,9 @@ namespace nsfd
       const unsigned int first = sites_.first_point[k];
       if (!intact_[first])
         continue;
-      const auto t = forces.traction(sites_, k);
+      auto t = traction(forces, k);
+      for (double &of_t : t)
+        of_t *= share_[k];
       for (unsigned int i = first; i < first + sites_.n_points[k]; ++i) {
         const auto local = in_frame(i, t);
         std::copy(local.begin(), local.end(), &tractions[std::size_t(i) * dim]);

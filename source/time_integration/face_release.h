@@ -62,10 +62,14 @@ namespace nsfd
     LawPoint law(std::size_t site) const;
     std::array<double, dim> in_frame(std::size_t point,
                                      const std::array<double, dim> &t) const;
+    std::array<double, dim> traction(const CellForces<dim> &forces,
+                                     std::size_t site) const;
     void let_go(std::size_t site, std::vector<unsigned int> &released);
 
     const Discretization<dim> &discretization_;
     StrengthSites sites_;
+    std::vector<double> share_; ///< of sites: traction over the mean that is
+                                ///< computed, 2 beside a rigid cell
     std::vector<typename LeapfrogPoints<dim>::Factors> factors_; ///< of sites
     std::vector<int> site_of_; ///< by point, -1: it never lets go
     std::vector<double> squares_, old_squares_; ///< of this step and the last

@@ -1,23 +1,71 @@
 #include "joined_start.h"
 
+#include "discretization/cells.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace nsfd
 {
+  namespace
+  {
+    bool is_joined(const PointKind kind)
+    {
+      return kind == PointKind::bonded || kind == PointKind::rigid ||
+             kind == PointKind::prescribed;
+    }
+
+    /** A law between two rigid bodies. */
+    template <int dim>
+    bool is_held(const Discretization<dim> &discretization,
+                 const typename InterfacePoints<dim>::Face &face)
+    {
+      const auto &block =
+          discretization.input()
+              .interfaces[discretization.origins()[face.first].block];
+      if (!block.law)
+        return false;
+      const BodyClass *classes[2];
+      for (unsigned int side = 0; side < 2; ++side) {
+        const int b = face.bodies[side];
+        if (b < 0)
+          return false;
+        classes[side] = &discretization.cells().body_class(std::size_t(b));
+      }
+      return classes[0]->undeformed && classes[1]->undeformed &&
+             classes[0]->material != classes[1]->material;
+    }
+  } // namespace
+
+  bool has_rigid_cells(const SceneInput &input)
+  {
+    return std::any_of(
+        input.materials.begin(), input.materials.end(),
+        [](const MaterialInput &material) { return material.rigid; });
+  }
+
   template <int dim>
   std::vector<std::uint8_t>
-  joined_points(const Discretization<dim> &discretization, const State &state)
+  joined_points(const Discretization<dim> &discretization, State &state)
   {
     const auto &origins = discretization.origins();
-    std::vector<std::uint8_t> joined(origins.size());
-    for (std::size_t i = 0; i < origins.size(); ++i)
-      joined[i] = origins[i].kind == PointOrigin::Kind::interface &&
-                  (state.kind[i] == PointKind::bonded ||
-                   state.kind[i] == PointKind::rigid ||
-                   state.kind[i] == PointKind::prescribed);
-    return joined;
+    std::vector<std::uint8_t> intact(origins.size(), 0);
+    for (const auto &face : discretization.points().faces) {
+      if (face.count == 0 ||
+          origins[face.first].kind != PointOrigin::Kind::interface)
+        continue;
+      const bool held = is_held(discretization, face);
+      for (unsigned int i = face.first; i < face.first + face.count; ++i) {
+        if (!is_joined(state.kind[i]))
+          continue;
+        intact[i] = !held;
+        state.kind[i] = held ? PointKind::rigid : PointKind::bonded;
+      }
+    }
+    return intact;
   }
 
   namespace
@@ -39,12 +87,35 @@ namespace nsfd
       }
       return differ;
     }
+
+    /** A rigid body takes a node along that hangs, or that is followed. */
+    template <int dim>
+    bool touch_rigid(const HangingNodes<dim> &hanging,
+                     const Discretization<dim> &discretization,
+                     const JoinedMesh<dim> &mesh)
+    {
+      const Cells<dim> &cells = discretization.cells();
+      const std::size_t n_nodes = cells.element->n_dofs_per_cell();
+      const auto is_rigid = [&](const std::size_t corner) {
+        const auto all = mesh.corners_of_node(mesh.node(corner));
+        return std::any_of(all.begin(), all.end(), [&](const unsigned int i) {
+          return cells.body_class(i / n_nodes).undeformed;
+        });
+      };
+      bool rigid = false;
+      for (const auto &point : mesh.hanging())
+        rigid = rigid || is_rigid(point.corner);
+      for (const auto &tie : hanging.ties())
+        for (std::size_t k = tie.first; k < tie.last; ++k)
+          rigid = rigid || is_rigid(hanging.master(k));
+      return rigid;
+    }
   } // namespace
 
   template <int dim>
   void check_hanging(const Communicator &communicator,
                      const Discretization<dim> &discretization,
-                     const JoinedMesh<dim> &mesh, const State &state,
+                     const JoinedMesh<dim> &mesh, State &state,
                      HangingNodes<dim> &hanging,
                      PrescribedGroups<dim> &supports)
   {
@@ -55,6 +126,12 @@ namespace nsfd
     };
     const auto &origins = discretization.origins();
     const auto joined = joined_points(discretization, state);
+    CornerGroups<dim> groups(mesh, joined);
+    const bool tied = hanging.tie(groups);
+    refuse(
+        touch_rigid(hanging, discretization, mesh),
+        "a node in the middle of a larger face is at a rigid cell, or follows "
+        "a node that is; let cells of one size be around rigid ones");
     bool open = false, springs = false;
     for (std::size_t i = 0; i < origins.size(); ++i) {
       if (joined[i] || origins[i].kind != PointOrigin::Kind::interface)
@@ -69,14 +146,13 @@ namespace nsfd
     refuse(springs, "a node in the middle of a larger face lies on a face with "
                     "springs; take an extrinsic law there, or cells of one "
                     "size");
-    CornerGroups<dim> groups(mesh, joined);
-    refuse(!hanging.tie(groups),
+    refuse(!tied,
            "those that are larger meet at an edge of smaller ones without "
            "being joined there; refine them, too, or take degree <= 2");
     refuse(std::isinf(hanging.mass_share()),
            "the smaller ones are so much heavier that nodes of larger ones "
            "have no positive mass; refine where the density jumps");
-    supports.find(groups);
+    supports.find(groups, {});
     refuse(moves_differ(hanging, groups, supports.mask()),
            "a prescribed motion ends at an edge between them; let it hold on "
            "both sides, or for cells of one size");
@@ -84,10 +160,10 @@ namespace nsfd
 
 #define NSFD_INSTANTIATE(dim)                                                  \
   template std::vector<std::uint8_t> joined_points(                            \
-      const Discretization<dim> &, const State &);                             \
+      const Discretization<dim> &, State &);                                   \
   template void check_hanging(const Communicator &,                            \
                               const Discretization<dim> &,                     \
-                              const JoinedMesh<dim> &, const State &,          \
+                              const JoinedMesh<dim> &, State &,                \
                               HangingNodes<dim> &, PrescribedGroups<dim> &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);

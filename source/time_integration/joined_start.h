@@ -10,10 +10,20 @@
 
 namespace nsfd
 {
-  /** By point: joined before anything has let go. */
+  struct SceneInput;
+
+  bool has_rigid_cells(const SceneInput &input);
+
+  /**
+   * By point: what is joined by common nodes before anything has let go, as
+   * @p state has it, where its kind becomes `bonded`. A law between two rigid
+   * cells of different materials holds them from the start instead: they have
+   * no stress that would tell when it is needed. Those of one material are one
+   * body, whatever law their faces have.
+   */
   template <int dim>
   std::vector<std::uint8_t>
-  joined_points(const Discretization<dim> &discretization, const State &state);
+  joined_points(const Discretization<dim> &discretization, State &state);
 
   /**
    * That what joins cells of two sizes lasts in a run from @p state.
@@ -22,7 +32,7 @@ namespace nsfd
   template <int dim>
   void check_hanging(const Communicator &communicator,
                      const Discretization<dim> &discretization,
-                     const JoinedMesh<dim> &mesh, const State &state,
+                     const JoinedMesh<dim> &mesh, State &state,
                      HangingNodes<dim> &hanging,
                      PrescribedGroups<dim> &supports);
 } // namespace nsfd

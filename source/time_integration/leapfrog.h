@@ -2,8 +2,10 @@
 
 #include "face_release.h"
 #include "leapfrog_ghosts.h"
+#include "leapfrog_loads.h"
 #include "leapfrog_points.h"
 #include "prescribed_groups.h"
+#include "rigid_groups.h"
 #include "step_check.h"
 #include "time_integrator.h"
 
@@ -89,20 +91,20 @@ namespace nsfd
     struct Energies {
       double kinetic = 0., stored = 0., work = 0., numerical = 0.;
       double power = 0., power_after = 0.; ///< of the elastic forces
-      double viscous = 0.;
+      double viscous = 0., pressure_work = 0.;
     };
 
     void take(const State &state, std::vector<std::uint8_t> intact);
     void show_at(State &state, const std::vector<unsigned int> &place) const;
     void serialize_all(Archive &archive);
-    void set_loads(double time);
-    double kinetic_energy();
+    void find_supports();
     void set_energies(double kick, double h, double last, Energies &energies);
     void gather(std::size_t node);
     unsigned int let_go();
     void count(const typename LeapfrogPoints<dim>::Outcome &mine,
                StepReport &report);
     void move_freely(double kick, double time, double h);
+    void damp(double h, double last, Energies &energies);
     void book(const State &old, double h, const Energies &bodies, State &next,
               StepReport &report);
 
@@ -119,16 +121,14 @@ namespace nsfd
     FaceRelease<dim> faces_;
     PrescribedGroups<dim> supports_;
     LeapfrogPoints<dim> points_;
+    LeapfrogLoads<dim> loads_;
     StepCheck check_;
     std::unique_ptr<CornerGroups<dim>> groups_;
-    /// N; empty: none
+    std::unique_ptr<RigidGroups<dim>> rigid_; ///< null: there are none
     struct {
-      std::vector<double> of_corners, of_groups;
-      std::vector<double> shares; ///< see HangingNodes
-      double time = 0.;
-    } loads_;
-
-    std::vector<double> old_velocity_, old_displacement_, terms_;
+      std::vector<double> displacement, velocity;
+    } before_; ///< the step
+    std::vector<double> terms_;
     FrontViscosity::Powers front_;
     struct Counters {
       double excess = 0.; ///< of a traction over the strength, less 1

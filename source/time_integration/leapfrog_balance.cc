@@ -25,27 +25,26 @@ namespace nsfd
     /// where the second chain of a point starts that the first one has opened,
     /// as a share of toughness over strength
     constexpr double share_at_start = 1e-9;
-  } // namespace
 
-  /**
-   * A softening point has one solution as long as h^2 w (1/m_1 + 1/m_2)
-   * max|T'| < 2, against single groups.
-   */
-  template <int dim>
-  bool LeapfrogPoints<dim>::is_beyond_unique(
-      const unsigned int a, const PointEnergies<dim> &energies) const
-  {
-    const OneStepProblem<dim> &p = chains_.problem;
-    const auto &interaction = p.interactions[p.interaction[a]];
-    if (!interaction.law ||
-        !past_peak(*interaction.law, p.opening_factor[a], energies.history))
-      return false;
-    const double softening = p.strength_factor[a] * p.opening_factor[a] *
-                             interaction.law->steepest_softening();
-    const double h = p.time_step * p.theta;
-    return h * p.time_step * p.weight[a] * p.majorant_normal[a] * softening >=
-           2.;
-  }
+    /**
+     * A softening point has one solution as long as h^2 w (1/m_1 + 1/m_2)
+     * max|T'| < 2, against single groups.
+     */
+    template <int dim>
+    bool is_beyond_unique(const OneStepProblem<dim> &p, const unsigned int a,
+                          const PointEnergies<dim> &energies)
+    {
+      const auto &interaction = p.interactions[p.interaction[a]];
+      if (!interaction.law ||
+          !past_peak(*interaction.law, p.opening_factor[a], energies.history))
+        return false;
+      const double softening = p.strength_factor[a] * p.opening_factor[a] *
+                               interaction.law->steepest_softening();
+      const double h = p.time_step * p.theta;
+      return h * p.time_step * p.weight[a] * p.majorant_normal[a] * softening >=
+             2.;
+    }
+  } // namespace
 
   /** account_point() of one that was a spring, held or apart: it took nothing.
    */
@@ -134,7 +133,7 @@ namespace nsfd
       } else
         residual += rubbing;
       balance.beyond_unique |=
-          solution.damages && is_beyond_unique(a, energies);
+          solution.damages && is_beyond_unique<dim>(p, a, energies);
       balance.active += chains_.closed[a] || solution.damages;
     }
     put(stored, w * (energies.stored - energies.stored_old));

@@ -81,6 +81,24 @@ namespace nsfd
   }
 
   template <int dim>
+  void LeapfrogGhosts<dim>::fetch_motion(CornerGroups<dim> &groups) const
+  {
+    if (!corners_)
+      return;
+    for (auto *values : {&groups.displacement, &groups.velocity}) {
+      const auto place = [&](const std::size_t corner) {
+        return &(*values)[std::size_t(groups.of(corner)) * dim];
+      };
+      corners_->start(dim, [&](const std::size_t corner, double *v) {
+        std::copy_n(place(corner), dim, v);
+      });
+      corners_->finish(dim, [&](const std::size_t corner, const double *v) {
+        std::copy_n(v, dim, place(corner));
+      });
+    }
+  }
+
+  template <int dim>
   double LeapfrogGhosts<dim>::sum(const CornerGroups<dim> &groups,
                                   std::vector<double> &terms) const
   {

@@ -52,6 +52,8 @@ namespace nsfd
     /** Velocities of nodes that are not whole here, while others are used. */
     void start(const CornerGroups<dim> &groups) const;
     void finish(CornerGroups<dim> &groups) const;
+    /** Motion of these nodes as their ranks have it from the corners. */
+    void fetch_motion(CornerGroups<dim> &groups) const;
 
     /** Sums over the groups of all ranks. Collective. */
     double sum(const CornerGroups<dim> &groups,

@@ -1,5 +1,6 @@
 #include "leapfrog_points.h"
 
+#include "coupled_nodes.h"
 #include "energy_safe_sliding.h"
 
 #include "discretization/discretization.h"
@@ -10,6 +11,41 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** False where a point of @p node is broken and closed, rubs, or would go
+       on opening beyond its history at the speed that it has. */
+    template <int dim>
+    bool may_be_elastic(const LeapfrogChains<dim> &chains,
+                        const NodeProblem<dim> &node)
+    {
+      const OneStepProblem<dim> &p = chains.problem;
+      const double h = p.time_step * p.theta;
+      for (const auto &place : node.points) {
+        const std::size_t a = place.point;
+        if (p.kind[a] == PointKind::elastic || p.kind[a] == PointKind::rigid)
+          continue;
+        if (p.kind[a] == PointKind::free) {
+          if (chains.closed[a])
+            return false;
+          continue;
+        }
+        if (p.kind[a] != PointKind::cohesive ||
+            (chains.closed[a] && chains.beta[a] < 1. &&
+             p.interactions[p.interaction[a]].friction > 0.))
+          return false;
+        std::array<double, dim> u;
+        for (unsigned int c = 0; c < dim; ++c)
+          u[c] =
+              p.jump_free[a * dim + c] + h * chains.old_velocity[a * dim + c];
+        if (!(effective_opening<dim>(p.interactions[p.interaction[a]],
+                                     u.data()) <= p.opening_max[a]))
+          return false;
+      }
+      return true;
+    }
+  } // namespace
+
   template <int dim>
   LeapfrogPoints<dim>::LeapfrogPoints(const Discretization<dim> &discretization,
                                       const JoinedMesh<dim> &mesh,
@@ -88,23 +124,26 @@ namespace nsfd
     put_into_node();
   }
 
+  /** U of the points of the step from @p first on. */
   template <int dim>
-  std::array<double, dim>
-  LeapfrogPoints<dim>::relative(const unsigned int a,
-                                const CornerGroups<dim> &groups) const
+  void LeapfrogPoints<dim>::set_velocities(const std::size_t first,
+                                           const CornerGroups<dim> &groups)
   {
-    const auto &corners = mesh_.corners(chains_.point[a]);
-    std::array<double, dim> v{}, U{};
-    for (unsigned int side = 0; side < 2; ++side)
-      if (corners[side] != JoinedMesh<dim>::none)
+    for (std::size_t k = first; k < moved_.size(); ++k) {
+      const unsigned int a = moved_[k];
+      const auto &corners = mesh_.corners(chains_.point[a]);
+      std::array<double, dim> v{}, U{};
+      for (unsigned int side = 0; side < 2; ++side)
+        if (corners[side] != JoinedMesh<dim>::none)
+          for (unsigned int c = 0; c < dim; ++c)
+            v[c] += (side == 0 ? -1. : 1.) *
+                    groups.velocity[groups.of(corners[side]) * dim + c];
+      const double *frame = &chains_.frame[std::size_t(a) * dim * dim];
+      for (unsigned int r = 0; r < dim; ++r)
         for (unsigned int c = 0; c < dim; ++c)
-          v[c] += (side == 0 ? -1. : 1.) *
-                  groups.velocity[groups.of(corners[side]) * dim + c];
-    const double *frame = &chains_.frame[std::size_t(a) * dim * dim];
-    for (unsigned int r = 0; r < dim; ++r)
-      for (unsigned int c = 0; c < dim; ++c)
-        U[r] += frame[r * dim + c] * v[c];
-    return U;
+          U[r] += frame[r * dim + c] * v[c];
+      std::copy(U.begin(), U.end(), &chains_.velocity[std::size_t(a) * dim]);
+    }
   }
 
   /** Of the step that comes: contact. */
@@ -140,7 +179,7 @@ namespace nsfd
     NodeProblem<dim> &problem = node.problem;
     problem.clear();
     node.groups.clear();
-    node.is_new = false;
+    node.is_new = node.is_rigid = false;
     for (auto &elastic : node.elastic)
       elastic.is_new = true;
     const auto local = [&](const unsigned int corner) {
@@ -157,6 +196,7 @@ namespace nsfd
           inverse[c] =
               prescribed[group] & (1u << c) ? 0. : 1. / groups.mass[group];
         problem.inverse_mass.push_back(inverse);
+        node.is_rigid |= (prescribed[group] & (1u << dim)) != 0;
       }
       return at;
     };
@@ -211,58 +251,11 @@ namespace nsfd
     return turned;
   }
 
-  template <int dim>
-  void LeapfrogPoints<dim>::set_rule(const double h, const double last)
-  {
-    OneStepProblem<dim> &p = chains_.problem;
-    p.time_step = h + last;
-    p.theta = h / p.time_step;
-    // the first kick, of half a step, is of half of the work along its way:
-    // the law at its end gives no more than that to a body at rest
-    p.rule = last > 0. ? CohesionRule::exact : CohesionRule::end_point;
-    const std::array<double, 2> step = {p.time_step, p.theta};
-    if (step == steps_[chain_])
-      return;
-    steps_[chain_] = step;
-    for (Node &node : nodes_)
-      node.elastic[chain_].is_new = true;
-  }
-
-  /** False where a point of @p node is broken and closed, rubs, or would go on
-      opening beyond its history at the speed that it has. */
-  template <int dim>
-  bool LeapfrogPoints<dim>::may_be_elastic(const Node &node) const
-  {
-    const OneStepProblem<dim> &p = chains_.problem;
-    const double h = p.time_step * p.theta;
-    for (const auto &place : node.problem.points) {
-      const std::size_t a = place.point;
-      if (p.kind[a] == PointKind::elastic || p.kind[a] == PointKind::rigid)
-        continue;
-      if (p.kind[a] == PointKind::free) {
-        if (chains_.closed[a])
-          return false;
-        continue;
-      }
-      if (p.kind[a] != PointKind::cohesive ||
-          (chains_.closed[a] && chains_.beta[a] < 1. &&
-           p.interactions[p.interaction[a]].friction > 0.))
-        return false;
-      std::array<double, dim> u;
-      for (unsigned int c = 0; c < dim; ++c)
-        u[c] = p.jump_free[a * dim + c] + h * chains_.old_velocity[a * dim + c];
-      if (!(effective_opening<dim>(p.interactions[p.interaction[a]],
-                                   u.data()) <= p.opening_max[a]))
-        return false;
-    }
-    return true;
-  }
-
   /** False if something else than springs is in the step of @p node. */
   template <int dim>
   bool LeapfrogPoints<dim>::solve_elastic(Node &node)
   {
-    if (!may_be_elastic(node))
+    if (!may_be_elastic(chains_, node.problem))
       return false;
     auto &elastic = node.elastic[chain_];
     if (elastic.is_new) {
@@ -275,6 +268,63 @@ namespace nsfd
                               node.problem, chains_.impulse, chains_.velocity);
   }
 
+  /** The points of @p node are in the step that comes. */
+  template <int dim>
+  void LeapfrogPoints<dim>::begin(Node &node, const CornerGroups<dim> &groups)
+  {
+    for (const auto &x : node.problem.points) {
+      set_point(unsigned(x.point));
+      moved_.push_back(unsigned(x.point));
+    }
+    auto &velocity = node.problem.velocity;
+    for (std::size_t k = 0; k < node.groups.size(); ++k)
+      std::copy_n(&groups.velocity[node.groups[k] * dim], dim,
+                  velocity[k].begin());
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::solve_node(Node &node, const double tolerance,
+                                       CornerGroups<dim> &groups,
+                                       Outcome &outcome)
+  {
+    const std::size_t first = moved_.size();
+    begin(node, groups);
+    const auto take_velocities = [&] {
+      for (std::size_t k = 0; k < node.groups.size(); ++k)
+        std::copy_n(node.problem.velocity[k].begin(), dim,
+                    &groups.velocity[node.groups[k] * dim]);
+    };
+    if (solve_elastic(node)) {
+      outcome.problems += mesh_.counts(node.node);
+      for (std::size_t k = 0; k < node.problem.points.size(); ++k)
+        springs_.push_back(&node.elastic[chain_].node.point(k));
+      take_velocities();
+      return;
+    }
+    springs_.resize(moved_.size(), nullptr);
+    free_ = node.problem.velocity;
+    do {
+      node.problem.velocity = free_;
+      const NodeReport report =
+          solver_.solve(chains_.problem, chains_.frame, node.problem,
+                        chains_.impulse, chains_.solution);
+      if (mesh_.counts(node.node)) {
+        outcome.sweeps += report.sweeps;
+        outcome.newton += report.newton;
+        outcome.loose += !report.converged;
+        ++outcome.problems;
+      }
+      if (!(report.residual <= outcome.residual)) {
+        outcome.residual = report.residual;
+        outcome.worst = chains_.point[moved_[first]];
+      }
+      outcome.converged = outcome.converged &&
+                          (report.converged || report.residual <= tolerance);
+      take_velocities();
+      set_velocities(first, groups);
+    } while (turn_friction(first));
+  }
+
   template <int dim>
   auto LeapfrogPoints<dim>::solve(const double h, const double last,
                                   const std::vector<std::uint8_t> &prescribed,
@@ -282,62 +332,76 @@ namespace nsfd
                                   CornerGroups<dim> &groups) -> Outcome
   {
     Outcome outcome;
-    const auto take_velocities = [&groups](const Node &node) {
-      for (std::size_t k = 0; k < node.groups.size(); ++k)
-        std::copy_n(node.problem.velocity[k].begin(), dim,
-                    &groups.velocity[node.groups[k] * dim]);
-    };
-    set_rule(h, last);
+    OneStepProblem<dim> &p = chains_.problem;
+    p.time_step = h + last;
+    p.theta = h / p.time_step;
+    // the first kick, of half a step, is of half of the work along its way:
+    // the law at its end gives no more than that to a body at rest
+    p.rule = last > 0. ? CohesionRule::exact : CohesionRule::end_point;
+    const std::array<double, 2> step = {p.time_step, p.theta};
+    const bool is_new = step != steps_[chain_];
+    steps_[chain_] = step;
     moved_.clear();
     springs_.clear();
     for (Node &node : nodes_) {
+      node.elastic[chain_].is_new |= is_new;
       if (node.is_new)
         collect(node, prescribed, groups);
-      if (node.problem.points.empty())
-        continue;
-      const std::size_t first = moved_.size();
-      for (const auto &x : node.problem.points) {
-        set_point(unsigned(x.point));
-        moved_.push_back(unsigned(x.point));
-      }
-      auto &velocity = node.problem.velocity;
-      for (std::size_t k = 0; k < node.groups.size(); ++k)
-        std::copy_n(&groups.velocity[node.groups[k] * dim], dim,
-                    velocity[k].begin());
-      if (solve_elastic(node)) {
-        outcome.problems += mesh_.counts(node.node);
-        for (std::size_t k = 0; k < node.problem.points.size(); ++k)
-          springs_.push_back(&node.elastic[chain_].node.point(k));
-        take_velocities(node);
-        continue;
-      }
-      springs_.resize(moved_.size(), nullptr);
-      free_ = velocity;
-      do {
-        velocity = free_;
-        const NodeReport report =
-            solver_.solve(chains_.problem, chains_.frame, node.problem,
-                          chains_.impulse, chains_.solution);
-        if (mesh_.counts(node.node)) {
-          outcome.sweeps += report.sweeps;
-          outcome.newton += report.newton;
-          outcome.loose += !report.converged;
-          ++outcome.problems;
-        }
-        if (!(report.residual <= outcome.residual)) {
-          outcome.residual = report.residual;
-          outcome.worst = chains_.point[moved_[first]];
-        }
-        outcome.converged = outcome.converged &&
-                            (report.converged || report.residual <= tolerance);
-        take_velocities(node);
-        for (std::size_t k = first; k < moved_.size(); ++k) {
-          const auto U = relative(moved_[k], groups);
-          std::copy(U.begin(), U.end(), &chains_.velocity[moved_[k] * dim]);
-        }
-      } while (turn_friction(first));
+      if (!node.problem.points.empty() && !node.is_rigid)
+        solve_node(node, tolerance, groups, outcome);
     }
     return outcome;
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::solve_rigid(const double tolerance,
+                                        const Communicator &communicator,
+                                        RigidGroups<dim> &rigid,
+                                        CornerGroups<dim> &groups,
+                                        Outcome &outcome)
+  {
+    using Coupled = CoupledNodes<dim>;
+    std::vector<typename Coupled::Node> nodes;
+    const std::size_t first = moved_.size();
+    bool stiff = false;
+    for (Node &node : nodes_)
+      if (!node.is_rigid || node.problem.points.empty())
+        continue;
+      else if (rigid.n_free() == 0)
+        solve_node(node, tolerance, groups, outcome);
+      else {
+        begin(node, groups);
+        nodes.push_back({&node.problem, &node.groups, mesh_.counts(node.node)});
+        outcome.problems += nodes.back().counts;
+        for (const auto &x : node.problem.points)
+          stiff |= chains_.problem.majorant_normal[x.point] == 0.;
+      }
+    if (!communicator.any(!nodes.empty()))
+      return;
+    springs_.resize(moved_.size(), nullptr);
+    Coupled coupled(communicator, rigid, solver_, chains_, groups,
+                    std::move(nodes));
+    do {
+      const auto report = coupled.solve();
+      outcome.sweeps += report.sweeps;
+      outcome.newton += report.newton;
+      outcome.loose += report.loose;
+      if (!(report.residual <= outcome.residual)) {
+        outcome.residual = report.residual;
+        if (first < moved_.size()) // else it is on other ranks
+          outcome.worst = chains_.point[report.worst];
+      }
+      outcome.converged =
+          outcome.converged && ((report.converged && report.loose == 0) ||
+                                report.residual <= tolerance);
+      set_velocities(first, groups);
+      if (communicator.any(!report.converged || report.loose > 0) &&
+          communicator.any(stiff))
+        outcome.impossible =
+            "a rigid body that is free has met another one, a support or an "
+            "obstacle: in scheme = explicit its points need cells that deform "
+            "on the other side; write scheme = moreau-jean";
+    } while (!outcome.impossible && communicator.any(turn_friction(first)));
   }
 
   template <int dim>

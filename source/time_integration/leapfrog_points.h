@@ -15,6 +15,8 @@ namespace nsfd
 {
   class Archive;
   struct SceneInput;
+  template <int dim>
+  class RigidGroups;
 
   /**
    * The points of faces that have let go, and of obstacles, in the steps of
@@ -47,8 +49,9 @@ namespace nsfd
       bool converged = true;
       double residual = 0.;
       unsigned int sweeps = 0, newton = 0, problems = 0;
-      unsigned int loose = 0; ///< problems not solved to round-off
-      std::size_t worst = 0;  ///< point of the mesh
+      unsigned int loose = 0;           ///< problems not solved to round-off
+      std::size_t worst = 0;            ///< point of the mesh
+      const char *impossible = nullptr; ///< why no step goes on from here
     };
     /**
      * The problems of all nodes, from the velocities of the groups without
@@ -59,6 +62,12 @@ namespace nsfd
     Outcome solve(double time_step, double last,
                   const std::vector<std::uint8_t> &prescribed, double tolerance,
                   CornerGroups<dim> &groups);
+    /** Then those at @p rigid bodies, which solve() leaves: if these are free,
+        all in one, see CoupledNodes. Adds to @p outcome: two of them, or
+        one and an obstacle, do not touch. Collective. */
+    void solve_rigid(double tolerance, const Communicator &communicator,
+                     RigidGroups<dim> &rigid, CornerGroups<dim> &groups,
+                     Outcome &outcome);
 
     /** What the points did in the step that was solved: sums over them, J. */
     struct Balance {
@@ -85,11 +94,7 @@ namespace nsfd
                       const CornerGroups<dim> &groups,
                       std::vector<double> &rows) const;
 
-    /** See LeapfrogChains. */
-    void show(State &state, const std::vector<unsigned int> &place) const
-    {
-      chains_.show(state, place);
-    }
+    const LeapfrogChains<dim> &chains() const { return chains_; }
     /** The chain that is not shown, of points that have been add()ed. */
     void serialize(Archive &archive)
     {
@@ -102,6 +107,7 @@ namespace nsfd
       std::size_t node;
       std::vector<unsigned int> points; ///< all active ones here
       bool is_new = true;               ///< points or groups have changed
+      bool is_rigid = false;            ///< there is a group of a rigid body
       NodeProblem<dim> problem;
       std::vector<unsigned int> groups; ///< of the problem
       /// of either chain
@@ -117,18 +123,16 @@ namespace nsfd
     void set_point(unsigned int a);
     void collect(Node &node, const std::vector<std::uint8_t> &prescribed,
                  const CornerGroups<dim> &groups);
-    void set_rule(double time_step, double last);
-    bool may_be_elastic(const Node &node) const;
     bool solve_elastic(Node &node);
     bool turn_friction(std::size_t first);
-    bool is_beyond_unique(unsigned int a,
-                          const PointEnergies<dim> &energies) const;
     void account_point(unsigned int a, std::size_t row, Balance &balance);
     void account_spring(unsigned int a, std::size_t row, Balance &balance);
     void keep_jump(unsigned int a, bool held);
     void keep(unsigned int a, const PointEnergies<dim> &energies);
-    std::array<double, dim> relative(unsigned int a,
-                                     const CornerGroups<dim> &groups) const;
+    void set_velocities(std::size_t first, const CornerGroups<dim> &groups);
+    void begin(Node &node, const CornerGroups<dim> &groups);
+    void solve_node(Node &node, double tolerance, CornerGroups<dim> &groups,
+                    Outcome &outcome);
 
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;

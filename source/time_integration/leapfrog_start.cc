@@ -1,17 +1,25 @@
 #include "leapfrog.h"
 
-#include "ghost_states.h"
 #include "initial_state.h"
+#include "joined_start.h"
 
-#include "nsfd/core/archive.h"
+#include "joined/rigid_clusters.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
 
-// What explicit steps start from, and what is kept of them.
+// What the steps of Leapfrog start from.
 
 namespace nsfd
 {
+  namespace
+  {
+    bool is_interface(const PointOrigin &origin)
+    {
+      return origin.kind == PointOrigin::Kind::interface;
+    }
+  } // namespace
+
   template <int dim>
   State Leapfrog<dim>::initial_state() const
   {
@@ -44,58 +52,77 @@ namespace nsfd
     return ghosts_.without(std::move(state));
   }
 
+  /** The motion and the points of @p state, with ghosts. */
   template <int dim>
-  void
-  Leapfrog<dim>::fill_counters(std::map<std::string, double> &counters) const
+  void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact)
   {
-    counters["node_problems"] = double(counters_.problems);
-    counters["gauss_seidel_sweeps"] = double(counters_.sweeps);
-    counters["newton"] = double(counters_.newton);
-    counters["released_points"] = double(counters_.released);
-    counters["active_points"] =
-        double(communicator_.sum_integer(points_.n_counted()));
-    counters["node_problems_above_1e-12"] = double(counters_.loose);
-    counters["groups"] = double(communicator_.sum_integer(
-        groups_ ? groups_->size() - groups_->not_counted().size() : 0));
-    counters["worst_excess_over_strength"] =
-        communicator_.max(counters_.excess);
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::serialize(Archive &archive)
-  {
-    if (!ghosts_.layer())
-      return serialize_all(archive);
-    GhostArchive<dim> all(*ghosts_.layer(), archive);
-    serialize_all(all);
-  }
-
-  template <int dim>
-  void Leapfrog<dim>::serialize_all(Archive &archive)
-  {
-    const Archive::Part part(archive, "leapfrog");
-    counters_.excess = communicator_.max(counters_.excess);
-    archive.numbers("excess", counters_.excess);
-    faces_.serialize(communicator_, archive);
-    points_.serialize(archive);
-    auto &front = forces_->front();
-    front.serialize(archive, discretization_.bodies().first_dof);
-    if (archive.reads() && front.acts()) {
-      front.holds = true;
-      hanging_.set_forces(*forces_, *groups_);
-      front.holds = false;
+    const auto &origins = discretization_.origins();
+    for (std::size_t i = 0; i < intact.size(); ++i)
+      if (!intact[i] && origins[i].kind != PointOrigin::Kind::motion &&
+          mesh_.is_whole(mesh_.node_of_point(i)) &&
+          !hanging_.hangs(mesh_.a_corner(i)))
+        points_.add(unsigned(i), faces_.factors(unsigned(i)), state);
+    groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
+    rigid_.reset();
+    if (has_rigid_cells(input_))
+      rigid_ = std::make_unique<RigidGroups<dim>>(
+          discretization_, mesh_, communicator_, ghosts_.cells(),
+          rigid_clusters(discretization_, mesh_, communicator_, ghosts_.cells(),
+                         intact));
+    faces_.start(std::move(intact));
+    groups_->gather(state.displacement, groups_->displacement);
+    groups_->gather(state.velocity, groups_->velocity);
+    ghosts_.fetch_motion(*groups_);
+    if (hanging_.any()) {
+      hanging_.tie(*groups_);
+      hanging_.follow(*groups_);
     }
-    archive.numbers("front", front_.before, front_.after, front_.stored,
-                    front_.taken);
-    archive.common("reactions", supports_.reactions());
+    find_supports();
+    hanging_.set_forces(*forces_, *groups_);
+    if (auto *viscous = forces_->viscous())
+      viscous->set(*groups_, hanging_);
+    front_ = forces_->front().finish(communicator_);
+    loads_.start(state.time, *groups_);
   }
 
-  template State Leapfrog<2>::initial_state() const;
-  template void
-  Leapfrog<2>::fill_counters(std::map<std::string, double> &) const;
-  template void Leapfrog<2>::serialize(Archive &);
-  template State Leapfrog<3>::initial_state() const;
-  template void
-  Leapfrog<3>::fill_counters(std::map<std::string, double> &) const;
-  template void Leapfrog<3>::serialize(Archive &);
+  template <int dim>
+  State Leapfrog<dim>::start_from(const State &given)
+  {
+    State state = ghosts_.with(given);
+    take(state, joined_points(discretization_, state));
+    if (rigid_)
+      rigid_->start(*groups_);
+    state.bond_traction.assign(state.jump.size(), 0.);
+    show_at(state, {});
+    const auto &g = *groups_;
+    terms_.resize(g.velocity.size());
+    for (std::size_t k = 0; k < terms_.size(); ++k)
+      terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
+    const double of_bodies = rigid_ ? rigid_->kinetic_energy(g, terms_) : 0.;
+    state.energy.kinetic = ghosts_.sum(g, terms_) + of_bodies;
+    state.energy.elastic = -ghosts_.dot(g, g.force, g.displacement) / 2.;
+    state.energy.cohesive = points_.initial_energy(communicator_);
+    begin_balance(state);
+    return ghosts_.without(std::move(state));
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::resume_from(const State &given)
+  {
+    const State state = ghosts_.with(given);
+    const auto &origins = discretization_.origins();
+    std::vector<std::uint8_t> intact(origins.size());
+    for (std::size_t i = 0; i < origins.size(); ++i)
+      intact[i] =
+          is_interface(origins[i]) && state.kind[i] == PointKind::bonded;
+    take(state, std::move(intact));
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template State Leapfrog<dim>::initial_state() const;                         \
+  template State Leapfrog<dim>::start_from(const State &);                     \
+  template void Leapfrog<dim>::resume_from(const State &)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
 } // namespace nsfd

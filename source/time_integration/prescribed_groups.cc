@@ -16,13 +16,18 @@ namespace nsfd
 
   /** Each component once, by the first point that says it. */
   template <int dim>
-  void PrescribedGroups<dim>::find(const CornerGroups<dim> &groups)
+  void PrescribedGroups<dim>::find(const CornerGroups<dim> &groups,
+                                   const std::vector<std::uint8_t> &rigid)
   {
     const auto &origins = discretization_.origins();
     mask_.assign(groups.size(), 0);
     row_of_group_.assign(groups.size(), -1);
     all_.clear();
+    rigid_.clear();
     int n_rows = 0;
+    for (std::size_t group = 0; group < rigid.size(); ++group)
+      if (rigid[group])
+        row_of_group_[group] = n_rows++;
     for (std::size_t i = 0; i < origins.size(); ++i) {
       if (origins[i].kind != PointOrigin::Kind::motion)
         continue;
@@ -34,9 +39,13 @@ namespace nsfd
         mask_[group] |= std::uint8_t(1u << c);
         if (row_of_group_[group] < 0)
           row_of_group_[group] = n_rows++;
-        all_.push_back({group, c, i});
+        const bool of_body = group < rigid.size() && rigid[group];
+        (of_body ? rigid_ : all_).push_back({group, c, i});
       }
     }
+    for (std::size_t group = 0; group < rigid.size(); ++group)
+      if (rigid[group])
+        mask_[group] = std::uint8_t((2u << dim) - 1u);
     rows_.assign(std::size_t(n_rows) * dim, 0.);
   }
 
@@ -54,18 +63,34 @@ namespace nsfd
                                              const std::vector<double> &loads,
                                              CornerGroups<dim> &groups)
   {
-    for (Row &row : all_) {
+    for (PrescribedRow &row : all_) {
       const std::size_t k = std::size_t(row.group) * dim + row.component;
       row.given = kick * (forces[k] + (loads.empty() ? 0. : loads[k]));
-      if (const auto *velocity = motion_.velocity(row.point, row.component))
-        groups.velocity[k] = motion_.at(*velocity, row.point, time + h / 2.);
-      else
-        groups.velocity[k] =
-            (motion_.at(*motion_.displacement(row.point, row.component),
-                        row.point, time + h) -
-             groups.displacement[k]) /
-            h;
+      groups.velocity[k] = velocity(row, time, h, groups);
     }
+  }
+
+  template <int dim>
+  double PrescribedGroups<dim>::velocity(const PrescribedRow &row,
+                                         const double time, const double h,
+                                         const CornerGroups<dim> &groups) const
+  {
+    if (const auto *velocity = motion_.velocity(row.point, row.component))
+      return motion_.at(*velocity, row.point, time + h / 2.);
+    const std::size_t k = std::size_t(row.group) * dim + row.component;
+    return (motion_.at(*motion_.displacement(row.point, row.component),
+                       row.point, time + h) -
+            groups.displacement[k]) /
+           h;
+  }
+
+  template <int dim>
+  std::size_t PrescribedGroups<dim>::boundary(const PrescribedRow &row) const
+  {
+    const auto &driven = discretization_.driven_boundaries();
+    return std::size_t(std::find(driven.begin(), driven.end(),
+                                 discretization_.origins()[row.point].block) -
+                       driven.begin());
   }
 
   template <int dim>
@@ -74,11 +99,10 @@ namespace nsfd
                                      const std::vector<double> &before,
                                      const CornerGroups<dim> &groups)
   {
-    const auto &driven = discretization_.driven_boundaries();
     const std::size_t n = all_.size(), n_reactions = reactions_.size();
     terms_.assign((n_reactions + 1) * n, 0.);
     for (std::size_t k = 0; k < n; ++k) {
-      const Row &row = all_[k];
+      const PrescribedRow &row = all_[k];
       if (!mesh_.counts(mesh_.node_of_point(row.point)))
         continue;
       const std::size_t at = std::size_t(row.group) * dim + row.component;
@@ -87,11 +111,8 @@ namespace nsfd
           row.given -
           rows_[std::size_t(row_of_group_[row.group]) * dim + row.component];
       terms_[k] = impulse * (groups.velocity[at] + before[at]) / 2.;
-      const auto d =
-          std::size_t(std::find(driven.begin(), driven.end(),
-                                discretization_.origins()[row.point].block) -
-                      driven.begin());
-      terms_[(1 + d * dim + row.component) * n + k] = impulse / kick;
+      terms_[(1 + boundary(row) * dim + row.component) * n + k] =
+          impulse / kick;
     }
     const auto sums = communicator.sums(terms_.data(), n_reactions + 1, n);
     std::copy(sums.begin() + 1, sums.end(), reactions_.begin());

@@ -12,6 +12,13 @@ namespace nsfd
 {
   struct SceneInput;
 
+  /** A component of a group whose motion is prescribed. */
+  struct PrescribedRow {
+    unsigned int group, component;
+    std::size_t point; ///< of the mesh, whose boundary it is
+    double given = 0.; ///< impulse of the forces in the step, N s
+  };
+
   /** Components of groups of corners whose motion is prescribed. */
   template <int dim>
   class PrescribedGroups
@@ -21,12 +28,17 @@ namespace nsfd
                      const Discretization<dim> &discretization,
                      const JoinedMesh<dim> &mesh);
 
-    /** Groups are others now, or more. */
-    void find(const CornerGroups<dim> &groups);
+    /**
+     * Groups are others now, or more. Those that are @p rigid (by group; empty:
+     * none) move with a body: they have rows() all, and what is asked of them
+     * is in rigid_rows().
+     */
+    void find(const CornerGroups<dim> &groups,
+              const std::vector<std::uint8_t> &rigid);
     /** Groups behind the old ones are not among them. */
     void resize(std::size_t n_groups);
 
-    /** Bit c of a group: component c. */
+    /** Bit c of a group: component c; bit dim: it is rigid, and all are. */
     const std::vector<std::uint8_t> &mask() const { return mask_; }
 
     /**
@@ -38,6 +50,13 @@ namespace nsfd
                         const std::vector<double> &forces,
                         const std::vector<double> &loads,
                         CornerGroups<dim> &groups);
+
+    const std::vector<PrescribedRow> &rigid_rows() const { return rigid_; }
+    /** What @p row asks for in the step from @p time over @p h. */
+    double velocity(const PrescribedRow &row, double time, double h,
+                    const CornerGroups<dim> &groups) const;
+    /** Number of the boundary of @p row among the driven ones. */
+    std::size_t boundary(const PrescribedRow &row) const;
 
     /** By place in rows(): impulses of points on the groups, to be set. */
     std::vector<double> &rows() { return rows_; }
@@ -58,16 +77,10 @@ namespace nsfd
     const std::vector<double> &reactions() const { return reactions_; }
 
   private:
-    struct Row {
-      unsigned int group, component;
-      std::size_t point; ///< of the mesh, whose boundary it is
-      double given = 0.; ///< impulse of the forces in the step, N s
-    };
-
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     const DrivenMotion<dim> motion_;
-    std::vector<Row> all_;
+    std::vector<PrescribedRow> all_, rigid_;
     std::vector<std::uint8_t> mask_;
     std::vector<int> row_of_group_;
     std::vector<double> rows_, reactions_, terms_;

@@ -93,6 +93,15 @@ namespace end_to_end::test_command_line
          "set twice"},
         {"check", {stop_scene, "--check"}, 0, "nothing is run"},
         // C L/E = 21, law (19), quads of degree 1: Courant number 0.123
+        {"check_explicit",
+         {benchmark("rigid_punch").string(), "--check"},
+         0,
+         "600 of 1146 are within 10 %"},
+        {"check_explicit_distorted", // 4 x 1600 triangles, nodes moved
+         {benchmark("fracture_extrinsic").string(), "--check", "--set",
+          "Mesh/type=crossed triangles", "--set", "Mesh/distortion=0.3"},
+         0,
+         "without the worst 64 (1 %) it would be"},
         {"check_advice",
          {fracture_scene, "--check"},
          0,

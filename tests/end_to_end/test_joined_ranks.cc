@@ -48,7 +48,8 @@ end
     struct JoinedRow {
       std::string name;
       std::vector<std::string> set;
-      bool is_scene = false; ///< of prm/verification, or the square
+      /// of prm/verification or prm/benchmarks, or the square
+      bool is_scene = false;
     };
 
     void PrintTo(const JoinedRow &row, std::ostream *stream)
@@ -87,6 +88,13 @@ end
           "Indicator: near/type=region",
           "Indicator: near/region=abs(x - 4 um) < 1.5 um && y < 7 um",
           "Indicator: near/cell size=0.5 um", "Time/end=7 ns"}},
+        {"refined_viscous",
+         {"dimension=2", "Mesh/cells=5, 5", "Adaptivity/levels=1",
+          "Indicator: near/type=region",
+          "Indicator: near/region=abs(x - 4 um) < 1.5 um && y < 7 um",
+          "Indicator: near/cell size=1 um", "Time/end=9 ns",
+          "Material: bulk/shear viscosity=20 mPa*s",
+          "Material: bulk/bulk viscosity=50 mPa*s"}},
         {"refined_hexes",
          {"dimension=3", "Mesh/type=brick", origin, corner,
           "Mesh/cells=4, 2, 2", "Discretization/degree=2",
@@ -97,6 +105,15 @@ end
         {"spall_square", {"Mesh/cells=60, 1"}, true},
         {"plate_impact", {"Mesh/cells=80, 1"}, true},
         {"bar_wall", {"Mesh/cells=40, 1"}, true},
+        {"viscous",
+         {"dimension=2", "Time/end=9 ns",
+          "Material: bulk/shear viscosity=20 mPa*s",
+          "Material: bulk/bulk viscosity=50 mPa*s"}},
+        {"pressure",
+         {"dimension=2", "Time/end=9 ns",
+          "Interface: all/crack pressure=20 MPa * (1 + x / 10 um)"}},
+        {"dcb_dynamic", {"Constants/fine=2", "Time/end=1"}, true},
+        {"rigid_punch", {"Time/end=15 us"}, true},
     };
 
     class JoinedRanksTest : public testing::TestWithParam<JoinedRow>
@@ -108,8 +125,9 @@ end
   {
     const JoinedRow &row = GetParam();
     const Workspace workspace;
-    const auto file =
-        row.is_scene ? scene(row.name) : workspace.path() / "square.prm";
+    const auto file = !row.is_scene ? workspace.path() / "square.prm"
+                      : row.name == "rigid_punch" ? benchmark(row.name)
+                                                  : scene(row.name);
     if (!row.is_scene)
       write_text(file, square);
     std::vector<std::string> set = {"Time/scheme=explicit", "Time/step=auto"};

@@ -216,17 +216,87 @@ namespace nsfd::test_hanging_motion
       }
     }
 
+    // What viscous materials take is what the bodies lose, and no momentum.
+    template <int dim>
+    void expect_loss(std::vector<std::string> overrides)
+    {
+      overrides.insert(
+          overrides.end(),
+          {"Material: bulk/initial velocity x=0.1 * sin(2 * y) * cos(x) + 0.2",
+           "Material: bulk/initial velocity y=0.1 * x * cos(3 * y)",
+           "Material: bulk/shear viscosity=1.5",
+           "Material: bulk/bulk viscosity=3", "Time/front viscosity=0",
+           "Time/end=1e4"});
+      Steps<dim> run(refined_plate, overrides);
+      const Parts<dim> parts(overrides);
+      const auto before = momenta(run, parts);
+      double residual = 0.;
+      for (unsigned int k = 0; k < 400; ++k) {
+        const double taken = run.state.energy.viscous;
+        residual = std::max(residual,
+                            run.step(k % 3 == 0 ? 0.4 : 1.).balance_residual);
+        EXPECT_GE(run.state.energy.viscous, taken);
+        EXPECT_GE(run.state.energy.kinetic, 0.);
+        EXPECT_GE(run.state.energy.elastic, 0.);
+      }
+      EXPECT_LT(residual, 1e-12);
+      EXPECT_GT(run.state.energy.viscous, 0.05 * run.state.initial_energy);
+      const auto after = momenta(run, parts);
+      for (unsigned int k = 0; k < 3; ++k)
+        EXPECT_NEAR(after[k], before[k],
+                    1e-12 * std::max(std::abs(before[0]), std::abs(before[2])));
+    }
+
+    TEST(HangingMotion, LoseWhatViscousMaterialsTake)
+    {
+      expect_loss<2>(of_degree<2>(1));
+      expect_loss<2>(of_degree<2>(3));
+      expect_loss<3>(of_degree<3>(2));
+    }
+
+    const std::string with_rigid = R"(
+subsection Material: block
+  set model              = rigid
+  set density            = 20
+  set where              = x > 3
+  set initial velocity x = -0.1
+end
+)" + refined_plate;
+
+    // Away from what hangs a rigid body does what it does elsewhere.
+    TEST(HangingMotion, LeaveRigidBodiesAlone)
+    {
+      for (const unsigned int p : {1u, 2u}) {
+        Steps<2> run(with_rigid,
+                     of_degree<2>(p, {"Indicator: middle/region=x < 0.9",
+                                      "Time/end=1e4"}));
+        ASSERT_TRUE(run.leapfrog->held_faces().has_value());
+        const auto before = run.momentum();
+        double residual = 0.;
+        for (unsigned int k = 0; k < 200; ++k)
+          residual = std::max(residual, run.step().balance_residual);
+        EXPECT_LT(residual, 1e-12);
+        EXPECT_GT(run.state.energy.elastic, 1e-3 * run.state.initial_energy);
+        const auto after = run.momentum();
+        for (unsigned int c = 0; c < 2; ++c)
+          EXPECT_NEAR(after[c], before[c], 1e-12 * std::abs(before[0]));
+      }
+    }
+
     TEST(HangingMotion, RefuseWhatCouldNotLast)
     {
-      const auto problem = [](const std::vector<std::string> &overrides) {
+      const auto problem = [](const std::vector<std::string> &overrides,
+                              const std::string &text = refined_plate) {
         try {
-          Steps<2> run(refined_plate, overrides);
+          Steps<2> run(text, overrides);
         } catch (const std::invalid_argument &error) {
           return std::string(error.what());
         }
         return std::string("none");
       };
       EXPECT_EQ(problem({}), "none");
+      EXPECT_NE(problem({}, with_rigid).find("is at a rigid cell"),
+                std::string::npos);
       EXPECT_NE(problem({"Interface: all/law=xu-needleman",
                          "Adaptivity/springs=constant stiffness"})
                     .find("must be extrinsic"),

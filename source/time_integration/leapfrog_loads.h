@@ -1,0 +1,56 @@
+#pragma once
+
+#include "leapfrog_pressure.h"
+
+#include "joined/hanging_nodes.h"
+#include "joined/viscous_forces.h"
+
+namespace nsfd
+{
+  /**
+   * What is given before a step of Leapfrog besides the elastic forces: loads
+   * by corner and by group of corners, and those of fluid in cracks.
+   */
+  template <int dim>
+  class LeapfrogLoads
+  {
+  public:
+    LeapfrogLoads(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const JoinedMesh<dim> &mesh, const HangingNodes<dim> &hanging)
+        : discretization_(discretization), mesh_(mesh), hanging_(hanging),
+          cracks_(LeapfrogPressure<dim>::make(input, discretization, mesh))
+    {
+    }
+
+    /** Groups are others now. Collective. */
+    void start(double time, const CornerGroups<dim> &groups);
+    /** Collective. */
+    void move_to(double time, const CornerGroups<dim> &groups);
+    /** A node has split. */
+    void gather(std::size_t node, const CornerGroups<dim> &groups);
+
+    /** All of them at @p time and those of viscous materials, if there are
+        some, N by group; empty: none. */
+    const std::vector<double> &sum(double time,
+                                   const ViscousForces<dim> *viscous,
+                                   const LeapfrogChains<dim> &chains,
+                                   const CornerGroups<dim> &groups);
+    /** Without those of cracks, N; empty: none. */
+    const std::vector<double> &of_groups() const { return of_groups_; }
+    /** Null: there are none. */
+    const LeapfrogPressure<dim> *cracks() const { return cracks_.get(); }
+
+  private:
+    void set(double time, const CornerGroups<dim> &groups);
+
+    const Discretization<dim> &discretization_;
+    const JoinedMesh<dim> &mesh_;
+    const HangingNodes<dim> &hanging_;
+    const std::unique_ptr<LeapfrogPressure<dim>> cracks_;
+    std::vector<double> of_corners_, of_groups_; ///< empty: none
+    std::vector<double> shares_;                 ///< see HangingNodes
+    std::vector<double> sum_; ///< where there are several kinds
+    double time_ = 0.;
+  };
+} // namespace nsfd

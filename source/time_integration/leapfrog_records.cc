@@ -1,0 +1,180 @@
+#include "leapfrog.h"
+
+#include "ghost_states.h"
+
+#include "nsfd/core/archive.h"
+
+#include <algorithm>
+#include <cmath>
+
+// What Leapfrog books of a step, shows and keeps.
+
+namespace nsfd
+{
+  /** Takes what viscous materials take, and sets their next forces. */
+  template <int dim>
+  void Leapfrog<dim>::damp(const double h, const double last,
+                           Energies &energies)
+  {
+    const auto &g = *groups_;
+    ViscousForces<dim> &viscous = *forces_->viscous();
+    const double a = -ghosts_.dot(g, viscous.of_groups(), before_.velocity),
+                 b = -ghosts_.dot(g, viscous.of_groups(), g.velocity);
+    viscous.set(g, hanging_);
+    const double c = -ghosts_.dot(g, viscous.of_groups(), g.velocity);
+    energies.viscous += (h + last) / 8. * std::max(0., a + 2. * b + c);
+    energies.kinetic -= h / 4. * c;
+    (last > 0. ? energies.numerical : energies.viscous) +=
+        (h - last) / 8. * (a + c);
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::book(const State &old, const double h,
+                           const Energies &bodies, State &next,
+                           StepReport &report)
+  {
+    const auto balance = points_.account(communicator_);
+    next.step = old.step + 1;
+    next.time = old.time + h;
+    next.last_step = h;
+    EnergyLines &energy = next.energy;
+    energy = old.energy;
+    // h^2 v.K v / 8
+    const double share = h / 8. * (bodies.power - bodies.power_after);
+    energy.kinetic = bodies.kinetic - share;
+    energy.elastic = bodies.stored - h / 2. * bodies.power + share;
+    energy.cohesive += balance.stored;
+    energy.damage += balance.damage;
+    energy.friction += balance.friction;
+    energy.impact += balance.impact;
+    energy.viscous += balance.viscous + bodies.viscous;
+    energy.numerical += balance.numerical + bodies.numerical;
+    energy.work += bodies.work + bodies.pressure_work;
+    next.broken_area = old.broken_area + balance.broken;
+    next.positive_friction_work =
+        old.positive_friction_work + balance.positive_friction;
+    next.initial_energy = old.initial_energy;
+    next.penetration = std::max(old.penetration, balance.penetration);
+    next.penetration_excess =
+        std::max(old.penetration_excess,
+                 balance.penetration - 1e-12 * discretization_.extent());
+    next.rigid_drift = old.rigid_drift;
+    next.viscous_traction = old.viscous_traction;
+    next.pressure_work = old.pressure_work + bodies.pressure_work;
+    report.active = balance.active;
+    report.beyond_unique = balance.beyond_unique;
+    report.changes = balance.changes;
+    report.changes.taken[std::size_t(WatchedLine::scheme)] =
+        energy.numerical - old.energy.numerical;
+    report.changes.taken[std::size_t(WatchedLine::viscous)] =
+        energy.viscous - old.energy.viscous;
+    close_balance(old, next, report);
+    const double scale = 4. * std::abs(energy.kinetic);
+    const TakenStep step{old, next, h, scale, 0};
+    check_.check_balance(step, report);
+    check_.watch_energy(step, report);
+  }
+
+  /** Bodies and tractions with ghosts, points where they have a place. */
+  template <int dim>
+  void Leapfrog<dim>::show_at(State &state,
+                              const std::vector<unsigned int> &place) const
+  {
+    groups_->scatter(groups_->displacement, state.displacement);
+    groups_->scatter(groups_->velocity, state.velocity);
+    points_.chains().show(state, place);
+    const auto &origins = discretization_.origins();
+    state.bond_traction.resize(origins.size() * dim);
+    faces_.show(*forces_, state.bond_traction);
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      if (origins[i].kind != PointOrigin::Kind::motion)
+        continue;
+      const unsigned int at = place.empty() ? unsigned(i) : place[i];
+      if (at == unsigned(-1))
+        continue;
+      const unsigned int group = groups_->of(mesh_.a_corner(i));
+      for (unsigned int c = 0; c < dim; ++c) { // its axes are x, y, z
+        state.jump[std::size_t(at) * dim + c] =
+            groups_->displacement[group * dim + c];
+        state.relative_velocity[std::size_t(at) * dim + c] =
+            groups_->velocity[group * dim + c];
+      }
+    }
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::show(State &state) const
+  {
+    show_at(state, ghosts_.own_points());
+    if (loads_.cracks())
+      loads_.cracks()->show(points_.chains(), ghosts_.own_points(), state);
+    const auto *layer = ghosts_.layer();
+    if (!layer)
+      return;
+    state.displacement = layer->own_unknowns(state.displacement);
+    state.velocity = layer->own_unknowns(state.velocity);
+    state.bond_traction = layer->own_points(state.bond_traction, dim);
+  }
+
+  template <int dim>
+  void
+  Leapfrog<dim>::fill_counters(std::map<std::string, double> &counters) const
+  {
+    counters["node_problems"] = double(counters_.problems);
+    counters["gauss_seidel_sweeps"] = double(counters_.sweeps);
+    counters["newton"] = double(counters_.newton);
+    counters["released_points"] = double(counters_.released);
+    counters["active_points"] =
+        double(communicator_.sum_integer(points_.n_counted()));
+    counters["node_problems_above_1e-12"] = double(counters_.loose);
+    counters["groups"] = double(communicator_.sum_integer(
+        groups_ ? groups_->size() - groups_->not_counted().size() : 0));
+    counters["worst_excess_over_strength"] =
+        communicator_.max(counters_.excess);
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::serialize(Archive &archive)
+  {
+    if (!ghosts_.layer())
+      return serialize_all(archive);
+    GhostArchive<dim> all(*ghosts_.layer(), archive);
+    serialize_all(all);
+  }
+
+  template <int dim>
+  void Leapfrog<dim>::serialize_all(Archive &archive)
+  {
+    const Archive::Part part(archive, "leapfrog");
+    counters_.excess = communicator_.max(counters_.excess);
+    archive.numbers("excess", counters_.excess);
+    faces_.serialize(communicator_, archive);
+    points_.serialize(archive);
+    auto &front = forces_->front();
+    front.serialize(archive, discretization_.bodies().first_dof);
+    if (archive.reads() && front.acts()) {
+      front.holds = true;
+      hanging_.set_forces(*forces_, *groups_);
+      front.holds = false;
+    }
+    archive.numbers("front", front_.before, front_.after, front_.stored,
+                    front_.taken);
+    archive.common("reactions", supports_.reactions());
+    if (rigid_)
+      rigid_->serialize(archive);
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template void Leapfrog<dim>::damp(double, double, Energies &);               \
+  template void Leapfrog<dim>::book(const State &, double, const Energies &,   \
+                                    State &, StepReport &);                    \
+  template void Leapfrog<dim>::show(State &) const;                            \
+  template void Leapfrog<dim>::show_at(                                        \
+      State &, const std::vector<unsigned int> &) const;                       \
+  template void Leapfrog<dim>::fill_counters(std::map<std::string, double> &)  \
+      const;                                                                   \
+  template void Leapfrog<dim>::serialize(Archive &)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
+} // namespace nsfd
