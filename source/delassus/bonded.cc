@@ -45,7 +45,8 @@ namespace nsfd
       void precondition(const double *r, double *z) const override;
       bool solve_linearised(const std::vector<double> &T, bool symmetric,
                             const std::vector<double> &c,
-                            std::vector<double> &dP) override;
+                            std::vector<double> &dP,
+                            std::vector<double> &dU) override;
       bool join_motion(std::vector<double> &x) override;
       std::vector<std::uint8_t>
       once_per_node(const std::vector<std::uint8_t> &masks) override;
@@ -59,15 +60,12 @@ namespace nsfd
     private:
       void bonds_changed() override;
       void set_bodies() const;
-      void solve_condensed(const std::vector<double> &T,
-                           const std::vector<double> &c,
-                           std::vector<double> &dP);
       std::vector<char>
       joined_by(const std::vector<std::uint8_t> &bonded) const;
       void solve(const double *b, double *x) const;
-      void respond(ConformingSolver &solver, const double *impulse,
+      bool respond(ConformingSolver &solver, const double *impulse,
                    double *velocity) const;
-      void solve(ConformingSolver &solver, const double *b, double *x) const;
+      bool solve(ConformingSolver &solver, const double *b, double *x) const;
       void update() const;
       bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
       double least_compliance(std::size_t row, double W) const;
@@ -211,64 +209,34 @@ namespace nsfd
       has_bodies_ = true;
     }
 
-    /** (W + 1/T) dP = c/T on the rows with T > 0, dP = c elsewhere. */
-    template <int dim>
-    void Bonded<dim>::solve_condensed(const std::vector<double> &T,
-                                      const std::vector<double> &c,
-                                      std::vector<double> &dP)
-    {
-      const std::size_t n = c.size();
-      std::vector<double> compliance(n), r(n);
-      dP = c;
-      for (std::size_t k = 0; k < n; ++k) {
-        const double t = T[k * dim + k % dim];
-        compliance[k] = t > 0. && is_row(k) ? 1. / t : -1.;
-        if (t > 0.)
-          dP[k] = 0.;
-      }
-      work_.points.resize(n);
-      condensed_.apply(dP.data(), work_.points.data());
-      for (std::size_t k = 0; k < n; ++k)
-        r[k] = compliance[k] * c[k] - work_.points[k];
-      joined_valid_ = dense_system_ = false;
-      condensed_.factor(compliance);
-      condensed_.solve(r.data(), work_.points.data());
-      for (std::size_t k = 0; k < n; ++k)
-        if (compliance[k] >= 0.)
-          dP[k] = work_.points[k];
-    }
-
     /** On ranks there is no factor of what is not symmetric. */
     template <int dim>
     bool Bonded<dim>::solve_linearised(const std::vector<double> &T,
                                        const bool symmetric,
                                        const std::vector<double> &c,
-                                       std::vector<double> &dP)
+                                       std::vector<double> &dP,
+                                       std::vector<double> &dU)
     {
       if (!symmetric && this->communicator_.size() > 1)
         return false;
-      if (symmetric && condense() && condensed_.can_factor()) {
-        solve_condensed(T, c, dP);
-        return true;
-      }
       joined_valid_ = false; // its factor is the one of the preconditioner
       {
         const Charge charge(Cost::preconditioner);
         set_bodies();
         const SparseRows &matrix = matrix_->assemble(T.data(), !symmetric);
         ++this->counters_.global_factorisations;
-        if (symmetric)
-          joined_->prepare(matrix);
-        else if (!joined_->prepare_unsymmetric(matrix))
+        if (!(symmetric ? joined_->try_to_prepare(matrix)
+                        : joined_->prepare_unsymmetric(matrix)))
           return false;
       }
       const Charge charge(Cost::precondition);
-      work_.points.resize(c.size());
-      respond(*joined_, c.data(), work_.points.data());
+      dU.resize(c.size());
+      if (!respond(*joined_, c.data(), dU.data()))
+        return false;
       dP = c;
       for (std::size_t k = 0; k < c.size(); ++k)
         for (unsigned int e = 0; e < dim; ++e)
-          dP[k] -= T[k * dim + e] * work_.points[k / dim * dim + e];
+          dP[k] -= T[k * dim + e] * dU[k / dim * dim + e];
       return true;
     }
 
@@ -328,12 +296,14 @@ namespace nsfd
     }
 
     template <int dim>
-    void Bonded<dim>::solve(ConformingSolver &solver, const double *b,
+    bool Bonded<dim>::solve(ConformingSolver &solver, const double *b,
                             double *x) const
     {
       std::fill(x, x + this->bodies_.n_dofs(), 0.);
-      this->counters_.inner_iterations += solver.solve(b, x, tight);
+      const auto outcome = solver.solve(b, x, tight);
+      this->counters_.inner_iterations += outcome.iterations;
       ++this->counters_.global_solves;
+      return outcome.converged;
     }
 
     template <int dim>
@@ -363,22 +333,24 @@ namespace nsfd
 
     /** U = H x of the answer x to H^T P. */
     template <int dim>
-    void Bonded<dim>::respond(ConformingSolver &solver, const double *impulse,
+    bool Bonded<dim>::respond(ConformingSolver &solver, const double *impulse,
                               double *velocity) const
     {
       if (this->communicator_.size() == 1) { // points that can part alone
         matrix_->impulse(impulse, work_.rows);
-        this->counters_.inner_iterations +=
-            solver.solve_own(work_.rows, work_.columns, tight);
+        const auto outcome = solver.solve_own(work_.rows, work_.columns, tight);
+        this->counters_.inner_iterations += outcome.iterations;
         ++this->counters_.global_solves;
         matrix_->velocity(work_.columns, velocity);
-        return;
+        return outcome.converged;
       }
       work_.rows.resize(this->bodies_.n_dofs());
       work_.columns.resize(work_.rows.size());
       this->generalised_impulse(impulse, work_.rows.data());
-      solve(solver, work_.rows.data(), work_.columns.data());
+      const bool solved =
+          solve(solver, work_.rows.data(), work_.columns.data());
       this->relative_velocity(work_.columns.data(), velocity);
+      return solved;
     }
 
     template <int dim>

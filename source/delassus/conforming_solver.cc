@@ -8,6 +8,8 @@
 #include "core/stop_request.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 
 namespace nsfd
 {
@@ -53,13 +55,20 @@ namespace nsfd
 
   void ConformingSolver::prepare(const SparseRows &matrix)
   {
+    if (!try_to_prepare(matrix))
+      throw std::runtime_error(
+          "the matrix of the joined bodies has no Cholesky "
+          "factor: not positive definite to machine "
+          "precision, or too large for the memory");
+  }
+
+  bool ConformingSolver::try_to_prepare(const SparseRows &matrix)
+  {
     unsymmetric_ = false;
     if (space_->n_global <= largest_factor_) {
       if (!factor_)
         factor_ = std::make_unique<Cholesky>(communicator_);
-      factor_->factorise(matrix, new_pattern_);
-      new_pattern_ = false;
-      return;
+      return factor_->try_factorise(matrix, std::exchange(new_pattern_, false));
     }
     factor_.reset();
     matrix_ = matrix;
@@ -68,6 +77,7 @@ namespace nsfd
     if (!multigrid_)
       multigrid_ = std::make_unique<Multigrid>(communicator_);
     multigrid_->prepare(matrix_, space_->modes, space_->per_node);
+    return true;
   }
 
   bool ConformingSolver::prepare_unsymmetric(const SparseRows &transposed)
@@ -99,7 +109,7 @@ namespace nsfd
       x[i] = own[place_[i]];
   }
 
-  unsigned int ConformingSolver::iterate(const double tolerance)
+  krylov::Outcome ConformingSolver::iterate(const double tolerance)
   {
     const auto dot = [this](const Vector &a, const Vector &b) {
       // the second one: how many ranks are asked to stop
@@ -132,11 +142,11 @@ namespace nsfd
     const auto outcome =
         krylov::conjugate_gradients(system, {tolerance, limit});
     std::copy(x.begin(), x.end(), x_.begin());
-    return outcome.iterations;
+    return outcome;
   }
 
   /** From b_ to x_. */
-  unsigned int ConformingSolver::solve_here(const double tolerance)
+  krylov::Outcome ConformingSolver::solve_here(const double tolerance)
   {
     if (!unsymmetric_ && !factor_)
       return iterate(tolerance);
@@ -144,25 +154,25 @@ namespace nsfd
       lu_->solve(b_.data(), x_.data());
     else
       factor_->solve(b_.data(), x_.data());
-    return 0;
+    return {0, true};
   }
 
-  unsigned int ConformingSolver::solve(const double *b, double *x,
-                                       const double tolerance)
+  krylov::Outcome ConformingSolver::solve(const double *b, double *x,
+                                          const double tolerance)
   {
     restrict_to_space(b, b_.data());
-    const unsigned int iterations = solve_here(tolerance);
+    const auto outcome = solve_here(tolerance);
     expand(x_.data(), x);
-    return iterations;
+    return outcome;
   }
 
-  unsigned int ConformingSolver::solve_own(const Vector &b, Vector &x,
-                                           const double tolerance)
+  krylov::Outcome ConformingSolver::solve_own(const Vector &b, Vector &x,
+                                              const double tolerance)
   {
     std::copy(b.begin(), b.end(), b_.begin());
-    const unsigned int iterations = solve_here(tolerance);
+    const auto outcome = solve_here(tolerance);
     x.assign(x_.begin(), x_.begin() + long(n_own_));
-    return iterations;
+    return outcome;
   }
 
   void ConformingSolver::solve_columns(const double *B, double *X,

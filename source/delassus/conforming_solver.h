@@ -30,14 +30,16 @@ namespace nsfd
     void set_space(const CoarseSpace &space);
     /** Symmetric, and of the present space. Collective. @throws as Cholesky. */
     void prepare(const SparseRows &matrix);
+    /** The same; false where it is known not to be positive definite. */
+    bool try_to_prepare(const SparseRows &matrix);
     /** The transpose of one that is not; on one rank. False: it is singular. */
     bool prepare_unsymmetric(const SparseRows &transposed);
 
-    /** Returns the iterations, 0 for a factor. Collective. */
-    unsigned int solve(const double *b, double *x, double tolerance);
-    /** The same with own values of the space: x = A^{-1} b. Collective. */
-    unsigned int solve_own(const std::vector<double> &b, std::vector<double> &x,
-                           double tolerance);
+    /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
+    krylov::Outcome solve(const double *b, double *x, double tolerance);
+    /** The same with own values of the space. Collective. */
+    krylov::Outcome solve_own(const std::vector<double> &b,
+                              std::vector<double> &x, double tolerance);
     /** @p n columns of @p rows values each. */
     void solve_columns(const double *B, double *X, std::size_t rows,
                        std::size_t n, double tolerance);
@@ -48,8 +50,8 @@ namespace nsfd
   private:
     void restrict_to_space(const double *b, double *own);
     void expand(double *own, double *x);
-    unsigned int solve_here(double tolerance);
-    unsigned int iterate(double tolerance);
+    krylov::Outcome solve_here(double tolerance);
+    krylov::Outcome iterate(double tolerance);
 
     const Communicator &communicator_;
     const long long largest_factor_;

@@ -115,15 +115,17 @@ namespace nsfd
     /**
      * A Newton step in the velocities of the bodies:
      *
-     *     (M_hat + H^T T H) dv = H^T c,   dP = c - T H dv,
+     *     (M_hat + H^T T H) dv = H^T c,   dU = H dv,   dP = c - T dU,
      *
      * T a block of dim x dim per point, row by row, @p symmetric or not. False
-     * where there is no such solver, or this one would not be the best.
+     * where there is no such solver, or the matrix is symmetric and not
+     * positive definite. Collective.
      */
     virtual bool solve_linearised(const std::vector<double> & /*T*/,
                                   bool /*symmetric*/,
                                   const std::vector<double> & /*c*/,
-                                  std::vector<double> & /*dP*/)
+                                  std::vector<double> & /*dP*/,
+                                  std::vector<double> & /*dU*/)
     {
       return false;
     }

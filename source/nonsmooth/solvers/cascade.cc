@@ -24,7 +24,10 @@ namespace nsfd
     class Cascade final : public NonsmoothSolver<dim>
     {
     public:
-      Cascade() : newton_(SolverRegistry<dim>::instance().create("dual newton"))
+      Cascade()
+          : newton_(SolverRegistry<dim>::instance().create("dual newton")),
+            joined_(
+                SolverRegistry<dim>::instance().create("augmented lagrangian"))
       {
       }
 
@@ -37,7 +40,10 @@ namespace nsfd
       {
         // the interior points know the bodies' own matrices only
         const Communicator &all = delassus.communicator();
-        if (!delassus.bodies_are_apart() || !all.any(may_touch(problem)))
+        if (!delassus.bodies_are_apart())
+          return solve_joined(problem, delassus, energy_scale, control, impulse,
+                              evaluation);
+        if (!all.any(may_touch(problem)))
           return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
         if (!path_)
@@ -98,6 +104,34 @@ namespace nsfd
       }
 
     private:
+      /** Of bodies that share nodes. */
+      SolverReport solve_joined(const OneStepProblem<dim> &problem,
+                                DelassusOperator<dim> &delassus,
+                                const double energy_scale,
+                                const SolverControl &control,
+                                std::vector<double> &impulse,
+                                LawEvaluation<dim> &evaluation)
+      {
+        const std::vector<double> start(impulse);
+        SolverReport report = joined_->solve(problem, delassus, energy_scale,
+                                             control, impulse, evaluation);
+        if (report.converged)
+          return report;
+        const std::vector<double> best(impulse);
+        const double error = evaluation.error;
+        impulse = start;
+        add(newton_->solve(problem, delassus, energy_scale, control, impulse,
+                           evaluation),
+            "dual newton", report);
+        if (evaluation.error > error) {
+          impulse = best;
+          evaluation.update(impulse);
+        }
+        report.residual = evaluation.error;
+        report.converged = report.residual <= control.tolerance;
+        return report;
+      }
+
       /** What @p next did goes into @p report. */
       static void add(const SolverReport &next, const char *name,
                       SolverReport &report)
@@ -165,7 +199,7 @@ namespace nsfd
                delassus.communicator().sum(ratio) > 50. * double(count);
       }
 
-      std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;
+      std::unique_ptr<NonsmoothSolver<dim>> newton_, path_, joined_;
     };
 
     using Cascade2 = Cascade<2>;

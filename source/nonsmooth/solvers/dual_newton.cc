@@ -161,12 +161,10 @@ namespace nsfd
       const double forcing = std::min(
           1e-2, std::max({before, 0.1 * control.tolerance / before, 1e-12}));
       const bool coupled = differentiate(work, impulse);
-      if (!body_direction(work, coupled, dP)) {
-        if (coupled)
-          coupled_direction(work, forcing, shift, dP);
-        else
-          symmetric_direction(work, forcing, dP);
-      }
+      if (coupled)
+        coupled_direction(work, forcing, shift, dP);
+      else
+        symmetric_direction(work, forcing, dP);
       trial = impulse;
       for (std::size_t k = 0; k < work.n; ++k)
         trial[k] += dP[k];
@@ -190,7 +188,7 @@ namespace nsfd
         keep_best();
         continue;
       }
-      if (coupled && !body_direction(work, false, dP))
+      if (coupled)
         symmetric_direction(work, forcing, dP);
       bool moved = line_search(work, dP, impulse);
       evaluation.update(impulse);

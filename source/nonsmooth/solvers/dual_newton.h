@@ -53,7 +53,6 @@ namespace nsfd
     };
 
     bool differentiate(const Work &work, const Vector &impulse);
-    bool body_direction(const Work &work, bool coupled, Vector &dP);
     bool spring_direction(const Work &work, double tolerance, Vector &dP);
     void symmetric_direction(const Work &work, double tolerance, Vector &dP);
     void coupled_direction(const Work &work, double tolerance, double shift,
@@ -75,7 +74,7 @@ namespace nsfd
     std::vector<LocalSolution<dim>> solutions_; // before the step, with
     Vector defect_, velocity_;                  // what follows from them
     krylov::CgVectors cg_;
-    Vector rhs_, tangents_;
+    Vector rhs_;
     std::vector<std::vector<unsigned int>> colours_;
   };
 } // namespace nsfd

@@ -2,8 +2,6 @@
 
 #include "nonsmooth/linear_spring.h"
 
-#include <deal.II/base/tensor.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -69,56 +67,6 @@ namespace nsfd
     if (anywhere)
       jacobian_.resize(work.n * dim);
     return anywhere;
-  }
-
-  /**
-   * In the velocities of joined bodies, where that is possible: with S the
-   * local solution and J its derivative by the velocity without the own
-   * impulse, P + dP = S + J (dU - R dP). What sticks has I + J R = 0; it gives
-   * way by a small share of R, which leaves as much of the error to the next
-   * step, whatever rows W lacks.
-   */
-  template <int dim>
-  bool DualNewton<dim>::body_direction(const Work &work, const bool coupled,
-                                       Vector &dP)
-  {
-    // difference quotients are good for half of the digits
-    constexpr double share = 1e-7, of_coupled = 1e-4;
-    const Vector &defect = work.evaluation.defect;
-    tangents_.assign(work.n * dim, 0.);
-    rhs_.resize(work.n);
-    for (std::size_t i = 0; i < work.problem.n_points; ++i) {
-      const std::size_t k = i * dim;
-      if (!coupled || !coupled_[i]) {
-        for (unsigned int c = 0; c < dim; ++c) {
-          const double D = compliance_[k + c], R = majorant(work, k + c);
-          const bool moves = D < 0.; // follows its law at once
-          tangents_[(k + c) * dim + c] =
-              moves ? 0. : (1. - share) / (D + share * R);
-          rhs_[k + c] =
-              -defect[k + c] * (moves ? 1. : (D + R) / (D + share * R));
-        }
-        continue;
-      }
-      dealii::Tensor<2, dim> J, own;
-      dealii::Tensor<1, dim> phi;
-      for (unsigned int c = 0; c < dim; ++c) {
-        phi[c] = defect[k + c];
-        for (unsigned int d = 0; d < dim; ++d) {
-          J[c][d] = (1. - of_coupled) * jacobian_[(k + c) * dim + d];
-          own[c][d] = (c == d ? 1. : 0.) + J[c][d] * majorant(work, k + d);
-        }
-      }
-      const auto inverse = invert(own);
-      const auto T = inverse * J;
-      const auto c_i = inverse * phi;
-      for (unsigned int c = 0; c < dim; ++c) {
-        rhs_[k + c] = -c_i[c];
-        for (unsigned int d = 0; d < dim; ++d)
-          tangents_[(k + c) * dim + d] = -T[c][d];
-      }
-    }
-    return work.delassus.solve_linearised(tangents_, !coupled, rhs_, dP);
   }
 
   /**
