@@ -4,6 +4,7 @@
 #include "conforming_solver.h"
 #include "joined_matrix.h"
 #include "linear_algebra/factor_limits.h"
+#include "linear_algebra/positive_part.h"
 #include "sparse_assembly.h"
 
 #include "core/cost.h"
@@ -44,7 +45,7 @@ namespace nsfd
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
       bool solve_linearised(const std::vector<double> &T, bool symmetric,
-                            const std::vector<double> &c,
+                            double tolerance, const std::vector<double> &c,
                             std::vector<double> &dP,
                             std::vector<double> &dU) override;
       bool join_motion(std::vector<double> &x) override;
@@ -64,8 +65,9 @@ namespace nsfd
       joined_by(const std::vector<std::uint8_t> &bonded) const;
       void solve(const double *b, double *x) const;
       bool respond(ConformingSolver &solver, const double *impulse,
-                   double *velocity) const;
-      bool solve(ConformingSolver &solver, const double *b, double *x) const;
+                   double *velocity, double tolerance = tight) const;
+      bool solve(ConformingSolver &solver, const double *b, double *x,
+                 double tolerance = tight) const;
       void update() const;
       bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
       double least_compliance(std::size_t row, double W) const;
@@ -209,29 +211,37 @@ namespace nsfd
       has_bodies_ = true;
     }
 
-    /** On ranks there is no factor of what is not symmetric. */
+    /** Its positive part preconditions what is not symmetric. */
     template <int dim>
     bool Bonded<dim>::solve_linearised(const std::vector<double> &T,
                                        const bool symmetric,
+                                       const double tolerance,
                                        const std::vector<double> &c,
                                        std::vector<double> &dP,
                                        std::vector<double> &dU)
     {
-      if (!symmetric && this->communicator_.size() > 1)
-        return false;
       joined_valid_ = false; // its factor is the one of the preconditioner
       {
         const Charge charge(Cost::preconditioner);
         set_bodies();
-        const SparseRows &matrix = matrix_->assemble(T.data(), !symmetric);
+        const std::vector<double> *positive = &T;
+        std::vector<double> part;
+        if (!symmetric) {
+          part = T;
+          for (std::size_t k = 0; k < T.size(); k += dim * dim)
+            take_positive_part<dim>(&part[k]);
+          positive = &part;
+        }
         ++this->counters_.global_factorisations;
-        if (!(symmetric ? joined_->try_to_prepare(matrix)
-                        : joined_->prepare_unsymmetric(matrix)))
+        if (!joined_->try_to_prepare(matrix_->assemble(positive->data())))
           return false;
+        if (!symmetric)
+          joined_->set_unsymmetric(matrix_->assemble(T.data()));
       }
       const Charge charge(Cost::precondition);
       dU.resize(c.size());
-      if (!respond(*joined_, c.data(), dU.data()))
+      if (!respond(*joined_, c.data(), dU.data(),
+                   symmetric ? tight : tolerance))
         return false;
       dP = c;
       for (std::size_t k = 0; k < c.size(); ++k)
@@ -297,10 +307,10 @@ namespace nsfd
 
     template <int dim>
     bool Bonded<dim>::solve(ConformingSolver &solver, const double *b,
-                            double *x) const
+                            double *x, const double tolerance) const
     {
       std::fill(x, x + this->bodies_.n_dofs(), 0.);
-      const auto outcome = solver.solve(b, x, tight);
+      const auto outcome = solver.solve(b, x, tolerance);
       this->counters_.inner_iterations += outcome.iterations;
       ++this->counters_.global_solves;
       return outcome.converged;
@@ -334,7 +344,7 @@ namespace nsfd
     /** U = H x of the answer x to H^T P. */
     template <int dim>
     bool Bonded<dim>::respond(ConformingSolver &solver, const double *impulse,
-                              double *velocity) const
+                              double *velocity, const double tolerance) const
     {
       if (this->communicator_.size() == 1) { // points that can part alone
         matrix_->impulse(impulse, work_.rows);
@@ -348,7 +358,7 @@ namespace nsfd
       work_.columns.resize(work_.rows.size());
       this->generalised_impulse(impulse, work_.rows.data());
       const bool solved =
-          solve(solver, work_.rows.data(), work_.columns.data());
+          solve(solver, work_.rows.data(), work_.columns.data(), tolerance);
       this->relative_velocity(work_.columns.data(), velocity);
       return solved;
     }

@@ -2,7 +2,6 @@
 
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/multigrid.h"
-#include "linear_algebra/sparse_lu.h"
 #include "linear_algebra/sparse_rows.h"
 
 #include "core/stop_request.h"
@@ -26,7 +25,7 @@ namespace nsfd
   void ConformingSolver::set_space(const CoarseSpace &space)
   {
     space_ = &space;
-    new_pattern_ = new_lu_pattern_ = true;
+    new_pattern_ = true;
     const long long first = space.first, end = first + space.n_own;
     std::vector<long long> remote;
     for (const long long k : space.number)
@@ -80,15 +79,12 @@ namespace nsfd
     return true;
   }
 
-  bool ConformingSolver::prepare_unsymmetric(const SparseRows &transposed)
+  void ConformingSolver::set_unsymmetric(const SparseRows &matrix)
   {
     unsymmetric_ = true;
-    if (!lu_)
-      lu_ = std::make_unique<SparseLU>();
-    lu_matrix_ = transposed;
-    const bool regular = lu_->factorise(lu_matrix_, new_lu_pattern_);
-    new_lu_pattern_ = false;
-    return regular;
+    matrix_ = matrix;
+    of_matrix_ =
+        GhostValues(communicator_, matrix_.first_row, n_own_, matrix_.ghosts);
   }
 
   /** P^T b. */
@@ -107,6 +103,14 @@ namespace nsfd
     exchange_.fetch(own, own + n_own_);
     for (std::size_t i = 0; i < place_.size(); ++i)
       x[i] = own[place_[i]];
+  }
+
+  void ConformingSolver::precondition(const Vector &r, Vector &z)
+  {
+    if (factor_)
+      factor_->solve(r.data(), z.data());
+    else
+      multigrid_->apply(r.data(), z.data());
   }
 
   krylov::Outcome ConformingSolver::iterate(const double tolerance)
@@ -130,8 +134,18 @@ namespace nsfd
       multiply(matrix_, of_matrix_, direction.data(), q.data());
     };
     const auto preconditioner = [&](const Vector &r, Vector &z) {
-      multigrid_->apply(r.data(), z.data());
+      precondition(r, z);
     };
+    if (unsymmetric_) {
+      Vector x(b_.begin(), b_.begin() + long(n_own_));
+      const auto outcome =
+          krylov::gmres(product, preconditioner, dot, {tolerance, 200}, {}, x);
+      if (getenv("DBG"))
+        fprintf(stderr, "gmres %u %d\n", outcome.iterations,
+                int(outcome.converged));
+      std::copy(x.begin(), x.end(), x_.begin());
+      return outcome;
+    }
     const auto never = [] { return false; };
     vectors_.r.assign(b_.begin(), b_.begin() + long(n_own_));
     for (Vector *v : {&vectors_.z, &vectors_.p, &vectors_.q})
@@ -148,12 +162,9 @@ namespace nsfd
   /** From b_ to x_. */
   krylov::Outcome ConformingSolver::solve_here(const double tolerance)
   {
-    if (!unsymmetric_ && !factor_)
+    if (unsymmetric_ || !factor_)
       return iterate(tolerance);
-    if (unsymmetric_)
-      lu_->solve(b_.data(), x_.data());
-    else
-      factor_->solve(b_.data(), x_.data());
+    factor_->solve(b_.data(), x_.data());
     return {0, true};
   }
 

@@ -11,7 +11,6 @@ namespace nsfd
 {
   class Cholesky;
   class Multigrid;
-  class SparseLU;
 
   /**
    * Solves among the functions of a space alone, x = P A^{-1} P^T b: joined
@@ -32,8 +31,11 @@ namespace nsfd
     void prepare(const SparseRows &matrix);
     /** The same; false where it is known not to be positive definite. */
     bool try_to_prepare(const SparseRows &matrix);
-    /** The transpose of one that is not; on one rank. False: it is singular. */
-    bool prepare_unsymmetric(const SparseRows &transposed);
+    /**
+     * From now on solutions are those of @p matrix, by generalised minimal
+     * residuals that the matrix that was prepared before preconditions.
+     */
+    void set_unsymmetric(const SparseRows &matrix);
 
     /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
     krylov::Outcome solve(const double *b, double *x, double tolerance);
@@ -51,6 +53,7 @@ namespace nsfd
     void restrict_to_space(const double *b, double *own);
     void expand(double *own, double *x);
     krylov::Outcome solve_here(double tolerance);
+    void precondition(const std::vector<double> &r, std::vector<double> &z);
     krylov::Outcome iterate(double tolerance);
 
     const Communicator &communicator_;
@@ -60,12 +63,10 @@ namespace nsfd
     std::vector<int> place_;
     std::size_t n_own_ = 0;
     GhostValues exchange_; ///< of the space
-    bool new_pattern_ = true, new_lu_pattern_ = true, unsymmetric_ = false;
+    bool new_pattern_ = true, unsymmetric_ = false;
     std::unique_ptr<Cholesky> factor_;
-    std::unique_ptr<SparseLU> lu_;
-    SparseRows lu_matrix_;
     std::unique_ptr<Multigrid> multigrid_;
-    SparseRows matrix_; ///< for iterations
+    SparseRows matrix_; ///< of the iterations
     GhostValues of_matrix_;
     krylov::CgVectors vectors_;
     std::vector<double> b_, x_; ///< own, with room for ghosts

@@ -318,8 +318,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void JoinedMatrix<dim>::add_springs(const double *springs,
-                                      const bool transposed)
+  void JoinedMatrix<dim>::add_springs(const double *springs)
   {
     for (std::size_t i = 0; i < points_.n_points; ++i) {
       const double *T = springs + i * dim * dim;
@@ -331,9 +330,9 @@ namespace nsfd
         double product[dim * dim] = {}; // T a
         for (unsigned int d = 0; d < dim; ++d)
           for (unsigned int e = 0; e < dim; ++e) {
-            const double t = transposed ? T[e * dim + d] : T[d * dim + e];
             for (unsigned int l = 0; l < size_; ++l)
-              product[d * size_ + l] += t * column.all[e * size_ + l];
+              product[d * size_ + l] +=
+                  T[d * dim + e] * column.all[e * size_ + l];
           }
         for (std::size_t r = first_entry_[i]; r < first_entry_[i + 1]; ++r) {
           const Entry &row = entries_[r];
@@ -420,12 +419,11 @@ namespace nsfd
   }
 
   template <int dim>
-  const SparseRows &JoinedMatrix<dim>::assemble(const double *springs,
-                                                const bool transposed)
+  const SparseRows &JoinedMatrix<dim>::assemble(const double *springs)
   {
     values_ = bodies_values_;
     if (springs)
-      add_springs(springs, transposed);
+      add_springs(springs);
     return finish();
   }
 

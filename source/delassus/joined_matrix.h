@@ -42,11 +42,9 @@ namespace nsfd
     /** M_hat and the bonds of a step. */
     void set_bodies(const StepShares &shares);
 
-    /**
-     * All of it; @p springs are the blocks T, row by row, or null. With
-     * @p transposed the transpose. Collective.
+    /** All of it; @p springs are the blocks T, row by row, or null. Collective.
      */
-    const SparseRows &assemble(const double *springs, bool transposed = false);
+    const SparseRows &assemble(const double *springs);
 
     /**
      * The node, by a number of all ranks, that is all that a point sees: -1
@@ -78,7 +76,7 @@ namespace nsfd
     void set_pattern(const std::vector<char> &shares_nodes);
     double *at(Block row, Block column);
     void add_bonds(const StepShares &shares);
-    void add_springs(const double *springs, bool transposed);
+    void add_springs(const double *springs);
     const SparseRows &finish();
 
     const Communicator &communicator_;

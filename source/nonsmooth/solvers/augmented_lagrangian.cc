@@ -1,9 +1,8 @@
 #include "augmented_lagrangian.h"
 
 #include "core/cost.h"
+#include "linear_algebra/positive_part.h"
 #include "nonsmooth/natural_map.h"
-
-#include <deal.II/base/symmetric_tensor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,8 @@ namespace nsfd
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
     constexpr double of_differences = 1e-5, left_to_differences = 1e-4;
+    /// of linear systems whose error nothing else mends
+    constexpr double tight = 1e-12;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
 
@@ -67,9 +68,15 @@ namespace nsfd
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
     dU_.assign(n, 0.);
+    set_velocity(work);
+  }
+
+  template <int dim>
+  void AugmentedLagrangian<dim>::set_velocity(const Work &work)
+  {
     work.delassus.apply_delassus(impulse_.data(), velocity_.data());
-    for (std::size_t k = 0; k < n; ++k)
-      velocity_[k] += problem.free_velocity[k];
+    for (std::size_t k = 0; k < velocity_.size(); ++k)
+      velocity_[k] += work.problem.free_velocity[k];
   }
 
   /** A from now on, with springs that are slack at the present impulses. */
@@ -172,21 +179,13 @@ namespace nsfd
   {
     for (const std::size_t i : active_) {
       double *T = &tangents_[i * dim * dim];
-      dealii::SymmetricTensor<2, dim> S;
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = c; d < dim; ++d)
-          S[c][d] = (T[c * dim + d] + T[d * dim + c]) / 2.;
-      if (convex && solutions_[i].coupled) {
-        const auto modes = dealii::eigenvectors(
-            S, dealii::SymmetricTensorEigenvectorMethod::jacobi);
-        S = 0.;
-        for (const auto &[value, mode] : modes)
-          if (value > 0.)
-            S += value * dealii::symmetrize(outer_product(mode, mode));
-      }
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d)
-          T[c * dim + d] = S[c][d];
+      if (convex && solutions_[i].coupled)
+        take_positive_part<dim>(T);
+      else
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < c; ++d)
+            T[c * dim + d] = T[d * dim + c] =
+                (T[c * dim + d] + T[d * dim + c]) / 2.;
     }
   }
 
@@ -280,13 +279,18 @@ namespace nsfd
       remove_springs();
       if (symmetric)
         symmetrise(false);
-      if (!work.delassus.solve_linearised(tangents_, symmetric, right_side_,
-                                          dP_, dU_))
+      // falls with the error, never far below the goal
+      const double forcing =
+          std::min(1e-2, std::max({error, 0.1 * tolerance / error, tight}));
+      if (!work.delassus.solve_linearised(tangents_, symmetric, forcing,
+                                          right_side_, dP_, dU_))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k) {
         impulse_[k] += dP_[k];
         velocity_[k] += dU_[k];
       }
+      if (!symmetric)
+        set_velocity(work);
     }
     impulse_.swap(best);
     velocity_.swap(best_velocity);
@@ -300,8 +304,8 @@ namespace nsfd
     ++work.report.newton;
     set_right_side();
     const auto solved = [&](const bool symmetric) {
-      return work.delassus.solve_linearised(tangents_, symmetric, right_side_,
-                                            dP_, dU_) &&
+      return work.delassus.solve_linearised(tangents_, symmetric, tight,
+                                            right_side_, dP_, dU_) &&
              slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);

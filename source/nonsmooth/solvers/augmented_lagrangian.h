@@ -52,6 +52,7 @@ namespace nsfd
     };
 
     void begin(const Work &work, const Vector &impulse);
+    void set_velocity(const Work &work);
     void soften(const Work &work, double share);
     void answer(const Work &work, const Vector &U);
     Errors errors(const Work &work) const;
