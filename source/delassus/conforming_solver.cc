@@ -63,7 +63,7 @@ namespace nsfd
 
   bool ConformingSolver::try_to_prepare(const SparseRows &matrix)
   {
-    unsymmetric_ = false;
+    by_residuals_ = false;
     if (space_->n_global <= largest_factor_) {
       if (!factor_)
         factor_ = std::make_unique<Cholesky>(communicator_);
@@ -79,9 +79,9 @@ namespace nsfd
     return true;
   }
 
-  void ConformingSolver::set_unsymmetric(const SparseRows &matrix)
+  void ConformingSolver::set_matrix(const SparseRows &matrix)
   {
-    unsymmetric_ = true;
+    by_residuals_ = true;
     matrix_ = matrix;
     of_matrix_ =
         GhostValues(communicator_, matrix_.first_row, n_own_, matrix_.ghosts);
@@ -136,13 +136,11 @@ namespace nsfd
     const auto preconditioner = [&](const Vector &r, Vector &z) {
       precondition(r, z);
     };
-    if (unsymmetric_) {
+    if (by_residuals_) {
+      constexpr unsigned int most = 100;
       Vector x(b_.begin(), b_.begin() + long(n_own_));
       const auto outcome =
-          krylov::gmres(product, preconditioner, dot, {tolerance, 200}, {}, x);
-      if (getenv("DBG"))
-        fprintf(stderr, "gmres %u %d\n", outcome.iterations,
-                int(outcome.converged));
+          krylov::gmres(product, preconditioner, dot, {tolerance, most}, {}, x);
       std::copy(x.begin(), x.end(), x_.begin());
       return outcome;
     }
@@ -162,7 +160,7 @@ namespace nsfd
   /** From b_ to x_. */
   krylov::Outcome ConformingSolver::solve_here(const double tolerance)
   {
-    if (unsymmetric_ || !factor_)
+    if (by_residuals_ || !factor_)
       return iterate(tolerance);
     factor_->solve(b_.data(), x_.data());
     return {0, true};
@@ -191,7 +189,7 @@ namespace nsfd
                                        const std::size_t n,
                                        const double tolerance)
   {
-    if (!factor_ || unsymmetric_ || communicator_.size() > 1) {
+    if (!factor_ || by_residuals_ || communicator_.size() > 1) {
       for (std::size_t c = 0; c < n; ++c)
         solve(B + c * rows, X + c * rows, tolerance);
       return;

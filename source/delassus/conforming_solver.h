@@ -32,10 +32,10 @@ namespace nsfd
     /** The same; false where it is known not to be positive definite. */
     bool try_to_prepare(const SparseRows &matrix);
     /**
-     * From now on solutions are those of @p matrix, by generalised minimal
-     * residuals that the matrix that was prepared before preconditions.
+     * From now on solutions are those of @p matrix, symmetric or not, by
+     * generalised minimal residuals that what was prepared last preconditions.
      */
-    void set_unsymmetric(const SparseRows &matrix);
+    void set_matrix(const SparseRows &matrix);
 
     /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
     krylov::Outcome solve(const double *b, double *x, double tolerance);
@@ -63,7 +63,7 @@ namespace nsfd
     std::vector<int> place_;
     std::size_t n_own_ = 0;
     GhostValues exchange_; ///< of the space
-    bool new_pattern_ = true, unsymmetric_ = false;
+    bool new_pattern_ = true, by_residuals_ = false;
     std::unique_ptr<Cholesky> factor_;
     std::unique_ptr<Multigrid> multigrid_;
     SparseRows matrix_; ///< of the iterations

@@ -112,25 +112,6 @@ namespace nsfd
       return false;
     }
 
-    /**
-     * A Newton step in the velocities of the bodies:
-     *
-     *     (M_hat + H^T T H) dv = H^T c,   dU = H dv,   dP = c - T dU,
-     *
-     * T a block of dim x dim per point, row by row, @p symmetric or not; one
-     * that is not leaves the share @p tolerance of the residual, which M_hat dv
-     * then lacks of H^T dP. False where there is no such solver, or the matrix
-     * is symmetric and not positive definite. Collective.
-     */
-    virtual bool solve_linearised(const std::vector<double> & /*T*/,
-                                  bool /*symmetric*/, double /*tolerance*/,
-                                  const std::vector<double> & /*c*/,
-                                  std::vector<double> & /*dP*/,
-                                  std::vector<double> & /*dU*/)
-    {
-      return false;
-    }
-
     /** v_free behind the U_free of the problems to come; it stays the owner's.
      */
     void set_free_velocity(const std::vector<double> *v_free)

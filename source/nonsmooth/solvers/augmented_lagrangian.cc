@@ -282,15 +282,14 @@ namespace nsfd
       // falls with the error, never far below the goal
       const double forcing =
           std::min(1e-2, std::max({error, 0.1 * tolerance / error, tight}));
-      if (!work.delassus.solve_linearised(tangents_, symmetric, forcing,
-                                          right_side_, dP_, dU_))
+      if (!work.bodies.solve_linearised(tangents_, symmetric, forcing,
+                                        right_side_, dP_, dU_))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k) {
         impulse_[k] += dP_[k];
         velocity_[k] += dU_[k];
       }
-      if (!symmetric)
-        set_velocity(work);
+      set_velocity(work);
     }
     impulse_.swap(best);
     velocity_.swap(best_velocity);
@@ -304,8 +303,8 @@ namespace nsfd
     ++work.report.newton;
     set_right_side();
     const auto solved = [&](const bool symmetric) {
-      return work.delassus.solve_linearised(tangents_, symmetric, tight,
-                                            right_side_, dP_, dU_) &&
+      return work.bodies.solve_linearised(tangents_, symmetric, tight,
+                                          right_side_, dP_, dU_) &&
              slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);
@@ -362,7 +361,8 @@ namespace nsfd
                                   LawEvaluation<dim> &evaluation)
   {
     SolverReport report;
-    const Work work{problem, delassus, evaluation, report};
+    const Work work{problem, delassus, dynamic_cast<VelocitySolver &>(delassus),
+                    evaluation, report};
     const double tolerance = control.tolerance;
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
@@ -406,18 +406,4 @@ namespace nsfd
 
   template class AugmentedLagrangian<2>;
   template class AugmentedLagrangian<3>;
-
-  namespace
-  {
-    using AugmentedLagrangian2 = AugmentedLagrangian<2>;
-    using AugmentedLagrangian3 = AugmentedLagrangian<3>;
-    NSFD_REGISTER(SolverRegistry<2>, AugmentedLagrangian2,
-                  "augmented lagrangian",
-                  "Newton in the velocities of bodies that share nodes, with "
-                  "exact line search and multipliers");
-    NSFD_REGISTER(SolverRegistry<3>, AugmentedLagrangian3,
-                  "augmented lagrangian",
-                  "Newton in the velocities of bodies that share nodes, with "
-                  "exact line search and multipliers");
-  } // namespace
 } // namespace nsfd

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "delassus/velocity_solver.h"
 #include "nonsmooth/solver.h"
 
 namespace nsfd
@@ -25,8 +26,7 @@ namespace nsfd
    * Hestenes 1969, Powell 1969; with friction Alart & Curnier 1991), until the
    * springs carry no more than the tolerance.
    *
-   * The report says that it has not converged, with no step of Newton's method,
-   * where the operator cannot solve such systems.
+   * The operator has to be a VelocitySolver.
    */
   template <int dim>
   class AugmentedLagrangian final : public NonsmoothSolver<dim>
@@ -42,7 +42,8 @@ namespace nsfd
     using Vector = std::vector<double>;
     struct Work {
       const OneStepProblem<dim> &problem;
-      DelassusOperator<dim> &delassus;
+      const DelassusOperator<dim> &delassus;
+      VelocitySolver &bodies; ///< the same
       LawEvaluation<dim> &evaluation;
       SolverReport &report;
     };

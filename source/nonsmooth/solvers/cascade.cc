@@ -1,4 +1,4 @@
-#include "nonsmooth/solver.h"
+#include "augmented_lagrangian.h"
 
 #include "linear_algebra/factor_limits.h"
 
@@ -24,10 +24,7 @@ namespace nsfd
     class Cascade final : public NonsmoothSolver<dim>
     {
     public:
-      Cascade()
-          : newton_(SolverRegistry<dim>::instance().create("dual newton")),
-            joined_(
-                SolverRegistry<dim>::instance().create("augmented lagrangian"))
+      Cascade() : newton_(SolverRegistry<dim>::instance().create("dual newton"))
       {
       }
 
@@ -40,10 +37,10 @@ namespace nsfd
       {
         // the interior points know the bodies' own matrices only
         const Communicator &all = delassus.communicator();
-        if (!delassus.bodies_are_apart())
+        if (dynamic_cast<VelocitySolver *>(&delassus))
           return solve_joined(problem, delassus, energy_scale, control, impulse,
                               evaluation);
-        if (!all.any(may_touch(problem)))
+        if (!delassus.bodies_are_apart() || !all.any(may_touch(problem)))
           return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
         if (!path_)
@@ -113,8 +110,8 @@ namespace nsfd
                                 LawEvaluation<dim> &evaluation)
       {
         const std::vector<double> start(impulse);
-        SolverReport report = joined_->solve(problem, delassus, energy_scale,
-                                             control, impulse, evaluation);
+        SolverReport report = joined_.solve(problem, delassus, energy_scale,
+                                            control, impulse, evaluation);
         if (report.converged)
           return report;
         const std::vector<double> best(impulse);
@@ -199,7 +196,8 @@ namespace nsfd
                delassus.communicator().sum(ratio) > 50. * double(count);
       }
 
-      std::unique_ptr<NonsmoothSolver<dim>> newton_, path_, joined_;
+      std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;
+      AugmentedLagrangian<dim> joined_;
     };
 
     using Cascade2 = Cascade<2>;
