@@ -62,12 +62,12 @@ namespace nsfd
       note(static_cast<long long>(number));
     std::sort(ghosts_.begin(), ghosts_.end());
     ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
-    of_own_.clear();
-    of_remote_.clear();
+    block_.own.clear();
+    block_.remote.clear();
     for (const long long number : space.number)
-      of_own_.push_back(block_of(number));
+      block_.own.push_back(block_of(number));
     for (const double number : remote)
-      of_remote_.push_back(block_of(static_cast<long long>(number)));
+      block_.remote.push_back(block_of(static_cast<long long>(number)));
   }
 
   /** Of the body at a side of a point, in the order of its unknowns. */
@@ -89,7 +89,7 @@ namespace nsfd
                                            trace.first) -
                           remote_.begin());
     for (unsigned int j = 0; j < trace.n_dofs; j += size_)
-      result.push_back((own ? of_own_ : of_remote_)[first + j]);
+      result.push_back((own ? block_.own : block_.remote)[first + j]);
     return result;
   }
 
@@ -157,7 +157,7 @@ namespace nsfd
            i += size_)
         for (std::size_t j = bodies_.first_dof[b]; j < bodies_.first_dof[b + 1];
              j += size_)
-          pairs.emplace_back(of_own_[i], of_own_[j]);
+          pairs.emplace_back(block_.own[i], block_.own[j]);
     for (std::size_t f = 0; f < points_.faces.size(); ++f) {
       const auto &face = points_.faces[f];
       if (shares_nodes[f])
@@ -185,16 +185,17 @@ namespace nsfd
     auto next = first;
     for (const auto &[row, column] : pairs)
       columns[next[std::size_t(row)]++] = column;
-    column_.clear();
-    first_column_.assign(1, 0);
+    pattern_.column.clear();
+    pattern_.first.assign(1, 0);
     for (std::size_t r = 0; r < n_rows; ++r) {
       const auto begin = columns.begin() + long(first[r]),
                  end = columns.begin() + long(first[r + 1]);
       std::sort(begin, end);
-      column_.insert(column_.end(), begin, std::unique(begin, end));
-      first_column_.push_back(column_.size());
+      pattern_.column.insert(pattern_.column.end(), begin,
+                             std::unique(begin, end));
+      pattern_.first.push_back(pattern_.column.size());
     }
-    bodies_values_.assign(column_.size() * size_ * size_, 0.);
+    bodies_values_.assign(pattern_.column.size() * size_ * size_, 0.);
 
     if (communicator_.size() > 1)
       return;
@@ -202,9 +203,9 @@ namespace nsfd
     matrix_.start.assign(1, 0);
     for (std::size_t r = 0; r < n_rows; ++r)
       for (unsigned int k = 0; k < size_; ++k) {
-        for (std::size_t c = first_column_[r]; c < first_column_[r + 1]; ++c)
+        for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1]; ++c)
           for (unsigned int l = 0; l < size_; ++l)
-            matrix_.column.push_back(column_[c] * int(size_) + int(l));
+            matrix_.column.push_back(pattern_.column[c] * int(size_) + int(l));
         matrix_.start.push_back(int(matrix_.column.size()));
       }
   }
@@ -224,12 +225,14 @@ namespace nsfd
   template <int dim>
   double *JoinedMatrix<dim>::at(const Block row, const Block column)
   {
-    const std::size_t first = first_column_[std::size_t(row)],
-                      end = first_column_[std::size_t(row) + 1];
-    const auto found = std::lower_bound(column_.begin() + long(first),
-                                        column_.begin() + long(end), column);
+    const std::size_t first = pattern_.first[std::size_t(row)],
+                      end = pattern_.first[std::size_t(row) + 1];
+    const auto found =
+        std::lower_bound(pattern_.column.begin() + long(first),
+                         pattern_.column.begin() + long(end), column);
     return &values_[first * size_ * size_ +
-                    std::size_t(found - column_.begin() - long(first)) * size_];
+                    std::size_t(found - pattern_.column.begin() - long(first)) *
+                        size_];
   }
 
   template <int dim>
@@ -246,12 +249,12 @@ namespace nsfd
           entries[i * n + j] = step_entry(body, shares, i, j);
       for (const unsigned int b : body.bodies)
         for (unsigned int i = 0; i < n; i += size_) {
-          const Block row = of_own_[bodies_.first_dof[b] + i];
-          const std::size_t width = (first_column_[std::size_t(row) + 1] -
-                                     first_column_[std::size_t(row)]) *
+          const Block row = block_.own[bodies_.first_dof[b] + i];
+          const std::size_t width = (pattern_.first[std::size_t(row) + 1] -
+                                     pattern_.first[std::size_t(row)]) *
                                     size_;
           for (unsigned int j = 0; j < n; j += size_) {
-            double *out = at(row, of_own_[bodies_.first_dof[b] + j]);
+            double *out = at(row, block_.own[bodies_.first_dof[b] + j]);
             for (unsigned int k = 0; k < size_; ++k)
               for (unsigned int l = 0; l < size_; ++l)
                 out[k * width + l] += entries[(i + k) * n + j + l];
@@ -292,9 +295,10 @@ namespace nsfd
           const double beta = f * (t == 0 ? bond.weight_1 : bond.weight_2);
           const unsigned int n = row.n_dofs, m = column.n_dofs;
           for (std::size_t r = 0; r < rows.size(); ++r) {
-            const std::size_t width = (first_column_[std::size_t(rows[r]) + 1] -
-                                       first_column_[std::size_t(rows[r])]) *
-                                      size_;
+            const std::size_t width =
+                (pattern_.first[std::size_t(rows[r]) + 1] -
+                 pattern_.first[std::size_t(rows[r])]) *
+                size_;
             for (std::size_t c = 0; c < columns.size(); ++c) {
               double *out = at(rows[r], columns[c]);
               for (unsigned int k = 0; k < size_; ++k)
@@ -336,9 +340,10 @@ namespace nsfd
           }
         for (std::size_t r = first_entry_[i]; r < first_entry_[i + 1]; ++r) {
           const Entry &row = entries_[r];
-          const std::size_t width = (first_column_[std::size_t(row.block) + 1] -
-                                     first_column_[std::size_t(row.block)]) *
-                                    size_;
+          const std::size_t width =
+              (pattern_.first[std::size_t(row.block) + 1] -
+               pattern_.first[std::size_t(row.block)]) *
+              size_;
           double *out = at(row.block, column.block);
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int k = 0; k < size_; ++k)
@@ -405,15 +410,16 @@ namespace nsfd
     };
     std::vector<SparseEntry> all;
     all.reserve(values_.size());
-    for (std::size_t r = 0; r + 1 < first_column_.size(); ++r)
+    for (std::size_t r = 0; r + 1 < pattern_.first.size(); ++r)
       for (unsigned int k = 0; k < size_; ++k)
-        for (std::size_t c = first_column_[r]; c < first_column_[r + 1]; ++c)
+        for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1]; ++c)
           for (unsigned int l = 0; l < size_; ++l)
             all.push_back(
-                {number(Block(r)) + k, number(column_[c]) + l,
-                 values_[first_column_[r] * size_ * size_ +
-                         k * (first_column_[r + 1] - first_column_[r]) * size_ +
-                         (c - first_column_[r]) * size_ + l]});
+                {number(Block(r)) + k, number(pattern_.column[c]) + l,
+                 values_[pattern_.first[r] * size_ * size_ +
+                         k * (pattern_.first[r + 1] - pattern_.first[r]) *
+                             size_ +
+                         (c - pattern_.first[r]) * size_ + l]});
     matrix_ = sum_at_owners(communicator_, *space_, std::move(all));
     return matrix_;
   }

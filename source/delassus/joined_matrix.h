@@ -90,15 +90,18 @@ namespace nsfd
 
     const CoarseSpace *space_ = nullptr;
     std::vector<std::uint8_t> penalised_;
-    unsigned int size_ = 1;                 ///< of a block
-    int n_own_ = 0;                         ///< blocks
-    std::vector<long long> ghosts_;         ///< blocks of other ranks
-    std::vector<Block> of_own_, of_remote_; ///< by unknown
-    std::vector<std::size_t> first_entry_;  ///< by point, and the end
+    unsigned int size_ = 1;         ///< of a block
+    int n_own_ = 0;                 ///< blocks
+    std::vector<long long> ghosts_; ///< blocks of other ranks
+    struct {
+      std::vector<Block> own, remote;
+    } block_;                              ///< by unknown
+    std::vector<std::size_t> first_entry_; ///< by point, and the end
     std::vector<Entry> entries_;
-    /// by block row, those of ghosts too: columns, ascending
-    std::vector<std::size_t> first_column_;
-    std::vector<Block> column_;
+    struct {
+      std::vector<std::size_t> first;
+      std::vector<Block> column; ///< ascending
+    } pattern_;                  ///< by block row, those of ghosts too
     std::vector<double> bodies_values_, values_;
     SparseRows matrix_;
   };
