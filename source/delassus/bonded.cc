@@ -1,271 +1,92 @@
 #include "bonded.h"
 
-#include "body_matrix.h"
-#include "condensed.h"
+#include "joined_bodies.h"
 #include "linear_algebra/factor_limits.h"
-#include "sparse_assembly.h"
 
 #include "core/cost.h"
 #include "nsfd/core/archive.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace nsfd
 {
   namespace
   {
-    /// of iterations: the energy balance shows what a product with W leaves
-    constexpr double tight = 1e-12;
-
+    /** Preconditioned by the factor of A = M_hat + H^T D^-1 H (Woodbury). */
     template <int dim>
-    class Bonded final : public BondedDelassus<dim>
+    class Bonded final : public JoinedBodies<dim>
     {
     public:
-      using typename BondedDelassus<dim>::Operator;
-
       Bonded(const Communicator &communicator, const Bodies &bodies,
-             const InterfacePoints<dim> &points, const std::string &solver,
-             const std::vector<double> &coordinates);
+             const InterfacePoints<dim> &points,
+             const std::vector<double> &coordinates,
+             const long long largest_factor, const bool share_nodes)
+          : JoinedBodies<dim>(communicator, bodies, points, coordinates,
+                              largest_factor, share_nodes),
+            joined_(communicator, largest_factor)
+      {
+        joined_.set_space(this->space());
+      }
 
       void reinit(double time_step, double theta) override;
-      bool bodies_are_apart() const override { return false; }
-      void apply_delassus(const double *impulse,
-                          double *velocity) const override;
-      void add_velocity_change(const double *impulse,
-                               double *velocity) const override;
-      void apply(Operator op, const double *x, double *y) const override;
       void prepare_preconditioner(const std::vector<double> &D) override;
       void precondition(const double *r, double *z) const override;
       void serialize(Archive &archive) override;
 
     private:
-      void bonds_changed() override
-      {
-        valid_ = joined_valid_ = is_joined_ = false;
-      }
-      void solve(const double *b, double *x) const;
-      void solve(SpdSolver &solver, const double *b, double *x) const;
-      void conform() const;
-      void prepare(SpdSolver &solver, const SparseRows &matrix,
-                   SparseRows &kept) const;
-      void update() const;
-      bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
+      void bonds_changed() override;
       double least_compliance(std::size_t row, double W) const;
-      bool condense() const;
       void set_diagonal();
       void prepare_joined();
 
-      mutable std::unique_ptr<BodyMatrix<dim>> matrix_;
-      std::unique_ptr<ConformingSpace> conforming_; ///< null: factors need none
-      std::unique_ptr<SpdSolver> factor_;           ///< of M_hat
-      std::unique_ptr<SpdSolver> joined_; ///< of A = M_hat + H^T D^{-1} H
-      mutable SparseRows factor_matrix_, joined_matrix_;
-      mutable bool is_joined_ = false; ///< for the step and the bonds
-      mutable bool valid_ = false;     ///< factor_
+      mutable ConformingSolver joined_; ///< of A
       bool joined_valid_ = false;
       /// the system was factored as a dense one: W may be condensed later,
       /// within the iterations of a system prepared without
       bool dense_system_ = false;
-      mutable std::size_t n_solves_ = 0;     ///< with the present factor
-      mutable CondensedDelassus condensed_;  ///< W of the rows, if it pays
-      std::vector<double> D_;                ///< of the system to precondition
-      std::vector<double> inverse_D_;        ///< of the one that was factored
-      std::vector<double> inverse_D_coarse_; ///< of the joined space (`cg`)
-      unsigned long long coarse_version_ = 0;
-      std::vector<double> diagonal_; ///< of W, from above
+      std::vector<double> D_;         ///< of the system to precondition
+      std::vector<double> inverse_D_; ///< of the one that was factored
+      std::vector<double> diagonal_;  ///< of W, from above
       /// applications after which a new factor is cheaper than going on
       static constexpr unsigned int patience = 12;
       mutable unsigned int n_applied_ = 0; ///< since the last system
-      mutable struct {
-        std::vector<double> rows, columns, points;
-      } work_; ///< by unknown of the bodies twice, and by component of points
     };
 
     template <int dim>
-    Bonded<dim>::Bonded(const Communicator &communicator, const Bodies &bodies,
-                        const InterfacePoints<dim> &points,
-                        const std::string &solver,
-                        const std::vector<double> &coordinates)
-        : BondedDelassus<dim>(communicator, bodies, points)
+    void Bonded<dim>::bonds_changed()
     {
-      // K >= so much of the bodies' own: their blocks bound W from above
-      this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
-      const long long mine = static_cast<long long>(bodies.n_dofs());
-      long long sum = 0;
-      MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
-      matrix_ = std::make_unique<BodyMatrix<dim>>(
-          bodies, points, point_traces(*this, sum - mine, true),
-          this->bulk_.bonds(), sum - mine);
-      const auto n = communicator.sum_integer(bodies.n_dofs());
-      const bool direct = solver == "direct" ||
-                          (solver == "auto" &&
-                           static_cast<long long>(n) <= largest_factor<dim>);
-      if (!direct) {
-        const SparseAssembly<dim> nodes(communicator, bodies, points,
-                                        coordinates);
-        conforming_ = std::make_unique<ConformingSpace>(
-            communicator, dim, nodes.unknowns(), nodes.node_pairs());
-      }
-      for (auto *one : {&factor_, &joined_})
-        *one = direct ? make_cholesky_solver(communicator)
-                      : make_two_level_cg(communicator, bodies.first_dof,
-                                          largest_coarse_factor<dim>);
-    }
-
-    /**
-     * Nodes are one across faces that are bonded all over. The coarse matrix
-     * stays as long as the step and the bonds do.
-     */
-    template <int dim>
-    void Bonded<dim>::conform() const
-    {
-      if (is_joined_)
-        return;
-      std::vector<char> faces;
-      for (const auto &face : this->points_.faces)
-        faces.push_back(
-            std::all_of(this->bonded_.begin() + face.first,
-                        this->bonded_.begin() + face.first + face.count,
-                        [](const std::uint8_t bonded) { return bonded != 0; }));
-      conforming_->conform(faces);
-      conforming_->touch();
-      is_joined_ = true;
-    }
-
-    template <int dim>
-    void Bonded<dim>::prepare(SpdSolver &solver, const SparseRows &matrix,
-                              SparseRows &kept) const
-    {
-      const Charge charge(Cost::preconditioner);
-      const bool first = solver.counters().factorisations == 0;
-      if (conforming_) { // iterations go on looking at their matrix
-        conform();
-        kept = matrix;
-        solver.prepare(kept, conforming_->space(), first);
-      } else
-        solver.prepare(matrix, CoarseSpace(), first);
-      ++this->counters_.global_factorisations;
+      JoinedBodies<dim>::bonds_changed();
+      joined_valid_ = false;
+      joined_.set_space(this->space());
     }
 
     template <int dim>
     void Bonded<dim>::reinit(const double time_step, const double theta)
     {
       if (time_step != this->time_step_ || theta != this->theta_)
-        valid_ = joined_valid_ = is_joined_ = false;
-      DelassusOperator<dim>::reinit(time_step, theta);
+        joined_valid_ = false;
+      JoinedBodies<dim>::reinit(time_step, theta);
     }
 
-    /** Factor M_hat if the step or the bonds have changed. */
     template <int dim>
-    void Bonded<dim>::update() const
+    void Bonded<dim>::serialize(Archive &archive)
     {
-      if (valid_)
+      JoinedBodies<dim>::serialize(archive);
+      bool joined = joined_valid_;
+      unsigned int n_applied = n_applied_;
+      archive.numbers("solver", joined, n_applied);
+      archive.points("D", D_);
+      archive.points("springs", inverse_D_);
+      if (!archive.reads())
         return;
-      prepare(*factor_,
-              matrix_->assemble(this->shares(this->time_step_, this->theta_),
-                                this->bonded_, nullptr),
-              factor_matrix_);
-      valid_ = true;
-      n_solves_ = 0;
-      condensed_.clear();
-    }
-
-    template <int dim>
-    void Bonded<dim>::solve(const double *b, double *x) const
-    {
-      update();
-      solve(*factor_, b, x);
-      ++n_solves_;
-    }
-
-    template <int dim>
-    void Bonded<dim>::solve(SpdSolver &solver, const double *b, double *x) const
-    {
-      std::fill(x, x + this->bodies_.n_dofs(), 0.);
-      this->counters_.inner_iterations += solver.solve(b, x, tight);
-      ++this->counters_.global_solves;
-    }
-
-    template <int dim>
-    void Bonded<dim>::apply(const Operator op, const double *x, double *y) const
-    {
-      if (op == Operator::inverse) {
-        solve(x, y);
-        return;
+      joined_valid_ = false;
+      if (joined) {
+        set_diagonal();
+        prepare_joined();
       }
-      BondedDelassus<dim>::apply(op, x, y);
-    }
-
-    template <int dim>
-    void Bonded<dim>::apply_delassus(const double *impulse,
-                                     double *velocity) const
-    {
-      const Charge charge(Cost::delassus);
-      ++this->counters_.delassus;
-      if (condense()) {
-        condensed_.apply(impulse, velocity);
-        return;
-      }
-      work_.rows.resize(this->bodies_.n_dofs());
-      work_.columns.resize(work_.rows.size());
-      this->generalised_impulse(impulse, work_.rows.data());
-      solve(work_.rows.data(), work_.columns.data());
-      this->relative_velocity(work_.columns.data(), velocity);
-    }
-
-    template <int dim>
-    void Bonded<dim>::add_velocity_change(const double *impulse,
-                                          double *velocity) const
-    {
-      work_.rows.resize(this->bodies_.n_dofs());
-      work_.columns.resize(work_.rows.size());
-      this->generalised_impulse(impulse, work_.rows.data());
-      solve(work_.rows.data(), work_.columns.data());
-      for (std::size_t k = 0; k < work_.columns.size(); ++k)
-        velocity[k] += work_.columns[k];
-    }
-
-    /**
-     * W of the rows as a dense matrix, on one rank: once as many systems have
-     * been solved as its columns cost, and if it fits.
-     */
-    template <int dim>
-    bool Bonded<dim>::condense() const
-    {
-      if (this->communicator_.size() > 1)
-        return false;
-      update();
-      if (!condensed_.empty())
-        return true;
-      std::vector<std::size_t> rows;
-      for (std::size_t k = 0; k < this->bonded_.size() * dim; ++k)
-        if (is_row(k))
-          rows.push_back(k);
-      // many columns at once cost a quarter of as many single ones
-      if (rows.empty() || rows.size() > CondensedDelassus::largest ||
-          (rows.size() > 64 && 4 * n_solves_ < rows.size()))
-        return false;
-      const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
-      constexpr std::size_t batch = 64; // columns fill the caches
-      std::vector<double> B(n * batch), X(n * batch),
-          impulse(this->bonded_.size() * dim, 0.), velocity(impulse.size());
-      condensed_.reset(impulse.size(), rows);
-      for (std::size_t first = 0; first < m; first += batch) {
-        const std::size_t count = std::min(batch, m - first);
-        for (std::size_t c = 0; c < count; ++c) {
-          impulse[rows[first + c]] = 1.;
-          this->generalised_impulse(impulse.data(), &B[c * n]);
-          impulse[rows[first + c]] = 0.;
-        }
-        factor_->solve_columns(B.data(), X.data(), n, count, tight);
-        for (std::size_t c = 0; c < count; ++c) {
-          this->relative_velocity(&X[c * n], velocity.data());
-          condensed_.set_column(first + c, velocity.data());
-        }
-      }
-      this->counters_.global_solves += m;
-      return true;
+      n_applied_ = n_applied;
     }
 
     template <int dim>
@@ -280,9 +101,9 @@ namespace nsfd
     void Bonded<dim>::prepare_preconditioner(const std::vector<double> &D)
     {
       const Charge charge(Cost::preconditioner);
-      dense_system_ = condense() && condensed_.can_factor();
+      dense_system_ = this->condense() && this->condensed_.can_factor();
       if (dense_system_) {
-        condensed_.factor(D);
+        this->condensed_.factor(D);
         return;
       }
       // all ranks take the same way: a factor is made by all of them
@@ -296,7 +117,7 @@ namespace nsfd
       set_diagonal();
       inverse_D_.assign(D.size(), 0.);
       for (std::size_t row = 0; row < D.size(); ++row)
-        if (D[row] >= 0. && is_row(row))
+        if (D[row] >= 0. && this->is_row(row))
           inverse_D_[row] =
               1. / std::max(D[row], least_compliance(row, diagonal_[row]));
       prepare_joined();
@@ -318,56 +139,12 @@ namespace nsfd
     template <int dim>
     void Bonded<dim>::prepare_joined()
     {
-      prepare(*joined_,
-              matrix_->assemble(this->shares(this->time_step_, this->theta_),
-                                this->bonded_, inverse_D_.data()),
-              joined_matrix_);
+      std::vector<double> springs(inverse_D_.size() * dim, 0.);
+      for (std::size_t k = 0; k < inverse_D_.size(); ++k)
+        springs[k * dim + k % dim] = inverse_D_[k];
+      joined_.prepare(this->assemble(springs));
+      ++this->counters_.global_factorisations;
       joined_valid_ = true;
-      if (conforming_ && coarse_version_ != conforming_->space().version) {
-        coarse_version_ = conforming_->space().version;
-        inverse_D_coarse_ = inverse_D_;
-      }
-    }
-
-    /**
-     * Factors are made again; whether W was condensed depends on how many
-     * systems had been solved, and how good an old factor is on its springs.
-     */
-    template <int dim>
-    void Bonded<dim>::serialize(Archive &archive)
-    {
-      BondedDelassus<dim>::serialize(archive);
-      bool factored = valid_, joined = joined_valid_,
-           condensed = !condensed_.empty();
-      std::size_t n_solves = n_solves_;
-      unsigned int n_applied = n_applied_;
-      archive.numbers("solver", factored, joined, condensed, n_solves,
-                      n_applied);
-      archive.points("D", D_);
-      archive.points("springs", inverse_D_);
-      archive.points("springs_of_conforming_space", inverse_D_coarse_);
-      if (!archive.reads())
-        return;
-      bonds_changed();
-      condensed_.clear();
-      if (factored)
-        update();
-      if (condensed) {
-        n_solves_ = CondensedDelassus::largest; // enough for any
-        condense();
-      }
-      if (joined) {
-        const std::vector<double> springs(inverse_D_);
-        set_diagonal();
-        if (conforming_) { // and with it inverse_D_coarse_
-          inverse_D_ = inverse_D_coarse_;
-          prepare_joined();
-          inverse_D_ = springs;
-        }
-        prepare_joined();
-      }
-      n_solves_ = n_solves;
-      n_applied_ = n_applied;
     }
 
     template <int dim>
@@ -375,19 +152,15 @@ namespace nsfd
     {
       const Charge charge(Cost::precondition);
       if (dense_system_) {
-        condensed_.solve(r, z);
+        this->condensed_.solve(r, z);
         return;
       }
       ++n_applied_;
       const std::size_t n = inverse_D_.size();
-      work_.points.resize(n);
-      work_.rows.resize(this->bodies_.n_dofs());
-      work_.columns.resize(work_.rows.size());
+      std::vector<double> springs(n);
       for (std::size_t k = 0; k < n; ++k)
-        work_.points[k] = D_[k] >= 0. ? inverse_D_[k] * r[k] : 0.;
-      this->generalised_impulse(work_.points.data(), work_.rows.data());
-      solve(*joined_, work_.rows.data(), work_.columns.data());
-      this->relative_velocity(work_.columns.data(), z);
+        springs[k] = D_[k] >= 0. ? inverse_D_[k] * r[k] : 0.;
+      this->respond(joined_, springs.data(), z);
       // a principal part of the inverse where the factor knows the row, and the
       // bound of the diagonal where it does not: positive definite together
       for (std::size_t k = 0; k < n; ++k)
@@ -401,22 +174,26 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::unique_ptr<BondedDelassus<dim>>
-  make_bonded_delassus(const Communicator &communicator, const Bodies &bodies,
-                       const InterfacePoints<dim> &points,
-                       const std::string &solver,
-                       const std::vector<double> &coordinates)
+  std::unique_ptr<BondedDelassus<dim>> make_bonded_delassus(
+      const Communicator &communicator, const Bodies &bodies,
+      const InterfacePoints<dim> &points, const std::string &solver,
+      const std::vector<double> &coordinates, const bool share_nodes)
   {
-    return std::make_unique<Bonded<dim>>(communicator, bodies, points, solver,
-                                         coordinates);
+    constexpr long long any = std::numeric_limits<long long>::max();
+    return std::make_unique<Bonded<dim>>(communicator, bodies, points,
+                                         coordinates,
+                                         solver == "direct" ? any
+                                         : solver == "cg"   ? 0
+                                                          : largest_factor<dim>,
+                                         share_nodes);
   }
 
   template std::unique_ptr<BondedDelassus<2>>
   make_bonded_delassus<2>(const Communicator &, const Bodies &,
                           const InterfacePoints<2> &, const std::string &,
-                          const std::vector<double> &);
+                          const std::vector<double> &, bool);
   template std::unique_ptr<BondedDelassus<3>>
   make_bonded_delassus<3>(const Communicator &, const Bodies &,
                           const InterfacePoints<3> &, const std::string &,
-                          const std::vector<double> &);
+                          const std::vector<double> &, bool);
 } // namespace nsfd

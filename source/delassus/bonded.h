@@ -10,8 +10,11 @@
 namespace nsfd
 {
   /**
-   * Bodies joined through the bulk at bonded points by the symmetric interior
-   * penalty method: these points have no row in W; instead
+   * Bodies joined at bonded points, which have no row in W. In implicit steps
+   * bodies whose face is bonded all over, node to node, share their nodes.
+   * Where that cannot be (explicit bodies, faces of two sizes, rigid bodies,
+   * faces of which a part has let go) the symmetric interior penalty method
+   * joins them through the bulk,
    *
    *     K = sum of body stiffnesses
    *         + sum over bonded points w ( t.[v] + [u].t(v) + eta [u].[v] ),
@@ -39,14 +42,46 @@ namespace nsfd
 
     void apply(Operator op, const double *x, double *y) const override;
 
+    /**
+     * The motion @p x to the nearest one, in the norm of the mass, in which
+     * bodies that share nodes move together. True if it has changed.
+     * Collective.
+     */
+    virtual bool join_motion(std::vector<double> & /*x*/) { return false; }
+
+    /** By face: bodies share the nodes of it. */
+    const std::vector<char> &shares_nodes() const { return shares_nodes_; }
+    /**
+     * By face: its sides can part once @p bonded are all bonds that are left.
+     * Collective.
+     */
+    virtual std::vector<char>
+    opens_with(const std::vector<std::uint8_t> & /*bonded*/)
+    {
+      return std::vector<char>(this->points_.faces.size(), 1);
+    }
+
+    /**
+     * Of the components that are prescribed at points (bit c of @p masks), each
+     * of a node once: by the first point, in an order that all ranks know, that
+     * says it. Collective.
+     */
+    virtual std::vector<std::uint8_t>
+    once_per_node(const std::vector<std::uint8_t> &masks)
+    {
+      return masks;
+    }
+
     void serialize(Archive &archive) override;
 
   protected:
-    /** Other points are bonded now. */
+    /** Other points are bonded now; all of them are in penalised_. */
     virtual void bonds_changed() {}
 
     const BulkTraction<dim> bulk_;
-    std::vector<std::uint8_t> bonded_; ///< per point
+    std::vector<std::uint8_t> bonded_;    ///< per point
+    std::vector<std::uint8_t> penalised_; ///< those of the interior penalty
+    std::vector<char> shares_nodes_;      ///< by face
 
   private:
     void add_bonds(bool viscous, const double *x, double *y) const;
@@ -59,14 +94,14 @@ namespace nsfd
   /**
    * For implicit steps: M_hat with the bonds in it has a factor or is inverted
    * by iterations. @p solver and @p coordinates as in
-   * make_assembled_delassus().
+   * make_assembled_delassus(); without @p share_nodes the interior penalty
+   * method joins all bodies.
    */
   template <int dim>
-  std::unique_ptr<BondedDelassus<dim>>
-  make_bonded_delassus(const Communicator &communicator, const Bodies &bodies,
-                       const InterfacePoints<dim> &points,
-                       const std::string &solver,
-                       const std::vector<double> &coordinates);
+  std::unique_ptr<BondedDelassus<dim>> make_bonded_delassus(
+      const Communicator &communicator, const Bodies &bodies,
+      const InterfacePoints<dim> &points, const std::string &solver,
+      const std::vector<double> &coordinates, bool share_nodes);
 
   /**
    * For explicit bodies, theta = 0, where bonds are forces of the last

@@ -13,7 +13,8 @@ namespace nsfd
                                       const Bodies &bodies,
                                       const InterfacePoints<dim> &points)
       : DelassusOperator<dim>(communicator, bodies, points), bulk_(*this),
-        bonded_(points.n_points, 0), jump_(points.n_points * dim),
+        bonded_(points.n_points, 0), penalised_(bonded_),
+        shares_nodes_(points.faces.size(), 0), jump_(points.n_points * dim),
         traction_(points.n_points * dim), force_(bodies.n_dofs())
   {
     for (const auto &body : bodies.classes) {
@@ -33,7 +34,7 @@ namespace nsfd
     if (this->communicator_.any(impossible))
       throw std::runtime_error("two rigid bodies share a bonded face: join "
                                "them with the law `rigid`");
-    bonded_ = bonded;
+    bonded_ = penalised_ = bonded;
     bonds_changed();
     return true;
   }
@@ -75,7 +76,7 @@ namespace nsfd
     for (std::size_t i = 0; i < n; ++i)
       for (unsigned int c = 0; c < dim; ++c) {
         double &u = jump_[i * dim + c], &t = traction_[i * dim + c];
-        const double w = bonded_[i] ? points.weight[i] : 0.;
+        const double w = penalised_[i] ? points.weight[i] : 0.;
         t = w *
             (t + (viscous ? bonds[i].viscous_penalty : bonds[i].penalty) * u);
         u *= w;

@@ -113,6 +113,35 @@ namespace nsfd
     set_modes();
   }
 
+  std::vector<char> ConformingSpace::jumping(const std::vector<char> &joined)
+  {
+    join(joined);
+    const std::size_t n = unknowns_.component.size();
+    std::vector<double> first(n), ghosts(ghosts_.size()); // below 2^53
+    for (std::size_t i = 0; i < n; ++i)
+      first[i] = double(unknowns_.first) + double(i);
+    agree(first, true);
+    exchange_.fetch(first.data(), ghosts.data());
+    parent_ = std::vector<int>();
+    std::vector<char> result(joined.size());
+    for (std::size_t f = 0; f < joined.size(); ++f) {
+      result[f] = !pairs_.complete[f];
+      for (std::size_t k = pairs_.start[f]; k < pairs_.start[f + 1]; ++k) {
+        const long long other = pairs_.other[k] - unknowns_.first;
+        const double of_other =
+            other >= 0 && other < static_cast<long long>(n)
+                ? first[std::size_t(other)]
+                : ghosts[std::size_t(std::lower_bound(ghosts_.begin(),
+                                                      ghosts_.end(),
+                                                      pairs_.other[k]) -
+                                     ghosts_.begin())];
+        if (first[std::size_t(pairs_.own[k])] != of_other)
+          result[f] = 1;
+      }
+    }
+    return result;
+  }
+
   std::vector<char> ConformingSpace::without_jump() const
   {
     std::vector<char> result(conforming_);

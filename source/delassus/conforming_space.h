@@ -45,6 +45,16 @@ namespace nsfd
      */
     void conform(const std::vector<char> &faces);
 
+    /** There would be no jump across the face if it were joined. */
+    bool is_complete(const std::size_t face) const
+    {
+      return pairs_.complete[face] != 0;
+    }
+
+    /** Faces across which functions could jump if these ones were joined, alike
+        on both ranks of a shared face; conform() is to be called then. */
+    std::vector<char> jumping(const std::vector<char> &joined);
+
     /** Something else than the faces made its matrix outdated. */
     void touch() { ++space_.version; }
 

@@ -301,6 +301,13 @@ namespace nsfd
                                   "of the polynomials in a cell");
     check_degree(reader, scene);
     const bool at_nodes = scene.time.scheme.at_nodes;
+    // Joined cells part at their nodes: with other points there would be more
+    // conditions of contact than motions. Points of a face that is divided in
+    // the run keep what they have inside of it.
+    const bool joined =
+        scene.has_bonded_faces() && scene.time.scheme.theta_scheme &&
+        !reader.has("interface points") && !file.find("Adaptivity") &&
+        !(scene.dimension == 3 && has_simplices(scene) && input.degree > 1);
     input.lumped_mass =
         reader.choice("mass", at_nodes ? "lumped" : "consistent",
                       {"consistent", "lumped"},
@@ -311,7 +318,7 @@ namespace nsfd
                    "would leave vertices without mass",
                    "write consistent, or degree = 1");
     input.interface_quadrature = reader.choice(
-        "interface quadrature", at_nodes ? "gauss lobatto" : "gauss",
+        "interface quadrature", at_nodes || joined ? "gauss lobatto" : "gauss",
         {"gauss", "gauss lobatto", "quarter points"},
         "gauss, gauss lobatto (tetrahedra: vertices of a face) or quarter "
         "points");

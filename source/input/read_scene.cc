@@ -147,9 +147,9 @@ namespace nsfd
         return nullptr;
       look_at_scheme(file, *scene);
       read_mesh(file, errors, *scene);
-      read_discretization(file, errors, *scene);
       read_materials(file, errors, *scene);
       read_interfaces(file, errors, *scene);
+      read_discretization(file, errors, *scene);
       read_boundaries(file, errors, *scene);
       read_obstacles(file, errors, *scene);
       read_contacts(file, errors, *scene);

@@ -117,7 +117,7 @@ namespace nsfd
     x_.resize(n_all);
   }
 
-  void Cholesky::factorise(const SparseRows &matrix, const bool new_pattern)
+  bool Cholesky::try_factorise(const SparseRows &matrix, const bool new_pattern)
   {
     const bool alone = communicator_.size() == 1;
     if (!alone)
@@ -134,7 +134,12 @@ namespace nsfd
                !cholmod_factorize(&A, library_->factor, common) ||
                common->status != CHOLMOD_OK || library_->factor->minor < A.nrow;
     }
-    if (communicator_.any(failed))
+    return !communicator_.any(failed);
+  }
+
+  void Cholesky::factorise(const SparseRows &matrix, const bool new_pattern)
+  {
+    if (!try_factorise(matrix, new_pattern))
       throw std::runtime_error("the sparse matrix has no Cholesky factor: not "
                                "positive definite to machine precision, or "
                                "too large for the memory");

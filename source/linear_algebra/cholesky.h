@@ -18,6 +18,8 @@ namespace nsfd
 
     /** @throws std::runtime_error on all ranks. */
     void factorise(const SparseRows &matrix, bool new_pattern);
+    /** False, on all ranks, where the other one throws. */
+    bool try_factorise(const SparseRows &matrix, bool new_pattern);
     void solve(const double *b, double *x);
     /** @p n columns at once; on one rank. */
     void solve_columns(const double *B, double *X, std::size_t n);

@@ -33,14 +33,7 @@ namespace nsfd
 
   namespace
   {
-    struct Entry {
-      long long row, column;
-      double value;
-      bool operator<(const Entry &other) const
-      {
-        return row != other.row ? row < other.row : column < other.column;
-      }
-    };
+    using Entry = SparseEntry;
 
     /** Rows of P^T A P as far as this rank contributes, ascending. */
     template <typename Take>
@@ -109,60 +102,83 @@ namespace nsfd
     }
   } // namespace
 
-  SparseRows coarse_rows(const Communicator &communicator, const SparseRows &A,
-                         const CoarseSpace &coarse,
-                         const std::vector<long long> &ghost_numbers)
+  namespace
+  {
+    /** Own rows with global @p columns, to local ones. */
+    void number_columns(const CoarseSpace &coarse,
+                        const std::vector<long long> &columns,
+                        SparseRows &result)
+    {
+      const auto own = [&](const long long column) {
+        return column >= coarse.first && column < coarse.first + coarse.n_own;
+      };
+      for (const long long column : columns)
+        if (!own(column))
+          result.ghosts.push_back(column);
+      std::sort(result.ghosts.begin(), result.ghosts.end());
+      result.ghosts.erase(
+          std::unique(result.ghosts.begin(), result.ghosts.end()),
+          result.ghosts.end());
+      result.column.resize(columns.size());
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        result.column[k] =
+            own(columns[k])
+                ? int(columns[k] - coarse.first)
+                : int(coarse.n_own +
+                      (std::lower_bound(result.ghosts.begin(),
+                                        result.ghosts.end(), columns[k]) -
+                       result.ghosts.begin()));
+    }
+  } // namespace
+
+  SparseRows sum_at_owners(const Communicator &communicator,
+                           const CoarseSpace &coarse,
+                           std::vector<SparseEntry> entries)
   {
     SparseRows result;
     result.first_row = coarse.first;
     result.start.assign(coarse.n_own + 1, 0);
     std::vector<long long> columns; // global
-    if (communicator.size() == 1)
-      sum_rows(A, coarse, ghost_numbers,
-               [&](const long long row, auto &entries) {
-                 for (const auto &[column, value] : entries) {
-                   columns.push_back(column);
-                   result.value.push_back(value);
-                 }
-                 result.start[row + 1] = int(columns.size());
-               });
-    else {
+    const auto all = to_owners(communicator, coarse, std::move(entries));
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (k > 0 && all[k].row == all[k - 1].row &&
+          all[k].column == all[k - 1].column) {
+        result.value.back() += all[k].value;
+        continue;
+      }
+      columns.push_back(all[k].column);
+      result.value.push_back(all[k].value);
+      result.start[all[k].row - coarse.first + 1] = int(columns.size());
+    }
+    number_columns(coarse, columns, result);
+    return result;
+  }
+
+  SparseRows coarse_rows(const Communicator &communicator, const SparseRows &A,
+                         const CoarseSpace &coarse,
+                         const std::vector<long long> &ghost_numbers)
+  {
+    if (communicator.size() > 1) {
       std::vector<Entry> all;
       sum_rows(A, coarse, ghost_numbers,
                [&](const long long row, auto &entries) {
                  for (const auto &[column, value] : entries)
                    all.push_back({row, column, value});
                });
-      all = to_owners(communicator, coarse, std::move(all));
-      for (std::size_t k = 0; k < all.size(); ++k) {
-        if (k > 0 && all[k].row == all[k - 1].row &&
-            all[k].column == all[k - 1].column) {
-          result.value.back() += all[k].value;
-          continue;
-        }
-        columns.push_back(all[k].column);
-        result.value.push_back(all[k].value);
-        result.start[all[k].row - coarse.first + 1] = int(columns.size());
-      }
+      return sum_at_owners(communicator, coarse, std::move(all));
     }
-    const auto own = [&](const long long column) {
-      return column >= coarse.first && column < coarse.first + coarse.n_own;
-    };
-    for (const long long column : columns)
-      if (!own(column))
-        result.ghosts.push_back(column);
-    std::sort(result.ghosts.begin(), result.ghosts.end());
-    result.ghosts.erase(std::unique(result.ghosts.begin(), result.ghosts.end()),
-                        result.ghosts.end());
-    result.column.resize(columns.size());
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      result.column[k] =
-          own(columns[k])
-              ? int(columns[k] - coarse.first)
-              : int(coarse.n_own +
-                    (std::lower_bound(result.ghosts.begin(),
-                                      result.ghosts.end(), columns[k]) -
-                     result.ghosts.begin()));
+    SparseRows result;
+    result.first_row = coarse.first;
+    result.start.assign(coarse.n_own + 1, 0);
+    std::vector<long long> columns; // global
+    sum_rows(A, coarse, ghost_numbers, [&](const long long row, auto &entries) {
+      for (const auto &[column, value] : entries) {
+        columns.push_back(column);
+        result.value.push_back(value);
+      }
+      result.start[row + 1] = int(columns.size());
+    });
+    number_columns(coarse, columns, result);
     return result;
   }
 } // namespace nsfd

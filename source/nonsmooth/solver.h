@@ -72,6 +72,8 @@ namespace nsfd
                     : problem_.majorant_tangential[point];
     }
 
+    double floor() const { return floor_; }
+
   private:
     const OneStepProblem<dim> &problem_;
     const DelassusOperator<dim> &delassus_;

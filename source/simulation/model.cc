@@ -256,7 +256,8 @@ namespace nsfd
     if (input.has_bonded_faces()) {
       auto joined = make_bonded_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
-          node_coordinates(*discretization));
+          node_coordinates(*discretization),
+          input.time.scheme == Scheme::moreau_jean);
       bonded = joined.get();
       delassus = std::move(joined);
       return;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nsfd
 {
@@ -80,10 +81,100 @@ namespace nsfd
         std::fill_n(&state.bond_traction[i * dim], dim, 0.);
   }
 
+  namespace
+  {
+    /** How far points are on their way to their strength; 1: there. */
+    struct Way {
+      double before = 0., now = 0.;
+    };
+
+    template <int dim>
+    Way way_of_point(const OneStepProblem<dim> &problem, const std::size_t i,
+                     const State &old, const State &next)
+    {
+      return {utilisation(problem, i, &old.bond_traction[i * dim]),
+              utilisation(problem, i, &next.bond_traction[i * dim])};
+    }
+
+    /** Of a face that lets go as a whole. */
+    template <int dim>
+    Way way_of_face(const OneStepProblem<dim> &problem,
+                    const typename InterfacePoints<dim>::Face &face,
+                    const bool mean, const State &old, const State &next)
+    {
+      if (!mean) {
+        Way furthest;
+        for (unsigned int i = face.first; i < face.first + face.count; ++i) {
+          const Way way = way_of_point(problem, i, old, next);
+          if (way.now > furthest.now)
+            furthest = way;
+        }
+        return furthest;
+      }
+      const auto of = [&](const State &state) {
+        double traction[dim] = {}, weight = 0.;
+        for (unsigned int i = face.first; i < face.first + face.count; ++i) {
+          weight += problem.weight[i];
+          for (unsigned int c = 0; c < dim; ++c)
+            traction[c] += problem.weight[i] * state.bond_traction[i * dim + c];
+        }
+        for (double &t : traction)
+          t /= weight;
+        return utilisation(problem, face.first, traction);
+      };
+      return {of(old), of(next)};
+    }
+
+    /** Points that let go, with their ways. */
+    template <int dim>
+    std::vector<std::pair<std::size_t, Way>>
+    points_let_go(const OneStepProblem<dim> &problem,
+                  BondedDelassus<dim> &bonded, const bool mean,
+                  const State &old, const State &next)
+    {
+      const auto &faces = bonded.points().faces;
+      const auto &shares_nodes = bonded.shares_nodes();
+      std::vector<std::pair<std::size_t, Way>> result;
+      std::vector<std::pair<std::size_t, Way>> reached; // faces
+      auto left = bonded_points(next);
+      for (std::size_t f = 0; f < faces.size(); ++f) {
+        const unsigned int first = faces[f].first;
+        if (!problem.interactions[problem.interaction[first]].law)
+          continue;
+        if (shares_nodes[f]) {
+          const Way way = way_of_face<dim>(problem, faces[f], mean, old, next);
+          if (way.now < 1.)
+            continue;
+          reached.emplace_back(f, way);
+          std::fill_n(left.begin() + first, faces[f].count, 0);
+          continue;
+        }
+        for (unsigned int i = first; i < first + faces[f].count; ++i) {
+          if (next.kind[i] != PointKind::bonded)
+            continue;
+          const Way way = way_of_point(problem, i, old, next);
+          if (way.now >= 1.)
+            result.emplace_back(i, way);
+        }
+      }
+      if (!bonded.communicator().any(!reached.empty()))
+        return result;
+      const auto opens = bonded.opens_with(left);
+      for (const auto &[f, way] : reached)
+        for (unsigned int i = faces[f].first;
+             opens[f] && i < faces[f].first + faces[f].count; ++i)
+          result.emplace_back(i, way);
+      std::sort(result.begin(), result.end(),
+                [](const auto &a, const auto &b) { return a.first < b.first; });
+      return result;
+    }
+  } // namespace
+
   template <int dim>
   BondReport release_bonds(const OneStepProblem<dim> &problem,
-                           const BulkTraction<dim> &bulk, const State &old,
-                           State &next)
+                           const BulkTraction<dim> &bulk,
+                           BondedDelassus<dim> &bonded, const bool mean,
+                           const State &old, State &next)
   {
     const auto &communicator = bulk.delassus().communicator();
     set_bond_tractions(bulk, next);
@@ -94,26 +185,23 @@ namespace nsfd
     BondReport report;
     std::vector<double> in_bonds(problem.n_owned, 0.), in_laws(in_bonds);
     unsigned int released = 0;
-    for (std::size_t i = 0; i < problem.n_points; ++i) {
-      if (next.kind[i] != PointKind::bonded ||
-          !problem.interactions[problem.interaction[i]].law)
-        continue;
+    for (const auto &[i, way] :
+         points_let_go(problem, bonded, mean, old, next)) {
+      // those that could not part before ask for no shorter step
+      if (way.before < 1.) {
+        report.overshoot = std::max(report.overshoot, way.now - 1.);
+        if (way.now > way.before)
+          report.share = std::min(report.share,
+                                  (1. - way.before) / (way.now - way.before));
+      }
       const double *traction = &next.bond_traction[i * dim];
-      const double now = utilisation(problem, i, traction);
-      if (now < 1.)
-        continue;
-      const double before =
-          utilisation(problem, i, &old.bond_traction[i * dim]);
-      report.overshoot = std::max(report.overshoot, now - 1.);
-      if (now > before)
-        report.share =
-            std::min(report.share, std::max(0., 1. - before) / (now - before));
       if (i < problem.n_owned) {
         in_bonds[i] =
             bulk.bond_energy(i, &next.jump[i * dim], &elastic[i * dim]);
         ++released;
       }
-      const double stored = start_law(problem, i, now, traction, next);
+      const double stored = start_law(
+          problem, i, utilisation(problem, i, traction), traction, next);
       if (i < problem.n_owned)
         in_laws[i] = stored;
     }
@@ -134,9 +222,11 @@ namespace nsfd
   template void set_bond_tractions(const BulkTraction<2> &, State &);
   template void set_bond_tractions(const BulkTraction<3> &, State &);
   template BondReport release_bonds(const OneStepProblem<2> &,
-                                    const BulkTraction<2> &, const State &,
+                                    const BulkTraction<2> &,
+                                    BondedDelassus<2> &, bool, const State &,
                                     State &);
   template BondReport release_bonds(const OneStepProblem<3> &,
-                                    const BulkTraction<3> &, const State &,
+                                    const BulkTraction<3> &,
+                                    BondedDelassus<3> &, bool, const State &,
                                     State &);
 } // namespace nsfd

@@ -28,10 +28,14 @@ namespace nsfd
    * strength of their law are left to it. What the bond had stored, w (t.u +
    * eta u^2 / 2), goes from the elastic energy to the numerical line; the
    * impulse of the next step starts from the traction, so that it is
-   * continuous. Collective.
+   * continuous. A face whose bodies share its nodes lets go as a whole: where
+   * the traction of a point reaches the strength, or with @p mean the mean of
+   * the face (linear cells have parasitic shear); and not before its sides can
+   * part, with those of other faces that have reached theirs. Collective.
    */
   template <int dim>
   BondReport release_bonds(const OneStepProblem<dim> &problem,
-                           const BulkTraction<dim> &bulk, const State &old,
-                           State &next);
+                           const BulkTraction<dim> &bulk,
+                           BondedDelassus<dim> &bonded, bool mean,
+                           const State &old, State &next);
 } // namespace nsfd

@@ -131,6 +131,25 @@ namespace nsfd
   }
 
   template <int dim>
+  void join_motion(BondedDelassus<dim> &bonded, State &state)
+  {
+    const auto join = [&](std::vector<double> &motion,
+                          std::vector<double> &jumps) {
+      const std::vector<double> given = motion;
+      if (!bonded.join_motion(motion))
+        return;
+      std::vector<double> change(motion.size()), jump(jumps.size());
+      for (std::size_t k = 0; k < change.size(); ++k)
+        change[k] = motion[k] - given[k];
+      bonded.relative_velocity(change.data(), jump.data());
+      for (std::size_t k = 0; k < jump.size(); ++k)
+        jumps[k] += jump[k];
+    };
+    join(state.displacement, state.jump);
+    join(state.velocity, state.relative_velocity);
+  }
+
+  template <int dim>
   State initial_state(const SceneInput &input,
                       const Discretization<dim> &discretization,
                       const DelassusOperator<dim> &delassus,
@@ -145,8 +164,10 @@ namespace nsfd
     delassus.relative_velocity(state.velocity.data(),
                                state.relative_velocity.data());
     set_points(input, discretization, problem, state);
-    if (bonded)
+    if (bonded) {
       bonded->set_bonds(bonded_points(state));
+      join_motion(*bonded, state);
+    }
     set_energies(delassus, problem, state);
     begin_balance(state);
     return state;
@@ -215,6 +236,7 @@ namespace nsfd
                               std::size_t);                                    \
   template void set_energies(const DelassusOperator<dim> &,                    \
                              const OneStepProblem<dim> &, State &);            \
+  template void join_motion(BondedDelassus<dim> &, State &);                   \
   template State initial_motion(const SceneInput &,                            \
                                 const Discretization<dim> &);                  \
   template double stored_in_points(                                            \

@@ -38,6 +38,13 @@ namespace nsfd
   void set_energies(const DelassusOperator<dim> &delassus,
                     const OneStepProblem<dim> &problem, State &state);
 
+  /**
+   * Bodies that share nodes move together from now on; the jumps of @p state
+   * follow. Collective.
+   */
+  template <int dim>
+  void join_motion(BondedDelassus<dim> &bonded, State &state);
+
   /** Displacements and velocities of the bodies alone. */
   template <int dim>
   State initial_motion(const SceneInput &input,

@@ -46,8 +46,10 @@ namespace nsfd
   template <int dim>
   void LinearMoreauJean<dim>::complete(State &state) const
   {
-    if (bonded_)
+    if (bonded_) {
       bonded_->set_bonds(bonded_points(state));
+      join_motion(*bonded_, state);
+    }
     set_energies(this->delassus_, this->problem_, state);
     if (bulk_)
       set_bond_tractions(*bulk_, state);
@@ -58,6 +60,29 @@ namespace nsfd
   {
     return name_of_point<dim>(this->input_, this->discretization_.origins(),
                               this->discretization_.points().position, i);
+  }
+
+  /**
+   * Points at one node say the same of its motion: one of them is enough, and
+   * two would differ by round-off.
+   */
+  template <int dim>
+  void LinearMoreauJean<dim>::prescribe_once(const bool others)
+  {
+    const auto &origins = this->discretization_.origins();
+    auto &masks = this->problem_.mask;
+    std::vector<std::uint8_t> given(masks.size(), 0);
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (origins[i].kind == PointOrigin::Kind::motion)
+        given[i] = masks[i];
+    if (this->delassus_.communicator().any(others ||
+                                           given != prescribed_.given)) {
+      prescribed_.once = bonded_->once_per_node(given);
+      prescribed_.given = given;
+    }
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (given[i])
+        masks[i] = prescribed_.once[i];
   }
 
   /** What the step does without impulses, and the data of its points. */
@@ -75,6 +100,8 @@ namespace nsfd
     this->step_problem_.begin();
     this->step_problem_.set(this->discretization_.origins(), old, h,
                             this->problem_);
+    if (bonded_)
+      prescribe_once(others);
     if (this->free_motion_.set_loads(old.time + time.bulk_theta() * h))
       ++this->counters_.load_assemblies;
     this->free_motion_.set_pressure(old, old.time + time.theta * h,
@@ -131,7 +158,9 @@ namespace nsfd
     this->check_.check_balance(step, report);
     relate_defect(energy_scale, next, report);
     if (bulk_) {
-      const BondReport bonds = release_bonds(this->problem_, *bulk_, old, next);
+      const BondReport bonds =
+          release_bonds(this->problem_, *bulk_, *bonded_,
+                        this->input_.discretization.degree == 1, old, next);
       report.released = bonds.released;
       report.overshoot = bonds.overshoot;
       report.share = bonds.share;

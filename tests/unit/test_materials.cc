@@ -282,6 +282,7 @@ end
       Vector v(n), sum(n), work(n);
       for (std::size_t i = 0; i < n; ++i)
         v[i] = std::sin(1. + 12.9898 * double(i));
+      EXPECT_TRUE(scene.bonded->join_motion(v)); // common nodes
       const double h = scene.time_step, theta = 0.5;
       scene.delassus->apply(Operator::mass, v.data(), sum.data());
       for (const auto &[op, share] :

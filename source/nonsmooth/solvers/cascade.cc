@@ -1,4 +1,4 @@
-#include "nonsmooth/solver.h"
+#include "augmented_lagrangian.h"
 
 #include "linear_algebra/factor_limits.h"
 
@@ -37,6 +37,9 @@ namespace nsfd
       {
         // the interior points know the bodies' own matrices only
         const Communicator &all = delassus.communicator();
+        if (dynamic_cast<VelocitySolver *>(&delassus))
+          return solve_joined(problem, delassus, energy_scale, control, impulse,
+                              evaluation);
         if (!delassus.bodies_are_apart() || !all.any(may_touch(problem)))
           return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
@@ -98,6 +101,34 @@ namespace nsfd
       }
 
     private:
+      /** Of bodies that share nodes. */
+      SolverReport solve_joined(const OneStepProblem<dim> &problem,
+                                DelassusOperator<dim> &delassus,
+                                const double energy_scale,
+                                const SolverControl &control,
+                                std::vector<double> &impulse,
+                                LawEvaluation<dim> &evaluation)
+      {
+        const std::vector<double> start(impulse);
+        SolverReport report = joined_.solve(problem, delassus, energy_scale,
+                                            control, impulse, evaluation);
+        if (report.converged)
+          return report;
+        const std::vector<double> best(impulse);
+        const double error = evaluation.error;
+        impulse = start;
+        add(newton_->solve(problem, delassus, energy_scale, control, impulse,
+                           evaluation),
+            "dual newton", report);
+        if (evaluation.error > error) {
+          impulse = best;
+          evaluation.update(impulse);
+        }
+        report.residual = evaluation.error;
+        report.converged = report.residual <= control.tolerance;
+        return report;
+      }
+
       /** What @p next did goes into @p report. */
       static void add(const SolverReport &next, const char *name,
                       SolverReport &report)
@@ -166,6 +197,7 @@ namespace nsfd
       }
 
       std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;
+      AugmentedLagrangian<dim> joined_;
     };
 
     using Cascade2 = Cascade<2>;

@@ -1,0 +1,204 @@
+#include "conforming_solver.h"
+
+#include "linear_algebra/cholesky.h"
+#include "linear_algebra/multigrid.h"
+#include "linear_algebra/sparse_rows.h"
+
+#include "core/stop_request.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace nsfd
+{
+  using Vector = std::vector<double>;
+
+  ConformingSolver::ConformingSolver(const Communicator &communicator,
+                                     const long long largest_factor)
+      : communicator_(communicator), largest_factor_(largest_factor)
+  {
+  }
+
+  ConformingSolver::~ConformingSolver() = default;
+
+  void ConformingSolver::set_space(const CoarseSpace &space)
+  {
+    space_ = &space;
+    new_pattern_ = true;
+    const long long first = space.first, end = first + space.n_own;
+    std::vector<long long> remote;
+    for (const long long k : space.number)
+      if (k < first || k >= end)
+        remote.push_back(k);
+    std::sort(remote.begin(), remote.end());
+    remote.erase(std::unique(remote.begin(), remote.end()), remote.end());
+    n_own_ = std::size_t(space.n_own);
+    exchange_ = GhostValues(communicator_, first, n_own_, remote);
+    place_.clear();
+    for (const long long k : space.number)
+      place_.push_back(
+          k >= first && k < end
+              ? int(k - first)
+              : int(n_own_) +
+                    int(std::lower_bound(remote.begin(), remote.end(), k) -
+                        remote.begin()));
+    b_.resize(n_own_ + remote.size());
+    x_.resize(b_.size());
+  }
+
+  double ConformingSolver::n_factor_entries() const
+  {
+    return factor_ ? factor_->n_entries() : 0.;
+  }
+
+  void ConformingSolver::prepare(const SparseRows &matrix)
+  {
+    if (!try_to_prepare(matrix))
+      throw std::runtime_error(
+          "the matrix of the joined bodies has no Cholesky "
+          "factor: not positive definite to machine "
+          "precision, or too large for the memory");
+  }
+
+  bool ConformingSolver::try_to_prepare(const SparseRows &matrix)
+  {
+    by_residuals_ = false;
+    if (space_->n_global <= largest_factor_) {
+      if (!factor_)
+        factor_ = std::make_unique<Cholesky>(communicator_);
+      return factor_->try_factorise(matrix, std::exchange(new_pattern_, false));
+    }
+    factor_.reset();
+    matrix_ = matrix;
+    of_matrix_ =
+        GhostValues(communicator_, matrix_.first_row, n_own_, matrix_.ghosts);
+    if (!multigrid_)
+      multigrid_ = std::make_unique<Multigrid>(communicator_);
+    multigrid_->prepare(matrix_, space_->modes, space_->per_node);
+    return true;
+  }
+
+  void ConformingSolver::set_matrix(const SparseRows &matrix)
+  {
+    by_residuals_ = true;
+    matrix_ = matrix;
+    of_matrix_ =
+        GhostValues(communicator_, matrix_.first_row, n_own_, matrix_.ghosts);
+  }
+
+  /** P^T b. */
+  void ConformingSolver::restrict_to_space(const double *b, double *own)
+  {
+    std::fill(own, own + b_.size(), 0.);
+    for (std::size_t i = 0; i < place_.size(); ++i)
+      own[place_[i]] += b[i];
+    exchange_.start_add_back(own + n_own_);
+    exchange_.finish_add_back(own);
+  }
+
+  /** x = P own. */
+  void ConformingSolver::expand(double *own, double *x)
+  {
+    exchange_.fetch(own, own + n_own_);
+    for (std::size_t i = 0; i < place_.size(); ++i)
+      x[i] = own[place_[i]];
+  }
+
+  void ConformingSolver::precondition(const Vector &r, Vector &z)
+  {
+    if (factor_)
+      factor_->solve(r.data(), z.data());
+    else
+      multigrid_->apply(r.data(), z.data());
+  }
+
+  krylov::Outcome ConformingSolver::iterate(const double tolerance)
+  {
+    const auto dot = [this](const Vector &a, const Vector &b) {
+      // the second one: how many ranks are asked to stop
+      double sums[2] = {0.,
+                        stop_request::is_due(communicator_.size()) ? 1. : 0.};
+      for (std::size_t i = 0; i < n_own_; ++i)
+        sums[0] += a[i] * b[i];
+      if (communicator_.size() > 1)
+        MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM,
+                      communicator_.mpi());
+      if (sums[1] > 0.)
+        throw StopRequested();
+      return sums[0];
+    };
+    Vector direction(n_own_ + matrix_.ghosts.size());
+    const auto product = [&](const Vector &p, Vector &q) {
+      std::copy_n(p.begin(), n_own_, direction.begin());
+      multiply(matrix_, of_matrix_, direction.data(), q.data());
+    };
+    const auto preconditioner = [&](const Vector &r, Vector &z) {
+      precondition(r, z);
+    };
+    if (by_residuals_) {
+      constexpr unsigned int most = 100;
+      Vector x(b_.begin(), b_.begin() + long(n_own_));
+      const auto outcome =
+          krylov::gmres(product, preconditioner, dot, {tolerance, most}, {}, x);
+      std::copy(x.begin(), x.end(), x_.begin());
+      return outcome;
+    }
+    const auto never = [] { return false; };
+    vectors_.r.assign(b_.begin(), b_.begin() + long(n_own_));
+    for (Vector *v : {&vectors_.z, &vectors_.p, &vectors_.q})
+      v->assign(n_own_, 0.);
+    Vector x(n_own_, 0.);
+    krylov::CgSystem system(product, preconditioner, dot, never, vectors_, x);
+    const unsigned int limit = 1000;
+    const auto outcome =
+        krylov::conjugate_gradients(system, {tolerance, limit});
+    std::copy(x.begin(), x.end(), x_.begin());
+    return outcome;
+  }
+
+  /** From b_ to x_. */
+  krylov::Outcome ConformingSolver::solve_here(const double tolerance)
+  {
+    if (by_residuals_ || !factor_)
+      return iterate(tolerance);
+    factor_->solve(b_.data(), x_.data());
+    return {0, true};
+  }
+
+  krylov::Outcome ConformingSolver::solve(const double *b, double *x,
+                                          const double tolerance)
+  {
+    restrict_to_space(b, b_.data());
+    const auto outcome = solve_here(tolerance);
+    expand(x_.data(), x);
+    return outcome;
+  }
+
+  krylov::Outcome ConformingSolver::solve_own(const Vector &b, Vector &x,
+                                              const double tolerance)
+  {
+    std::copy(b.begin(), b.end(), b_.begin());
+    const auto outcome = solve_here(tolerance);
+    x.assign(x_.begin(), x_.begin() + long(n_own_));
+    return outcome;
+  }
+
+  void ConformingSolver::solve_columns(const double *B, double *X,
+                                       const std::size_t rows,
+                                       const std::size_t n,
+                                       const double tolerance)
+  {
+    if (!factor_ || by_residuals_ || communicator_.size() > 1) {
+      for (std::size_t c = 0; c < n; ++c)
+        solve(B + c * rows, X + c * rows, tolerance);
+      return;
+    }
+    Vector in(n * n_own_), out(in.size());
+    for (std::size_t c = 0; c < n; ++c)
+      restrict_to_space(B + c * rows, &in[c * n_own_]);
+    factor_->solve_columns(in.data(), out.data(), n);
+    for (std::size_t c = 0; c < n; ++c)
+      expand(&out[c * n_own_], X + c * rows);
+  }
+} // namespace nsfd

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "linear_algebra/ghost_values.h"
+#include "linear_algebra/krylov.h"
+#include "linear_algebra/spd_solver.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  class Cholesky;
+  class Multigrid;
+
+  /**
+   * Solves among the functions of a space alone, x = P A^{-1} P^T b: joined
+   * cells with common nodes. A on the space is given. It has a sparse Cholesky
+   * factor up to a number of unknowns; beyond, conjugate gradients that one
+   * V-cycle of smoothed aggregation preconditions.
+   */
+  class ConformingSolver
+  {
+  public:
+    ConformingSolver(const Communicator &communicator,
+                     long long largest_factor);
+    ~ConformingSolver();
+
+    /** It is to stay where it is. Collective. */
+    void set_space(const CoarseSpace &space);
+    /** Symmetric, and of the present space. Collective. @throws as Cholesky. */
+    void prepare(const SparseRows &matrix);
+    /** The same; false where it is known not to be positive definite. */
+    bool try_to_prepare(const SparseRows &matrix);
+    /**
+     * From now on solutions are those of @p matrix, symmetric or not, by
+     * generalised minimal residuals that what was prepared last preconditions.
+     */
+    void set_matrix(const SparseRows &matrix);
+
+    /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
+    krylov::Outcome solve(const double *b, double *x, double tolerance);
+    /** The same with own values of the space. Collective. */
+    krylov::Outcome solve_own(const std::vector<double> &b,
+                              std::vector<double> &x, double tolerance);
+    /** @p n columns of @p rows values each. */
+    void solve_columns(const double *B, double *X, std::size_t rows,
+                       std::size_t n, double tolerance);
+
+    /** Of the factor, 0: there is none on this rank. */
+    double n_factor_entries() const;
+
+  private:
+    void restrict_to_space(const double *b, double *own);
+    void expand(double *own, double *x);
+    krylov::Outcome solve_here(double tolerance);
+    void precondition(const std::vector<double> &r, std::vector<double> &z);
+    krylov::Outcome iterate(double tolerance);
+
+    const Communicator &communicator_;
+    const long long largest_factor_;
+    const CoarseSpace *space_ = nullptr;
+    /// per unknown: place among own ones of the space, then its ghosts
+    std::vector<int> place_;
+    std::size_t n_own_ = 0;
+    GhostValues exchange_; ///< of the space
+    bool new_pattern_ = true, by_residuals_ = false;
+    std::unique_ptr<Cholesky> factor_;
+    std::unique_ptr<Multigrid> multigrid_;
+    SparseRows matrix_; ///< of the iterations
+    GhostValues of_matrix_;
+    krylov::CgVectors vectors_;
+    std::vector<double> b_, x_; ///< own, with room for ghosts
+  };
+} // namespace nsfd

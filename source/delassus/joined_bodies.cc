@@ -1,0 +1,378 @@
+#include "joined_bodies.h"
+
+#include "linear_algebra/positive_part.h"
+#include "sparse_assembly.h"
+
+#include "core/cost.h"
+#include "core/gather.h"
+#include "nsfd/core/archive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace nsfd
+{
+  template <int dim>
+  JoinedBodies<dim>::JoinedBodies(const Communicator &communicator,
+                                  const Bodies &bodies,
+                                  const InterfacePoints<dim> &points,
+                                  const std::vector<double> &coordinates,
+                                  const long long largest_factor,
+                                  const bool share_nodes)
+      : BondedDelassus<dim>(communicator, bodies, points),
+        may_share_(share_nodes), factor_(communicator, largest_factor),
+        tangent_(*this, communicator, largest_factor)
+  {
+    // K >= so much of the bodies' own: their blocks bound W from above
+    this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
+    const long long mine = static_cast<long long>(bodies.n_dofs());
+    long long sum = 0;
+    MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
+    matrix_ = std::make_unique<JoinedMatrix<dim>>(
+        communicator, bodies, points, point_traces(*this, sum - mine, true),
+        this->bulk_.bonds(), sum - mine);
+    const SparseAssembly<dim> nodes(communicator, bodies, points, coordinates);
+    conforming_ = std::make_unique<ConformingSpace>(
+        communicator, dim, nodes.unknowns(), nodes.node_pairs());
+    JoinedBodies::bonds_changed();
+  }
+
+  template <int dim>
+  std::vector<std::uint8_t>
+  JoinedBodies<dim>::once_per_node(const std::vector<std::uint8_t> &masks)
+  {
+    struct Claim {
+      long long node;
+      std::uint64_t key; ///< of the face
+      unsigned int number, point, mask;
+      int rank;
+      bool operator<(const Claim &other) const
+      {
+        return std::tie(node, key, number) <
+               std::tie(other.node, other.key, other.number);
+      }
+    };
+    std::vector<Claim> claims;
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+      const long long node = masks[i] ? matrix_->node_of_point(i) : -1;
+      if (node < 0)
+        continue;
+      const auto &face = this->points_.faces[this->points_.face_of[i]];
+      claims.push_back({node, face.key, unsigned(i) - face.first, unsigned(i),
+                        masks[i], this->communicator_.rank()});
+    }
+    claims = gather_all(this->communicator_, claims);
+    std::sort(claims.begin(), claims.end());
+    std::vector<std::uint8_t> result = masks;
+    unsigned int said = 0;
+    for (std::size_t k = 0; k < claims.size(); ++k) {
+      if (k == 0 || claims[k].node != claims[k - 1].node)
+        said = 0;
+      if (claims[k].rank == this->communicator_.rank())
+        result[claims[k].point] &= std::uint8_t(~said);
+      said |= claims[k].mask;
+    }
+    return result;
+  }
+
+  /** Faces that are bonded all over, node to node. */
+  template <int dim>
+  std::vector<char>
+  JoinedBodies<dim>::joined_by(const std::vector<std::uint8_t> &bonded) const
+  {
+    std::vector<char> joined(this->points_.faces.size(), 0);
+    for (std::size_t f = 0; f < joined.size(); ++f) {
+      const auto &face = this->points_.faces[f];
+      const auto first = bonded.begin() + face.first, last = first + face.count;
+      joined[f] =
+          may_share_ && conforming_->is_complete(f) &&
+          std::all_of(first, last, [](const std::uint8_t b) { return b; });
+    }
+    return joined;
+  }
+
+  template <int dim>
+  void JoinedBodies<dim>::bonds_changed()
+  {
+    valid_ = false;
+    this->shares_nodes_ = joined_by(this->bonded_);
+    for (std::size_t f = 0; f < this->shares_nodes_.size(); ++f)
+      if (this->shares_nodes_[f])
+        std::fill_n(this->penalised_.begin() + this->points_.faces[f].first,
+                    this->points_.faces[f].count, 0);
+    conforming_->conform(this->shares_nodes_);
+    matrix_->set_space(conforming_->space(), this->shares_nodes_,
+                       this->penalised_);
+    factor_.set_space(conforming_->space());
+    tangent_.set_space(conforming_->space());
+    has_bodies_ = false;
+  }
+
+  /** M_hat + H^T T H in the space, @p springs the blocks T; none if empty. */
+  template <int dim>
+  const SparseRows &
+  JoinedBodies<dim>::assemble(const std::vector<double> &springs) const
+  {
+    if (!has_bodies_)
+      matrix_->set_bodies(this->shares(this->time_step_, this->theta_));
+    has_bodies_ = true;
+    return matrix_->assemble(springs.empty() ? nullptr : springs.data());
+  }
+
+  template <int dim>
+  bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &springs)
+  {
+    const Charge charge(Cost::preconditioner);
+    ++this->counters_.global_factorisations;
+    return tangent_.factor(assemble(springs), springs);
+  }
+
+  /** dU of any T, preconditioned by the springs that were factored. */
+  template <int dim>
+  bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
+                                        const double tolerance,
+                                        const std::vector<double> &c,
+                                        std::vector<double> &dU)
+  {
+    const Charge charge(Cost::precondition);
+    tangent_.solver().set_matrix(assemble(T));
+    return respond(tangent_.solver(), c.data(), dU.data(), tolerance);
+  }
+
+  /** Its positive part preconditions what is not symmetric. */
+  template <int dim>
+  bool JoinedBodies<dim>::solve_linearised(const std::vector<double> &T,
+                                           const bool symmetric,
+                                           const double tolerance,
+                                           const std::vector<double> &c,
+                                           std::vector<double> &dP,
+                                           std::vector<double> &dU)
+  {
+    std::vector<double> positive = T;
+    for (std::size_t k = 0; k < T.size() && !symmetric; k += dim * dim)
+      take_positive_part<dim>(&positive[k]);
+    dU.resize(c.size());
+    const bool old = tangent_.may_keep(positive);
+    if (!(old && solve_tangent(T, tolerance, c, dU))) {
+      if (!factor_tangent(positive))
+        return false;
+      if (symmetric) {
+        const Charge charge(Cost::precondition);
+        if (!respond(tangent_.solver(), c.data(), dU.data()))
+          return false;
+      } else if (!solve_tangent(T, tolerance, c, dU))
+        return false;
+    }
+    dP = c;
+    for (std::size_t k = 0; k < c.size(); ++k)
+      for (unsigned int e = 0; e < dim; ++e)
+        dP[k] -= T[k * dim + e] * dU[k / dim * dim + e];
+    return true;
+  }
+
+  template <int dim>
+  bool JoinedBodies<dim>::join_motion(std::vector<double> &x)
+  {
+    ConformingSolver mass(this->communicator_,
+                          std::numeric_limits<long long>::max());
+    mass.set_space(conforming_->space());
+    matrix_->set_bodies({0., 0.});
+    has_bodies_ = false;
+    mass.prepare(matrix_->assemble(nullptr));
+    std::vector<double> momentum(x.size()), joined(x.size());
+    this->apply(Operator::mass, x.data(), momentum.data());
+    mass.solve(momentum.data(), joined.data(), tight);
+    double size = 0., change = 0.;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      size = std::max(size, std::abs(x[k]));
+      change = std::max(change, std::abs(joined[k] - x[k]));
+    }
+    // what has no jump but for round-off keeps its bits
+    if (!(this->communicator_.max(change) >
+          1e-12 * this->communicator_.max(size)))
+      return false;
+    x = std::move(joined);
+    return true;
+  }
+
+  template <int dim>
+  void JoinedBodies<dim>::reinit(const double time_step, const double theta)
+  {
+    if (time_step != this->time_step_ || theta != this->theta_) {
+      valid_ = has_bodies_ = false;
+      tangent_.clear();
+    }
+    DelassusOperator<dim>::reinit(time_step, theta);
+  }
+
+  /** Factor M_hat if the step or the bonds have changed. */
+  template <int dim>
+  void JoinedBodies<dim>::update() const
+  {
+    if (valid_)
+      return;
+    const Charge charge(Cost::preconditioner);
+    factor_.prepare(assemble({}));
+    ++this->counters_.global_factorisations;
+    valid_ = true;
+    n_solves_ = 0;
+    condensed_.clear();
+  }
+
+  template <int dim>
+  void JoinedBodies<dim>::solve(const double *b, double *x) const
+  {
+    update();
+    solve(factor_, b, x);
+    ++n_solves_;
+  }
+
+  template <int dim>
+  bool JoinedBodies<dim>::solve(ConformingSolver &solver, const double *b,
+                                double *x, const double tolerance) const
+  {
+    std::fill(x, x + this->bodies_.n_dofs(), 0.);
+    const auto outcome = solver.solve(b, x, tolerance);
+    this->counters_.inner_iterations += outcome.iterations;
+    ++this->counters_.global_solves;
+    return outcome.converged;
+  }
+
+  template <int dim>
+  void JoinedBodies<dim>::apply(const Operator op, const double *x,
+                                double *y) const
+  {
+    if (op == Operator::inverse) {
+      solve(x, y);
+      return;
+    }
+    BondedDelassus<dim>::apply(op, x, y);
+  }
+
+  template <int dim>
+  void JoinedBodies<dim>::apply_delassus(const double *impulse,
+                                         double *velocity) const
+  {
+    const Charge charge(Cost::delassus);
+    ++this->counters_.delassus;
+    if (condense()) {
+      condensed_.apply(impulse, velocity);
+      return;
+    }
+    update();
+    ++n_solves_;
+    respond(factor_, impulse, velocity);
+  }
+
+  /** U = H x of the answer x to H^T P. */
+  template <int dim>
+  bool JoinedBodies<dim>::respond(ConformingSolver &solver,
+                                  const double *impulse, double *velocity,
+                                  const double tolerance) const
+  {
+    if (this->communicator_.size() == 1) { // points that can part alone
+      matrix_->impulse(impulse, rows_);
+      const auto outcome = solver.solve_own(rows_, columns_, tight);
+      this->counters_.inner_iterations += outcome.iterations;
+      ++this->counters_.global_solves;
+      matrix_->velocity(columns_, velocity);
+      return outcome.converged;
+    }
+    rows_.resize(this->bodies_.n_dofs());
+    columns_.resize(rows_.size());
+    this->generalised_impulse(impulse, rows_.data());
+    const bool solved = solve(solver, rows_.data(), columns_.data(), tolerance);
+    this->relative_velocity(columns_.data(), velocity);
+    return solved;
+  }
+
+  template <int dim>
+  void JoinedBodies<dim>::add_velocity_change(const double *impulse,
+                                              double *velocity) const
+  {
+    rows_.resize(this->bodies_.n_dofs());
+    columns_.resize(rows_.size());
+    this->generalised_impulse(impulse, rows_.data());
+    solve(rows_.data(), columns_.data());
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      velocity[k] += columns_[k];
+  }
+
+  /**
+   * W of the rows as a dense matrix, on one rank: once as many systems have
+   * been solved as its columns cost, and if it fits.
+   */
+  template <int dim>
+  bool JoinedBodies<dim>::condense() const
+  {
+    if (this->communicator_.size() > 1)
+      return false;
+    update();
+    if (!condensed_.empty())
+      return true;
+    std::vector<std::size_t> rows;
+    for (std::size_t k = 0; k < this->bonded_.size() * dim; ++k)
+      if (is_row(k))
+        rows.push_back(k);
+    // Many columns at once cost a quarter of as many single ones; a product
+    // by the factor reads it twice.
+    const double by_factor =
+        2. * factor_.n_factor_entries() + 10. * double(rows.size());
+    if (rows.empty() || rows.size() > CondensedDelassus::largest ||
+        (rows.size() > 64 &&
+         (4 * n_solves_ < rows.size() ||
+          double(rows.size()) * double(rows.size()) > by_factor)))
+      return false;
+    const std::size_t n = this->bodies_.n_dofs(), m = rows.size();
+    constexpr std::size_t batch = 64; // columns fill the caches
+    std::vector<double> B(n * batch), X(n * batch),
+        impulse(this->bonded_.size() * dim, 0.), velocity(impulse.size());
+    condensed_.reset(impulse.size(), rows);
+    for (std::size_t first = 0; first < m; first += batch) {
+      const std::size_t count = std::min(batch, m - first);
+      for (std::size_t c = 0; c < count; ++c) {
+        impulse[rows[first + c]] = 1.;
+        this->generalised_impulse(impulse.data(), &B[c * n]);
+        impulse[rows[first + c]] = 0.;
+      }
+      factor_.solve_columns(B.data(), X.data(), n, count, tight);
+      for (std::size_t c = 0; c < count; ++c) {
+        this->relative_velocity(&X[c * n], velocity.data());
+        condensed_.set_column(first + c, velocity.data());
+      }
+    }
+    this->counters_.global_solves += m;
+    return true;
+  }
+
+  /**
+   * Factors are made again; whether W was condensed depends on how many
+   * systems had been solved, and how good an old factor is on its springs.
+   */
+  template <int dim>
+  void JoinedBodies<dim>::serialize(Archive &archive)
+  {
+    BondedDelassus<dim>::serialize(archive);
+    bool factored = valid_, condensed = !condensed_.empty();
+    std::size_t n_solves = n_solves_;
+    archive.numbers("bodies", factored, condensed, n_solves);
+    archive.points("tangents", tangent_.springs());
+    if (!archive.reads())
+      return;
+    valid_ = false;
+    condensed_.clear();
+    if (factored)
+      update();
+    if (condensed) {
+      n_solves_ = CondensedDelassus::largest; // enough for any
+      condense();
+    }
+    if (!tangent_.springs().empty())
+      factor_tangent(std::vector<double>(tangent_.springs()));
+    n_solves_ = n_solves;
+  }
+
+  template class JoinedBodies<2>;
+  template class JoinedBodies<3>;
+} // namespace nsfd

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "bonded.h"
+#include "condensed.h"
+#include "conforming_solver.h"
+#include "conforming_space.h"
+#include "joined_matrix.h"
+#include "tangent_factor.h"
+#include "velocity_solver.h"
+
+#include <limits>
+
+namespace nsfd
+{
+  /**
+   * Implicit bodies that share nodes: W = H P (P^T M_hat P)^-1 P^T H^T, P the
+   * motions of the bodies that the space of the nodes allows.
+   */
+  template <int dim>
+  class JoinedBodies : public BondedDelassus<dim>, public VelocitySolver
+  {
+  public:
+    using typename BondedDelassus<dim>::Operator;
+
+    /** As make_bonded_delassus(). */
+    JoinedBodies(const Communicator &communicator, const Bodies &bodies,
+                 const InterfacePoints<dim> &points,
+                 const std::vector<double> &coordinates,
+                 long long largest_factor, bool share_nodes);
+
+    void reinit(double time_step, double theta) override;
+    bool bodies_are_apart() const override { return false; }
+    void apply_delassus(const double *impulse, double *velocity) const override;
+    void add_velocity_change(const double *impulse,
+                             double *velocity) const override;
+    void apply(Operator op, const double *x, double *y) const override;
+    bool solve_linearised(const std::vector<double> &T, bool symmetric,
+                          double tolerance, const std::vector<double> &c,
+                          std::vector<double> &dP,
+                          std::vector<double> &dU) override;
+    bool join_motion(std::vector<double> &x) override;
+    std::vector<std::uint8_t>
+    once_per_node(const std::vector<std::uint8_t> &masks) override;
+    std::vector<char>
+    opens_with(const std::vector<std::uint8_t> &bonded) override
+    {
+      return conforming_->jumping(joined_by(bonded));
+    }
+    void serialize(Archive &archive) override;
+
+  protected:
+    /// of iterations: the energy balance shows what a product with W leaves
+    static constexpr double tight = 1e-12;
+
+    void bonds_changed() override;
+    bool respond(ConformingSolver &solver, const double *impulse,
+                 double *velocity, double tolerance = tight) const;
+    bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
+    bool condense() const;
+    const SparseRows &assemble(const std::vector<double> &springs) const;
+    const CoarseSpace &space() const { return conforming_->space(); }
+
+    mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
+
+  private:
+    bool factor_tangent(const std::vector<double> &springs);
+    bool solve_tangent(const std::vector<double> &T, double tolerance,
+                       const std::vector<double> &c, std::vector<double> &dU);
+    std::vector<char> joined_by(const std::vector<std::uint8_t> &bonded) const;
+    void solve(const double *b, double *x) const;
+    bool solve(ConformingSolver &solver, const double *b, double *x,
+               double tolerance = tight) const;
+    void update() const;
+
+    mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
+    mutable bool has_bodies_ = false; ///< matrix_, of the step
+    const bool may_share_;            ///< nodes
+    std::unique_ptr<ConformingSpace> conforming_;
+    mutable ConformingSolver factor_; ///< of M_hat
+    TangentFactor<dim> tangent_;
+    mutable bool valid_ = false;       ///< factor_
+    mutable std::size_t n_solves_ = 0; ///< with the present factor
+    /// by unknown of the bodies
+    mutable std::vector<double> rows_, columns_;
+  };
+} // namespace nsfd

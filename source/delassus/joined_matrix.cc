@@ -1,0 +1,438 @@
+#include "joined_matrix.h"
+
+#include "linear_algebra/sparse_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  template <int dim>
+  JoinedMatrix<dim>::JoinedMatrix(const Communicator &communicator,
+                                  const Bodies &bodies,
+                                  const InterfacePoints<dim> &points,
+                                  std::array<std::vector<PointTrace>, 2> traces,
+                                  std::vector<Bond> bonds,
+                                  const long long first_dof)
+      : communicator_(communicator), bodies_(bodies), points_(points),
+        traces_(std::move(traces)), bonds_(std::move(bonds)),
+        first_dof_(first_dof)
+  {
+    const auto end = first_dof + static_cast<long long>(bodies.n_dofs());
+    for (const auto &side : traces_)
+      for (const PointTrace &trace : side)
+        if (trace.first >= 0 && (trace.first < first_dof || trace.first >= end))
+          for (unsigned int j = 0; j < trace.n_dofs; ++j)
+            remote_.push_back(trace.first + j);
+    std::sort(remote_.begin(), remote_.end());
+    remote_.erase(std::unique(remote_.begin(), remote_.end()), remote_.end());
+    fetch_ = GhostValues(communicator, first_dof, bodies.n_dofs(), remote_);
+  }
+
+  template <int dim>
+  auto JoinedMatrix<dim>::block_of(const long long number) const -> Block
+  {
+    const long long block = number / size_,
+                    mine = block - space_->first / size_;
+    if (mine >= 0 && mine < n_own_)
+      return Block(mine);
+    return n_own_ +
+           Block(std::lower_bound(ghosts_.begin(), ghosts_.end(), block) -
+                 ghosts_.begin());
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::number_blocks(const CoarseSpace &space)
+  {
+    space_ = &space;
+    size_ = space.per_node;
+    n_own_ = int(space.n_own / size_);
+    std::vector<double> own(space.number.begin(), space.number.end()),
+        remote(remote_.size()); // below 2^53
+    fetch_.fetch(own.data(), remote.data());
+    ghosts_.clear();
+    const auto note = [&](const long long number) {
+      const long long mine = (number - space.first) / size_;
+      if (number < space.first || mine >= n_own_)
+        ghosts_.push_back(number / size_);
+    };
+    for (const long long number : space.number)
+      note(number);
+    for (const double number : remote)
+      note(static_cast<long long>(number));
+    std::sort(ghosts_.begin(), ghosts_.end());
+    ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
+    block_.own.clear();
+    block_.remote.clear();
+    for (const long long number : space.number)
+      block_.own.push_back(block_of(number));
+    for (const double number : remote)
+      block_.remote.push_back(block_of(static_cast<long long>(number)));
+  }
+
+  /** Of the body at a side of a point, in the order of its unknowns. */
+  template <int dim>
+  auto JoinedMatrix<dim>::blocks_of_side(const std::size_t point,
+                                         const unsigned int side) const
+      -> std::vector<Block>
+  {
+    std::vector<Block> result;
+    const PointTrace &trace = traces_[side][point];
+    if (trace.first < 0)
+      return result;
+    const long long mine = trace.first - first_dof_;
+    const bool own =
+        mine >= 0 && mine < static_cast<long long>(bodies_.n_dofs());
+    const std::size_t first =
+        own ? std::size_t(mine)
+            : std::size_t(std::lower_bound(remote_.begin(), remote_.end(),
+                                           trace.first) -
+                          remote_.begin());
+    for (unsigned int j = 0; j < trace.n_dofs; j += size_)
+      result.push_back((own ? block_.own : block_.remote)[first + j]);
+    return result;
+  }
+
+  /** Of the points whose sides can part; common nodes cancel each other. */
+  template <int dim>
+  void JoinedMatrix<dim>::set_entries(const std::vector<char> &shares_nodes)
+  {
+    entries_.clear();
+    first_entry_.assign(1, 0);
+    for (std::size_t i = 0; i < points_.n_points; ++i) {
+      const std::size_t first = entries_.size();
+      double largest = 0.;
+      for (unsigned int s = 0; s < 2 && !shares_nodes[points_.face_of[i]];
+           ++s) {
+        const PointTrace &trace = traces_[s][i];
+        const bool own =
+            trace.first >= first_dof_ &&
+            trace.first < first_dof_ + static_cast<long long>(bodies_.n_dofs());
+        const auto blocks = blocks_of_side(i, s);
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+          Entry entry{blocks[b], {}, {}};
+          bool zero = true;
+          for (unsigned int k = 0; k < dim; ++k)
+            for (unsigned int c = 0; c < size_; ++c) {
+              const double a = trace.jump[k * trace.n_dofs + b * size_ + c];
+              zero = zero && a == 0.;
+              largest = std::max(largest, std::abs(a));
+              entry.all[k * size_ + c] = a;
+              entry.own[k * size_ + c] = own ? a : 0.;
+            }
+          if (zero)
+            continue;
+          const auto known = std::find_if(
+              entries_.begin() + long(first), entries_.end(),
+              [&](const Entry &e) { return e.block == blocks[b]; });
+          if (known == entries_.end()) {
+            entries_.push_back(entry);
+            continue;
+          }
+          for (unsigned int k = 0; k < dim * size_; ++k) {
+            known->all[k] += entry.all[k];
+            known->own[k] += entry.own[k];
+          }
+        }
+      }
+      const auto vanishes = [&](const Entry &entry) {
+        return std::all_of(
+            entry.all.begin(), entry.all.end(),
+            [&](const double a) { return std::abs(a) <= 1e-12 * largest; });
+      };
+      entries_.erase(std::remove_if(entries_.begin() + long(first),
+                                    entries_.end(), vanishes),
+                     entries_.end());
+      first_entry_.push_back(entries_.size());
+    }
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::set_pattern(const std::vector<char> &shares_nodes)
+  {
+    const std::size_t n_rows = std::size_t(n_own_) + ghosts_.size();
+    std::vector<std::pair<Block, Block>> pairs;
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      for (std::size_t i = bodies_.first_dof[b]; i < bodies_.first_dof[b + 1];
+           i += size_)
+        for (std::size_t j = bodies_.first_dof[b]; j < bodies_.first_dof[b + 1];
+             j += size_)
+          pairs.emplace_back(block_.own[i], block_.own[j]);
+    for (std::size_t f = 0; f < points_.faces.size(); ++f) {
+      const auto &face = points_.faces[f];
+      if (shares_nodes[f])
+        continue;
+      const auto first = penalised_.begin() + face.first;
+      if (std::any_of(first, first + face.count,
+                      [](const std::uint8_t b) { return b; }))
+        for (unsigned int s = 0; s < 2; ++s)
+          for (unsigned int t = 0; t < 2; ++t)
+            for (const Block r : blocks_of_side(face.first, s))
+              for (const Block c : blocks_of_side(face.first, t))
+                pairs.emplace_back(r, c);
+      for (std::size_t i = face.first; i < face.first + face.count; ++i)
+        for (std::size_t r = first_entry_[i]; r < first_entry_[i + 1]; ++r)
+          for (std::size_t c = first_entry_[i]; c < first_entry_[i + 1]; ++c)
+            pairs.emplace_back(entries_[r].block, entries_[c].block);
+    }
+    // sorted by row, then within rows, which are short
+    std::vector<std::size_t> first(n_rows + 1, 0);
+    for (const auto &pair : pairs)
+      ++first[std::size_t(pair.first) + 1];
+    for (std::size_t r = 0; r < n_rows; ++r)
+      first[r + 1] += first[r];
+    std::vector<Block> columns(pairs.size());
+    auto next = first;
+    for (const auto &[row, column] : pairs)
+      columns[next[std::size_t(row)]++] = column;
+    pattern_.column.clear();
+    pattern_.first.assign(1, 0);
+    for (std::size_t r = 0; r < n_rows; ++r) {
+      const auto begin = columns.begin() + long(first[r]),
+                 end = columns.begin() + long(first[r + 1]);
+      std::sort(begin, end);
+      pattern_.column.insert(pattern_.column.end(), begin,
+                             std::unique(begin, end));
+      pattern_.first.push_back(pattern_.column.size());
+    }
+    bodies_values_.assign(pattern_.column.size() * size_ * size_, 0.);
+
+    if (communicator_.size() > 1)
+      return;
+    matrix_ = SparseRows();
+    matrix_.start.assign(1, 0);
+    for (std::size_t r = 0; r < n_rows; ++r)
+      for (unsigned int k = 0; k < size_; ++k) {
+        for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1]; ++c)
+          for (unsigned int l = 0; l < size_; ++l)
+            matrix_.column.push_back(pattern_.column[c] * int(size_) + int(l));
+        matrix_.start.push_back(int(matrix_.column.size()));
+      }
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::set_space(const CoarseSpace &space,
+                                    const std::vector<char> &shares_nodes,
+                                    const std::vector<std::uint8_t> &penalised)
+  {
+    penalised_ = penalised;
+    number_blocks(space);
+    set_entries(shares_nodes);
+    set_pattern(shares_nodes);
+  }
+
+  /** The first entry of a block; its rows are a row of blocks apart. */
+  template <int dim>
+  double *JoinedMatrix<dim>::at(const Block row, const Block column)
+  {
+    const std::size_t first = pattern_.first[std::size_t(row)],
+                      end = pattern_.first[std::size_t(row) + 1];
+    const auto found =
+        std::lower_bound(pattern_.column.begin() + long(first),
+                         pattern_.column.begin() + long(end), column);
+    return &values_[first * size_ * size_ +
+                    std::size_t(found - pattern_.column.begin() - long(first)) *
+                        size_];
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::set_bodies(const StepShares &shares)
+  {
+    values_.swap(bodies_values_);
+    std::fill(values_.begin(), values_.end(), 0.);
+    std::vector<double> entries;
+    for (const BodyClass &body : bodies_.classes) {
+      const unsigned int n = body.n_dofs;
+      entries.resize(std::size_t(n) * n);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          entries[i * n + j] = step_entry(body, shares, i, j);
+      for (const unsigned int b : body.bodies)
+        for (unsigned int i = 0; i < n; i += size_) {
+          const Block row = block_.own[bodies_.first_dof[b] + i];
+          const std::size_t width = (pattern_.first[std::size_t(row) + 1] -
+                                     pattern_.first[std::size_t(row)]) *
+                                    size_;
+          for (unsigned int j = 0; j < n; j += size_) {
+            double *out = at(row, block_.own[bodies_.first_dof[b] + j]);
+            for (unsigned int k = 0; k < size_; ++k)
+              for (unsigned int l = 0; l < size_; ++l)
+                out[k * width + l] += entries[(i + k) * n + j + l];
+          }
+        }
+    }
+    add_bonds(shares);
+    values_.swap(bodies_values_);
+  }
+
+  /** a' (alpha a + beta t) + t' (beta a) with the rows of either side. */
+  template <int dim>
+  void JoinedMatrix<dim>::add_bonds(const StepShares &shares)
+  {
+    const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
+    for (std::size_t i = 0; i < points_.n_points; ++i) {
+      if (!penalised_[i])
+        continue;
+      const double f = points_.weight[i];
+      const Bond &bond = bonds_[i];
+      const double alpha = f * (shares.stiffness * bond.penalty +
+                                shares.damping * bond.viscous_penalty);
+      const auto traction = [&](const PointTrace &trace, const unsigned int k) {
+        double t = shares.stiffness * trace.traction[k];
+        if (!trace.viscous_traction.empty())
+          t += shares.damping * trace.viscous_traction[k];
+        return t;
+      };
+      for (unsigned int s = 0; s < 2; ++s) {
+        const PointTrace &row = traces_[s][i];
+        if (row.first < first_dof_ || row.first >= end)
+          continue;
+        const auto rows = blocks_of_side(i, s);
+        const double row_beta = f * (s == 0 ? bond.weight_1 : bond.weight_2);
+        for (unsigned int t = 0; t < 2; ++t) {
+          const PointTrace &column = traces_[t][i];
+          const auto columns = blocks_of_side(i, t);
+          const double beta = f * (t == 0 ? bond.weight_1 : bond.weight_2);
+          const unsigned int n = row.n_dofs, m = column.n_dofs;
+          for (std::size_t r = 0; r < rows.size(); ++r) {
+            const std::size_t width =
+                (pattern_.first[std::size_t(rows[r]) + 1] -
+                 pattern_.first[std::size_t(rows[r])]) *
+                size_;
+            for (std::size_t c = 0; c < columns.size(); ++c) {
+              double *out = at(rows[r], columns[c]);
+              for (unsigned int k = 0; k < size_; ++k)
+                for (unsigned int l = 0; l < size_; ++l) {
+                  double sum = 0.;
+                  for (unsigned int d = 0; d < dim; ++d) {
+                    const std::size_t p = d * n + r * size_ + k,
+                                      q = d * m + c * size_ + l;
+                    sum +=
+                        row.jump[p] * (alpha * column.jump[q] +
+                                       beta * traction(column, unsigned(q))) +
+                        row_beta * traction(row, unsigned(p)) * column.jump[q];
+                  }
+                  out[k * width + l] += sum;
+                }
+            }
+          }
+        }
+      }
+    }
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::add_springs(const double *springs)
+  {
+    for (std::size_t i = 0; i < points_.n_points; ++i) {
+      const double *T = springs + i * dim * dim;
+      if (first_entry_[i] == first_entry_[i + 1] ||
+          std::all_of(T, T + dim * dim, [](const double t) { return t == 0.; }))
+        continue;
+      for (std::size_t c = first_entry_[i]; c < first_entry_[i + 1]; ++c) {
+        const Entry &column = entries_[c];
+        double product[dim * dim] = {}; // T a
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = 0; e < dim; ++e) {
+            for (unsigned int l = 0; l < size_; ++l)
+              product[d * size_ + l] +=
+                  T[d * dim + e] * column.all[e * size_ + l];
+          }
+        for (std::size_t r = first_entry_[i]; r < first_entry_[i + 1]; ++r) {
+          const Entry &row = entries_[r];
+          const std::size_t width =
+              (pattern_.first[std::size_t(row.block) + 1] -
+               pattern_.first[std::size_t(row.block)]) *
+              size_;
+          double *out = at(row.block, column.block);
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int k = 0; k < size_; ++k)
+              for (unsigned int l = 0; l < size_; ++l)
+                out[k * width + l] +=
+                    row.own[d * size_ + k] * product[d * size_ + l];
+        }
+      }
+    }
+  }
+
+  template <int dim>
+  long long JoinedMatrix<dim>::node_of_point(const std::size_t point) const
+  {
+    if (first_entry_[point + 1] != first_entry_[point] + 1)
+      return -1;
+    const Block block = entries_[first_entry_[point]].block;
+    return block < n_own_ ? space_->first / size_ + block
+                          : ghosts_[std::size_t(block - n_own_)];
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::impulse(const double *P,
+                                  std::vector<double> &own) const
+  {
+    own.assign(std::size_t(n_own_) * size_, 0.);
+    for (std::size_t i = 0; i < points_.n_points; ++i)
+      for (std::size_t k = first_entry_[i]; k < first_entry_[i + 1]; ++k) {
+        const Entry &entry = entries_[k];
+        double *out = &own[std::size_t(entry.block) * size_];
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int c = 0; c < size_; ++c)
+            out[c] += entry.all[d * size_ + c] * P[i * dim + d];
+      }
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::velocity(const std::vector<double> &x,
+                                   double *U) const
+  {
+    std::fill(U, U + points_.n_points * dim, 0.);
+    for (std::size_t i = 0; i < points_.n_points; ++i)
+      for (std::size_t k = first_entry_[i]; k < first_entry_[i + 1]; ++k) {
+        const Entry &entry = entries_[k];
+        const double *in = &x[std::size_t(entry.block) * size_];
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int c = 0; c < size_; ++c)
+            U[i * dim + d] += entry.all[d * size_ + c] * in[c];
+      }
+  }
+
+  /** Rows of other ranks go to them. */
+  template <int dim>
+  const SparseRows &JoinedMatrix<dim>::finish()
+  {
+    if (communicator_.size() == 1) {
+      matrix_.value.swap(values_);
+      return matrix_;
+    }
+    const auto number = [&](const Block block) {
+      return block < n_own_
+                 ? space_->first + static_cast<long long>(block) * size_
+                 : ghosts_[std::size_t(block - n_own_)] * size_;
+    };
+    std::vector<SparseEntry> all;
+    all.reserve(values_.size());
+    for (std::size_t r = 0; r + 1 < pattern_.first.size(); ++r)
+      for (unsigned int k = 0; k < size_; ++k)
+        for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1]; ++c)
+          for (unsigned int l = 0; l < size_; ++l)
+            all.push_back(
+                {number(Block(r)) + k, number(pattern_.column[c]) + l,
+                 values_[pattern_.first[r] * size_ * size_ +
+                         k * (pattern_.first[r + 1] - pattern_.first[r]) *
+                             size_ +
+                         (c - pattern_.first[r]) * size_ + l]});
+    matrix_ = sum_at_owners(communicator_, *space_, std::move(all));
+    return matrix_;
+  }
+
+  template <int dim>
+  const SparseRows &JoinedMatrix<dim>::assemble(const double *springs)
+  {
+    values_ = bodies_values_;
+    if (springs)
+      add_springs(springs);
+    return finish();
+  }
+
+  template class JoinedMatrix<2>;
+  template class JoinedMatrix<3>;
+} // namespace nsfd

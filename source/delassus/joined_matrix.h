@@ -1,0 +1,108 @@
+#pragma once
+
+#include "point_traces.h"
+
+#include "bulk_traction.h"
+#include "linear_algebra/ghost_values.h"
+#include "linear_algebra/spd_solver.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The rows of this rank of
+   *
+   *     P^T ( M_hat + f bonds + H^T T H ) P
+   *
+   * in the space of bodies that share nodes: M_hat of the bodies, bonds of the
+   * interior penalty method, T a dim x dim block per point.
+   */
+  template <int dim>
+  class JoinedMatrix
+  {
+  public:
+    using Bond = typename BulkTraction<dim>::Bond;
+
+    /** @p first_dof of this rank among the unknowns of all. Collective. */
+    JoinedMatrix(const Communicator &communicator, const Bodies &bodies,
+                 const InterfacePoints<dim> &points,
+                 std::array<std::vector<PointTrace>, 2> traces,
+                 std::vector<Bond> bonds, long long first_dof);
+
+    /**
+     * From now on bodies share the nodes of the faces that are marked, and the
+     * points that are @p penalised have bonds. Collective.
+     */
+    void set_space(const CoarseSpace &space,
+                   const std::vector<char> &shares_nodes,
+                   const std::vector<std::uint8_t> &penalised);
+
+    /** M_hat and the bonds of a step. */
+    void set_bodies(const StepShares &shares);
+
+    /** All of it; @p springs are the blocks T, row by row, or null. Collective.
+     */
+    const SparseRows &assemble(const double *springs);
+
+    /**
+     * The node, by a number of all ranks, that is all that a point sees: -1
+     * where it sees none, or several.
+     */
+    long long node_of_point(std::size_t point) const;
+
+    /** On one rank: H^T P in the space, n_own values that are set. */
+    void impulse(const double *P, std::vector<double> &own) const;
+    /** On one rank: U = H P x of own values @p x; 0 at points that are joined.
+     */
+    void velocity(const std::vector<double> &x, double *U) const;
+
+  private:
+    /** Consecutive unknowns of the space that are coupled alike. */
+    using Block = int;
+    /** What a block of unknowns contributes to the jump at a point. */
+    struct Entry {
+      Block block;
+      /// dim x size of a block: of bodies of this rank, and of both
+      std::array<double, std::size_t(dim) * dim> own, all;
+    };
+
+    Block block_of(long long number) const;
+    void number_blocks(const CoarseSpace &space);
+    std::vector<Block> blocks_of_side(std::size_t point,
+                                      unsigned int side) const;
+    void set_entries(const std::vector<char> &shares_nodes);
+    void set_pattern(const std::vector<char> &shares_nodes);
+    double *at(Block row, Block column);
+    void add_bonds(const StepShares &shares);
+    void add_springs(const double *springs);
+    const SparseRows &finish();
+
+    const Communicator &communicator_;
+    const Bodies &bodies_;
+    const InterfacePoints<dim> &points_;
+    const std::array<std::vector<PointTrace>, 2> traces_;
+    const std::vector<Bond> bonds_;
+    const long long first_dof_;
+    std::vector<long long> remote_; ///< unknowns of bodies of other ranks
+    GhostValues fetch_;             ///< what is at them
+
+    const CoarseSpace *space_ = nullptr;
+    std::vector<std::uint8_t> penalised_;
+    unsigned int size_ = 1;         ///< of a block
+    int n_own_ = 0;                 ///< blocks
+    std::vector<long long> ghosts_; ///< blocks of other ranks
+    struct {
+      std::vector<Block> own, remote;
+    } block_;                              ///< by unknown
+    std::vector<std::size_t> first_entry_; ///< by point, and the end
+    std::vector<Entry> entries_;
+    struct {
+      std::vector<std::size_t> first;
+      std::vector<Block> column; ///< ascending
+    } pattern_;                  ///< by block row, those of ghosts too
+    std::vector<double> bodies_values_, values_;
+    SparseRows matrix_;
+  };
+} // namespace nsfd

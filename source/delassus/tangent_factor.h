@@ -1,0 +1,47 @@
+#pragma once
+
+#include "conforming_solver.h"
+#include "delassus_operator.h"
+
+namespace nsfd
+{
+  /**
+   * Solves with M_hat + H^T T H of bodies that share nodes, T a block of
+   * dim x dim per point. Where few points have changed since it was made, an
+   * old factor preconditions the present matrix.
+   */
+  template <int dim>
+  class TangentFactor
+  {
+  public:
+    TangentFactor(const DelassusOperator<dim> &delassus,
+                  const Communicator &communicator, long long largest_factor)
+        : delassus_(delassus), communicator_(communicator),
+          solver_(communicator, largest_factor)
+    {
+    }
+
+    /** Of this space from now on, without a factor. Collective. */
+    void set_space(const CoarseSpace &space);
+    /** The bodies are others: there is no factor. */
+    void clear() { springs_.clear(); }
+
+    /**
+     * The factor of other @p springs (T, positive semidefinite) is good enough.
+     * Collective.
+     */
+    bool may_keep(const std::vector<double> &springs) const;
+    /** False: not positive definite. Collective. */
+    bool factor(const SparseRows &matrix, const std::vector<double> &springs);
+
+    ConformingSolver &solver() { return solver_; }
+    /** Those that were factored; empty: none. */
+    std::vector<double> &springs() { return springs_; }
+
+  private:
+    const DelassusOperator<dim> &delassus_;
+    const Communicator &communicator_;
+    ConformingSolver solver_;
+    std::vector<double> springs_;
+  };
+} // namespace nsfd

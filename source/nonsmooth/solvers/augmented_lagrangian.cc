@@ -1,0 +1,409 @@
+#include "augmented_lagrangian.h"
+
+#include "core/cost.h"
+#include "linear_algebra/positive_part.h"
+#include "nonsmooth/natural_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  namespace
+  {
+    /// A over R: of what a point carries beyond P_0 so much is left as an error
+    constexpr double first_share = 1e-2, last_share = 1e-7;
+    /// a step of Newton's method is long enough
+    constexpr double flat = 0.5;
+    /// what difference quotients leave of their digits
+    constexpr double of_differences = 1e-5, left_to_differences = 1e-4;
+    /// of linear systems whose error nothing else mends
+    constexpr double tight = 1e-12;
+    /// steps for the natural map that do not halve its error
+    constexpr unsigned int patience = 4;
+
+    /** T with damage and the friction threshold frozen. */
+    template <int dim>
+    void frozen_tangent(const OneStepProblem<dim> &problem, const std::size_t i,
+                        const LocalSolution<dim> &solution, const double A_N,
+                        const double A_T, double *T)
+    {
+      const auto slopes =
+          frozen_slopes<dim>(problem, i, solution.frozen, solution, A_N, A_T);
+      for (unsigned int c = 0; c < dim; ++c)
+        T[c * dim + c] = slopes[c];
+      double size = 0.;
+      for (unsigned int c = 1; c < dim; ++c)
+        size += solution.velocity[c] * solution.velocity[c];
+      if (dim == 2 || slopes[1] == slopes[dim - 1] || size == 0.)
+        return; // the same in all directions
+      for (unsigned int c = 1; c < dim; ++c)
+        for (unsigned int d = 1; d < dim; ++d)
+          T[c * dim + d] =
+              (c == d ? slopes[dim - 1] : 0.) + (slopes[1] - slopes[dim - 1]) *
+                                                    solution.velocity[c] *
+                                                    solution.velocity[d] / size;
+    }
+  } // namespace
+
+  template <int dim>
+  void AugmentedLagrangian<dim>::begin(const Work &work, const Vector &impulse)
+  {
+    const auto &problem = work.problem;
+    active_.clear();
+    impulse_ = impulse;
+    solutions_.resize(problem.n_points);
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      if (problem.kind[i] == PointKind::bonded) {
+        std::fill_n(&impulse_[i * dim], dim, 0.);
+        solutions_[i] = {};
+        continue;
+      }
+      active_.push_back(i);
+      solutions_[i].reach = work.evaluation.solutions[i].reach;
+    }
+    const std::size_t n = problem.n_points * dim;
+    velocity_.assign(n, 0.);
+    compliance_.assign(n, 0.);
+    dP_.assign(n, 0.);
+    dU_.assign(n, 0.);
+    set_velocity(work);
+  }
+
+  template <int dim>
+  void AugmentedLagrangian<dim>::set_velocity(const Work &work)
+  {
+    work.delassus.apply_delassus(impulse_.data(), velocity_.data());
+    for (std::size_t k = 0; k < velocity_.size(); ++k)
+      velocity_[k] += work.problem.free_velocity[k];
+  }
+
+  /** A from now on, with springs that are slack at the present impulses. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::soften(const Work &work, const double share)
+  {
+    rest_ = impulse_;
+    for (const std::size_t i : active_)
+      for (unsigned int c = 0; c < dim; ++c)
+        compliance_[i * dim + c] = share * work.evaluation.majorant(i, c);
+  }
+
+  /** S of all points. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::answer(const Work &work, const Vector &U)
+  {
+    const Charge charge(Cost::laws);
+    for (const std::size_t i : active_) {
+      std::array<double, dim> local;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t k = i * dim + c;
+        local[c] = U[k] - compliance_[k] * rest_[k];
+      }
+      solutions_[i] =
+          solve_point<dim>(work.problem, i, local, compliance_[i * dim],
+                           compliance_[i * dim + 1], solutions_[i].reach);
+    }
+  }
+
+  /** |P - S|_R, and |P - P_0|_R, over |P|_R. */
+  template <int dim>
+  auto AugmentedLagrangian<dim>::errors(const Work &work) const -> Errors
+  {
+    const std::size_t n = work.problem.n_owned;
+    Vector terms(3 * n, 0.);
+    for (const std::size_t i : active_)
+      for (unsigned int c = 0; c < dim && i < n; ++c) {
+        const double R = work.evaluation.majorant(i, c),
+                     P = impulse_[i * dim + c],
+                     defect = P - solutions_[i].impulse[c],
+                     shift = P - rest_[i * dim + c];
+        terms[i] += R * P * P;
+        terms[n + i] += R * defect * defect;
+        terms[2 * n + i] += R * shift * shift;
+      }
+    const auto sums = work.delassus.communicator().sums(terms.data(), 3, n);
+    const double scale = std::sqrt(sums[0]) + work.evaluation.floor();
+    return {relative_natural_map(std::sqrt(sums[1]), scale),
+            relative_natural_map(std::sqrt(sums[2]), scale)};
+  }
+
+  /** T of all points; false if it is not symmetric. Collective. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::differentiate(const Work &work)
+  {
+    const Charge charge(Cost::laws);
+    const auto &problem = work.problem;
+    tangents_.assign(problem.n_points * dim * dim, 0.);
+    bool symmetric = true;
+    for (const std::size_t i : active_) {
+      const auto &solution = solutions_[i];
+      const double A_N = compliance_[i * dim], A_T = compliance_[i * dim + 1];
+      double *T = &tangents_[i * dim * dim];
+      if (!solution.coupled) {
+        frozen_tangent(problem, i, solution, A_N, A_T, T);
+        continue;
+      }
+      // difference quotients of the local solve, friction and damage in it
+      std::array<double, dim> local;
+      double size = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t k = i * dim + c;
+        local[c] = velocity_[k] - compliance_[k] * rest_[k];
+        size = std::max({size, std::abs(local[c]),
+                         compliance_[k] * std::abs(solution.impulse[c])});
+      }
+      double largest = 0., skew = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        auto moved = local;
+        moved[c] += 1e-7 * size;
+        const double h = moved[c] - local[c];
+        const auto other =
+            solve_point<dim>(problem, i, moved, A_N, A_T, solution.reach);
+        for (unsigned int d = 0; d < dim && h > 0.; ++d)
+          T[d * dim + c] = (solution.impulse[d] - other.impulse[d]) / h;
+      }
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d) {
+          largest = std::max(largest, std::abs(T[c * dim + d]));
+          skew = std::max(skew, std::abs(T[c * dim + d] - T[d * dim + c]));
+        }
+      symmetric = symmetric && skew <= of_differences * largest;
+    }
+    return !work.delassus.communicator().any(!symmetric);
+  }
+
+  /** The symmetric part of T, without its negative eigenvalues on request. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::symmetrise(const bool convex)
+  {
+    for (const std::size_t i : active_) {
+      double *T = &tangents_[i * dim * dim];
+      if (convex && solutions_[i].coupled)
+        take_positive_part<dim>(T);
+      else
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < c; ++d)
+            T[c * dim + d] = T[d * dim + c] =
+                (T[c * dim + d] + T[d * dim + c]) / 2.;
+    }
+  }
+
+  /** dU . (P + length dP - S), at the last answers. */
+  template <int dim>
+  double AugmentedLagrangian<dim>::slope(const Work &work,
+                                         const double length) const
+  {
+    const std::size_t n = work.problem.n_owned;
+    Vector terms(n, 0.);
+    for (const std::size_t i : active_)
+      for (unsigned int c = 0; c < dim && i < n; ++c) {
+        const std::size_t k = i * dim + c;
+        terms[i] +=
+            dU_[k] * (impulse_[k] + length * dP_[k] - solutions_[i].impulse[c]);
+      }
+    return work.delassus.communicator().sum(terms.data(), n);
+  }
+
+  template <int dim>
+  void AugmentedLagrangian<dim>::set_right_side()
+  {
+    right_side_.assign(impulse_.size(), 0.);
+    for (const std::size_t i : active_)
+      for (unsigned int c = 0; c < dim; ++c)
+        right_side_[i * dim + c] =
+            solutions_[i].impulse[c] - impulse_[i * dim + c];
+  }
+
+  /**
+   * T and the right-hand side without the springs, where they are slack: P + dP
+   * = S + J (dU - A dP). What sticks has 1 + J A = 0; it gives way by a small
+   * share of A.
+   */
+  template <int dim>
+  void AugmentedLagrangian<dim>::remove_springs()
+  {
+    for (const std::size_t i : active_) {
+      const double left =
+          solutions_[i].coupled ? left_to_differences : last_share;
+      double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
+      dealii::Tensor<2, dim> block, own;
+      dealii::Tensor<1, dim> right;
+      for (unsigned int c = 0; c < dim; ++c) {
+        right[c] = r[c];
+        for (unsigned int d = 0; d < dim; ++d) {
+          block[c][d] = (1. - left) * T[c * dim + d];
+          own[c][d] =
+              (c == d ? 1. : 0.) - block[c][d] * compliance_[i * dim + d];
+        }
+      }
+      const auto inverse = invert(own);
+      block = inverse * block;
+      right = inverse * right;
+      for (unsigned int c = 0; c < dim; ++c) {
+        r[c] = right[c];
+        for (unsigned int d = 0; d < dim; ++d)
+          T[c * dim + d] = block[c][d];
+      }
+    }
+  }
+
+  /**
+   * Full steps of Newton's method for the natural map, from which the method of
+   * multipliers takes over where they lead nowhere: true if they have solved
+   * the problem.
+   */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::jump(const Work &work, const double tolerance)
+  {
+    Vector best = impulse_, best_velocity = velocity_;
+    double least = std::numeric_limits<double>::infinity();
+    unsigned int idle = 0;
+    for (;;) {
+      soften(work, 1.);
+      answer(work, velocity_);
+      const double error = errors(work).defect;
+      if (error <= tolerance)
+        return true;
+      idle = error < 0.5 * least ? 0 : idle + 1;
+      if (error < least) {
+        least = error;
+        best = impulse_;
+        best_velocity = velocity_;
+      }
+      if (idle > patience || !std::isfinite(error))
+        break;
+      ++work.report.newton;
+      set_right_side();
+      const bool symmetric = differentiate(work);
+      remove_springs();
+      if (symmetric)
+        symmetrise(false);
+      // falls with the error, never far below the goal
+      const double forcing =
+          std::min(1e-2, std::max({error, 0.1 * tolerance / error, tight}));
+      if (!work.bodies.solve_linearised(tangents_, symmetric, forcing,
+                                        right_side_, dP_, dU_))
+        break;
+      for (std::size_t k = 0; k < impulse_.size(); ++k) {
+        impulse_[k] += dP_[k];
+        velocity_[k] += dU_[k];
+      }
+      set_velocity(work);
+    }
+    impulse_.swap(best);
+    velocity_.swap(best_velocity);
+    return false;
+  }
+
+  /** Downhill; false where there is no such system. Collective. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::find_direction(const Work &work)
+  {
+    ++work.report.newton;
+    set_right_side();
+    const auto solved = [&](const bool symmetric) {
+      return work.bodies.solve_linearised(tangents_, symmetric, tight,
+                                          right_side_, dP_, dU_) &&
+             slope(work, 0.) <= 0.;
+    };
+    const bool symmetric = differentiate(work);
+    if (symmetric)
+      symmetrise(false);
+    if (solved(symmetric))
+      return true;
+    symmetrise(true);
+    return solved(true);
+  }
+
+  template <int dim>
+  void AugmentedLagrangian<dim>::try_length(const Work &work,
+                                            const double length)
+  {
+    moved_ = velocity_;
+    for (std::size_t k = 0; k < moved_.size(); ++k)
+      moved_[k] += length * dU_[k];
+    answer(work, moved_);
+  }
+
+  /** Along the direction, until the slope is a part of what it was. */
+  template <int dim>
+  double AugmentedLagrangian<dim>::advance(const Work &work)
+  {
+    const double start = -slope(work, 0.);
+    double length = 1., low = 0., high = 1.;
+    try_length(work, length);
+    double value = slope(work, length), at_low = -start, at_high = value;
+    if (value > flat * start)
+      ++work.report.line_searches;
+    for (unsigned int k = 0; std::abs(value) > flat * start && k < 40; ++k) {
+      if (k == 0 && value < 0.)
+        break; // the end of the direction
+      length = low - at_low * (high - low) / (at_high - at_low);
+      if (!(length > low && length < high) || k % 3 == 2)
+        length = 0.5 * (low + high);
+      try_length(work, length);
+      value = slope(work, length);
+      (value < 0. ? low : high) = length;
+      (value < 0. ? at_low : at_high) = value;
+    }
+    velocity_.swap(moved_);
+    for (std::size_t k = 0; k < impulse_.size(); ++k)
+      impulse_[k] += length * dP_[k];
+    return length;
+  }
+
+  template <int dim>
+  SolverReport
+  AugmentedLagrangian<dim>::solve(const OneStepProblem<dim> &problem,
+                                  DelassusOperator<dim> &delassus, const double,
+                                  const SolverControl &control, Vector &impulse,
+                                  LawEvaluation<dim> &evaluation)
+  {
+    SolverReport report;
+    const Work work{problem, delassus, dynamic_cast<VelocitySolver &>(delassus),
+                    evaluation, report};
+    const double tolerance = control.tolerance;
+    begin(work, impulse);
+    const unsigned int most = control.iterations_or(80);
+    double share = first_share;
+    const auto judge = [&] {
+      for (const std::size_t i : active_)
+        evaluation.solutions[i].reach = solutions_[i].reach;
+      evaluation.update(impulse_);
+      velocity_ = evaluation.velocity; // without the round-off of all changes
+      return evaluation.error <= tolerance;
+    };
+    bool solved = false;
+    for (unsigned int k = 0; k < 2 && !solved && jump(work, tolerance); ++k)
+      solved = judge(); // anew where round-off was left
+    if (!solved) {
+      report.switches.push_back("multipliers");
+      soften(work, share);
+      answer(work, velocity_);
+    }
+    while (!solved && report.newton < most) {
+      if (!find_direction(work))
+        break;
+      advance(work);
+      const Errors errors = this->errors(work);
+      if (errors.defect > 0.1 * std::max(tolerance, share * errors.shift))
+        continue;
+      if (share * errors.shift <= 0.1 * tolerance)
+        solved = judge();
+      else
+        share = std::max(last_share, 0.01 * share);
+      soften(work, share);
+      answer(work, velocity_);
+    }
+    impulse = impulse_;
+    if (!solved)
+      judge();
+    report.residual = evaluation.error;
+    report.converged = evaluation.error <= tolerance;
+    return report;
+  }
+
+  template class AugmentedLagrangian<2>;
+  template class AugmentedLagrangian<3>;
+} // namespace nsfd

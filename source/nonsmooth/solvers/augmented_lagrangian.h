@@ -1,0 +1,78 @@
+#pragma once
+
+#include "delassus/velocity_solver.h"
+#include "nonsmooth/solver.h"
+
+namespace nsfd
+{
+  /**
+   * Newton's method in the velocities of the bodies, for bodies that share
+   * nodes: there points may be more than motions, and impulses are not unique.
+   *
+   * A spring in series with every law gives way by A = share R times what the
+   * impulse is beyond P_0, so that the impulse follows from the velocity,
+   *
+   *     P = S(U),  S the answer of each point by itself against A,
+   *     M_hat (v - v_free) = H^T S(H v),
+   *
+   * the gradient of the incremental energy of the bodies and of the softened
+   * laws. It is convex where the step is unique, softening or not, whatever
+   * rows W lacks; along Newton's direction
+   *
+   *     (M_hat + H^T T H) dv = H^T (S - P),   T = -dS/dU,
+   *
+   * its slope dU . (P + alpha dP - S(U + alpha dU)) needs the laws alone, and
+   * where it vanishes the step ends. P_0 then follows P (method of multipliers:
+   * Hestenes 1969, Powell 1969; with friction Alart & Curnier 1991), until the
+   * springs carry no more than the tolerance.
+   *
+   * The operator has to be a VelocitySolver.
+   */
+  template <int dim>
+  class AugmentedLagrangian final : public NonsmoothSolver<dim>
+  {
+  public:
+    SolverReport solve(const OneStepProblem<dim> &problem,
+                       DelassusOperator<dim> &delassus, double energy_scale,
+                       const SolverControl &control,
+                       std::vector<double> &impulse,
+                       LawEvaluation<dim> &evaluation) override;
+
+  private:
+    using Vector = std::vector<double>;
+    struct Work {
+      const OneStepProblem<dim> &problem;
+      const DelassusOperator<dim> &delassus;
+      VelocitySolver &bodies; ///< the same
+      LawEvaluation<dim> &evaluation;
+      SolverReport &report;
+    };
+
+    struct Errors {
+      double defect, shift;
+    };
+
+    void begin(const Work &work, const Vector &impulse);
+    void set_velocity(const Work &work);
+    void soften(const Work &work, double share);
+    void answer(const Work &work, const Vector &U);
+    Errors errors(const Work &work) const;
+    bool differentiate(const Work &work);
+    void symmetrise(bool convex);
+    double slope(const Work &work, double length) const;
+    void set_right_side();
+    void remove_springs();
+    bool jump(const Work &work, double tolerance);
+    bool find_direction(const Work &work);
+    void try_length(const Work &work, double length);
+    double advance(const Work &work);
+
+    std::vector<std::size_t> active_;  ///< points that are not bonded
+    Vector impulse_, rest_, velocity_; ///< P, P_0, U
+    Vector compliance_;                ///< A
+    std::vector<LocalSolution<dim>> solutions_;
+    Vector tangents_; ///< T, dim x dim per point
+    Vector right_side_, dP_, dU_;
+    Vector moved_; ///< U of a trial
+  };
+} // namespace nsfd
