@@ -257,7 +257,7 @@ namespace nsfd
       auto joined = make_bonded_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
           node_coordinates(*discretization),
-          input.time.scheme == Scheme::moreau_jean);
+          input.time.scheme.theta_scheme);
       bonded = joined.get();
       delassus = std::move(joined);
       return;
