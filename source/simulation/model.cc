@@ -256,8 +256,7 @@ namespace nsfd
     if (input.has_bonded_faces()) {
       auto joined = make_bonded_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
-          node_coordinates(*discretization),
-          input.time.scheme.theta_scheme);
+          node_coordinates(*discretization), input.time.scheme.theta_scheme);
       bonded = joined.get();
       delassus = std::move(joined);
       return;
