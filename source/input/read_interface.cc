@@ -15,7 +15,8 @@ namespace nsfd
          "common nodes in explicit steps; elsewhere bonded if where = "
          "all, rigid if not"},
         {"rigid", "faces stay closed, without any compliance"},
-        {"bonded", "the same, joined through the bulk (interior penalty)"},
+        {"bonded", "the same: by common nodes in implicit steps, through the "
+                   "bulk (interior penalty) where there are none"},
         {"elastic", "springs C_N, C_T that never break"},
         {"contact", "unilateral contact and Coulomb friction only"},
     };

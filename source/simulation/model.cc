@@ -72,7 +72,7 @@ namespace nsfd
       return problems;
     if (input.time.scheme.at_nodes)
       check_stability(input, communicator, problems);
-    if (input.statics)
+    else if (input.statics) // explicit steps find theirs by themselves
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
           make_linear_delassus(input, communicator, *discretization,
