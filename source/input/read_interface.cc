@@ -13,7 +13,7 @@ namespace nsfd
     const std::vector<NamedText> plain_laws = {
         {"joined",
          "common nodes in explicit steps; elsewhere bonded if where = "
-         "all, rigid if not"},
+         "all or other faces are, else rigid"},
         {"rigid", "faces stay closed, without any compliance"},
         {"bonded", "the same: by common nodes in implicit steps, through the "
                    "bulk (interior penalty) where there are none"},
@@ -182,7 +182,8 @@ namespace nsfd
               ? "while beta = 1: spring or unilateral (intrinsic laws), joined "
                 "(extrinsic laws)"
               : "while beta = 1: spring or unilateral (intrinsic laws), joined "
-                "(extrinsic laws: bonded if where = all, else rigid)");
+                "(extrinsic laws: bonded if where = all or other faces are, "
+                "else rigid)");
       if (name == "joined")
         name = joint(input, scene);
       check_intact_faces(reader, input, name, scene);
@@ -409,13 +410,41 @@ namespace nsfd
                          "s of kappa = (1 - beta)^s; 0: full friction always");
   }
 
+  namespace
+  {
+    /**
+     * Faces that the block only calls joined are so by common nodes where
+     * others are: rigid rows beside them would cost a solve of all rows.
+     */
+    void share_nodes(const ParameterSection &block, InterfaceInput &input)
+    {
+      const auto says = [&block](const std::string &name,
+                                 const bool without_entry) {
+        const ParameterEntry *entry = block.find(name);
+        return entry ? entry->value.text() == "joined" : without_entry;
+      };
+      if (input.intact != IntactFaces::rigid)
+        return;
+      if (input.law && input.law->extrinsic() && says("intact faces", true))
+        input.intact = IntactFaces::bonded;
+      else if (says("law", false)) {
+        input.law_name = "bonded";
+        input.intact = IntactFaces::bonded;
+      }
+    }
+  } // namespace
+
   void read_interfaces(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene)
   {
-    for (ParameterSection *block : file.open_blocks("Interface")) {
+    const auto blocks = file.open_blocks("Interface");
+    for (ParameterSection *block : blocks) {
       SectionReader reader(*block, errors);
       scene.interfaces.push_back(read_interface(reader, scene));
     }
+    if (scene.has_bonded_faces() && scene.time.scheme.theta_scheme)
+      for (std::size_t b = 0; b < blocks.size(); ++b)
+        share_nodes(*blocks[b], scene.interfaces[b]);
     if (scene.interfaces.empty())
       errors.error(file.location(),
                    "no Interface block says what holds the faces together",

@@ -128,6 +128,21 @@ namespace nsfd
                       (std::lower_bound(result.ghosts.begin(),
                                         result.ghosts.end(), columns[k]) -
                        result.ghosts.begin()));
+      // ascending: ghosts of earlier ranks go behind what is owned
+      for (int i = 0; i < result.n_rows(); ++i) {
+        const auto first = result.column.begin() + result.start[i],
+                   last = result.column.begin() + result.start[i + 1];
+        const auto owned = [&](const int column) {
+          return column < int(coarse.n_own);
+        };
+        const auto begin = std::find_if(first, last, owned),
+                   end = std::find_if_not(begin, last, owned);
+        const auto values = result.value.begin();
+        std::rotate(values + (first - result.column.begin()),
+                    values + (begin - result.column.begin()),
+                    values + (end - result.column.begin()));
+        std::rotate(first, begin, end);
+      }
     }
   } // namespace
 

@@ -254,9 +254,11 @@ namespace nsfd
       return;
     }
     if (input.has_bonded_faces()) {
+      // cells of two sizes have no common nodes, and in a run faces become so
       auto joined = make_bonded_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
-          node_coordinates(*discretization), input.time.scheme.theta_scheme);
+          node_coordinates(*discretization),
+          input.time.scheme.theta_scheme && !input.adaptivity);
       bonded = joined.get();
       delassus = std::move(joined);
       return;
