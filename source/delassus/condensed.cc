@@ -66,6 +66,13 @@ namespace nsfd
     const std::size_t m = rows_.size(), p = part_.size();
     if (p == 0)
       return;
+    // rows that nothing moves, between bodies that share the node there
+    double largest = 0.;
+    for (const std::size_t j : part_)
+      largest = std::max(largest, matrix_[j * m + j]);
+    const double nothing = 1e-14 * largest;
+    if (!(largest > 0.))
+      largest = 1.;
     // rows that repeat each other make W singular: the least that round-off
     // needs, doubled until the factor exists
     for (double share = 1e-10;; share *= 100.) {
@@ -74,7 +81,8 @@ namespace nsfd
         for (std::size_t i = j; i < p; ++i)
           factor_[j * p + i] = matrix_[part_[j] * m + part_[i]];
         double &diagonal = factor_[j * p + j];
-        diagonal += std::max(D[rows_[part_[j]]], share * diagonal);
+        diagonal += std::max(D[rows_[part_[j]]],
+                             share * (diagonal > nothing ? diagonal : largest));
       }
       const int size = int(p);
       int info = 0;
