@@ -18,7 +18,8 @@ namespace nsfd
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
     constexpr double of_differences = 1e-5, left_to_differences = 1e-4;
-    /// of linear systems whose error nothing else mends
+    /// of linear systems: what sticks has 1/last_share of its error on their
+    /// right-hand side
     constexpr double tight = 1e-12;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
@@ -279,10 +280,7 @@ namespace nsfd
       remove_springs();
       if (symmetric)
         symmetrise(false);
-      // falls with the error, never far below the goal
-      const double forcing =
-          std::min(1e-2, std::max({error, 0.1 * tolerance / error, tight}));
-      if (!work.bodies.solve_linearised(tangents_, symmetric, forcing,
+      if (!work.bodies.solve_linearised(tangents_, symmetric, tight,
                                         right_side_, dP_, dU_))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k) {
