@@ -131,20 +131,18 @@ namespace nsfd
   /** dU of any T, preconditioned by the springs that were factored. */
   template <int dim>
   bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
-                                        const double tolerance,
                                         const std::vector<double> &c,
                                         std::vector<double> &dU)
   {
     const Charge charge(Cost::precondition);
     tangent_.solver().set_matrix(assemble(T));
-    return respond(tangent_.solver(), c.data(), dU.data(), tolerance);
+    return respond(tangent_.solver(), c.data(), dU.data());
   }
 
   /** Its positive part preconditions what is not symmetric. */
   template <int dim>
   bool JoinedBodies<dim>::solve_linearised(const std::vector<double> &T,
                                            const bool symmetric,
-                                           const double tolerance,
                                            const std::vector<double> &c,
                                            std::vector<double> &dP,
                                            std::vector<double> &dU)
@@ -154,14 +152,14 @@ namespace nsfd
       take_positive_part<dim>(&positive[k]);
     dU.resize(c.size());
     const bool old = tangent_.may_keep(positive);
-    if (!(old && solve_tangent(T, tolerance, c, dU))) {
+    if (!(old && solve_tangent(T, c, dU))) {
       if (!factor_tangent(positive))
         return false;
       if (symmetric) {
         const Charge charge(Cost::precondition);
         if (!respond(tangent_.solver(), c.data(), dU.data()))
           return false;
-      } else if (!solve_tangent(T, tolerance, c, dU))
+      } else if (!solve_tangent(T, c, dU))
         return false;
     }
     dP = c;
@@ -230,10 +228,10 @@ namespace nsfd
 
   template <int dim>
   bool JoinedBodies<dim>::solve(ConformingSolver &solver, const double *b,
-                                double *x, const double tolerance) const
+                                double *x) const
   {
     std::fill(x, x + this->bodies_.n_dofs(), 0.);
-    const auto outcome = solver.solve(b, x, tolerance);
+    const auto outcome = solver.solve(b, x, tight);
     this->counters_.inner_iterations += outcome.iterations;
     ++this->counters_.global_solves;
     return outcome.converged;
@@ -268,8 +266,7 @@ namespace nsfd
   /** U = H x of the answer x to H^T P. */
   template <int dim>
   bool JoinedBodies<dim>::respond(ConformingSolver &solver,
-                                  const double *impulse, double *velocity,
-                                  const double tolerance) const
+                                  const double *impulse, double *velocity) const
   {
     if (this->communicator_.size() == 1) { // points that can part alone
       matrix_->impulse(impulse, rows_);
@@ -282,7 +279,7 @@ namespace nsfd
     rows_.resize(this->bodies_.n_dofs());
     columns_.resize(rows_.size());
     this->generalised_impulse(impulse, rows_.data());
-    const bool solved = solve(solver, rows_.data(), columns_.data(), tolerance);
+    const bool solved = solve(solver, rows_.data(), columns_.data());
     this->relative_velocity(columns_.data(), velocity);
     return solved;
   }

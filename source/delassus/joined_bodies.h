@@ -35,8 +35,7 @@ namespace nsfd
                              double *velocity) const override;
     void apply(Operator op, const double *x, double *y) const override;
     bool solve_linearised(const std::vector<double> &T, bool symmetric,
-                          double tolerance, const std::vector<double> &c,
-                          std::vector<double> &dP,
+                          const std::vector<double> &c, std::vector<double> &dP,
                           std::vector<double> &dU) override;
     bool join_motion(std::vector<double> &x) override;
     std::vector<std::uint8_t>
@@ -54,7 +53,7 @@ namespace nsfd
 
     void bonds_changed() override;
     bool respond(ConformingSolver &solver, const double *impulse,
-                 double *velocity, double tolerance = tight) const;
+                 double *velocity) const;
     bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
     bool condense() const;
     const SparseRows &assemble(const std::vector<double> &springs) const;
@@ -64,12 +63,11 @@ namespace nsfd
 
   private:
     bool factor_tangent(const std::vector<double> &springs);
-    bool solve_tangent(const std::vector<double> &T, double tolerance,
+    bool solve_tangent(const std::vector<double> &T,
                        const std::vector<double> &c, std::vector<double> &dU);
     std::vector<char> joined_by(const std::vector<std::uint8_t> &bonded) const;
     void solve(const double *b, double *x) const;
-    bool solve(ConformingSolver &solver, const double *b, double *x,
-               double tolerance = tight) const;
+    bool solve(ConformingSolver &solver, const double *b, double *x) const;
     void update() const;
 
     mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;

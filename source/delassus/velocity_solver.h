@@ -15,13 +15,12 @@ namespace nsfd
      *
      *     (M_hat + H^T T H) dv = H^T c,   dU = H dv,   dP = c - T dU,
      *
-     * T a block of dim x dim per point, row by row, @p symmetric or not. What
-     * iterations leave of the residual, at most the share @p tolerance of it,
-     * M_hat dv lacks of H^T dP. False where the matrix is known not to be
-     * positive definite, or iterations do not solve it. Collective.
+     * T a block of dim x dim per point, row by row, @p symmetric or not; to
+     * round-off, or what iterations leave of it. False where the matrix is
+     * known not to be positive definite, or iterations do not solve it.
+     * Collective.
      */
     virtual bool solve_linearised(const std::vector<double> &T, bool symmetric,
-                                  double tolerance,
                                   const std::vector<double> &c,
                                   std::vector<double> &dP,
                                   std::vector<double> &dU) = 0;

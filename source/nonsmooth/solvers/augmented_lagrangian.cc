@@ -18,9 +18,6 @@ namespace nsfd
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
     constexpr double of_differences = 1e-5, left_to_differences = 1e-4;
-    /// of linear systems: what sticks has 1/last_share of its error on their
-    /// right-hand side
-    constexpr double tight = 1e-12;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
 
@@ -280,13 +277,11 @@ namespace nsfd
       remove_springs();
       if (symmetric)
         symmetrise(false);
-      if (!work.bodies.solve_linearised(tangents_, symmetric, tight,
-                                        right_side_, dP_, dU_))
+      if (!work.bodies.solve_linearised(tangents_, symmetric, right_side_, dP_,
+                                        dU_))
         break;
-      for (std::size_t k = 0; k < impulse_.size(); ++k) {
+      for (std::size_t k = 0; k < impulse_.size(); ++k)
         impulse_[k] += dP_[k];
-        velocity_[k] += dU_[k];
-      }
       set_velocity(work);
     }
     impulse_.swap(best);
@@ -301,8 +296,8 @@ namespace nsfd
     ++work.report.newton;
     set_right_side();
     const auto solved = [&](const bool symmetric) {
-      return work.bodies.solve_linearised(tangents_, symmetric, tight,
-                                          right_side_, dP_, dU_) &&
+      return work.bodies.solve_linearised(tangents_, symmetric, right_side_,
+                                          dP_, dU_) &&
              slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);
@@ -326,7 +321,7 @@ namespace nsfd
 
   /** Along the direction, until the slope is a part of what it was. */
   template <int dim>
-  double AugmentedLagrangian<dim>::advance(const Work &work)
+  void AugmentedLagrangian<dim>::advance(const Work &work)
   {
     const double start = -slope(work, 0.);
     double length = 1., low = 0., high = 1.;
@@ -348,7 +343,6 @@ namespace nsfd
     velocity_.swap(moved_);
     for (std::size_t k = 0; k < impulse_.size(); ++k)
       impulse_[k] += length * dP_[k];
-    return length;
   }
 
   template <int dim>

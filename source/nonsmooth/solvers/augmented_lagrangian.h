@@ -65,7 +65,7 @@ namespace nsfd
     bool jump(const Work &work, double tolerance);
     bool find_direction(const Work &work);
     void try_length(const Work &work, double length);
-    double advance(const Work &work);
+    void advance(const Work &work);
 
     std::vector<std::size_t> active_;  ///< points that are not bonded
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
