@@ -63,7 +63,7 @@ namespace nsfd
 
   bool ConformingSolver::try_to_prepare(const SparseRows &matrix)
   {
-    by_residuals_ = false;
+    product_ = nullptr;
     if (space_->n_global <= largest_factor_) {
       if (!factor_)
         factor_ = std::make_unique<Cholesky>(communicator_);
@@ -77,14 +77,6 @@ namespace nsfd
       multigrid_ = std::make_unique<Multigrid>(communicator_);
     multigrid_->prepare(matrix_, space_->modes, space_->per_node);
     return true;
-  }
-
-  void ConformingSolver::set_matrix(const SparseRows &matrix)
-  {
-    by_residuals_ = true;
-    matrix_ = matrix;
-    of_matrix_ =
-        GhostValues(communicator_, matrix_.first_row, n_own_, matrix_.ghosts);
   }
 
   /** P^T b. */
@@ -128,22 +120,22 @@ namespace nsfd
         throw StopRequested();
       return sums[0];
     };
+    const auto preconditioner = [&](const Vector &r, Vector &z) {
+      precondition(r, z);
+    };
+    if (product_) {
+      constexpr unsigned int most = 100;
+      Vector x(b_.begin(), b_.begin() + long(n_own_));
+      const auto outcome = krylov::gmres(product_, preconditioner, dot,
+                                         {tolerance, most}, {true, 2}, x);
+      std::copy(x.begin(), x.end(), x_.begin());
+      return outcome;
+    }
     Vector direction(n_own_ + matrix_.ghosts.size());
     const auto product = [&](const Vector &p, Vector &q) {
       std::copy_n(p.begin(), n_own_, direction.begin());
       multiply(matrix_, of_matrix_, direction.data(), q.data());
     };
-    const auto preconditioner = [&](const Vector &r, Vector &z) {
-      precondition(r, z);
-    };
-    if (by_residuals_) {
-      constexpr unsigned int most = 100;
-      Vector x(b_.begin(), b_.begin() + long(n_own_));
-      const auto outcome =
-          krylov::gmres(product, preconditioner, dot, {tolerance, most}, {}, x);
-      std::copy(x.begin(), x.end(), x_.begin());
-      return outcome;
-    }
     const auto never = [] { return false; };
     vectors_.r.assign(b_.begin(), b_.begin() + long(n_own_));
     for (Vector *v : {&vectors_.z, &vectors_.p, &vectors_.q})
@@ -160,7 +152,7 @@ namespace nsfd
   /** From b_ to x_. */
   krylov::Outcome ConformingSolver::solve_here(const double tolerance)
   {
-    if (by_residuals_ || !factor_)
+    if (product_ || !factor_)
       return iterate(tolerance);
     factor_->solve(b_.data(), x_.data());
     return {0, true};
@@ -184,12 +176,20 @@ namespace nsfd
     return outcome;
   }
 
+  void ConformingSolver::add(const Vector &own, double *x)
+  {
+    std::copy(own.begin(), own.end(), x_.begin());
+    exchange_.fetch(x_.data(), x_.data() + n_own_);
+    for (std::size_t i = 0; i < place_.size(); ++i)
+      x[i] += x_[place_[i]];
+  }
+
   void ConformingSolver::solve_columns(const double *B, double *X,
                                        const std::size_t rows,
                                        const std::size_t n,
                                        const double tolerance)
   {
-    if (!factor_ || by_residuals_ || communicator_.size() > 1) {
+    if (!factor_ || product_ || communicator_.size() > 1) {
       for (std::size_t c = 0; c < n; ++c)
         solve(B + c * rows, X + c * rows, tolerance);
       return;

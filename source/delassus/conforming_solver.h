@@ -4,7 +4,9 @@
 #include "linear_algebra/krylov.h"
 #include "linear_algebra/spd_solver.h"
 
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace nsfd
@@ -31,17 +33,23 @@ namespace nsfd
     void prepare(const SparseRows &matrix);
     /** The same; false where it is known not to be positive definite. */
     bool try_to_prepare(const SparseRows &matrix);
+    /** y = A x of own values; collective. */
+    using Product = std::function<void(const std::vector<double> &x,
+                                       std::vector<double> &y)>;
     /**
-     * From now on solutions are those of @p matrix, symmetric or not, by
-     * generalised minimal residuals that what was prepared last preconditions.
+     * From now on solutions are those of another matrix, symmetric or not, by
+     * generalised minimal residuals that what was prepared last preconditions;
+     * null: of what was prepared.
      */
-    void set_matrix(const SparseRows &matrix);
+    void set_product(Product product) { product_ = std::move(product); }
 
     /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
     krylov::Outcome solve(const double *b, double *x, double tolerance);
     /** The same with own values of the space. Collective. */
     krylov::Outcome solve_own(const std::vector<double> &b,
                               std::vector<double> &x, double tolerance);
+    /** @p x += P of own values. Collective. */
+    void add(const std::vector<double> &own, double *x);
     /** @p n columns of @p rows values each. */
     void solve_columns(const double *B, double *X, std::size_t rows,
                        std::size_t n, double tolerance);
@@ -63,7 +71,8 @@ namespace nsfd
     std::vector<int> place_;
     std::size_t n_own_ = 0;
     GhostValues exchange_; ///< of the space
-    bool new_pattern_ = true, by_residuals_ = false;
+    bool new_pattern_ = true;
+    Product product_; ///< or null
     std::unique_ptr<Cholesky> factor_;
     std::unique_ptr<Multigrid> multigrid_;
     SparseRows matrix_; ///< of the iterations

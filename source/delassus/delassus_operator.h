@@ -59,7 +59,10 @@ namespace nsfd
       inverse, ///< M_hat^{-1}
       damping  ///< of viscous bodies
     };
-    /** y = A x. */
+    /**
+     * y = A x. Where bodies share nodes, of a motion that they share: y then is
+     * complete by node, not by body.
+     */
     virtual void apply(Operator op, const double *x, double *y) const;
 
     /** Gauss-Seidel can work: what one body does no other one feels. */

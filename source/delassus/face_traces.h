@@ -21,9 +21,22 @@ namespace nsfd
   public:
     FaceTraces(const Communicator &communicator, const Bodies &bodies,
                const InterfacePoints<dim> &points);
+    virtual ~FaceTraces() = default;
 
     /** U = H v. */
     void relative_velocity(const double *velocity, double *result) const;
+
+    /**
+     * The sides of a point can move against each other: not where they are one
+     * node, as on a face that ends inside a body.
+     */
+    virtual bool parts(std::size_t /*point*/) const { return true; }
+
+    /** H v of a motion that bodies that share nodes share. */
+    virtual void jumps(const double *velocity, double *result) const
+    {
+      relative_velocity(velocity, result);
+    }
 
     /** r = H^T P. */
     void generalised_impulse(const double *impulse, double *result) const;

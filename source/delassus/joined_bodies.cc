@@ -13,6 +13,29 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    void take(const std::vector<int> &places, const double *x,
+              std::vector<double> &values)
+    {
+      values.resize(places.size());
+      for (std::size_t k = 0; k < values.size(); ++k)
+        values[k] = x[places[k]];
+    }
+
+    /** Over the own values of all ranks. */
+    double norm(const Communicator &communicator, const std::vector<double> &x)
+    {
+      double square = 0.;
+      for (const double value : x)
+        square += value * value;
+      if (communicator.size() > 1)
+        MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM,
+                      communicator.mpi());
+      return std::sqrt(square);
+    }
+  } // namespace
+
   template <int dim>
   JoinedBodies<dim>::JoinedBodies(const Communicator &communicator,
                                   const Bodies &bodies,
@@ -106,7 +129,14 @@ namespace nsfd
                        this->penalised_);
     factor_.set_space(conforming_->space());
     tangent_.set_space(conforming_->space());
-    has_bodies_ = false;
+    // of several unknowns that are one node, the first
+    const CoarseSpace &nodes = conforming_->space();
+    representative_.assign(std::size_t(nodes.n_own), -1);
+    for (std::size_t i = 0; i < nodes.number.size(); ++i) {
+      const long long mine = nodes.number[i] - nodes.first;
+      if (mine >= 0 && mine < nodes.n_own && representative_[mine] < 0)
+        representative_[mine] = int(i);
+    }
   }
 
   /** M_hat + H^T T H in the space, @p springs the blocks T; none if empty. */
@@ -114,9 +144,7 @@ namespace nsfd
   const SparseRows &
   JoinedBodies<dim>::assemble(const std::vector<double> &springs) const
   {
-    if (!has_bodies_)
-      matrix_->set_bodies(this->shares(this->time_step_, this->theta_));
-    has_bodies_ = true;
+    matrix_->set_step(this->shares(this->time_step_, this->theta_));
     return matrix_->assemble(springs.empty() ? nullptr : springs.data());
   }
 
@@ -132,11 +160,19 @@ namespace nsfd
   template <int dim>
   bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
                                         const std::vector<double> &c,
+                                        const double tolerance,
                                         std::vector<double> &dU)
   {
     const Charge charge(Cost::precondition);
-    tangent_.solver().set_matrix(assemble(T));
-    return respond(tangent_.solver(), c.data(), dU.data());
+    matrix_->set_step(this->shares(this->time_step_, this->theta_));
+    if (tangent_.is_of(T))
+      tangent_.solver().set_product(nullptr);
+    else
+      tangent_.solver().set_product(
+          [this, &T](const std::vector<double> &x, std::vector<double> &y) {
+            matrix_->apply_step(T.data(), x, y);
+          });
+    return respond(tangent_.solver(), c.data(), dU.data(), tolerance);
   }
 
   /** Its positive part preconditions what is not symmetric. */
@@ -145,23 +181,27 @@ namespace nsfd
                                            const bool symmetric,
                                            const std::vector<double> &c,
                                            std::vector<double> &dP,
-                                           std::vector<double> &dU)
+                                           std::vector<double> &dU,
+                                           const std::vector<double> *defect,
+                                           const double share)
   {
     std::vector<double> positive = T;
     for (std::size_t k = 0; k < T.size() && !symmetric; k += dim * dim)
       take_positive_part<dim>(&positive[k]);
     dU.resize(c.size());
-    const bool old = tangent_.may_keep(positive);
-    if (!(old && solve_tangent(T, c, dU))) {
-      if (!factor_tangent(positive))
-        return false;
-      if (symmetric) {
-        const Charge charge(Cost::precondition);
-        if (!respond(tangent_.solver(), c.data(), dU.data()))
-          return false;
-      } else if (!solve_tangent(T, c, dU))
-        return false;
+    double tolerance = tight;
+    if (defect) {
+      matrix_->impulse(c.data(), rows_);
+      matrix_->impulse(defect->data(), columns_);
+      const double all = norm(this->communicator_, rows_);
+      if (all > 0.)
+        tolerance =
+            std::max(tight, share * norm(this->communicator_, columns_) / all);
     }
+    const bool old = tangent_.may_keep(positive);
+    if (!(old && solve_tangent(T, c, tolerance, dU)) &&
+        !(factor_tangent(positive) && solve_tangent(T, c, tolerance, dU)))
+      return false;
     dP = c;
     for (std::size_t k = 0; k < c.size(); ++k)
       for (unsigned int e = 0; e < dim; ++e)
@@ -175,11 +215,10 @@ namespace nsfd
     ConformingSolver mass(this->communicator_,
                           std::numeric_limits<long long>::max());
     mass.set_space(conforming_->space());
-    matrix_->set_bodies({0., 0.});
-    has_bodies_ = false;
+    matrix_->set_step({0., 0.});
     mass.prepare(matrix_->assemble(nullptr));
     std::vector<double> momentum(x.size()), joined(x.size());
-    this->apply(Operator::mass, x.data(), momentum.data());
+    BondedDelassus<dim>::apply(Operator::mass, x.data(), momentum.data());
     mass.solve(momentum.data(), joined.data(), tight);
     double size = 0., change = 0.;
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -198,7 +237,7 @@ namespace nsfd
   void JoinedBodies<dim>::reinit(const double time_step, const double theta)
   {
     if (time_step != this->time_step_ || theta != this->theta_) {
-      valid_ = has_bodies_ = false;
+      valid_ = false;
       tangent_.clear();
     }
     DelassusOperator<dim>::reinit(time_step, theta);
@@ -215,26 +254,34 @@ namespace nsfd
     ++this->counters_.global_factorisations;
     valid_ = true;
     n_solves_ = 0;
+    last_.rows.clear();
     condensed_.clear();
   }
 
+  /** From rows_ to columns_. */
   template <int dim>
-  void JoinedBodies<dim>::solve(const double *b, double *x) const
+  bool JoinedBodies<dim>::solve(ConformingSolver &solver,
+                                const double tolerance) const
   {
-    update();
-    solve(factor_, b, x);
-    ++n_solves_;
-  }
-
-  template <int dim>
-  bool JoinedBodies<dim>::solve(ConformingSolver &solver, const double *b,
-                                double *x) const
-  {
-    std::fill(x, x + this->bodies_.n_dofs(), 0.);
-    const auto outcome = solver.solve(b, x, tight);
+    const auto outcome = solver.solve_own(rows_, columns_, tolerance);
     this->counters_.inner_iterations += outcome.iterations;
     ++this->counters_.global_solves;
     return outcome.converged;
+  }
+
+  /** M_hat^{-1} of rows_; a step asks twice for that of its impulses. */
+  template <int dim>
+  void JoinedBodies<dim>::answer() const
+  {
+    update();
+    if (!this->communicator_.any(rows_ != last_.rows)) {
+      columns_ = last_.columns;
+      return;
+    }
+    ++n_solves_;
+    solve(factor_);
+    last_.rows = rows_;
+    last_.columns = columns_;
   }
 
   template <int dim>
@@ -242,10 +289,25 @@ namespace nsfd
                                 double *y) const
   {
     if (op == Operator::inverse) {
-      solve(x, y);
+      update();
+      ++n_solves_;
+      const auto outcome = factor_.solve(x, y, tight);
+      this->counters_.inner_iterations += outcome.iterations;
+      ++this->counters_.global_solves;
       return;
     }
-    BondedDelassus<dim>::apply(op, x, y);
+    take(representative_, x, rows_);
+    matrix_->apply(op, rows_, columns_);
+    std::fill(y, y + this->bodies_.n_dofs(), 0.);
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      y[representative_[k]] = columns_[k];
+  }
+
+  template <int dim>
+  void JoinedBodies<dim>::jumps(const double *velocity, double *result) const
+  {
+    take(representative_, velocity, rows_);
+    matrix_->velocity(rows_, result);
   }
 
   template <int dim>
@@ -258,29 +320,20 @@ namespace nsfd
       condensed_.apply(impulse, velocity);
       return;
     }
-    update();
-    ++n_solves_;
-    respond(factor_, impulse, velocity);
+    matrix_->impulse(impulse, rows_);
+    answer();
+    matrix_->velocity(columns_, velocity);
   }
 
   /** U = H x of the answer x to H^T P. */
   template <int dim>
   bool JoinedBodies<dim>::respond(ConformingSolver &solver,
-                                  const double *impulse, double *velocity) const
+                                  const double *impulse, double *velocity,
+                                  const double tolerance) const
   {
-    if (this->communicator_.size() == 1) { // points that can part alone
-      matrix_->impulse(impulse, rows_);
-      const auto outcome = solver.solve_own(rows_, columns_, tight);
-      this->counters_.inner_iterations += outcome.iterations;
-      ++this->counters_.global_solves;
-      matrix_->velocity(columns_, velocity);
-      return outcome.converged;
-    }
-    rows_.resize(this->bodies_.n_dofs());
-    columns_.resize(rows_.size());
-    this->generalised_impulse(impulse, rows_.data());
-    const bool solved = solve(solver, rows_.data(), columns_.data());
-    this->relative_velocity(columns_.data(), velocity);
+    matrix_->impulse(impulse, rows_);
+    const bool solved = solve(solver, tolerance);
+    matrix_->velocity(columns_, velocity);
     return solved;
   }
 
@@ -288,12 +341,9 @@ namespace nsfd
   void JoinedBodies<dim>::add_velocity_change(const double *impulse,
                                               double *velocity) const
   {
-    rows_.resize(this->bodies_.n_dofs());
-    columns_.resize(rows_.size());
-    this->generalised_impulse(impulse, rows_.data());
-    solve(rows_.data(), columns_.data());
-    for (std::size_t k = 0; k < columns_.size(); ++k)
-      velocity[k] += columns_[k];
+    matrix_->impulse(impulse, rows_);
+    answer();
+    factor_.add(columns_, velocity);
   }
 
   /**

@@ -34,9 +34,16 @@ namespace nsfd
     void add_velocity_change(const double *impulse,
                              double *velocity) const override;
     void apply(Operator op, const double *x, double *y) const override;
+    void jumps(const double *velocity, double *result) const override;
+    bool parts(const std::size_t point) const override
+    {
+      return matrix_->parts(point);
+    }
     bool solve_linearised(const std::vector<double> &T, bool symmetric,
                           const std::vector<double> &c, std::vector<double> &dP,
-                          std::vector<double> &dU) override;
+                          std::vector<double> &dU,
+                          const std::vector<double> *defect,
+                          double share) override;
     bool join_motion(std::vector<double> &x) override;
     std::vector<std::uint8_t>
     once_per_node(const std::vector<std::uint8_t> &masks) override;
@@ -53,7 +60,7 @@ namespace nsfd
 
     void bonds_changed() override;
     bool respond(ConformingSolver &solver, const double *impulse,
-                 double *velocity) const;
+                 double *velocity, double tolerance = tight) const;
     bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
     bool condense() const;
     const SparseRows &assemble(const std::vector<double> &springs) const;
@@ -64,21 +71,24 @@ namespace nsfd
   private:
     bool factor_tangent(const std::vector<double> &springs);
     bool solve_tangent(const std::vector<double> &T,
-                       const std::vector<double> &c, std::vector<double> &dU);
+                       const std::vector<double> &c, double tolerance,
+                       std::vector<double> &dU);
     std::vector<char> joined_by(const std::vector<std::uint8_t> &bonded) const;
-    void solve(const double *b, double *x) const;
-    bool solve(ConformingSolver &solver, const double *b, double *x) const;
+    bool solve(ConformingSolver &solver, double tolerance = tight) const;
+    void answer() const;
     void update() const;
 
     mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
-    mutable bool has_bodies_ = false; ///< matrix_, of the step
-    const bool may_share_;            ///< nodes
+    const bool may_share_; ///< nodes
     std::unique_ptr<ConformingSpace> conforming_;
     mutable ConformingSolver factor_; ///< of M_hat
     TangentFactor<dim> tangent_;
     mutable bool valid_ = false;       ///< factor_
     mutable std::size_t n_solves_ = 0; ///< with the present factor
-    /// by unknown of the bodies
-    mutable std::vector<double> rows_, columns_;
+    std::vector<int> representative_;  ///< unknown of a body, by own node
+    mutable std::vector<double> rows_, columns_; ///< own values of the space
+    struct {
+      std::vector<double> rows, columns;
+    } mutable last_; ///< system that was solved with factor_; empty: none
   };
 } // namespace nsfd

@@ -62,6 +62,13 @@ namespace nsfd
       note(static_cast<long long>(number));
     std::sort(ghosts_.begin(), ghosts_.end());
     ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
+    std::vector<long long> ghosts;
+    for (const long long block : ghosts_)
+      for (unsigned int c = 0; c < size_; ++c)
+        ghosts.push_back(block * size_ + c);
+    shared_.exchange = GhostValues(communicator_, space.first,
+                                   std::size_t(space.n_own), ghosts);
+    shared_.values.resize(std::size_t(space.n_own) + ghosts.size());
     block_.own.clear();
     block_.remote.clear();
     for (const long long number : space.number)
@@ -97,10 +104,10 @@ namespace nsfd
   template <int dim>
   void JoinedMatrix<dim>::set_entries(const std::vector<char> &shares_nodes)
   {
-    entries_.clear();
-    first_entry_.assign(1, 0);
+    sights_.entries.clear();
+    sights_.first.assign(1, 0);
     for (std::size_t i = 0; i < points_.n_points; ++i) {
-      const std::size_t first = entries_.size();
+      const std::size_t first = sights_.entries.size();
       double largest = 0.;
       for (unsigned int s = 0; s < 2 && !shares_nodes[points_.face_of[i]];
            ++s) {
@@ -123,10 +130,10 @@ namespace nsfd
           if (zero)
             continue;
           const auto known = std::find_if(
-              entries_.begin() + long(first), entries_.end(),
+              sights_.entries.begin() + long(first), sights_.entries.end(),
               [&](const Entry &e) { return e.block == blocks[b]; });
-          if (known == entries_.end()) {
-            entries_.push_back(entry);
+          if (known == sights_.entries.end()) {
+            sights_.entries.push_back(entry);
             continue;
           }
           for (unsigned int k = 0; k < dim * size_; ++k) {
@@ -140,10 +147,11 @@ namespace nsfd
             entry.all.begin(), entry.all.end(),
             [&](const double a) { return std::abs(a) <= 1e-12 * largest; });
       };
-      entries_.erase(std::remove_if(entries_.begin() + long(first),
-                                    entries_.end(), vanishes),
-                     entries_.end());
-      first_entry_.push_back(entries_.size());
+      sights_.entries.erase(
+          std::remove_if(sights_.entries.begin() + long(first),
+                         sights_.entries.end(), vanishes),
+          sights_.entries.end());
+      sights_.first.push_back(sights_.entries.size());
     }
   }
 
@@ -171,9 +179,10 @@ namespace nsfd
               for (const Block c : blocks_of_side(face.first, t))
                 pairs.emplace_back(r, c);
       for (std::size_t i = face.first; i < face.first + face.count; ++i)
-        for (std::size_t r = first_entry_[i]; r < first_entry_[i + 1]; ++r)
-          for (std::size_t c = first_entry_[i]; c < first_entry_[i + 1]; ++c)
-            pairs.emplace_back(entries_[r].block, entries_[c].block);
+        for (std::size_t r = sights_.first[i]; r < sights_.first[i + 1]; ++r)
+          for (std::size_t c = sights_.first[i]; c < sights_.first[i + 1]; ++c)
+            pairs.emplace_back(sights_.entries[r].block,
+                               sights_.entries[c].block);
     }
     // sorted by row, then within rows, which are short
     std::vector<std::size_t> first(n_rows + 1, 0);
@@ -195,8 +204,6 @@ namespace nsfd
                              std::unique(begin, end));
       pattern_.first.push_back(pattern_.column.size());
     }
-    bodies_values_.assign(pattern_.column.size() * size_ * size_, 0.);
-
     if (communicator_.size() > 1)
       return;
     matrix_ = SparseRows();
@@ -219,55 +226,72 @@ namespace nsfd
     number_blocks(space);
     set_entries(shares_nodes);
     set_pattern(shares_nodes);
+    set_operators();
   }
 
-  /** The first entry of a block; its rows are a row of blocks apart. */
+  /** Entries in a row of scalars. */
   template <int dim>
-  double *JoinedMatrix<dim>::at(const Block row, const Block column)
+  std::size_t JoinedMatrix<dim>::width(const Block row) const
+  {
+    return (pattern_.first[std::size_t(row) + 1] -
+            pattern_.first[std::size_t(row)]) *
+           size_;
+  }
+
+  /** Of the first entry of a block; its rows are width() apart. */
+  template <int dim>
+  std::size_t JoinedMatrix<dim>::place(const Block row,
+                                       const Block column) const
   {
     const std::size_t first = pattern_.first[std::size_t(row)],
                       end = pattern_.first[std::size_t(row) + 1];
     const auto found =
         std::lower_bound(pattern_.column.begin() + long(first),
                          pattern_.column.begin() + long(end), column);
-    return &values_[first * size_ * size_ +
-                    std::size_t(found - pattern_.column.begin() - long(first)) *
-                        size_];
+    return first * size_ * size_ +
+           std::size_t(found - pattern_.column.begin() - long(first)) * size_;
   }
 
   template <int dim>
-  void JoinedMatrix<dim>::set_bodies(const StepShares &shares)
+  void JoinedMatrix<dim>::set_operators()
   {
-    values_.swap(bodies_values_);
-    std::fill(values_.begin(), values_.end(), 0.);
-    std::vector<double> entries;
-    for (const BodyClass &body : bodies_.classes) {
-      const unsigned int n = body.n_dofs;
-      entries.resize(std::size_t(n) * n);
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int j = 0; j < n; ++j)
-          entries[i * n + j] = step_entry(body, shares, i, j);
+    const std::size_t n_entries = pattern_.column.size() * size_ * size_;
+    const bool damped =
+        std::any_of(bodies_.classes.begin(), bodies_.classes.end(),
+                    [](const BodyClass &body) { return body.damping.rows; });
+    operators_.step.clear();
+    operators_.mass.assign(n_entries, 0.);
+    operators_.stiffness.assign(n_entries, 0.);
+    operators_.damping.assign(damped ? n_entries : 0, 0.);
+    for (const BodyClass &body : bodies_.classes)
       for (const unsigned int b : body.bodies)
-        for (unsigned int i = 0; i < n; i += size_) {
+        for (unsigned int i = 0; i < body.n_dofs; i += size_) {
           const Block row = block_.own[bodies_.first_dof[b] + i];
-          const std::size_t width = (pattern_.first[std::size_t(row) + 1] -
-                                     pattern_.first[std::size_t(row)]) *
-                                    size_;
-          for (unsigned int j = 0; j < n; j += size_) {
-            double *out = at(row, block_.own[bodies_.first_dof[b] + j]);
-            for (unsigned int k = 0; k < size_; ++k)
-              for (unsigned int l = 0; l < size_; ++l)
-                out[k * width + l] += entries[(i + k) * n + j + l];
+          for (unsigned int j = 0; j < body.n_dofs; j += size_) {
+            const std::size_t first =
+                place(row, block_.own[bodies_.first_dof[b] + j]);
+            const auto add = [&](const nsfd::Block &from,
+                                 std::vector<double> &to) {
+              for (unsigned int k = 0; k < size_; ++k)
+                for (unsigned int l = 0; l < size_; ++l)
+                  to[first + k * width(row) + l] += from(i + k, j + l);
+            };
+            add(body.mass, operators_.mass);
+            if (!body.rigid)
+              add(body.stiffness, operators_.stiffness);
+            if (body.damping.rows)
+              add(body.damping, operators_.damping);
           }
         }
-    }
-    add_bonds(shares);
-    values_.swap(bodies_values_);
+    add_bonds(false, operators_.stiffness);
+    if (damped)
+      add_bonds(true, operators_.damping);
   }
 
   /** a' (alpha a + beta t) + t' (beta a) with the rows of either side. */
   template <int dim>
-  void JoinedMatrix<dim>::add_bonds(const StepShares &shares)
+  void JoinedMatrix<dim>::add_bonds(const bool viscous,
+                                    std::vector<double> &values) const
   {
     const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
     for (std::size_t i = 0; i < points_.n_points; ++i) {
@@ -275,13 +299,10 @@ namespace nsfd
         continue;
       const double f = points_.weight[i];
       const Bond &bond = bonds_[i];
-      const double alpha = f * (shares.stiffness * bond.penalty +
-                                shares.damping * bond.viscous_penalty);
+      const double alpha = f * (viscous ? bond.viscous_penalty : bond.penalty);
       const auto traction = [&](const PointTrace &trace, const unsigned int k) {
-        double t = shares.stiffness * trace.traction[k];
-        if (!trace.viscous_traction.empty())
-          t += shares.damping * trace.viscous_traction[k];
-        return t;
+        const auto &rows = viscous ? trace.viscous_traction : trace.traction;
+        return rows.empty() ? 0. : rows[k];
       };
       for (unsigned int s = 0; s < 2; ++s) {
         const PointTrace &row = traces_[s][i];
@@ -294,13 +315,9 @@ namespace nsfd
           const auto columns = blocks_of_side(i, t);
           const double beta = f * (t == 0 ? bond.weight_1 : bond.weight_2);
           const unsigned int n = row.n_dofs, m = column.n_dofs;
-          for (std::size_t r = 0; r < rows.size(); ++r) {
-            const std::size_t width =
-                (pattern_.first[std::size_t(rows[r]) + 1] -
-                 pattern_.first[std::size_t(rows[r])]) *
-                size_;
+          for (std::size_t r = 0; r < rows.size(); ++r)
             for (std::size_t c = 0; c < columns.size(); ++c) {
-              double *out = at(rows[r], columns[c]);
+              double *out = &values[place(rows[r], columns[c])];
               for (unsigned int k = 0; k < size_; ++k)
                 for (unsigned int l = 0; l < size_; ++l) {
                   double sum = 0.;
@@ -312,25 +329,25 @@ namespace nsfd
                                        beta * traction(column, unsigned(q))) +
                         row_beta * traction(row, unsigned(p)) * column.jump[q];
                   }
-                  out[k * width + l] += sum;
+                  out[k * width(rows[r]) + l] += sum;
                 }
             }
-          }
         }
       }
     }
   }
 
   template <int dim>
-  void JoinedMatrix<dim>::add_springs(const double *springs)
+  void JoinedMatrix<dim>::add_springs(const double *springs,
+                                      std::vector<double> &values) const
   {
     for (std::size_t i = 0; i < points_.n_points; ++i) {
       const double *T = springs + i * dim * dim;
-      if (first_entry_[i] == first_entry_[i + 1] ||
+      if (sights_.first[i] == sights_.first[i + 1] ||
           std::all_of(T, T + dim * dim, [](const double t) { return t == 0.; }))
         continue;
-      for (std::size_t c = first_entry_[i]; c < first_entry_[i + 1]; ++c) {
-        const Entry &column = entries_[c];
+      for (std::size_t c = sights_.first[i]; c < sights_.first[i + 1]; ++c) {
+        const Entry &column = sights_.entries[c];
         double product[dim * dim] = {}; // T a
         for (unsigned int d = 0; d < dim; ++d)
           for (unsigned int e = 0; e < dim; ++e) {
@@ -338,17 +355,13 @@ namespace nsfd
               product[d * size_ + l] +=
                   T[d * dim + e] * column.all[e * size_ + l];
           }
-        for (std::size_t r = first_entry_[i]; r < first_entry_[i + 1]; ++r) {
-          const Entry &row = entries_[r];
-          const std::size_t width =
-              (pattern_.first[std::size_t(row.block) + 1] -
-               pattern_.first[std::size_t(row.block)]) *
-              size_;
-          double *out = at(row.block, column.block);
+        for (std::size_t r = sights_.first[i]; r < sights_.first[i + 1]; ++r) {
+          const Entry &row = sights_.entries[r];
+          double *out = &values[place(row.block, column.block)];
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int k = 0; k < size_; ++k)
               for (unsigned int l = 0; l < size_; ++l)
-                out[k * width + l] +=
+                out[k * width(row.block) + l] +=
                     row.own[d * size_ + k] * product[d * size_ + l];
         }
       }
@@ -358,51 +371,17 @@ namespace nsfd
   template <int dim>
   long long JoinedMatrix<dim>::node_of_point(const std::size_t point) const
   {
-    if (first_entry_[point + 1] != first_entry_[point] + 1)
+    if (sights_.first[point + 1] != sights_.first[point] + 1)
       return -1;
-    const Block block = entries_[first_entry_[point]].block;
+    const Block block = sights_.entries[sights_.first[point]].block;
     return block < n_own_ ? space_->first / size_ + block
                           : ghosts_[std::size_t(block - n_own_)];
-  }
-
-  template <int dim>
-  void JoinedMatrix<dim>::impulse(const double *P,
-                                  std::vector<double> &own) const
-  {
-    own.assign(std::size_t(n_own_) * size_, 0.);
-    for (std::size_t i = 0; i < points_.n_points; ++i)
-      for (std::size_t k = first_entry_[i]; k < first_entry_[i + 1]; ++k) {
-        const Entry &entry = entries_[k];
-        double *out = &own[std::size_t(entry.block) * size_];
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int c = 0; c < size_; ++c)
-            out[c] += entry.all[d * size_ + c] * P[i * dim + d];
-      }
-  }
-
-  template <int dim>
-  void JoinedMatrix<dim>::velocity(const std::vector<double> &x,
-                                   double *U) const
-  {
-    std::fill(U, U + points_.n_points * dim, 0.);
-    for (std::size_t i = 0; i < points_.n_points; ++i)
-      for (std::size_t k = first_entry_[i]; k < first_entry_[i + 1]; ++k) {
-        const Entry &entry = entries_[k];
-        const double *in = &x[std::size_t(entry.block) * size_];
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int c = 0; c < size_; ++c)
-            U[i * dim + d] += entry.all[d * size_ + c] * in[c];
-      }
   }
 
   /** Rows of other ranks go to them. */
   template <int dim>
   const SparseRows &JoinedMatrix<dim>::finish()
   {
-    if (communicator_.size() == 1) {
-      matrix_.value.swap(values_);
-      return matrix_;
-    }
     const auto number = [&](const Block block) {
       return block < n_own_
                  ? space_->first + static_cast<long long>(block) * size_
@@ -414,23 +393,38 @@ namespace nsfd
       for (unsigned int k = 0; k < size_; ++k)
         for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1]; ++c)
           for (unsigned int l = 0; l < size_; ++l)
-            all.push_back(
-                {number(Block(r)) + k, number(pattern_.column[c]) + l,
-                 values_[pattern_.first[r] * size_ * size_ +
-                         k * (pattern_.first[r + 1] - pattern_.first[r]) *
-                             size_ +
-                         (c - pattern_.first[r]) * size_ + l]});
+            all.push_back({number(Block(r)) + k, number(pattern_.column[c]) + l,
+                           values_[pattern_.first[r] * size_ * size_ +
+                                   k * width(Block(r)) +
+                                   (c - pattern_.first[r]) * size_ + l]});
     matrix_ = sum_at_owners(communicator_, *space_, std::move(all));
     return matrix_;
   }
 
   template <int dim>
+  void JoinedMatrix<dim>::set_step(const StepShares &shares)
+  {
+    if (!operators_.step.empty() && shares_.stiffness == shares.stiffness &&
+        shares_.damping == shares.damping)
+      return;
+    shares_ = shares;
+    operators_.step.resize(operators_.mass.size());
+    for (std::size_t k = 0; k < operators_.step.size(); ++k)
+      operators_.step[k] =
+          operators_.mass[k] + shares.stiffness * operators_.stiffness[k];
+    for (std::size_t k = 0; k < operators_.damping.size(); ++k)
+      operators_.step[k] += shares.damping * operators_.damping[k];
+  }
+
+  template <int dim>
   const SparseRows &JoinedMatrix<dim>::assemble(const double *springs)
   {
-    values_ = bodies_values_;
+    const bool alone = communicator_.size() == 1;
+    auto &values = alone ? matrix_.value : values_;
+    values = operators_.step;
     if (springs)
-      add_springs(springs);
-    return finish();
+      add_springs(springs, values);
+    return alone ? matrix_ : finish();
   }
 
   template class JoinedMatrix<2>;

@@ -14,9 +14,9 @@ namespace nsfd
   /**
    * The rows of this rank of
    *
-   *     P^T ( M_hat + f bonds + H^T T H ) P
+   *     P^T ( M + f K + g C + H^T T H ) P
    *
-   * in the space of bodies that share nodes: M_hat of the bodies, bonds of the
+   * in the space of bodies that share nodes: K and C with the bonds of the
    * interior penalty method, T a dim x dim block per point.
    */
   template <int dim>
@@ -24,6 +24,7 @@ namespace nsfd
   {
   public:
     using Bond = typename BulkTraction<dim>::Bond;
+    using Operator = typename DelassusOperator<dim>::Operator;
 
     /** @p first_dof of this rank among the unknowns of all. Collective. */
     JoinedMatrix(const Communicator &communicator, const Bodies &bodies,
@@ -39,12 +40,27 @@ namespace nsfd
                    const std::vector<char> &shares_nodes,
                    const std::vector<std::uint8_t> &penalised);
 
-    /** M_hat and the bonds of a step. */
-    void set_bodies(const StepShares &shares);
+    /** M + f K + g C of a step, M_hat, from now on. */
+    void set_step(const StepShares &shares);
 
-    /** All of it; @p springs are the blocks T, row by row, or null. Collective.
-     */
+    /** M_hat and @p springs, the blocks T, row by row, or null. Collective. */
     const SparseRows &assemble(const double *springs);
+
+    /**
+     * y = P^T A P x of own values of the space, A mass, stiffness or damping.
+     * Collective.
+     */
+    void apply(Operator op, const std::vector<double> &x,
+               std::vector<double> &y) const;
+    /** The same, A = M_hat + H^T T H. Collective. */
+    void apply_step(const double *springs, const std::vector<double> &x,
+                    std::vector<double> &y) const;
+
+    /** A point sees motions of the space. */
+    bool parts(const std::size_t point) const
+    {
+      return sights_.first[point] != sights_.first[point + 1];
+    }
 
     /**
      * The node, by a number of all ranks, that is all that a point sees: -1
@@ -52,9 +68,9 @@ namespace nsfd
      */
     long long node_of_point(std::size_t point) const;
 
-    /** On one rank: H^T P in the space, n_own values that are set. */
+    /** P^T H^T P, own values of the space. Collective. */
     void impulse(const double *P, std::vector<double> &own) const;
-    /** On one rank: U = H P x of own values @p x; 0 at points that are joined.
+    /** U = H P x of own values @p x; 0 at points that are joined. Collective.
      */
     void velocity(const std::vector<double> &x, double *U) const;
 
@@ -74,9 +90,14 @@ namespace nsfd
                                       unsigned int side) const;
     void set_entries(const std::vector<char> &shares_nodes);
     void set_pattern(const std::vector<char> &shares_nodes);
-    double *at(Block row, Block column);
-    void add_bonds(const StepShares &shares);
-    void add_springs(const double *springs);
+    std::size_t width(Block row) const;
+    std::size_t place(Block row, Block column) const;
+    void set_operators();
+    void add_bonds(bool viscous, std::vector<double> &values) const;
+    void add_springs(const double *springs, std::vector<double> &values) const;
+    void multiply(const std::vector<double> &values, const double *x) const;
+    void fetch_ghosts(const std::vector<double> &own) const;
+    void return_ghosts(std::vector<double> &own) const;
     const SparseRows &finish();
 
     const Communicator &communicator_;
@@ -95,14 +116,24 @@ namespace nsfd
     std::vector<long long> ghosts_; ///< blocks of other ranks
     struct {
       std::vector<Block> own, remote;
-    } block_;                              ///< by unknown
-    std::vector<std::size_t> first_entry_; ///< by point, and the end
-    std::vector<Entry> entries_;
+    } block_; ///< by unknown
+    struct {
+      std::vector<std::size_t> first; ///< by point, and the end
+      std::vector<Entry> entries;
+    } sights_; ///< what points see of the blocks
     struct {
       std::vector<std::size_t> first;
       std::vector<Block> column; ///< ascending
     } pattern_;                  ///< by block row, those of ghosts too
-    std::vector<double> bodies_values_, values_;
+    struct {
+      std::vector<double> mass, stiffness, damping, step;
+    } operators_;           ///< by entry of the pattern; what vanishes is empty
+    StepShares shares_{0.}; ///< of M_hat, operators_.step
+    std::vector<double> values_; ///< of several ranks
     SparseRows matrix_;
+    struct {
+      GhostValues exchange;
+      std::vector<double> values; ///< own ones and ghosts
+    } mutable shared_;            ///< of the space
   };
 } // namespace nsfd

@@ -31,6 +31,11 @@ namespace nsfd
      * Collective.
      */
     bool may_keep(const std::vector<double> &springs) const;
+    /** It is the factor of exactly these @p springs. Collective. */
+    bool is_of(const std::vector<double> &springs) const
+    {
+      return !communicator_.any(springs != springs_);
+    }
     /** False: not positive definite. Collective. */
     bool factor(const SparseRows &matrix, const std::vector<double> &springs);
 

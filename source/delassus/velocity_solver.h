@@ -15,14 +15,17 @@ namespace nsfd
      *
      *     (M_hat + H^T T H) dv = H^T c,   dU = H dv,   dP = c - T dU,
      *
-     * T a block of dim x dim per point, row by row, @p symmetric or not; to
-     * round-off, or what iterations leave of it. False where the matrix is
-     * known not to be positive definite, or iterations do not solve it.
-     * Collective.
+     * T a block of dim x dim per point, row by row, @p symmetric or not. What
+     * is left of the momentum is at most @p share of |H^T r|, r the @p defect
+     * of the impulses; without one, round-off or what iterations leave. False
+     * where the matrix is known not to be positive definite, or iterations do
+     * not solve it. Collective.
      */
     virtual bool solve_linearised(const std::vector<double> &T, bool symmetric,
                                   const std::vector<double> &c,
                                   std::vector<double> &dP,
-                                  std::vector<double> &dU) = 0;
+                                  std::vector<double> &dU,
+                                  const std::vector<double> *defect = nullptr,
+                                  double share = 0.) = 0;
   };
 } // namespace nsfd

@@ -29,15 +29,15 @@ namespace nsfd
         floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
   {
     const Charge charge(Cost::laws);
-    linear_.reserve(problem.n_points);
-    for (std::size_t i = 0; i < problem.n_points; ++i)
-      linear_.push_back(
-          linear_point<dim>(problem, i, majorant(i, 0), majorant(i, 1)));
-    // local solves start from the opening without any change
-    for (std::size_t i = 0; i < problem.n_points; ++i)
+    linear_.resize(problem.n_points);
+    for (const std::size_t i : problem.acting) {
+      linear_[i] =
+          linear_point<dim>(problem, i, majorant(i, 0), majorant(i, 1));
+      // local solves start from the opening without any change
       solutions[i].reach.opening = problem.opening_max[i];
-    for (std::size_t i = 0; i < problem.slip_max.size(); ++i)
-      solutions[i].reach.slip = problem.slip_max[i];
+      if (!problem.slip_max.empty())
+        solutions[i].reach.slip = problem.slip_max[i];
+    }
   }
 
   template <int dim>
@@ -65,7 +65,7 @@ namespace nsfd
   {
     const Charge charge(Cost::laws);
     ++law_calls;
-    for (std::size_t i = 0; i < problem_.n_points; ++i) {
+    for (const std::size_t i : problem_.acting) {
       const auto local = local_velocity(impulse, i);
       if (is_frozen(i))
         solutions[i] = solve_frozen_point<dim>(
@@ -79,19 +79,20 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         defect[i * dim + c] = impulse[i * dim + c] - solutions[i].impulse[c];
     }
-    const std::size_t n = problem_.n_owned;
+    const std::size_t n = owned_acting(problem_);
     terms_.assign(2 * n, 0.);
     worst_error = 0.;
     worst_point = 0;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t a = 0; a < n; ++a) {
+      const std::size_t i = problem_.acting[a];
       for (unsigned int c = 0; c < dim; ++c) {
         const double R = majorant(i, c), d = defect[i * dim + c],
                      P = impulse[i * dim + c];
-        terms_[i] += R * d * d;
-        terms_[n + i] += R * P * P;
+        terms_[a] += R * d * d;
+        terms_[n + a] += R * P * P;
       }
-      if (!(terms_[i] <= worst_error)) {
-        worst_error = terms_[i];
+      if (!(terms_[a] <= worst_error)) {
+        worst_error = terms_[a];
         worst_point = i;
       }
     }

@@ -1,11 +1,15 @@
 #include "one_step_problem.h"
 
+#include <numeric>
+
 namespace nsfd
 {
   template <int dim>
   void resize(OneStepProblem<dim> &problem, const std::size_t n)
   {
     problem.n_points = n;
+    problem.acting.resize(n);
+    std::iota(problem.acting.begin(), problem.acting.end(), 0u);
     problem.kind.assign(n, PointKind::free);
     problem.mask.assign(n, 0);
     problem.contact.assign(n, 0);

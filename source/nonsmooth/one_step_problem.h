@@ -3,6 +3,7 @@
 #include "nsfd/cohesive_laws/cohesive_law.h"
 #include "nsfd/state/point_kind.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -49,6 +50,10 @@ namespace nsfd
 
     std::vector<Interaction> interactions;
 
+    /// those whose impulses do something, ascending: not the points of faces
+    /// that are a part of the bodies, nor points that cannot part
+    std::vector<unsigned int> acting;
+
     // per point
     std::vector<PointKind> kind;
     std::vector<std::uint8_t> mask;        ///< bit c: component c prescribed
@@ -85,6 +90,15 @@ namespace nsfd
   /** @p n points with what points have by default. */
   template <int dim>
   void resize(OneStepProblem<dim> &problem, std::size_t n);
+
+  /** How many of them, the first ones, this rank counts. */
+  template <int dim>
+  std::size_t owned_acting(const OneStepProblem<dim> &problem)
+  {
+    return std::size_t(std::lower_bound(problem.acting.begin(),
+                                        problem.acting.end(), problem.n_owned) -
+                       problem.acting.begin());
+  }
 
   /**
    * Where point @p i of a discretization is among the points of a step: the

@@ -134,8 +134,7 @@ namespace nsfd
     using Points = PointBalance<dim>;
     Points points(discretization_, uniqueness_, problem, evaluation, origins,
                   theta_, old, next);
-    for (std::size_t i = 0; i < problem.n_points; ++i)
-      points.add(i);
+    points.add();
     const auto sums =
         communicator.sums(points.terms.data(), points.n_rows, points.n_owned);
     if (!reactions_.empty())

@@ -89,7 +89,7 @@ namespace nsfd
     if (crack_pressure_)
       delassus_.add_velocity_change(
           crack_pressure_->impulse(pressure, h).data(), velocity_.data());
-    delassus_.relative_velocity(velocity_.data(), problem.free_velocity.data());
+    delassus_.jumps(velocity_.data(), problem.free_velocity.data());
     delassus_.set_free_velocity(&velocity_);
   }
 

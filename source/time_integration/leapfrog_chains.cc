@@ -26,6 +26,7 @@ namespace nsfd
     point.push_back(mesh_point);
     OneStepProblem<dim> &p = problem;
     p.n_points = p.n_owned = a + 1;
+    p.acting.push_back(a);
     p.kind.push_back(PointKind::free);
     p.mask.push_back(0);
     p.contact.push_back(0);

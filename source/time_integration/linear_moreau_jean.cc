@@ -192,7 +192,7 @@ namespace nsfd
         solved_velocity(this->problem_, evaluation, next.impulse);
     if (bonded_) { // W has no rows there
       std::vector<double> velocity(next.relative_velocity.size());
-      this->delassus_.relative_velocity(next.velocity.data(), velocity.data());
+      this->delassus_.jumps(next.velocity.data(), velocity.data());
       for (std::size_t k = 0; k < velocity.size(); ++k)
         if (old.kind[k / dim] == PointKind::bonded)
           next.relative_velocity[k] = velocity[k];

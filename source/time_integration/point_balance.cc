@@ -21,6 +21,20 @@ namespace nsfd
                        });
   }
 
+  namespace
+  {
+    /** Not those whose energy is one of the bodies, or of other points. */
+    std::vector<unsigned int> with_energy(const State &old)
+    {
+      std::vector<unsigned int> points;
+      for (std::size_t i = 0; i < old.kind.size(); ++i)
+        if (old.kind[i] != PointKind::bonded &&
+            old.kind[i] != PointKind::separated)
+          points.push_back(unsigned(i));
+      return points;
+    }
+  } // namespace
+
   template <int dim>
   PointBalance<dim>::PointBalance(const Discretization<dim> &discretization,
                                   const UniquenessBound<dim> &uniqueness,
@@ -29,7 +43,10 @@ namespace nsfd
                                   const std::vector<PointOrigin> &origins,
                                   const double work_theta, const State &old,
                                   State &next)
-      : n_owned(problem.n_owned),
+      : points(with_energy(old)),
+        n_owned(std::size_t(
+            std::lower_bound(points.begin(), points.end(), problem.n_owned) -
+            points.begin())),
         n_rows(has_rates(discretization.input(), problem) ? viscous + 1
                                                           : viscous),
         terms(n_rows * n_owned, 0.),
@@ -47,18 +64,21 @@ namespace nsfd
   }
 
   template <int dim>
+  void PointBalance<dim>::add()
+  {
+    for (place_ = 0; place_ < points.size(); ++place_)
+      add(std::size_t(points[place_]));
+  }
+
+  template <int dim>
   void PointBalance<dim>::add(const std::size_t i)
   {
-    if (old_.kind[i] == PointKind::bonded ||
-        old_.kind[i] == PointKind::separated)
-      return; // its energy is one of the bodies, or of other points
     Vector U, U_theta;
     for (unsigned int c = 0; c < dim; ++c) {
       const double P = next_.impulse[i * dim + c];
-      put(impulses, i,
-          (c == 0 ? problem_.majorant_normal
-                  : problem_.majorant_tangential)[i] *
-              P * P);
+      put(impulses, (c == 0 ? problem_.majorant_normal
+                            : problem_.majorant_tangential)[i] *
+                        P * P);
       U[c] = next_.relative_velocity[i * dim + c];
       U_theta[c] = work_theta_ * U[c] +
                    (1. - work_theta_) * old_.relative_velocity[i * dim + c];
@@ -84,25 +104,26 @@ namespace nsfd
       power += P[c] * U_theta[c];
     const PointOrigin origin = origins_[i];
     if (origin.kind == PointOrigin::Kind::motion) {
-      put(motion, i, power);
+      put(motion, power);
       double beyond = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         beyond += P[c] * (next_.relative_velocity[i * dim + c] -
                           problem_.given_velocity[i * dim + c]);
-      put(support, i, -work_theta_ * beyond);
+      put(support, -work_theta_ * beyond);
       const auto &driven = discretization_.driven_boundaries();
       const std::size_t d =
           std::find(driven.begin(), driven.end(), origin.block) -
           driven.begin();
-      if (i < n_owned)
+      if (place_ < n_owned)
         for (unsigned int c = 0; c < dim; ++c)
-          reactions[(d * dim + c) * n_owned + i] = P[c] / problem_.time_step;
+          reactions[(d * dim + c) * n_owned + place_] =
+              P[c] / problem_.time_step;
     } else {
       // the first step closes what jump of velocities the scene began with;
       // later ones only have what the solver leaves
       const bool closes = old_.last_step == 0.;
-      put(closes ? impact : numerical, i, -power);
-      put(joint, i, closes ? 0. : -power);
+      put(closes ? impact : numerical, -power);
+      put(joint, closes ? 0. : -power);
       double square = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         square += next_.jump[i * dim + c] * next_.jump[i * dim + c];
@@ -128,12 +149,12 @@ namespace nsfd
     if (problem_.kind[i] == PointKind::rigid && !solution.damages) {
       for (unsigned int c = 0; c < dim; ++c)
         residual += contact[c] * U_theta[c];
-      put(numerical, i, -residual);
+      put(numerical, -residual);
     } else {
       const bool closed = solution.contact_impulse > 0.;
       const double lift = closed ? add_lift(i) : 0.;
       if (closed)
-        put(impact, i, -contact[0] * (U_theta[0] - lift));
+        put(impact, -contact[0] * (U_theta[0] - lift));
       else
         residual += contact[0] * U_theta[0];
       double rubbing = 0.;
@@ -141,11 +162,11 @@ namespace nsfd
         rubbing += contact[c] * U_theta[c];
       if (solution.frozen.threshold > 0. || lift != 0.) {
         // climbing takes from what rubs, wear adds to it
-        put(friction, i, -rubbing - contact[0] * lift);
-        put(positive_friction, i, rubbing > 0. ? rubbing : 0.);
+        put(friction, -rubbing - contact[0] * lift);
+        put(positive_friction, rubbing > 0. ? rubbing : 0.);
       } else
         residual += rubbing;
-      put(numerical, i, -residual);
+      put(numerical, -residual);
       next_.contact[i] = closed;
       if (closed) {
         double square = 0.;
@@ -155,23 +176,23 @@ namespace nsfd
         }
         next_.slip[i] += std::sqrt(square);
       }
-      if (i < n_owned && (closed || solution.damages))
+      if (place_ < n_owned && (closed || solution.damages))
         ++active;
     }
 
     const double dissipated = w * energies.damage;
-    put(stored, i, w * energies.stored);
-    put(damage, i, dissipated);
+    put(stored, w * energies.stored);
+    put(damage, dissipated);
     // -w h R.U_theta = -w (d psi + d D + N)
     double spent =
         w * (energies.stored + energies.overlap_released - energies.stored_old);
     if (energies.viscous > 0.) {
-      put(viscous, i, w * energies.viscous);
+      put(viscous, w * energies.viscous);
       spent += w * energies.viscous;
       viscous_traction = std::max(viscous_traction, energies.viscous_traction);
     }
-    put(numerical, i, -cohesive_work - spent - dissipated);
-    put(numerical, i, w * energies.overlap_released);
+    put(numerical, -cohesive_work - spent - dissipated);
+    put(numerical, w * energies.overlap_released);
   }
 
   /**
@@ -207,7 +228,7 @@ namespace nsfd
         energies, i, problem_.kind[i] == PointKind::rigid && solution.damages,
         old_, next_);
     if (breaks)
-      put(broken, i, problem_.weight[i]);
+      put(broken, problem_.weight[i]);
     if (problem_.kind[i] != PointKind::cohesive &&
         problem_.kind[i] != PointKind::rigid)
       return;
@@ -229,7 +250,7 @@ namespace nsfd
   template <int dim>
   void PointBalance<dim>::add_penetration(const std::size_t i)
   {
-    if (next_.two_sided[i] || old_.kind[i] == PointKind::bonded)
+    if (next_.two_sided[i])
       return;
     const double h = problem_.time_step;
     const double depth =

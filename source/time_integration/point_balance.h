@@ -50,9 +50,11 @@ namespace nsfd
                  const std::vector<PointOrigin> &origins, double work_theta,
                  const State &old, State &next);
 
-    void add(std::size_t point);
+    /** All of them. */
+    void add();
 
-    std::size_t n_owned;
+    std::vector<unsigned int> points; ///< with an energy, ascending
+    std::size_t n_owned;              ///< of them, the first ones
     unsigned int n_rows;
     std::vector<double> terms;     ///< n_rows of n_owned
     std::vector<double> reactions; ///< the same, dim rows per boundary
@@ -67,17 +69,19 @@ namespace nsfd
         return LineChanges::no_point;
       const auto first = terms.begin() + long(row * n_owned);
       const auto least = std::min_element(first, first + long(n_owned));
-      return *least < 0. ? std::size_t(least - first) : LineChanges::no_point;
+      return *least < 0. ? points[std::size_t(least - first)]
+                         : LineChanges::no_point;
     }
 
   private:
     using Vector = std::array<double, dim>;
 
-    void put(const Row row, const std::size_t i, const double value)
+    void put(const Row row, const double value)
     {
-      if (i < n_owned)
-        terms[row * n_owned + i] += value;
+      if (place_ < n_owned)
+        terms[row * n_owned + place_] += value;
     }
+    void add(std::size_t point);
     /** By the rule of the positions. */
     double moved(const std::size_t k) const
     {
@@ -100,5 +104,6 @@ namespace nsfd
     const double work_theta_; ///< of the velocity that impulses work with
     const State &old_;
     State &next_;
+    std::size_t place_ = 0; ///< of the present point among `points`
   };
 } // namespace nsfd

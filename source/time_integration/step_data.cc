@@ -338,8 +338,13 @@ namespace nsfd
     for (std::size_t k = 0; k < old.jump.size(); ++k)
       problem.jump_free[k] =
           old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
-    for (std::size_t i = 0; i < problem.n_points; ++i)
+    problem.acting.clear();
+    for (std::size_t i = 0; i < problem.n_points; ++i) {
+      if (old.kind[i] != PointKind::bonded &&
+          old.kind[i] != PointKind::separated && delassus.parts(i))
+        problem.acting.push_back(unsigned(i));
       set_point(input.time, discretization.extent(), old, i, problem);
+    }
     set_viscosity(input, origins, old, problem);
     set_dilatancy(input, origins, old, problem);
     set_motion(motion, discretization, old, problem);

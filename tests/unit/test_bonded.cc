@@ -141,7 +141,8 @@ end
     const auto apply = [&](const Vector &x, Vector &K, Vector &alone) {
       K.assign(n, 0.);
       alone.assign(n, 0.);
-      scene.delassus->apply(Operator::stiffness, x.data(), K.data());
+      scene.bonded->BondedDelassus<dim>::apply(Operator::stiffness, x.data(),
+                                               K.data());
       for (std::size_t b = 0; b < bodies.size(); ++b) {
         const auto &block = bodies.classes[bodies.class_of[b]].stiffness;
         for (unsigned int i = 0; i < block.rows; ++i)
@@ -206,8 +207,9 @@ end
     const std::size_t n = scene.state.displacement.size();
     const Vector x = random_vector(n, random), y = random_vector(n, random);
     Vector Kx(n), Ky(n);
-    scene.delassus->apply(Operator::stiffness, x.data(), Kx.data());
-    scene.delassus->apply(Operator::stiffness, y.data(), Ky.data());
+    const BondedDelassus<dim> &bonded = *scene.bonded;
+    bonded.BondedDelassus<dim>::apply(Operator::stiffness, x.data(), Kx.data());
+    bonded.BondedDelassus<dim>::apply(Operator::stiffness, y.data(), Ky.data());
     EXPECT_NEAR(dot(y, Kx), dot(x, Ky),
                 1e-13 * std::sqrt(dot(Kx, Kx) * dot(y, y)));
     // M_hat^{-1} undoes M + h^2 theta^2 K of motions with common nodes

@@ -17,7 +17,7 @@ namespace nsfd
     /// a step of Newton's method is long enough
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
-    constexpr double of_differences = 1e-5, left_to_differences = 1e-4;
+    constexpr double of_differences = 1e-5, left_to_differences = 1e-5;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
 
@@ -49,19 +49,11 @@ namespace nsfd
   void AugmentedLagrangian<dim>::begin(const Work &work, const Vector &impulse)
   {
     const auto &problem = work.problem;
-    active_.clear();
+    const std::size_t n = problem.n_points * dim;
     impulse_ = impulse;
     solutions_.resize(problem.n_points);
-    for (std::size_t i = 0; i < problem.n_points; ++i) {
-      if (problem.kind[i] == PointKind::bonded) {
-        std::fill_n(&impulse_[i * dim], dim, 0.);
-        solutions_[i] = {};
-        continue;
-      }
-      active_.push_back(i);
+    for (const std::size_t i : problem.acting)
       solutions_[i].reach = work.evaluation.solutions[i].reach;
-    }
-    const std::size_t n = problem.n_points * dim;
     velocity_.assign(n, 0.);
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
@@ -82,7 +74,7 @@ namespace nsfd
   void AugmentedLagrangian<dim>::soften(const Work &work, const double share)
   {
     rest_ = impulse_;
-    for (const std::size_t i : active_)
+    for (const std::size_t i : work.problem.acting)
       for (unsigned int c = 0; c < dim; ++c)
         compliance_[i * dim + c] = share * work.evaluation.majorant(i, c);
   }
@@ -92,7 +84,7 @@ namespace nsfd
   void AugmentedLagrangian<dim>::answer(const Work &work, const Vector &U)
   {
     const Charge charge(Cost::laws);
-    for (const std::size_t i : active_) {
+    for (const std::size_t i : work.problem.acting) {
       std::array<double, dim> local;
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
@@ -108,17 +100,18 @@ namespace nsfd
   template <int dim>
   auto AugmentedLagrangian<dim>::errors(const Work &work) const -> Errors
   {
-    const std::size_t n = work.problem.n_owned;
+    const std::size_t n = owned_acting(work.problem);
     Vector terms(3 * n, 0.);
-    for (const std::size_t i : active_)
-      for (unsigned int c = 0; c < dim && i < n; ++c) {
+    for (std::size_t a = 0; a < n; ++a)
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t i = work.problem.acting[a];
         const double R = work.evaluation.majorant(i, c),
                      P = impulse_[i * dim + c],
                      defect = P - solutions_[i].impulse[c],
                      shift = P - rest_[i * dim + c];
-        terms[i] += R * P * P;
-        terms[n + i] += R * defect * defect;
-        terms[2 * n + i] += R * shift * shift;
+        terms[a] += R * P * P;
+        terms[n + a] += R * defect * defect;
+        terms[2 * n + a] += R * shift * shift;
       }
     const auto sums = work.delassus.communicator().sums(terms.data(), 3, n);
     const double scale = std::sqrt(sums[0]) + work.evaluation.floor();
@@ -134,7 +127,7 @@ namespace nsfd
     const auto &problem = work.problem;
     tangents_.assign(problem.n_points * dim * dim, 0.);
     bool symmetric = true;
-    for (const std::size_t i : active_) {
+    for (const std::size_t i : work.problem.acting) {
       const auto &solution = solutions_[i];
       const double A_N = compliance_[i * dim], A_T = compliance_[i * dim + 1];
       double *T = &tangents_[i * dim * dim];
@@ -173,9 +166,9 @@ namespace nsfd
 
   /** The symmetric part of T, without its negative eigenvalues on request. */
   template <int dim>
-  void AugmentedLagrangian<dim>::symmetrise(const bool convex)
+  void AugmentedLagrangian<dim>::symmetrise(const Work &work, const bool convex)
   {
-    for (const std::size_t i : active_) {
+    for (const std::size_t i : work.problem.acting) {
       double *T = &tangents_[i * dim * dim];
       if (convex && solutions_[i].coupled)
         take_positive_part<dim>(T);
@@ -192,22 +185,22 @@ namespace nsfd
   double AugmentedLagrangian<dim>::slope(const Work &work,
                                          const double length) const
   {
-    const std::size_t n = work.problem.n_owned;
+    const std::size_t n = owned_acting(work.problem);
     Vector terms(n, 0.);
-    for (const std::size_t i : active_)
-      for (unsigned int c = 0; c < dim && i < n; ++c) {
-        const std::size_t k = i * dim + c;
-        terms[i] +=
+    for (std::size_t a = 0; a < n; ++a)
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t i = work.problem.acting[a], k = i * dim + c;
+        terms[a] +=
             dU_[k] * (impulse_[k] + length * dP_[k] - solutions_[i].impulse[c]);
       }
     return work.delassus.communicator().sum(terms.data(), n);
   }
 
   template <int dim>
-  void AugmentedLagrangian<dim>::set_right_side()
+  void AugmentedLagrangian<dim>::set_right_side(const Work &work)
   {
     right_side_.assign(impulse_.size(), 0.);
-    for (const std::size_t i : active_)
+    for (const std::size_t i : work.problem.acting)
       for (unsigned int c = 0; c < dim; ++c)
         right_side_[i * dim + c] =
             solutions_[i].impulse[c] - impulse_[i * dim + c];
@@ -219,9 +212,9 @@ namespace nsfd
    * share of A.
    */
   template <int dim>
-  void AugmentedLagrangian<dim>::remove_springs()
+  void AugmentedLagrangian<dim>::remove_springs(const Work &work)
   {
-    for (const std::size_t i : active_) {
+    for (const std::size_t i : work.problem.acting) {
       const double left =
           solutions_[i].coupled ? left_to_differences : last_share;
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
@@ -256,6 +249,7 @@ namespace nsfd
   {
     Vector best = impulse_, best_velocity = velocity_;
     double least = std::numeric_limits<double>::infinity();
+    std::array<double, 2> before{least, least};
     unsigned int idle = 0;
     for (;;) {
       soften(work, 1.);
@@ -269,16 +263,21 @@ namespace nsfd
         best = impulse_;
         best_velocity = velocity_;
       }
-      if (idle > patience || !std::isfinite(error))
+      const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
+      before = {error, before[0]};
+      if (idle > patience || comes_back || !std::isfinite(error))
         break;
       ++work.report.newton;
-      set_right_side();
+      set_right_side(work);
+      defect_ = right_side_;
       const bool symmetric = differentiate(work);
-      remove_springs();
+      remove_springs(work);
       if (symmetric)
-        symmetrise(false);
+        symmetrise(work, false);
+      const double share =
+          std::max(0.1 * tolerance / error, std::min(1e-2, 0.1 * error));
       if (!work.bodies.solve_linearised(tangents_, symmetric, right_side_, dP_,
-                                        dU_))
+                                        dU_, &defect_, share))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k)
         impulse_[k] += dP_[k];
@@ -294,7 +293,7 @@ namespace nsfd
   bool AugmentedLagrangian<dim>::find_direction(const Work &work)
   {
     ++work.report.newton;
-    set_right_side();
+    set_right_side(work);
     const auto solved = [&](const bool symmetric) {
       return work.bodies.solve_linearised(tangents_, symmetric, right_side_,
                                           dP_, dU_) &&
@@ -302,10 +301,10 @@ namespace nsfd
     };
     const bool symmetric = differentiate(work);
     if (symmetric)
-      symmetrise(false);
+      symmetrise(work, false);
     if (solved(symmetric))
       return true;
-    symmetrise(true);
+    symmetrise(work, true);
     return solved(true);
   }
 
@@ -360,7 +359,7 @@ namespace nsfd
     const unsigned int most = control.iterations_or(80);
     double share = first_share;
     const auto judge = [&] {
-      for (const std::size_t i : active_)
+      for (const std::size_t i : work.problem.acting)
         evaluation.solutions[i].reach = solutions_[i].reach;
       evaluation.update(impulse_);
       velocity_ = evaluation.velocity; // without the round-off of all changes

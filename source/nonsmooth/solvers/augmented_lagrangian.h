@@ -58,21 +58,20 @@ namespace nsfd
     void answer(const Work &work, const Vector &U);
     Errors errors(const Work &work) const;
     bool differentiate(const Work &work);
-    void symmetrise(bool convex);
+    void symmetrise(const Work &work, bool convex);
     double slope(const Work &work, double length) const;
-    void set_right_side();
-    void remove_springs();
+    void set_right_side(const Work &work);
+    void remove_springs(const Work &work);
     bool jump(const Work &work, double tolerance);
     bool find_direction(const Work &work);
     void try_length(const Work &work, double length);
     void advance(const Work &work);
 
-    std::vector<std::size_t> active_;  ///< points that are not bonded
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
     std::vector<LocalSolution<dim>> solutions_;
     Vector tangents_; ///< T, dim x dim per point
-    Vector right_side_, dP_, dU_;
+    Vector right_side_, defect_, dP_, dU_;
     Vector moved_; ///< U of a trial
   };
 } // namespace nsfd

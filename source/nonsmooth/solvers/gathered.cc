@@ -275,7 +275,8 @@ namespace nsfd
   Gathered<dim>::gather(const OneStepProblem<dim> &problem) const
   {
     OneStepProblem<dim> all;
-    all.n_points = all.n_owned = points_.n_points;
+    resize(all, points_.n_points);
+    all.n_owned = all.n_points;
     all.time_step = problem.time_step;
     all.theta = problem.theta;
     all.rule = problem.rule;
