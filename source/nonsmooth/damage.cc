@@ -9,6 +9,8 @@ namespace nsfd
 {
   namespace
   {
+    constexpr double no_jump[3] = {};
+
     LawPoint law_at(const Interaction &interaction, const double strength,
                     const double opening)
     {
@@ -25,8 +27,11 @@ namespace nsfd
                     problem.opening_factor[point])),
         history_{problem.opening_max[point],
                  interaction_.law->mixed() ? problem.slip_max[point] : 0.},
-        old_(&problem.jump_old[point * dim]), rule_(problem.rule),
-        time_step_(problem.time_step)
+        old_(problem.from_closed ? no_jump : &problem.jump_old[point * dim]),
+        rule_(problem.rule),
+        // of the step alone, without the way to u_k
+        time_step_(problem.from_closed ? problem.time_step * problem.theta
+                                       : problem.time_step)
   {
   }
 

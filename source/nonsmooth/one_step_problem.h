@@ -47,6 +47,9 @@ namespace nsfd
     std::size_t n_owned = 0;  ///< the first ones, counted once over all ranks
     double time_step = 0., theta = 0.5;
     CohesionRule rule{};
+    /// the way of the laws to the end of the step begins at closed faces, not
+    /// at u_k: the first step of an explicit scheme, see LeapfrogPoints
+    bool from_closed = false;
 
     std::vector<Interaction> interactions;
 

@@ -233,7 +233,7 @@ namespace nsfd::springs
   NormalSpring normal_spring(const OneStepProblem<dim> &problem,
                              const std::size_t i, const double secant)
   {
-    const double old = problem.jump_old[i * dim];
+    const double old = problem.from_closed ? 0. : problem.jump_old[i * dim];
     return {secant,
             problem.compression_stiffness[i],
             problem.rule == CohesionRule::end_velocity
@@ -262,7 +262,7 @@ namespace nsfd::springs
   double tangential_offset(const OneStepProblem<dim> &problem,
                            const std::size_t i, const unsigned int c)
   {
-    const double old = problem.jump_old[i * dim + c],
+    const double old = problem.from_closed ? 0. : problem.jump_old[i * dim + c],
                  end = problem.jump_free[i * dim + c];
     switch (problem.rule) {
     case CohesionRule::exact:

@@ -16,6 +16,8 @@ namespace nsfd
   {
     problem.interactions = mesh.interactions;
     problem.rule = CohesionRule::exact;
+    for (const Interaction &interaction : problem.interactions)
+      has_slips_ |= interaction.law && interaction.law->mixed();
   }
 
   template <int dim>
@@ -37,7 +39,7 @@ namespace nsfd
     for (auto *array : {&p.opening_max, &p.compression_stiffness, &p.target,
                         &p.majorant_normal, &p.majorant_tangential})
       array->push_back(0.);
-    if (!mesh_.slip_max.empty())
+    if (has_slips_)
       p.slip_max.push_back(0.);
     if (!mesh_.viscosity.empty())
       p.viscosity.push_back(0.);
@@ -65,7 +67,7 @@ namespace nsfd
     problem.kind[a] = other.kind[a] = state.kind[mesh_point];
     problem.opening_max[a] = other.opening_max[a] =
         state.opening_max[mesh_point];
-    if (!problem.slip_max.empty())
+    if (has_slips_)
       problem.slip_max[a] = other.slip_max[a] = state.slip_max[mesh_point];
     beta[a] = other.beta[a] = state.beta[mesh_point];
     if (state.two_sided[mesh_point])
@@ -101,7 +103,7 @@ namespace nsfd
     p.jump_old.swap(p.jump_free);
     p.kind.swap(other.kind);
     p.opening_max.swap(other.opening_max);
-    if (!p.slip_max.empty())
+    if (has_slips_)
       p.slip_max.swap(other.slip_max);
     p.compression_stiffness.swap(other.compression);
     beta.swap(other.beta);
@@ -119,7 +121,7 @@ namespace nsfd
       const std::size_t i = at;
       state.kind[i] = other.kind[a];
       state.opening_max[i] = other.opening_max[a];
-      if (!state.slip_max.empty())
+      if (has_slips_)
         state.slip_max[i] = other.slip_max[a];
       state.beta[i] = other.beta[a];
       state.two_sided[i] = other.compression[a] > 0.;
@@ -158,7 +160,7 @@ namespace nsfd
       p.kind[a] = PointKind(kinds[point[a]]);
     store("jump", p.jump_old, dim);
     store("opening_max", p.opening_max, 1);
-    if (!p.slip_max.empty())
+    if (has_slips_)
       store("slip_max", p.slip_max, 1);
     store("compression", p.compression_stiffness, 1);
     store("beta", beta, 1);

@@ -71,5 +71,6 @@ namespace nsfd
                 const Factors &factors);
 
     const OneStepProblem<dim> &mesh_;
+    bool has_slips_ = false; ///< there are laws with two damage scalars
   };
 } // namespace nsfd

@@ -172,9 +172,10 @@ namespace nsfd
     if (e > 0. && U < 0. && u + h * U <= 0.)
       p.target[a] = std::max(p.target[a], -e * U);
     std::fill_n(&p.sliding_offset[a * dim], dim, 0.);
+    // half of the first drag is work with the velocity before
+    const bool drags = chains_.beta[a] > 0. && !(p.from_closed && U < 0.);
     if (!p.viscosity.empty())
-      p.viscosity[a] =
-          chains_.beta[a] > 0. ? all_.viscosity[chains_.point[a]] : 0.;
+      p.viscosity[a] = drags ? all_.viscosity[chains_.point[a]] : 0.;
   }
 
   /** The problem of a node: its points between two groups. */
@@ -357,11 +358,11 @@ namespace nsfd
   {
     Outcome outcome;
     OneStepProblem<dim> &p = chains_.problem;
-    p.time_step = h + last;
+    // the first kick, of half a step, takes half of its impulse from a body at
+    // rest as work: it is twice that of the way from closed faces
+    p.from_closed = last == 0.;
+    p.time_step = h + (last > 0. ? last : h);
     p.theta = h / p.time_step;
-    // the first kick, of half a step, is of half of the work along its way:
-    // the law at its end gives no more than that to a body at rest
-    p.rule = last > 0. ? CohesionRule::exact : CohesionRule::end_point;
     const std::array<double, 2> step = {p.time_step, p.theta};
     const bool is_new = step != steps_[chain_];
     steps_[chain_] = step;

@@ -25,6 +25,10 @@ namespace nsfd
    * For solve_point() the step of a chain has the length H = h_last + h and
    * theta = h / H. Contact holds at position level: u_N,k+1 >= 0, which takes
    * no energy and does not drift; at velocity level where there is restitution.
+   * In the first step h_last is h, but the law comes from closed faces: its
+   * half of a kick has the traction 2 Pi(u_1) / d_1^2 u_1, that of the end of
+   * the step for a spring, whose work against a body at rest, whose velocity
+   * has half of its change in the middle of the kick, is Pi(u_1).
    */
   template <int dim>
   class LeapfrogPoints
