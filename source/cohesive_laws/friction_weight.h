@@ -14,6 +14,7 @@ namespace nsfd
   {
     if (exponent == 0.)
       return 1.;
-    return std::pow(std::max(0., 1. - beta), exponent);
+    const double broken = std::max(0., 1. - beta);
+    return exponent == 1. ? broken : std::pow(broken, exponent);
   }
 } // namespace nsfd

@@ -6,6 +6,34 @@ namespace nsfd
 {
   using namespace local;
 
+  namespace
+  {
+    /** With two damage scalars, of which one may stay. */
+    template <int dim>
+    bool solve_near_mixed(const PointDamage<dim> &damage, const Reach &near,
+                          LocalProblem<dim> &here, LocalSolution<dim> &solution)
+    {
+      const Reach &low = damage.history();
+      const auto grows = [&](const Reach &end) {
+        return end.opening > (1. + 1e-9) * low.opening ||
+               end.slip > (1. + 1e-9) * low.slip;
+      };
+      Reach end;
+      if (!grows(near) ||
+          !follow_mixed_damage<dim>(damage, {infinity, infinity}, near, here,
+                                    end) ||
+          !grows(end))
+        return false;
+      solution = here.solution;
+      if (end.opening > low.opening)
+        solution.reach.opening = end.opening;
+      if (end.slip > low.slip)
+        solution.reach.slip = end.slip;
+      solution.damages = solution.coupled = true;
+      return true;
+    }
+  } // namespace
+
   template <int dim>
   bool solve_near(const OneStepProblem<dim> &problem, const std::size_t i,
                   const std::array<double, dim> &local, const double R,
@@ -17,9 +45,11 @@ namespace nsfd
     const Interaction &interaction =
         problem.interactions[problem.interaction[i]];
     LocalProblem<dim> here{problem, i, local, R, R};
-    if (interaction.plateau || interaction.law->mixed() || here.lifts())
+    if (interaction.plateau || here.lifts())
       return false;
     const PointDamage<dim> damage(problem, i);
+    if (interaction.law->mixed())
+      return solve_near_mixed<dim>(damage, end, here, solution);
     const double low = damage.history().opening;
     double x = end.opening;
     if (!(x > (1. + 1e-9) * low) || damage.drops())

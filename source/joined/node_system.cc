@@ -121,7 +121,7 @@ namespace nsfd
                            ? local::end_reach<dim>(*problem_, i, U)
                            : Reach();
     point.is_new = false;
-    if (near.opening > 0. &&
+    if ((near.opening > 0. || near.slip > 0.) &&
         solve_near<dim>(*problem_, i, point.local, point.R, near, solution))
       return;
     solution = solve_point<dim>(*problem_, i, point.local, point.R, point.R,

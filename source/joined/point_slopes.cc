@@ -105,6 +105,65 @@ namespace nsfd
           slopes[r * dim + c] -= P_d * follows[c] / (1. - share);
       }
     }
+
+    /**
+     * The same with two ends, x of the opening and y of the slip, each of them
+     * where it grows.
+     */
+    template <int dim>
+    void add_mixed_damage(const OneStepProblem<dim> &problem,
+                          const std::size_t i,
+                          const std::array<double, dim> &local, const double R,
+                          const LocalSolution<dim> &solution,
+                          std::array<double, dim * dim> &slopes)
+    {
+      const PointDamage<dim> damage(problem, i);
+      const Reach &end = solution.reach, &low = damage.history();
+      const bool grows[2] = {end.opening > low.opening, end.slip > low.slip};
+      const Secant &secant = solution.frozen.secant;
+      const auto u = end_jump<dim>(problem, i, solution.velocity);
+      const double h = problem.time_step * problem.theta;
+      double follows[2][dim] = {}; // of the ends, in U_loc
+      double share[2][2] = {}, P_d[2][dim] = {};
+      for (unsigned int m = 0; m < 2; ++m) {
+        if (!grows[m])
+          continue;
+        std::array<double, dim> gradient{}; // in U
+        for (unsigned int c = 0; c < dim; ++c)
+          if ((c == 0) == (m == 0))
+            gradient[c] = h * (m == 0 ? 1. : u[c] / end.slip);
+        for (unsigned int c = 0; c < dim; ++c) {
+          follows[m][c] = gradient[c];
+          for (unsigned int r = 0; r < dim; ++r)
+            follows[m][c] -= R * gradient[r] * slopes[r * dim + c];
+        }
+        const double k = m == 0 ? secant.normal : secant.tangential;
+        const double stiffness = problem.weight[i] * problem.time_step * h * k;
+        const double step =
+            (end.opening + end.slip) *
+            std::clamp(1e-8 * std::sqrt(R * stiffness), 1e-7, 1e-2);
+        LocalProblem<dim> beside{problem, i, local, R, R};
+        beside.solve_end(damage, {end.opening + (m == 0 ? step : 0.),
+                                  end.slip + (m == 1 ? step : 0.)});
+        const Reach &reach = beside.solution.reach;
+        share[0][m] = (reach.opening - end.opening) / step;
+        share[1][m] = (reach.slip - end.slip) / step;
+        for (unsigned int r = 0; r < dim; ++r)
+          P_d[m][r] = (beside.solution.impulse[r] - solution.impulse[r]) / step;
+      }
+      for (unsigned int m = 0; m < 2; ++m)
+        if (!grows[m])
+          share[m][0] = share[m][1] = 0.;
+      const double a = 1. - share[0][0], b = -share[0][1], c = -share[1][0],
+                   d = 1. - share[1][1], determinant = a * d - b * c;
+      for (unsigned int column = 0; column < dim; ++column) {
+        const double one = follows[0][column], two = follows[1][column];
+        const double x = (d * one - b * two) / determinant,
+                     y = (a * two - c * one) / determinant;
+        for (unsigned int r = 0; r < dim; ++r)
+          slopes[r * dim + column] -= P_d[0][r] * x + P_d[1][r] * y;
+      }
+    }
   } // namespace
 
   template <int dim>
@@ -128,12 +187,17 @@ namespace nsfd
                        (interaction.wear > 0. || !problem.dilatancy.empty());
     const bool has_law = problem.kind[i] == PointKind::cohesive ||
                          problem.kind[i] == PointKind::rigid;
-    if (lifts || (has_law && interaction.law->mixed())) {
+    if (lifts) {
       difference_slopes<dim>(problem, i, local, R, solution, slopes);
       return;
     }
     secant_slopes<dim>(problem, i, R, solution, slopes);
-    if (has_law && (solution.damages || interaction.plateau))
+    if (!has_law)
+      return;
+    if (interaction.law->mixed()) {
+      if (solution.damages)
+        add_mixed_damage<dim>(problem, i, local, R, solution, slopes);
+    } else if (solution.damages || interaction.plateau)
       add_damage<dim>(problem, i, local, R, solution, slopes);
   }
 

@@ -59,67 +59,6 @@ namespace nsfd::local
       return f_high >= 0. ? high
                           : bracketed_root(excess, low, high, f_low, f_high);
     }
-
-    /**
-     * In a short step the end hardly depends on the secant that it makes: from
-     * one end to that of its secant, with Broyden's change of the way, each
-     * time at most half as far until round-off ends it, which may be 1e-12: the
-     * mean secant of a short way is a quotient of small differences. False
-     * where it is not so, and then nothing is said about an end.
-     */
-    template <int dim>
-    bool follow_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
-                             const Reach &start, LocalProblem<dim> &local,
-                             Reach &end)
-    {
-      using Pair = std::array<double, 2>;
-      const Pair low{{damage.history().opening, damage.history().slip}};
-      Pair x{{std::clamp(start.opening, low[0], high.opening),
-              std::clamp(start.slip, low[1], high.slip)}};
-      std::array<Pair, 2> H{{{{1., 0.}}, {{0., 1.}}}}; // step over distance
-      Pair step{}, last{};
-      const auto product = [&](const Pair &v) {
-        return Pair{
-            {H[0][0] * v[0] + H[0][1] * v[1], H[1][0] * v[0] + H[1][1] * v[1]}};
-      };
-      const auto size = [](const Pair &v) {
-        return std::abs(v[0]) + std::abs(v[1]);
-      };
-      for (unsigned int k = 0; k < 12; ++k) {
-        local.solve_end(damage, {x[0], x[1]});
-        const Reach &reach = local.solution.reach;
-        const Pair to{
-            {std::max(low[0], reach.opening), std::max(low[1], reach.slip)}};
-        const Pair distance{{to[0] - x[0], to[1] - x[1]}};
-        const bool nearer = k == 0 || size(distance) < 0.5 * size(last);
-        if (size(distance) <= (nearer ? 1e-14 : 1e-12) * size(to)) {
-          end = {to[0], to[1]};
-          return true;
-        }
-        if (!nearer)
-          return false;
-        if (k > 0) {
-          const Pair change =
-              product({{distance[0] - last[0], distance[1] - last[1]}});
-          const double along = step[0] * change[0] + step[1] * change[1];
-          if (!(along < 0.))
-            return false;
-          const Pair row{{step[0] * H[0][0] + step[1] * H[1][0],
-                          step[0] * H[0][1] + step[1] * H[1][1]}};
-          for (unsigned int r = 0; r < 2; ++r)
-            for (unsigned int c = 0; c < 2; ++c)
-              H[r][c] -= (step[r] + change[r]) * row[c] / along;
-        }
-        const Pair way = product(distance);
-        for (unsigned int c = 0; c < 2; ++c) {
-          const double next = std::max(low[c], x[c] + way[c]);
-          step[c] = next - x[c];
-          x[c] = next;
-        }
-        last = distance;
-      }
-      return false;
-    }
   } // namespace
 
   template <int dim>
@@ -169,6 +108,60 @@ namespace nsfd::local
   }
 
   template <int dim>
+  bool follow_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
+                           const Reach &start, LocalProblem<dim> &local,
+                           Reach &end)
+  {
+    using Pair = std::array<double, 2>;
+    const Pair low{{damage.history().opening, damage.history().slip}};
+    Pair x{{std::clamp(start.opening, low[0], high.opening),
+            std::clamp(start.slip, low[1], high.slip)}};
+    std::array<Pair, 2> H{{{{1., 0.}}, {{0., 1.}}}}; // step over distance
+    Pair step{}, last{};
+    const auto product = [&](const Pair &v) {
+      return Pair{
+          {H[0][0] * v[0] + H[0][1] * v[1], H[1][0] * v[0] + H[1][1] * v[1]}};
+    };
+    const auto size = [](const Pair &v) {
+      return std::abs(v[0]) + std::abs(v[1]);
+    };
+    for (unsigned int k = 0; k < 12; ++k) {
+      local.solve_end(damage, {x[0], x[1]});
+      const Reach &reach = local.solution.reach;
+      const Pair to{
+          {std::max(low[0], reach.opening), std::max(low[1], reach.slip)}};
+      const Pair distance{{to[0] - x[0], to[1] - x[1]}};
+      const bool nearer = k == 0 || size(distance) < 0.5 * size(last);
+      if (size(distance) <= (nearer ? 1e-14 : 1e-12) * size(to)) {
+        end = {to[0], to[1]};
+        return true;
+      }
+      if (!nearer)
+        return false;
+      if (k > 0) {
+        const Pair change =
+            product({{distance[0] - last[0], distance[1] - last[1]}});
+        const double along = step[0] * change[0] + step[1] * change[1];
+        if (!(along < 0.))
+          return false;
+        const Pair row{{step[0] * H[0][0] + step[1] * H[1][0],
+                        step[0] * H[0][1] + step[1] * H[1][1]}};
+        for (unsigned int r = 0; r < 2; ++r)
+          for (unsigned int c = 0; c < 2; ++c)
+            H[r][c] -= (step[r] + change[r]) * row[c] / along;
+      }
+      const Pair way = product(distance);
+      for (unsigned int c = 0; c < 2; ++c) {
+        const double next = std::max(low[c], x[c] + way[c]);
+        step[c] = next - x[c];
+        x[c] = next;
+      }
+      last = distance;
+    }
+    return false;
+  }
+
+  template <int dim>
   void solve_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
                           const Reach &start, LocalProblem<dim> &local)
   {
@@ -214,6 +207,9 @@ namespace nsfd::local
                                   LocalProblem<dim> &);                        \
   template void solve_damage<dim>(const PointDamage<dim> &, double, double,    \
                                   double, LocalProblem<dim> &);                \
+  template bool follow_mixed_damage<dim>(const PointDamage<dim> &,             \
+                                         const Reach &, const Reach &,         \
+                                         LocalProblem<dim> &, Reach &);        \
   template void solve_mixed_damage<dim>(const PointDamage<dim> &,              \
                                         const Reach &, const Reach &,          \
                                         LocalProblem<dim> &)

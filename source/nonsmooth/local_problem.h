@@ -240,6 +240,18 @@ namespace nsfd::local
                     double start, LocalProblem<dim> &local);
 
   /**
+   * In a short step the end hardly depends on the secant that it makes: from
+   * one end to that of its secant, with Broyden's change of the way, each
+   * time at most half as far until round-off ends it, which may be 1e-12: the
+   * mean secant of a short way is a quotient of small differences. False
+   * where it is not so, and then nothing is said about an end.
+   */
+  template <int dim>
+  bool follow_mixed_damage(const PointDamage<dim> &damage, const Reach &high,
+                           const Reach &start, LocalProblem<dim> &local,
+                           Reach &end);
+
+  /**
    * Two scalars: the slip outside, and for each slip the opening that goes
    * with it; either may stay within its history.
    */
