@@ -36,15 +36,12 @@ namespace nsfd
         if (material.rigid)
           refuse(fmt::format("rigid bodies yet, and material `{}` is rigid",
                              material.name));
-      for (const InterfaceInput &block : scene.interfaces) {
-        if (block.law_name == "elastic" ||
-            (block.law && !block.law->extrinsic()))
-          refuse(fmt::format("springs yet, and {} of Interface: {} is one",
+      for (const InterfaceInput &block : scene.interfaces)
+        if (block.law && !block.law->extrinsic() &&
+            block.law->elastic_limit() == 0.)
+          refuse(fmt::format("law without a straight part, and {} of "
+                             "Interface: {} is one",
                              block.law_name, block.name));
-        if (block.crack_pressure)
-          refuse(fmt::format(
-              "pressure in cracks yet, and Interface: {} has one", block.name));
-      }
     }
 
     template <int dim>

@@ -28,10 +28,10 @@ namespace nsfd
       const SceneInput &input, const Communicator &communicator,
       const Discretization<dim> &discretization, const JoinedMesh<dim> &mesh,
       const LeapfrogGhosts<dim> &ghosts, HangingNodes<dim> &hanging,
-      CellForces<dim> &forces)
+      CellForces<dim> &forces, EquilibriumSprings<dim> &springs)
       : input_(input), communicator_(communicator),
         discretization_(discretization), mesh_(mesh), ghosts_(ghosts),
-        hanging_(hanging), forces_(forces),
+        hanging_(hanging), forces_(forces), springs_(springs),
         loads_(input, discretization, mesh, hanging),
         supports_(input, discretization, mesh)
   {
@@ -52,11 +52,14 @@ namespace nsfd
         stiffness[groups.of(i)] += mesh_.mass(i) * frequency[b] * frequency[b];
       }
     }
+    std::vector<double> of_springs(groups.size() * dim, 0.);
+    springs_.add_diagonal(groups, of_springs);
     inverse_.assign(groups.size() * dim, 0.);
     for (std::size_t i = 0; i < groups.size(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
         if (groups.mass[i] > 0. && !(supports_.mask()[i] & (1u << c)))
-          inverse_[i * dim + c] = mass[i] / (groups.mass[i] * stiffness[i]);
+          inverse_[i * dim + c] = mass[i] / (groups.mass[i] * stiffness[i] +
+                                             mass[i] * of_springs[i * dim + c]);
   }
 
   /** Of the displacements of the groups. */
@@ -67,6 +70,7 @@ namespace nsfd
     if (hanging_.any())
       hanging_.follow(*groups_);
     hanging_.set_forces(forces_, *groups_);
+    springs_.add_forces(*groups_);
   }
 
   /** Of the present place; sets the size of the forces too. */
@@ -76,16 +80,16 @@ namespace nsfd
     auto &groups = *groups_;
     groups.displacement = place_;
     set_forces();
-    const auto &loads = loads_.of_groups();
     std::vector<double> sizes(groups.force.size(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i) {
       const auto force = forces_.corner_force(i, groups);
       for (unsigned int c = 0; c < dim; ++c)
         sizes[groups.of(i) * dim + c] += std::abs(force[c]);
     }
+    springs_.add_sizes(groups, sizes);
     residual_.resize(groups.force.size());
     for (std::size_t k = 0; k < residual_.size(); ++k) {
-      const double load = loads.empty() ? 0. : loads[k];
+      const double load = given_.empty() ? 0. : given_[k];
       sizes[k] += std::abs(load);
       residual_[k] = inverse_[k] > 0. ? groups.force[k] + load : 0.;
     }
@@ -150,6 +154,25 @@ namespace nsfd
     }
   }
 
+  /** On all ranks if @p here at @p point of the mesh on one of them. */
+  template <int dim>
+  void JoinedEquilibrium<dim>::refuse(const bool here, const std::size_t point,
+                                      const State &state,
+                                      const std::string &what,
+                                      const std::string &cure) const
+  {
+    if (!communicator_.any(here))
+      return;
+    const std::string place =
+        here ? ", " + name_of_point<dim>(input_, discretization_.origins(),
+                                         discretization_.points().position,
+                                         point)
+             : std::string();
+    throw StepRejected(fmt::format("no equilibrium at t = {:.6g}: {}{}; {}",
+                                   state.time, what, place, cure),
+                       StepRejected::Cure::none);
+  }
+
   template <int dim>
   void JoinedEquilibrium<dim>::check_open(const State &state) const
   {
@@ -158,27 +181,19 @@ namespace nsfd
       largest = std::max(largest, std::abs(u));
     const double allowed = largest_overlap * communicator_.max(largest);
     const auto &origins = discretization_.origins();
-    std::string closed;
-    bool any = false;
-    for (std::size_t i = 0; i < intact_.size() && !any; ++i) {
-      any = !intact_[i] && origins[i].kind != PointOrigin::Kind::motion &&
-            -state.jump[i * dim] > allowed;
-      if (any)
-        closed =
-            ", " + name_of_point<dim>(input_, origins,
-                                      discretization_.points().position, i);
-    }
-    if (communicator_.any(any))
-      throw StepRejected(
-          fmt::format("no equilibrium at t = {:.6g}: it would close faces that "
-                      "carry nothing in it yet{}; take loads that leave them "
-                      "open, or write scheme = moreau-jean",
-                      state.time, closed),
-          StepRejected::Cure::none);
+    std::size_t closed = intact_.size();
+    for (std::size_t i = 0; i < intact_.size() && closed == intact_.size(); ++i)
+      if (!intact_[i] && !state.two_sided[i] &&
+          origins[i].kind != PointOrigin::Kind::motion &&
+          -state.jump[i * dim] > allowed)
+        closed = i;
+    refuse(closed < intact_.size(), closed, state,
+           "it would close faces whose contact carries nothing in it yet",
+           "take loads that leave them open, or write scheme = moreau-jean");
   }
 
   template <int dim>
-  void JoinedEquilibrium<dim>::find(State &state)
+  void JoinedEquilibrium<dim>::find(const FaceRelease<dim> &faces, State &state)
   {
     State joined = state; // kinds of points become others
     intact_ = joined_points(discretization_, joined);
@@ -188,8 +203,15 @@ namespace nsfd
     groups.velocity.assign(groups.displacement.size(), 0.);
     if (hanging_.any())
       hanging_.tie(groups);
+    const bool springs = springs_.add(
+        points_between_groups(discretization_, mesh_, hanging_, intact_),
+        discretization_.points(), faces, state);
+    refuse(!springs, springs_.bad_point(), state,
+           "a law has no straight part to begin on",
+           "take another law, or write scheme = moreau-jean");
     supports_.find(groups, {});
     loads_.start(state.time, groups);
+    given_ = loads_.sum(state.time, nullptr, springs_.chains(), groups);
     set_inverse();
     supports_.set_places(state.time, groups);
     place_ = groups.displacement;
@@ -212,6 +234,10 @@ namespace nsfd
     groups.scatter(groups.velocity, state.velocity);
     set_jumps(discretization_, mesh_, state);
     check_open(state);
+    const bool straight = springs_.are_straight(state);
+    refuse(!straight, springs_.bad_point(), state,
+           "it would open faces beyond the straight part of their law",
+           "take smaller loads, or write scheme = moreau-jean");
     for (std::size_t i = 0; i < intact_.size(); ++i)
       if (!intact_[i] && !state.two_sided[i]) // contact holds where it is
         state.released_overlap[i] = std::max(0., -state.jump[i * dim]);

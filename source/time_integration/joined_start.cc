@@ -69,6 +69,21 @@ namespace nsfd
   }
 
   template <int dim>
+  std::vector<unsigned int> points_between_groups(
+      const Discretization<dim> &discretization, const JoinedMesh<dim> &mesh,
+      const HangingNodes<dim> &hanging, const std::vector<std::uint8_t> &intact)
+  {
+    const auto &origins = discretization.origins();
+    std::vector<unsigned int> result;
+    for (std::size_t i = 0; i < intact.size(); ++i)
+      if (!intact[i] && origins[i].kind != PointOrigin::Kind::motion &&
+          mesh.is_whole(mesh.node_of_point(i)) &&
+          !hanging.hangs(mesh.a_corner(i)))
+        result.push_back(unsigned(i));
+    return result;
+  }
+
+  template <int dim>
   void set_jumps(const Discretization<dim> &discretization,
                  const JoinedMesh<dim> &mesh, State &state)
   {
@@ -186,6 +201,9 @@ namespace nsfd
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
+  template std::vector<unsigned int> points_between_groups(                    \
+      const Discretization<dim> &, const JoinedMesh<dim> &,                    \
+      const HangingNodes<dim> &, const std::vector<std::uint8_t> &);           \
   template std::vector<std::uint8_t> joined_points(                            \
       const Discretization<dim> &, State &);                                   \
   template void set_jumps(const Discretization<dim> &,                         \

@@ -25,6 +25,17 @@ namespace nsfd
   std::vector<std::uint8_t>
   joined_points(const Discretization<dim> &discretization, State &state);
 
+  /**
+   * Those that take part in the steps where @p intact (by point) are joined, in
+   * ascending order: no supports, no faces at hanging nodes, and whole nodes.
+   */
+  template <int dim>
+  std::vector<unsigned int>
+  points_between_groups(const Discretization<dim> &discretization,
+                        const JoinedMesh<dim> &mesh,
+                        const HangingNodes<dim> &hanging,
+                        const std::vector<std::uint8_t> &intact);
+
   /** Jumps and relative velocities of all points, of the motion of @p state. */
   template <int dim>
   void set_jumps(const Discretization<dim> &discretization,

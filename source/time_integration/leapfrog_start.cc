@@ -42,12 +42,9 @@ namespace nsfd
   void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact,
                            const bool start)
   {
-    const auto &origins = discretization_.origins();
-    for (std::size_t i = 0; i < intact.size(); ++i)
-      if (!intact[i] && origins[i].kind != PointOrigin::Kind::motion &&
-          mesh_.is_whole(mesh_.node_of_point(i)) &&
-          !hanging_.hangs(mesh_.a_corner(i)))
-        points_.add(unsigned(i), faces_.factors(unsigned(i)), state);
+    for (const unsigned int i :
+         points_between_groups(discretization_, mesh_, hanging_, intact))
+      points_.add(i, faces_.factors(i), state);
     groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
     rigid_.reset();
     if (has_rigid_cells(input_))
@@ -77,10 +74,12 @@ namespace nsfd
   State Leapfrog<dim>::start_from(const State &given)
   {
     State state = ghosts_.with(given);
-    if (input_.statics)
+    if (input_.statics) {
+      EquilibriumSprings<dim> springs(all_, mesh_);
       JoinedEquilibrium<dim>(input_, communicator_, discretization_, mesh_,
-                             ghosts_, hanging_, *forces_)
-          .find(state);
+                             ghosts_, hanging_, *forces_, springs)
+          .find(faces_, state);
+    }
     take(state, joined_points(discretization_, state), true);
     show_at(state, {});
     const auto &g = *groups_;
