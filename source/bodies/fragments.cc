@@ -1,5 +1,6 @@
 #include "fragments.h"
 
+#include "core/disjoint_sets.h"
 #include "core/gather.h"
 #include "discretization/cell_sampler.h"
 #include "discretization/cells.h"
@@ -40,30 +41,6 @@ namespace nsfd
   namespace
   {
     using Number = unsigned long long;
-
-    /** Of entries of any kind, found by halving the paths to their roots. */
-    class Union
-    {
-    public:
-      explicit Union(const std::size_t n) : parent_(n)
-      {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-      }
-      unsigned int root(unsigned int i)
-      {
-        while (parent_[i] != i)
-          i = parent_[i] = parent_[parent_[i]];
-        return i;
-      }
-      void join(const unsigned int i, const unsigned int j)
-      {
-        const unsigned int a = root(i), b = root(j);
-        parent_[std::max(a, b)] = std::min(a, b);
-      }
-
-    private:
-      std::vector<unsigned int> parent_;
-    };
   } // namespace
 
   template <int dim>
@@ -98,16 +75,13 @@ namespace nsfd
   {
     const std::size_t n = discretization_.bodies().size();
     const auto &faces = discretization_.points().faces;
-    Union bodies(n);
+    DisjointSets bodies(n);
     for (const Link &link : links_)
       if (link.other >= 0 && carries<dim>(state, faces[link.face]))
         bodies.join(link.body, unsigned(link.other));
     for (const InnerFace &face : discretization_.inner_faces())
       bodies.join(face.bodies[0], face.bodies[1]);
-    piece_.resize(n);
-    n_pieces_ = 0;
-    for (unsigned int b = 0; b < n; ++b)
-      piece_[b] = bodies.root(b) == b ? n_pieces_++ : piece_[bodies.root(b)];
+    piece_ = bodies.numbers(n_pieces_);
     const Number mine = n_pieces_;
     Number end = 0;
     MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM,
@@ -161,7 +135,7 @@ namespace nsfd
         met.insert(met.end(), pair.begin(), pair.end());
       std::sort(met.begin(), met.end());
       met.erase(std::unique(met.begin(), met.end()), met.end());
-      Union pieces(met.size());
+      DisjointSets pieces(met.size());
       const auto place = [&met](const Number piece) {
         return unsigned(std::lower_bound(met.begin(), met.end(), piece) -
                         met.begin());
@@ -172,8 +146,8 @@ namespace nsfd
       std::vector<int> n_answers(first_pieces.size(), 0);
       Number joined = 0;
       for (unsigned int k = 0; k < met.size(); ++k) {
-        answers.push_back({{met[k], met[pieces.root(k)]}});
-        joined += pieces.root(k) != k;
+        answers.push_back({{met[k], met[pieces.first(k)]}});
+        joined += pieces.first(k) != k;
         // ranks without a piece begin where the next one does
         ++n_answers[std::upper_bound(first_pieces.begin(), first_pieces.end(),
                                      met[k]) -

@@ -25,19 +25,10 @@ namespace nsfd
         GhostValues(communicator, unknowns_.first, std::size_t(n), ghosts_);
   }
 
-  int ConformingSpace::root(int unknown)
-  {
-    while (parent_[unknown] != unknown)
-      unknown = parent_[unknown] = parent_[parent_[unknown]];
-    return unknown;
-  }
-
   void ConformingSpace::join(const std::vector<char> &faces)
   {
     const long long n = static_cast<long long>(unknowns_.component.size());
-    parent_.resize(n);
-    for (long long i = 0; i < n; ++i)
-      parent_[i] = int(i);
+    joined_ = DisjointSets(std::size_t(n));
     across_.clear();
     for (std::size_t f = 0; f < faces.size(); ++f)
       for (std::size_t k = pairs_.start[f]; faces[f] && k < pairs_.start[f + 1];
@@ -45,11 +36,9 @@ namespace nsfd
         for (unsigned int c = 0; c < dim_; ++c) {
           const int own = pairs_.own[k] + int(c);
           const long long other = pairs_.other[k] + c;
-          if (other >= unknowns_.first && other < unknowns_.first + n) {
-            // the smaller one stays, so that a root has the smallest number
-            const int a = root(own), b = root(int(other - unknowns_.first));
-            parent_[std::max(a, b)] = std::min(a, b);
-          } else
+          if (other >= unknowns_.first && other < unknowns_.first + n)
+            joined_.join(unsigned(own), unsigned(other - unknowns_.first));
+          else
             across_.emplace_back(
                 own,
                 int(std::lower_bound(ghosts_.begin(), ghosts_.end(), other) -
@@ -69,10 +58,10 @@ namespace nsfd
     while (communicator_.any(changed)) {
       changed = false;
       for (std::size_t i = 0; i < value.size(); ++i)
-        value[i] = value[root(int(i))];
+        value[i] = value[joined_.first(unsigned(i))];
       exchange_.fetch(value.data(), ghosts.data());
       for (const auto &[own, ghost] : across_) {
-        double &mine = value[root(own)];
+        double &mine = value[joined_.first(unsigned(own))];
         if (smallest ? ghosts[ghost] < mine : ghosts[ghost] > mine) {
           mine = ghosts[ghost];
           changed = true;
@@ -109,7 +98,7 @@ namespace nsfd
     space_.number.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       space_.number[i] = static_cast<long long>(value[i]);
-    parent_ = std::vector<int>();
+    joined_ = DisjointSets();
     set_modes();
   }
 
@@ -122,7 +111,7 @@ namespace nsfd
       first[i] = double(unknowns_.first) + double(i);
     agree(first, true);
     exchange_.fetch(first.data(), ghosts.data());
-    parent_ = std::vector<int>();
+    joined_ = DisjointSets();
     std::vector<char> result(joined.size());
     for (std::size_t f = 0; f < joined.size(); ++f) {
       result[f] = !pairs_.complete[f];

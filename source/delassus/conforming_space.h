@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/disjoint_sets.h"
 #include "linear_algebra/ghost_values.h"
-
 #include "linear_algebra/spd_solver.h"
 
 #include <vector>
@@ -64,7 +64,6 @@ namespace nsfd
     std::vector<char> without_jump() const;
 
   private:
-    int root(int unknown);
     void join(const std::vector<char> &faces);
     void agree(std::vector<double> &value, bool smallest);
     void set_modes();
@@ -74,7 +73,7 @@ namespace nsfd
     const Unknowns unknowns_;
     const NodePairs pairs_;
     std::vector<char> conforming_;
-    std::vector<int> parent_;
+    DisjointSets joined_; ///< unknowns, in between alone
     /// own roots and the ghosts they are joined to
     std::vector<std::pair<int, int>> across_;
     std::vector<long long> ghosts_;

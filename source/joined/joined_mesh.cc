@@ -1,5 +1,6 @@
 #include "joined_mesh.h"
 
+#include "core/disjoint_sets.h"
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
 
@@ -115,33 +116,22 @@ namespace nsfd
   template <int dim>
   void JoinedMesh<dim>::find_nodes(const std::vector<std::uint8_t> &own)
   {
-    std::vector<unsigned int> parent(n_corners());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](unsigned int i) {
-      while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    for (const auto &sides : corners_) {
-      if (sides[0] == none || sides[1] == none)
-        continue;
-      const unsigned int a = root(sides[0]), b = root(sides[1]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    DisjointSets nodes(n_corners());
+    for (const auto &sides : corners_)
+      if (sides[0] != none && sides[1] != none)
+        nodes.join(sides[0], sides[1]);
+    std::vector<std::uint8_t> whole; // by the first corner of a node
     if (!own.empty()) {
-      auto whole = own; // by the first corner of a node
+      whole = own;
       for (unsigned int i = 0; i < n_corners(); ++i)
-        whole[root(i)] |= own[i];
-      std::vector<unsigned int> alone;
-      for (unsigned int i = 0; i < n_corners(); ++i)
-        if (!whole[root(i)])
-          alone.push_back(i);
-      for (const unsigned int i : alone)
-        parent[i] = i;
+        whole[nodes.first(i)] |= own[i];
     }
     unsigned int n = 0;
-    for (unsigned int i = 0; i < n_corners(); ++i)
-      node_[i] = root(i) == i ? n++ : node_[root(i)];
+    for (unsigned int i = 0; i < n_corners(); ++i) {
+      const unsigned int first = nodes.first(i);
+      const bool alone = !whole.empty() && !whole[first];
+      node_[i] = alone || first == i ? n++ : node_[first];
+    }
     first_corner_.assign(n + 1, 0);
   }
 

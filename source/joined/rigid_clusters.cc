@@ -1,10 +1,10 @@
 #include "rigid_clusters.h"
 
+#include "core/disjoint_sets.h"
 #include "core/gather.h"
 #include "discretization/cells.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace nsfd
 {
@@ -34,31 +34,21 @@ namespace nsfd
     auto all = gather_all(communicator, own);
     std::sort(all.begin(), all.end());
     const auto number = [&all](const Id &id) {
-      return std::size_t(std::lower_bound(all.begin(), all.end(), id) -
-                         all.begin());
+      return unsigned(std::lower_bound(all.begin(), all.end(), id) -
+                      all.begin());
     };
-    std::vector<std::size_t> parent(all.size());
-    std::iota(parent.begin(), parent.end(), std::size_t(0));
-    const auto root = [&](std::size_t i) {
-      while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    for (const auto &pair : gather_all(communicator, own_pairs)) {
-      const std::size_t a = root(number(pair[0])), b = root(number(pair[1]));
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-    int n_bodies = 0;
-    std::vector<int> body(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i)
-      body[i] = root(i) == i ? n_bodies++ : body[root(i)];
+    DisjointSets bodies(all.size());
+    for (const auto &pair : gather_all(communicator, own_pairs))
+      bodies.join(number(pair[0]), number(pair[1]));
+    unsigned int n_bodies = 0;
+    const auto body = bodies.numbers(n_bodies);
 
     std::vector<int> of_corners(mesh.n_corners(), -1);
     for (std::size_t b = 0; b < cells.bodies.size(); ++b)
       if (is_rigid(int(b)))
         std::fill(of_corners.begin() + long(cells.first_node[b]),
                   of_corners.begin() + long(cells.first_node[b + 1]),
-                  body[number(cells.cell_id[b])]);
+                  int(body[number(cells.cell_id[b])]));
     return of_corners;
   }
 

@@ -99,8 +99,9 @@ namespace nsfd
       refuse_flow(reader);
       if (!setting.large_motion)
         return refuse_rigid_bodies(
-            reader, "it needs motion = large; with motion = small each cell is "
-                    "a body of its density");
+            reader, "it needs motion = large; with motion = small a rigid body "
+                    "has the mass of its cells: each of them is one, with "
+                    "scheme = explicit all that are joined");
       read_extent(reader, material.rigid_bodies);
       read_mass(reader, setting.dimension, material.rigid_bodies);
     }

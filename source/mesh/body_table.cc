@@ -1,8 +1,9 @@
 #include "body_table.h"
 
+#include "mesh_builder.h"
 #include "owned_cells.h"
 
-#include "mesh_builder.h"
+#include "core/disjoint_sets.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -25,12 +26,8 @@ namespace nsfd
       std::vector<unsigned int> number(triangulation.n_active_cells()),
           first(cells.size());
       for (unsigned int c = 0; c < cells.size(); ++c)
-        number[cells[c]->active_cell_index()] = first[c] = c;
-      const auto root = [&](unsigned int c) {
-        while (first[c] != c)
-          c = first[c] = first[first[c]];
-        return c;
-      };
+        number[cells[c]->active_cell_index()] = c;
+      DisjointSets bodies(cells.size());
       for (unsigned int c = 0; c < cells.size(); ++c) {
         const unsigned int m = materials[cells[c]->active_cell_index()];
         if (m >= input.materials.size() ||
@@ -40,14 +37,12 @@ namespace nsfd
           if (cells[c]->face(f)->at_boundary())
             continue;
           const unsigned int other = cells[c]->neighbor(f)->active_cell_index();
-          if (materials[other] != m)
-            continue;
-          const unsigned int i = root(c), j = root(number[other]);
-          first[std::max(i, j)] = std::min(i, j);
+          if (materials[other] == m)
+            bodies.join(c, number[other]);
         }
       }
       for (unsigned int c = 0; c < first.size(); ++c)
-        first[c] = root(c);
+        first[c] = bodies.first(c);
       return first;
     }
 

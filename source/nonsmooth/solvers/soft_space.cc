@@ -1,10 +1,11 @@
 #include "soft_space.h"
 
+#include "core/disjoint_sets.h"
+
 #include <deal.II/lac/lapack_templates.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace nsfd
@@ -12,30 +13,6 @@ namespace nsfd
   namespace
   {
     constexpr double stiff = 5.;
-
-    /** Sets that grow together; the smallest member names each. */
-    class Sets
-    {
-    public:
-      explicit Sets(const std::size_t n) : parent_(n)
-      {
-        std::iota(parent_.begin(), parent_.end(), 0);
-      }
-      int find(int i)
-      {
-        while (parent_[i] != i)
-          i = parent_[i] = parent_[parent_[i]];
-        return i;
-      }
-      void join(const int a, const int b)
-      {
-        const int first = find(a), second = find(b);
-        parent_[std::max(first, second)] = std::min(first, second);
-      }
-
-    private:
-      std::vector<int> parent_;
-    };
 
     /** Columns a and b of the rows of a face are opposite. */
     bool opposite(const FaceRows &face, const std::size_t a,
@@ -54,13 +31,13 @@ namespace nsfd
                        const std::vector<FaceRows> &faces)
       : node_of_(first_dof.back(), -1), place_(first_dof.back())
   {
-    Sets sets(first_dof.back());
+    DisjointSets sets(first_dof.back());
     std::vector<int> body(first_dof.back());
     for (std::size_t b = 0; b + 1 < first_dof.size(); ++b)
       for (std::size_t i = first_dof[b]; i < first_dof[b + 1]; ++i) {
         body[i] = int(b);
         // components of a node follow one another
-        sets.join(int(i), int(i - (i - first_dof[b]) % dim));
+        sets.join(unsigned(i), unsigned(i - (i - first_dof[b]) % dim));
       }
     for (const FaceRows &face : faces) {
       double largest = 0.;
@@ -70,10 +47,10 @@ namespace nsfd
         for (std::size_t b = a + 1; b < face.dofs.size(); ++b)
           if (body[face.dofs[a]] != body[face.dofs[b]] &&
               opposite(face, a, b, largest))
-            sets.join(face.dofs[a], face.dofs[b]);
+            sets.join(unsigned(face.dofs[a]), unsigned(face.dofs[b]));
     }
     for (std::size_t i = 0; i < node_of_.size(); ++i) {
-      const int name = sets.find(int(i));
+      const int name = int(sets.first(unsigned(i)));
       if (name == int(i)) {
         node_of_[i] = int(nodes_.size());
         nodes_.emplace_back();
