@@ -254,11 +254,9 @@ namespace nsfd
       return;
     }
     if (input.has_bonded_faces()) {
-      // cells of two sizes have no common nodes, and in a run faces become so
       auto joined = make_bonded_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
-          node_coordinates(*discretization),
-          input.time.scheme.theta_scheme && !input.adaptivity);
+          node_coordinates(*discretization), input.time.scheme.theta_scheme);
       bonded = joined.get();
       delassus = std::move(joined);
       return;
