@@ -11,10 +11,10 @@ namespace nsfd
 {
   /**
    * Bodies joined at bonded points, which have no row in W. In implicit steps
-   * bodies whose face is bonded all over, node to node, share their nodes.
-   * Where that cannot be (explicit bodies, faces of two sizes, rigid bodies,
-   * faces of which a part has let go) the symmetric interior penalty method
-   * joins them through the bulk,
+   * bodies whose face is bonded all over share their nodes, and where one is
+   * smaller its nodes follow those of the other. Where that cannot be (explicit
+   * bodies, rigid bodies, faces of which a part has let go) the symmetric
+   * interior penalty method joins them through the bulk,
    *
    *     K = sum of body stiffnesses
    *         + sum over bonded points w ( t.[v] + [u].t(v) + eta [u].[v] ),

@@ -35,6 +35,7 @@ namespace nsfd
     remote.erase(std::unique(remote.begin(), remote.end()), remote.end());
     n_own_ = std::size_t(space.n_own);
     exchange_ = GhostValues(communicator_, first, n_own_, remote);
+    ties_ = TiedUnknowns(communicator_, space);
     place_.clear();
     for (const long long k : space.number)
       place_.push_back(
@@ -61,9 +62,13 @@ namespace nsfd
           "precision, or too large for the memory");
   }
 
-  bool ConformingSolver::try_to_prepare(const SparseRows &matrix)
+  bool ConformingSolver::try_to_prepare(const SparseRows &given)
   {
     product_ = nullptr;
+    SparseRows folded;
+    if (ties_.any())
+      folded = ties_.fold(given);
+    const SparseRows &matrix = ties_.any() ? folded : given;
     if (space_->n_global <= largest_factor_) {
       if (!factor_)
         factor_ = std::make_unique<Cholesky>(communicator_);
@@ -126,7 +131,15 @@ namespace nsfd
     if (product_) {
       constexpr unsigned int most = 100;
       Vector x(b_.begin(), b_.begin() + long(n_own_));
-      const auto outcome = krylov::gmres(product_, preconditioner, dot,
+      const auto product = [&](const Vector &p, Vector &q) {
+        if (!ties_.any())
+          return product_(p, q);
+        Vector all = p;
+        ties_.follow(all.data());
+        product_(all, q);
+        ties_.fold(q.data());
+      };
+      const auto outcome = krylov::gmres(product, preconditioner, dot,
                                          {tolerance, most}, {true, 2}, x);
       std::copy(x.begin(), x.end(), x_.begin());
       return outcome;
@@ -152,10 +165,16 @@ namespace nsfd
   /** From b_ to x_. */
   krylov::Outcome ConformingSolver::solve_here(const double tolerance)
   {
+    krylov::Outcome outcome{0, true};
+    if (ties_.any())
+      ties_.fold(b_.data());
     if (product_ || !factor_)
-      return iterate(tolerance);
-    factor_->solve(b_.data(), x_.data());
-    return {0, true};
+      outcome = iterate(tolerance);
+    else
+      factor_->solve(b_.data(), x_.data());
+    if (ties_.any())
+      ties_.follow(x_.data());
+    return outcome;
   }
 
   krylov::Outcome ConformingSolver::solve(const double *b, double *x,
@@ -195,10 +214,16 @@ namespace nsfd
       return;
     }
     Vector in(n * n_own_), out(in.size());
-    for (std::size_t c = 0; c < n; ++c)
+    for (std::size_t c = 0; c < n; ++c) {
       restrict_to_space(B + c * rows, &in[c * n_own_]);
+      if (ties_.any())
+        ties_.fold(&in[c * n_own_]);
+    }
     factor_->solve_columns(in.data(), out.data(), n);
-    for (std::size_t c = 0; c < n; ++c)
+    for (std::size_t c = 0; c < n; ++c) {
+      if (ties_.any())
+        ties_.follow(&out[c * n_own_]);
       expand(&out[c * n_own_], X + c * rows);
+    }
   }
 } // namespace nsfd

@@ -3,6 +3,7 @@
 #include "linear_algebra/ghost_values.h"
 #include "linear_algebra/krylov.h"
 #include "linear_algebra/spd_solver.h"
+#include "linear_algebra/tied_unknowns.h"
 
 #include <functional>
 #include <memory>
@@ -71,6 +72,7 @@ namespace nsfd
     std::vector<int> place_;
     std::size_t n_own_ = 0;
     GhostValues exchange_; ///< of the space
+    TiedUnknowns ties_;
     bool new_pattern_ = true;
     Product product_; ///< or null
     std::unique_ptr<Cholesky> factor_;

@@ -6,15 +6,27 @@ namespace nsfd
 {
   ConformingSpace::ConformingSpace(const Communicator &communicator,
                                    const unsigned int dim, Unknowns unknowns,
-                                   NodePairs pairs)
+                                   NodePairs pairs, NodeTies ties)
       : communicator_(communicator), dim_(dim), unknowns_(std::move(unknowns)),
-        pairs_(std::move(pairs))
+        pairs_(std::move(pairs)), ties_(std::move(ties))
   {
     const long long n = static_cast<long long>(unknowns_.component.size());
-    for (const long long other : pairs_.other)
-      if (other < unknowns_.first || other >= unknowns_.first + n)
+    const auto note = [&](const long long node) {
+      if (node < unknowns_.first || node >= unknowns_.first + n)
         for (unsigned int c = 0; c < dim; ++c)
-          ghosts_.push_back(other + c);
+          ghosts_.push_back(node + c);
+    };
+    for (const long long other : pairs_.other)
+      note(other);
+    bool tied = false;
+    for (const auto &face : ties_.of_face)
+      for (const auto &tie : face) {
+        tied = true;
+        note(tie.node);
+        for (const auto &master : tie.masters)
+          note(master.first);
+      }
+    has_ties_ = communicator.any(tied);
     std::sort(ghosts_.begin(), ghosts_.end());
     ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
     const auto &component = unknowns_.component;
@@ -99,36 +111,9 @@ namespace nsfd
     for (std::size_t i = 0; i < n; ++i)
       space_.number[i] = static_cast<long long>(value[i]);
     joined_ = DisjointSets();
+    space_.ties = ties_of(faces, {space_.number.begin(), space_.number.end()},
+                          contradicting_);
     set_modes();
-  }
-
-  std::vector<char> ConformingSpace::jumping(const std::vector<char> &joined)
-  {
-    join(joined);
-    const std::size_t n = unknowns_.component.size();
-    std::vector<double> first(n), ghosts(ghosts_.size()); // below 2^53
-    for (std::size_t i = 0; i < n; ++i)
-      first[i] = double(unknowns_.first) + double(i);
-    agree(first, true);
-    exchange_.fetch(first.data(), ghosts.data());
-    joined_ = DisjointSets();
-    std::vector<char> result(joined.size());
-    for (std::size_t f = 0; f < joined.size(); ++f) {
-      result[f] = !pairs_.complete[f];
-      for (std::size_t k = pairs_.start[f]; k < pairs_.start[f + 1]; ++k) {
-        const long long other = pairs_.other[k] - unknowns_.first;
-        const double of_other =
-            other >= 0 && other < static_cast<long long>(n)
-                ? first[std::size_t(other)]
-                : ghosts[std::size_t(std::lower_bound(ghosts_.begin(),
-                                                      ghosts_.end(),
-                                                      pairs_.other[k]) -
-                                     ghosts_.begin())];
-        if (first[std::size_t(pairs_.own[k])] != of_other)
-          result[f] = 1;
-      }
-    }
-    return result;
   }
 
   std::vector<char> ConformingSpace::without_jump() const
@@ -160,5 +145,11 @@ namespace nsfd
           space_.modes[3 + a][k] = c == b ? -x[d] : c == d ? x[b] : 0.;
         }
     }
+    // what follows has a row of its own, without motion
+    for (const CoarseSpace::Tie &tie : space_.ties)
+      for (auto &mode : space_.modes)
+        if (tie.number >= space_.first &&
+            tie.number < space_.first + space_.n_own)
+          mode[std::size_t(tie.number - space_.first)] = 0.;
   }
 } // namespace nsfd

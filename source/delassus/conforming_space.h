@@ -4,6 +4,8 @@
 #include "linear_algebra/ghost_values.h"
 #include "linear_algebra/spd_solver.h"
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace nsfd
@@ -21,6 +23,21 @@ namespace nsfd
     std::vector<char> complete;
   };
 
+  /**
+   * Nodes of a smaller cell at its face with a larger one where that one has no
+   * node: they follow its trace there. Named by the first of their unknowns,
+   * which may be on any rank; weights are those of its nodes, which follow. A
+   * face between two ranks is listed on both.
+   */
+  struct NodeTies {
+    struct Node {
+      long long node;
+      std::vector<std::pair<long long, double>> masters;
+    };
+    std::vector<std::vector<Node>> of_face; ///< per face; most are empty
+    std::vector<std::uint64_t> key;         ///< of faces, alike on all ranks
+  };
+
   /** Where an unknown of a deformable body sits. */
   struct Unknowns {
     long long first = 0;                ///< global number of the first one
@@ -36,7 +53,7 @@ namespace nsfd
   {
   public:
     ConformingSpace(const Communicator &communicator, unsigned int dim,
-                    Unknowns unknowns, NodePairs pairs);
+                    Unknowns unknowns, NodePairs pairs, NodeTies ties = {});
 
     /**
      * Functions of the space no longer jump across the marked faces, alike on
@@ -48,8 +65,14 @@ namespace nsfd
     /** There would be no jump across the face if it were joined. */
     bool is_complete(const std::size_t face) const
     {
-      return pairs_.complete[face] != 0;
+      return pairs_.complete[face] || is_tied(face);
     }
+
+    /**
+     * By face: joined between cells of two sizes, but what its nodes are to
+     * follow follows others itself, or they follow another cell already.
+     */
+    const std::vector<char> &contradicting() const { return contradicting_; }
 
     /** Faces across which functions could jump if these ones were joined, alike
         on both ranks of a shared face; conform() is to be called then. */
@@ -67,12 +90,23 @@ namespace nsfd
     void join(const std::vector<char> &faces);
     void agree(std::vector<double> &value, bool smallest);
     void set_modes();
+    bool is_tied(const std::size_t face) const
+    {
+      return !ties_.of_face.empty() && !ties_.of_face[face].empty();
+    }
+    double value_at(long long unknown, const std::vector<double> &own,
+                    const std::vector<double> &ghosts) const;
+    std::vector<CoarseSpace::Tie> ties_of(const std::vector<char> &faces,
+                                          const std::vector<double> &own,
+                                          std::vector<char> &contradicting);
 
     const Communicator &communicator_;
     const unsigned int dim_;
     const Unknowns unknowns_;
     const NodePairs pairs_;
-    std::vector<char> conforming_;
+    const NodeTies ties_;
+    bool has_ties_ = false; ///< on any rank
+    std::vector<char> conforming_, contradicting_;
     DisjointSets joined_; ///< unknowns, in between alone
     /// own roots and the ghosts they are joined to
     std::vector<std::pair<int, int>> across_;

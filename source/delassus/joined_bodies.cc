@@ -57,7 +57,8 @@ namespace nsfd
         this->bulk_.bonds(), sum - mine);
     const SparseAssembly<dim> nodes(communicator, bodies, points, coordinates);
     conforming_ = std::make_unique<ConformingSpace>(
-        communicator, dim, nodes.unknowns(), nodes.node_pairs());
+        communicator, dim, nodes.unknowns(), nodes.node_pairs(),
+        share_nodes ? nodes.node_ties() : NodeTies());
     JoinedBodies::bonds_changed();
   }
 
@@ -120,11 +121,21 @@ namespace nsfd
   {
     valid_ = false;
     this->shares_nodes_ = joined_by(this->bonded_);
+    bool changed = true;
+    while (this->communicator_.any(changed)) {
+      changed = false;
+      conforming_->conform(this->shares_nodes_);
+      const auto &contradicting = conforming_->contradicting();
+      for (std::size_t f = 0; f < contradicting.size(); ++f)
+        if (contradicting[f]) {
+          changed = true;
+          this->shares_nodes_[f] = 0;
+        }
+    }
     for (std::size_t f = 0; f < this->shares_nodes_.size(); ++f)
       if (this->shares_nodes_[f])
         std::fill_n(this->penalised_.begin() + this->points_.faces[f].first,
                     this->points_.faces[f].count, 0);
-    conforming_->conform(this->shares_nodes_);
     matrix_->set_space(conforming_->space(), this->shares_nodes_,
                        this->penalised_);
     factor_.set_space(conforming_->space());

@@ -428,66 +428,6 @@ namespace nsfd
     return result;
   }
 
-  template <int dim>
-  NodePairs SparseAssembly<dim>::node_pairs() const
-  {
-    NodePairs pairs;
-    for (std::size_t f = 0; f < points_.faces.size(); ++f) {
-      const unsigned int first = points_.faces[f].first;
-      std::size_t nodes = 0;
-      if (!coordinates_.empty() && places_[0][first].exists() &&
-          places_[1][first].exists()) {
-        std::array<Side, 2> sides{side(f, 0), side(f, 1)};
-        const unsigned int s = places_[0][first].body >= 0 ? 0 : 1;
-        const Place &a = places_[s][first], &b = places_[1 - s][first];
-        const auto distance = [&](const Place &x, const unsigned int i,
-                                  const Place &y, const unsigned int j) {
-          double sum = 0.;
-          for (unsigned int c = 0; c < dim; ++c)
-            sum = std::max(
-                sum, std::abs(coordinate(x, i + c) - coordinate(y, j + c)));
-          return sum;
-        };
-        if (!sides[s].rigid && !sides[1 - s].rigid) {
-          nodes = std::max(sides[0].support.size(), sides[1].support.size());
-          double size = 0.;
-          for (const unsigned short i : sides[s].support)
-            if (i % dim == 0)
-              size = std::max(size, distance(a, sides[s].support[0], a, i));
-          for (const unsigned short i : sides[s].support)
-            for (const unsigned short j : sides[1 - s].support)
-              if (i % dim == 0 && j % dim == 0 &&
-                  distance(a, i, b, j) < 1e-6 * size) {
-                pairs.own.push_back(int(sides[s].first - matrix_.first_row) +
-                                    i);
-                pairs.other.push_back(sides[1 - s].first + j);
-              }
-        }
-      }
-      pairs.complete.push_back(
-          nodes > 0 && (pairs.own.size() - pairs.start.back()) * dim == nodes);
-      pairs.start.push_back(pairs.own.size());
-    }
-    return pairs;
-  }
-
-  template <int dim>
-  Unknowns SparseAssembly<dim>::unknowns() const
-  {
-    Unknowns result;
-    result.first = matrix_.first_row;
-    result.coordinates = coordinates_;
-    result.coordinates.resize(bodies_.n_dofs(), 0.);
-    result.component.assign(bodies_.n_dofs(), -1);
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-      if (!bodies_.classes[bodies_.class_of[b]].rigid)
-        for (std::size_t i = bodies_.first_dof[b]; i < bodies_.first_dof[b + 1];
-             ++i)
-          result.component[i] =
-              static_cast<signed char>((i - bodies_.first_dof[b]) % dim);
-    return result;
-  }
-
   template class SparseAssembly<2>;
   template class SparseAssembly<3>;
 } // namespace nsfd

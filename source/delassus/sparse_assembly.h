@@ -60,8 +60,11 @@ namespace nsfd
 
     /** Nodes at the same place on both sides of a face. */
     NodePairs node_pairs() const;
+    /** Of faces between cells of two sizes whose points tell the trace of the
+        smaller one. */
+    NodeTies node_ties() const;
     Unknowns unknowns() const;
-    /** Nothing but node_pairs() and unknowns() looks at them. */
+    /** Nothing but node_pairs(), node_ties() and unknowns() looks at them. */
     void forget_coordinates() { coordinates_ = std::vector<double>(); }
 
   private:
@@ -90,6 +93,9 @@ namespace nsfd
     Side side(std::size_t face, unsigned int s) const;
     double trace(const Place &place, unsigned int c, unsigned int j) const;
     double coordinate(const Place &place, unsigned int j) const;
+    double distance(const Place &x, unsigned int i, const Place &y,
+                    unsigned int j) const;
+    std::vector<NodeTies::Node> ties(std::size_t face) const;
     void build_pattern();
     void add_springs(std::size_t face, const std::vector<double> &k);
     int local_column(long long global) const;

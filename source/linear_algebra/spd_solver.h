@@ -32,6 +32,14 @@ namespace nsfd
   struct CoarseSpace {
     std::vector<long long> number; ///< per unknown of this rank
     long long first = 0, n_own = 0, n_global = 0;
+    /** One of the numbers that a number follows, x_number += weight x_master.
+     */
+    struct Tie {
+      long long number, master;
+      double weight;
+    };
+    /// of all ranks on each, ascending by number; masters follow nothing
+    std::vector<Tie> ties;
     /// functions of no or little energy on the own coarse unknowns (the rigid
     /// motions), n_own values each: what a multigrid method must represent
     std::vector<std::vector<double>> modes;

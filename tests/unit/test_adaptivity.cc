@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -124,6 +126,46 @@ end
   {
     keeps_what_it_must<2>({2, 1, true, false}, 20);
     keeps_what_it_must<2>({2, 2, true, true}, 10);
+    keeps_what_it_must<3>({3, 1, true, false}, 4);
+  }
+
+  /** All faces without damage are faces of one continuous function. */
+  template <int dim>
+  void is_continuous(const Case &c, const unsigned int rounds)
+  {
+    Chance::round = 0;
+    Changing<dim> mesh(text(c));
+    std::set<std::size_t> sizes;
+    for (unsigned int k = 0; k < rounds; ++k) {
+      mesh.change();
+      const auto &discretization = *mesh.model.discretization;
+      const auto &faces = discretization.points().faces;
+      sizes.insert(discretization.bodies().size());
+      double size = 0.;
+      for (const double u : mesh.state.displacement)
+        size = std::max(size, std::abs(u));
+      std::vector<double> jump(mesh.state.jump.size());
+      mesh.model.delassus->relative_velocity(mesh.state.displacement.data(),
+                                             jump.data());
+      for (std::size_t f = 0; f < faces.size(); ++f) {
+        if (faces[f].boundary)
+          continue;
+        ASSERT_TRUE(mesh.model.bonded->shares_nodes()[f]) << f;
+        for (std::size_t i = faces[f].first * dim;
+             i < std::size_t(faces[f].first + faces[f].count) * dim; ++i)
+          ASSERT_NEAR(jump[i], 0., 1e-13 * size);
+      }
+    }
+    EXPECT_GT(sizes.size(), 2u);
+  }
+
+  TEST(Adaptivity, BondedCellsOfTwoSizesShareNodes)
+  {
+    is_continuous<2>({2, 1, true, false}, 20);
+    is_continuous<2>({2, 2, true, true}, 20);
+    is_continuous<2>({2, 3, true, false}, 5);
+    is_continuous<3>({3, 1, true, true}, 6);
+    is_continuous<3>({3, 2, true, false}, 3);
   }
 
   TEST(Adaptivity, ChangesOfBricks)
@@ -134,10 +176,10 @@ end
 
   // A state of smaller cells that came from larger ones is the same function;
   // made larger again, it is the old one. Before anything is damaged.
-  TEST(Adaptivity, ThereAndBackAgain)
+  void go_there_and_back(const bool bonded)
   {
     Chance::round = 0;
-    Changing<2> mesh(text({2, 2, false, true}));
+    Changing<2> mesh(text({2, 2, bonded, true}));
     // continuous, or the larger cells could not have it
     mesh.state.displacement = mesh.model.discretization->interpolate(
         [](const dealii::Point<2> &x, unsigned int, double *u) {
@@ -159,5 +201,11 @@ end
         // round-off of thirty projections times the condition of M, 1e2
         ASSERT_NEAR(mesh.state.velocity[i], mesh.state.displacement[i], 1e-12);
     }
+  }
+
+  TEST(Adaptivity, ThereAndBackAgain)
+  {
+    go_there_and_back(false);
+    go_there_and_back(true);
   }
 } // namespace nsfd::test_adaptivity
