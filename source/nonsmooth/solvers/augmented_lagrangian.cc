@@ -18,6 +18,9 @@ namespace nsfd
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
     constexpr double of_differences = 1e-5, left_to_differences = 1e-5;
+    /// of the tolerance, of impulses that may stay without any iteration: what
+    /// they lack is the same in every step of bodies at rest, and adds up
+    constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
 
@@ -255,7 +258,7 @@ namespace nsfd
       soften(work, 1.);
       answer(work, velocity_);
       const double error = errors(work).defect;
-      if (error <= tolerance)
+      if (error <= (work.report.newton == 0 ? untouched : 1.) * tolerance)
         return true;
       idle = error < 0.5 * least ? 0 : idle + 1;
       if (error < least) {
@@ -274,8 +277,9 @@ namespace nsfd
       remove_springs(work);
       if (symmetric)
         symmetrise(work, false);
-      const double share =
-          std::max(0.1 * tolerance / error, std::min(1e-2, 0.1 * error));
+      // as far as a step of Newton's method is right; what is left at its end
+      // would go on into later steps
+      const double share = std::min(1e-2, 0.1 * error);
       if (!work.bodies.solve_linearised(tangents_, symmetric, right_side_, dP_,
                                         dU_, &defect_, share))
         break;

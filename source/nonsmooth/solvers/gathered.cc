@@ -285,6 +285,14 @@ namespace nsfd
     collect(problem.mask, 1, all.mask);
     collect(problem.contact, 1, all.contact);
     collect(problem.interaction, 1, all.interaction);
+    std::vector<std::uint8_t> acts(problem.n_points, 0), all_act;
+    for (const unsigned int i : problem.acting)
+      acts[i] = 1;
+    collect(acts, 1, all_act);
+    all.acting.clear();
+    for (std::size_t i = 0; i < all_act.size(); ++i)
+      if (all_act[i])
+        all.acting.push_back(unsigned(i));
     for (const auto member :
          {&OneStepProblem<dim>::weight, &OneStepProblem<dim>::strength_factor,
           &OneStepProblem<dim>::opening_factor,
