@@ -1,18 +1,25 @@
 #pragma once
 
-#include "load_step_iterate.h"
-
 #include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/solver.h"
+#include "state/state.h"
 
 #include <utility>
 #include <vector>
 
 namespace nsfd
 {
+  /** Where the rounds from one equilibrium to the next one stand. */
   template <int dim>
-  class StaticBonds;
+  struct LoadStepIterate {
+    const State *old = nullptr;  ///< the equilibrium at the start
+    State at;                    ///< the iterate as the start of a round
+    double h = 0.;               ///< of the last round, s
+    std::vector<double> force;   ///< r of the last round in N
+    std::vector<char> activated; ///< extrinsic points that opened in this step
+    std::vector<LocalSolution<dim>> solutions; ///< of the last round
+  };
 
   /**
    * The laws of a load step held as what they are as long as nothing is damaged
@@ -24,14 +31,13 @@ namespace nsfd
   class HeldLaws
   {
   public:
-    /** All are those of the rounds and outlive this; @p bonds or null. */
+    /** All are those of the rounds and outlive this. */
     HeldLaws(const Discretization<dim> &discretization,
              const DelassusOperator<dim> &delassus,
              OneStepProblem<dim> &problem, LoadStepIterate<dim> &iterate,
-             const bool has_extrinsic, StaticBonds<dim> *const bonds)
+             const bool has_extrinsic)
         : discretization_(discretization), delassus_(delassus),
-          problem_(problem), iterate_(iterate), has_extrinsic_(has_extrinsic),
-          bonds_(bonds)
+          problem_(problem), iterate_(iterate), has_extrinsic_(has_extrinsic)
     {
     }
 
@@ -48,7 +54,7 @@ namespace nsfd
     void put_springs();
 
     /**
-     * The loads of joined points over their strength at the start of the step,
+     * The loads of rigid points over their strength at the start of the step,
      * from the forces at hand, once per step. Collective.
      */
     void find_joint_loads();
@@ -83,11 +89,7 @@ namespace nsfd
   private:
     bool may_damage(std::size_t point) const;
     std::vector<double> joint_shares() const;
-    void let_joints_go(std::vector<char> &fresh);
-    double opening_scale(std::size_t point) const;
     Reach history(std::size_t point) const;
-    double load_at_start(std::size_t point, double now,
-                         const std::vector<double> &joints) const;
     Reach held_reach(std::size_t point) const;
 
     const Discretization<dim> &discretization_;
@@ -95,7 +97,6 @@ namespace nsfd
     OneStepProblem<dim> &problem_;
     LoadStepIterate<dim> &iterate_;
     const bool has_extrinsic_; ///< points that are rigid until they activate
-    StaticBonds<dim> *bonds_;  ///< of bodies that share nodes, or null
     bool holds_ = false;
     std::vector<Reach> held_;               ///< histories of the springs
     std::vector<Interaction> interactions_; ///< of the laws
