@@ -22,18 +22,6 @@ namespace nsfd
       for (std::size_t k = 0; k < values.size(); ++k)
         values[k] = x[places[k]];
     }
-
-    /** Over the own values of all ranks. */
-    double norm(const Communicator &communicator, const std::vector<double> &x)
-    {
-      double square = 0.;
-      for (const double value : x)
-        square += value * value;
-      if (communicator.size() > 1)
-        MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM,
-                      communicator.mpi());
-      return std::sqrt(square);
-    }
   } // namespace
 
   template <int dim>
@@ -204,10 +192,12 @@ namespace nsfd
     if (defect) {
       matrix_->impulse(c.data(), rows_);
       matrix_->impulse(defect->data(), columns_);
-      const double all = norm(this->communicator_, rows_);
+      const auto norm = [this](const std::vector<double> &x) {
+        return std::sqrt(this->communicator_.dot(x.data(), x.data(), x.size()));
+      };
+      const double all = norm(rows_);
       if (all > 0.)
-        tolerance =
-            std::max(tight, share * norm(this->communicator_, columns_) / all);
+        tolerance = std::max(tight, share * norm(columns_) / all);
     }
     const bool old = tangent_.may_keep(positive);
     if (!(old && solve_tangent(T, c, tolerance, dU)) &&
@@ -251,6 +241,9 @@ namespace nsfd
       valid_ = false;
       tangent_.clear();
     }
+    // a step that was resumed has none of the step before: what is counted,
+    // and with that when W is condensed, would differ
+    last_.rows.clear();
     DelassusOperator<dim>::reinit(time_step, theta);
   }
 

@@ -64,6 +64,19 @@ namespace nsfd
     }
 
     /**
+     * How far beside an end d difference quotients are taken, over d: the
+     * stiffer the secant @p k, the more round-off of P is in its reach.
+     */
+    template <int dim>
+    double way_beside(const OneStepProblem<dim> &problem, const std::size_t i,
+                      const double R, const double k)
+    {
+      const double stiffness =
+          problem.weight[i] * square(problem.time_step) * problem.theta * k;
+      return std::clamp(1e-8 * std::sqrt(R * stiffness), 1e-7, 1e-2);
+    }
+
+    /**
      * The end d of the step moves with the local velocity: with the point at
      * the secant of a given d, P(U_loc, d) and its reach d'(U_loc, d) = d,
      *
@@ -78,11 +91,8 @@ namespace nsfd
       const double d = solution.reach.opening;
       if (!(d > 0.))
         return;
-      const double stiffness = problem.weight[i] * square(problem.time_step) *
-                               problem.theta *
-                               solution.frozen.secant.tangential;
       const double step =
-          d * std::clamp(1e-8 * std::sqrt(R * stiffness), 1e-7, 1e-2);
+          d * way_beside<dim>(problem, i, R, solution.frozen.secant.tangential);
       const PointDamage<dim> damage(problem, i);
       LocalProblem<dim> beside{problem, i, local, R, R};
       beside.solve_end(damage, {d + step, 0.});
@@ -138,10 +148,8 @@ namespace nsfd
             follows[m][c] -= R * gradient[r] * slopes[r * dim + c];
         }
         const double k = m == 0 ? secant.normal : secant.tangential;
-        const double stiffness = problem.weight[i] * problem.time_step * h * k;
         const double step =
-            (end.opening + end.slip) *
-            std::clamp(1e-8 * std::sqrt(R * stiffness), 1e-7, 1e-2);
+            (end.opening + end.slip) * way_beside<dim>(problem, i, R, k);
         LocalProblem<dim> beside{problem, i, local, R, R};
         beside.solve_end(damage, {end.opening + (m == 0 ? step : 0.),
                                   end.slip + (m == 1 ? step : 0.)});

@@ -80,8 +80,7 @@ namespace nsfd
       start.slip_max = state.slip_max;
       std::vector<double> stored(problem.n_owned, 0.);
       for (std::size_t i = 0; i < problem.n_owned; ++i) {
-        if (state.kind[i] == PointKind::bonded ||
-            state.kind[i] == PointKind::separated)
+        if (!has_impulse(state.kind[i]))
           continue; // in the stiffness of the bodies, or nowhere
         if (state.two_sided[i])
           start.compression_stiffness[i] = intact_stiffness<dim>(problem, i);

@@ -28,8 +28,7 @@ namespace nsfd
     {
       std::vector<unsigned int> points;
       for (std::size_t i = 0; i < old.kind.size(); ++i)
-        if (old.kind[i] != PointKind::bonded &&
-            old.kind[i] != PointKind::separated)
+        if (has_impulse(old.kind[i]))
           points.push_back(unsigned(i));
       return points;
     }

@@ -98,8 +98,7 @@ namespace nsfd
       problem.contact[i] = 0;
       problem.mask[i] = 0;
       problem.compression_stiffness[i] = 0.;
-      if (old.kind[i] == PointKind::bonded ||
-          old.kind[i] == PointKind::separated) {
+      if (!has_impulse(old.kind[i])) {
         problem.kind[i] = PointKind::free; // without contact: no impulse
         return;
       }
@@ -340,8 +339,7 @@ namespace nsfd
           old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
     problem.acting.clear();
     for (std::size_t i = 0; i < problem.n_points; ++i) {
-      if (old.kind[i] != PointKind::bonded &&
-          old.kind[i] != PointKind::separated && delassus.parts(i))
+      if (has_impulse(old.kind[i]) && delassus.parts(i))
         problem.acting.push_back(unsigned(i));
       set_point(input.time, discretization.extent(), old, i, problem);
     }

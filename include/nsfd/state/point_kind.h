@@ -15,4 +15,10 @@ namespace nsfd
     bonded,     ///< carries through the bulk, not by an impulse
     separated   ///< broken, its crack faces are left to the search for contacts
   };
+
+  /** Not what carries through the bulk or through other points. */
+  inline bool has_impulse(const PointKind kind)
+  {
+    return kind != PointKind::bonded && kind != PointKind::separated;
+  }
 } // namespace nsfd

@@ -275,8 +275,7 @@ namespace nsfd
   Gathered<dim>::gather(const OneStepProblem<dim> &problem) const
   {
     OneStepProblem<dim> all;
-    resize(all, points_.n_points);
-    all.n_owned = all.n_points;
+    all.n_points = all.n_owned = points_.n_points;
     all.time_step = problem.time_step;
     all.theta = problem.theta;
     all.rule = problem.rule;
@@ -289,7 +288,6 @@ namespace nsfd
     for (const unsigned int i : problem.acting)
       acts[i] = 1;
     collect(acts, 1, all_act);
-    all.acting.clear();
     for (std::size_t i = 0; i < all_act.size(); ++i)
       if (all_act[i])
         all.acting.push_back(unsigned(i));
