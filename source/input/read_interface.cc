@@ -432,6 +432,23 @@ namespace nsfd
         input.intact = IntactFaces::bonded;
       }
     }
+
+    /**
+     * In a scene with equilibria an intact body is one body of finite elements
+     * with common nodes, whatever word joins its cells; rigid cells and cells
+     * of two sizes have none, and interior points need the matrices of cells.
+     */
+    bool may_share_nodes(const SceneInput &scene, const ParameterFile &file)
+    {
+      const ParameterSection *solver = file.find("Solver");
+      const ParameterEntry *method = solver ? solver->find("method") : nullptr;
+      return scene.statics && scene.time.scheme.theta_scheme &&
+             !scene.iterates() && !file.find("Adaptivity") &&
+             !(method && method->value.text() == "interior point") &&
+             std::none_of(
+                 scene.materials.begin(), scene.materials.end(),
+                 [](const MaterialInput &material) { return material.rigid; });
+    }
   } // namespace
 
   void read_interfaces(ParameterFile &file, InputErrors &errors,
@@ -445,6 +462,13 @@ namespace nsfd
     if (scene.has_bonded_faces() && scene.time.scheme.theta_scheme)
       for (std::size_t b = 0; b < blocks.size(); ++b)
         share_nodes(*blocks[b], scene.interfaces[b]);
+    if (may_share_nodes(scene, file))
+      for (InterfaceInput &interface : scene.interfaces)
+        if (interface.intact == IntactFaces::rigid) {
+          interface.intact = IntactFaces::bonded;
+          if (!interface.law)
+            interface.law_name = "bonded";
+        }
     if (scene.interfaces.empty())
       errors.error(file.location(),
                    "no Interface block says what holds the faces together",

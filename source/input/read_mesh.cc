@@ -303,10 +303,19 @@ namespace nsfd
     const bool at_nodes = scene.time.scheme.at_nodes;
     // Joined cells part at their nodes: with other points there would be more
     // conditions of contact than motions. Points of a face that is divided in
-    // the run keep what they have inside of it.
+    // the run keep what they have inside of it. Quasi-static cracks are sharper
+    // than nodes: a point behind the front must not carry what one before it
+    // does.
+    const bool cracks_slowly =
+        scene.statics && scene.statics->steps &&
+        std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
+                    [](const InterfaceInput &interface) {
+                      return bool(interface.law);
+                    });
     const bool joined =
         scene.has_bonded_faces() && scene.time.scheme.theta_scheme &&
-        !reader.has("interface points") && !file.find("Adaptivity") &&
+        !cracks_slowly && !reader.has("interface points") &&
+        !file.find("Adaptivity") &&
         !(scene.dimension == 3 && has_simplices(scene) && input.degree > 1);
     input.lumped_mass =
         reader.choice("mass", at_nodes ? "lumped" : "consistent",

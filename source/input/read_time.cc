@@ -24,10 +24,12 @@ namespace nsfd
       for (const InterfaceInput &interface : scene.interfaces) {
         if (interface.intact == IntactFaces::bonded && !has_common_nodes)
           reader.error("start",
-                       fmt::format("equilibria with bonded faces (`{}`) are "
-                                   "not available",
+                       fmt::format("equilibria with bonded faces (`{}`) need "
+                                   "implicit steps, or explicit ones of "
+                                   "joined cells",
                                    interface.name),
-                       "write rigid, or start as given");
+                       "write scheme = moreau-jean or explicit, or start as "
+                       "given");
         if (interface.law && interface.law->rate_dependent())
           reader.error("start",
                        fmt::format("an equilibrium has no rates, and the law "
@@ -77,7 +79,8 @@ namespace nsfd
                      "write given, and let the scene come to rest");
         return true;
       }
-      refuse_rates(reader, scene, scheme.traits().at_nodes);
+      refuse_rates(reader, scene,
+                   scheme.traits().at_nodes || scheme.traits().theta_scheme);
       for (const MaterialInput &material : scene.materials)
         for (unsigned int c = 0; c < scene.dimension; ++c)
           if (!material.initial_velocity[c].is_zero()) {
@@ -121,9 +124,15 @@ namespace nsfd
   {
     const ParameterSection *section = file.find("Time");
     const ParameterEntry *entry = section ? section->find("scheme") : nullptr;
-    if (const auto scheme =
-            entry ? find_time_scheme(entry->value.text()) : nullptr)
+    const ParameterEntry *start = section ? section->find("start") : nullptr;
+    const auto scheme = entry ? find_time_scheme(entry->value.text()) : nullptr;
+    if (scheme)
       scene.time.scheme = scheme->traits();
+    const bool steps = scheme && scheme->is_static();
+    if (steps || (start && start->value.text() == "equilibrium")) {
+      scene.statics.emplace(); // read_time() reads what it is
+      scene.statics->steps = steps;
+    }
   }
 
   void read_time(ParameterFile &file, InputErrors &errors, SceneInput &scene)
@@ -136,6 +145,7 @@ namespace nsfd
         reader.choice("scheme", names.front(), names, list_of(names));
     const auto scheme = find_time_scheme(time.scheme_name);
     time.scheme = scheme->traits();
+    scene.statics.reset();
     if (refuse_scheme(reader, scene, *scheme))
       return;
     scheme->demand(reader, scene);

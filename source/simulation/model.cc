@@ -73,12 +73,32 @@ namespace nsfd
     if (input.time.scheme.at_nodes)
       check_stability(input, communicator, problems);
     else if (input.statics) // explicit steps find theirs by themselves
+      build_equilibria(input, communicator);
+    return problems;
+  }
+
+  /** With matrices and a solver of their own. */
+  template <int dim>
+  void Model<dim>::build_equilibria(const SceneInput &input,
+                                    const Communicator &communicator)
+  {
+    // interior points know the matrices of single bodies only
+    const bool any_solver = input.solver.method != "interior point";
+    if (input.has_bonded_faces())
+      equilibria = std::make_unique<QuasiStatic<dim>>(
+          input, *discretization,
+          make_bonded_delassus<dim>(communicator, discretization->bodies(),
+                                    discretization->points(),
+                                    input.solver.linear_solver,
+                                    node_coordinates(*discretization), true),
+          any_solver ? make_solver<dim>(input, "cascade")
+                     : SolverRegistry<dim>::instance().create("cascade"));
+    else
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
           make_linear_delassus(input, communicator, *discretization,
                                input.solver.path != "local"),
           make_solver<dim>(input, "dual newton"));
-    return problems;
   }
 
   /** Cells of other ranks around those of this one; null on one rank. */

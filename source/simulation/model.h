@@ -96,6 +96,8 @@ namespace nsfd
     void choose_path(const SceneInput &input);
     void build_delassus(const SceneInput &input,
                         const Communicator &communicator);
+    void build_equilibria(const SceneInput &input,
+                          const Communicator &communicator);
     void build_integrators(const SceneInput &input,
                            const Communicator &communicator,
                            std::vector<std::string> &problems);

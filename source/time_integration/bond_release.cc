@@ -19,9 +19,6 @@ namespace nsfd
              point_strength<dim>(problem, i);
     }
 
-    /// of the toughness, taken where a released point enters its law
-    constexpr double share_at_start = 1e-9;
-
     /**
      * A law that is set-valued at u = 0 leaves open what a point carries that
      * does not move; joined neighbours leave it open again. So the law starts
@@ -35,9 +32,7 @@ namespace nsfd
                      State &next)
     {
       const auto &interaction = problem.interactions[problem.interaction[i]];
-      const double opening = share_at_start * interaction.law->toughness() /
-                             interaction.law->strength() /
-                             problem.opening_factor[i];
+      const double opening = opening_at_release<dim>(problem, i);
       const double r2 = interaction.shear_weight;
       const double compliance =
           opening / (utilisation * point_strength<dim>(problem, i));
@@ -55,6 +50,15 @@ namespace nsfd
       return problem.weight[i] * point_strength<dim>(problem, i) * opening / 2.;
     }
   } // namespace
+
+  template <int dim>
+  double opening_at_release(const OneStepProblem<dim> &problem,
+                            const std::size_t i)
+  {
+    constexpr double share = 1e-9; // of the toughness
+    const CohesiveLaw &law = *problem.interactions[problem.interaction[i]].law;
+    return share * law.toughness() / law.strength() / problem.opening_factor[i];
+  }
 
   std::vector<std::uint8_t> bonded_points(const State &state)
   {
@@ -83,14 +87,10 @@ namespace nsfd
 
   namespace
   {
-    /** How far points are on their way to their strength; 1: there. */
-    struct Way {
-      double before = 0., now = 0.;
-    };
-
     template <int dim>
-    Way way_of_point(const OneStepProblem<dim> &problem, const std::size_t i,
-                     const State &old, const State &next)
+    BondWay way_of_point(const OneStepProblem<dim> &problem,
+                         const std::size_t i, const State &old,
+                         const State &next)
     {
       return {utilisation(problem, i, &old.bond_traction[i * dim]),
               utilisation(problem, i, &next.bond_traction[i * dim])};
@@ -98,14 +98,14 @@ namespace nsfd
 
     /** Of a face that lets go as a whole. */
     template <int dim>
-    Way way_of_face(const OneStepProblem<dim> &problem,
-                    const typename InterfacePoints<dim>::Face &face,
-                    const bool mean, const State &old, const State &next)
+    BondWay way_of_face(const OneStepProblem<dim> &problem,
+                        const typename InterfacePoints<dim>::Face &face,
+                        const bool mean, const State &old, const State &next)
     {
       if (!mean) {
-        Way furthest;
+        BondWay furthest;
         for (unsigned int i = face.first; i < face.first + face.count; ++i) {
-          const Way way = way_of_point(problem, i, old, next);
+          const BondWay way = way_of_point(problem, i, old, next);
           if (way.now > furthest.now)
             furthest = way;
         }
@@ -125,50 +125,74 @@ namespace nsfd
       return {of(old), of(next)};
     }
 
-    /** Points that let go, with their ways. */
-    template <int dim>
-    std::vector<std::pair<std::size_t, Way>>
-    points_let_go(const OneStepProblem<dim> &problem,
-                  BondedDelassus<dim> &bonded, const bool mean,
-                  const State &old, const State &next)
-    {
-      const auto &faces = bonded.points().faces;
-      const auto &shares_nodes = bonded.shares_nodes();
-      std::vector<std::pair<std::size_t, Way>> result;
-      std::vector<std::pair<std::size_t, Way>> reached; // faces
-      auto left = bonded_points(next);
-      for (std::size_t f = 0; f < faces.size(); ++f) {
-        const unsigned int first = faces[f].first;
-        if (!problem.interactions[problem.interaction[first]].law)
-          continue;
-        if (shares_nodes[f]) {
-          const Way way = way_of_face<dim>(problem, faces[f], mean, old, next);
-          if (way.now < 1.)
-            continue;
-          reached.emplace_back(f, way);
-          std::fill_n(left.begin() + first, faces[f].count, 0);
-          continue;
-        }
-        for (unsigned int i = first; i < first + faces[f].count; ++i) {
-          if (next.kind[i] != PointKind::bonded)
-            continue;
-          const Way way = way_of_point(problem, i, old, next);
-          if (way.now >= 1.)
-            result.emplace_back(i, way);
-        }
-      }
-      if (!bonded.communicator().any(!reached.empty()))
-        return result;
-      const auto opens = bonded.opens_with(left);
-      for (const auto &[f, way] : reached)
-        for (unsigned int i = faces[f].first;
-             opens[f] && i < faces[f].first + faces[f].count; ++i)
-          result.emplace_back(i, way);
-      std::sort(result.begin(), result.end(),
-                [](const auto &a, const auto &b) { return a.first < b.first; });
-      return result;
-    }
   } // namespace
+
+  template <int dim>
+  std::vector<std::pair<std::size_t, BondWay>>
+  points_at_share(const OneStepProblem<dim> &problem,
+                  BondedDelassus<dim> &bonded, const bool mean,
+                  const double share, const State &old, const State &next)
+  {
+    const auto &faces = bonded.points().faces;
+    const auto &shares_nodes = bonded.shares_nodes();
+    std::vector<std::pair<std::size_t, BondWay>> result;
+    std::vector<std::pair<std::size_t, BondWay>> reached; // faces
+    auto left = bonded_points(next);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const unsigned int first = faces[f].first;
+      if (!problem.interactions[problem.interaction[first]].law)
+        continue;
+      if (shares_nodes[f]) {
+        const BondWay way =
+            way_of_face<dim>(problem, faces[f], mean, old, next);
+        if (way.now < share)
+          continue;
+        reached.emplace_back(f, way);
+        std::fill_n(left.begin() + first, faces[f].count, 0);
+        continue;
+      }
+      for (unsigned int i = first; i < first + faces[f].count; ++i) {
+        if (next.kind[i] != PointKind::bonded)
+          continue;
+        const BondWay way = way_of_point(problem, i, old, next);
+        if (way.now >= share)
+          result.emplace_back(i, way);
+      }
+    }
+    if (!bonded.communicator().any(!reached.empty()))
+      return result;
+    const auto opens = bonded.opens_with(left);
+    for (const auto &[f, way] : reached)
+      for (unsigned int i = faces[f].first;
+           opens[f] && i < faces[f].first + faces[f].count; ++i)
+        result.emplace_back(i, way);
+    std::sort(result.begin(), result.end(),
+              [](const auto &a, const auto &b) { return a.first < b.first; });
+    return result;
+  }
+
+  template <int dim>
+  std::vector<double> bond_shares(const OneStepProblem<dim> &problem,
+                                  const BondedDelassus<dim> &bonded,
+                                  const bool mean, const State &state)
+  {
+    std::vector<double> shares(problem.n_points, 0.);
+    const auto &faces = bonded.points().faces;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const unsigned int first = faces[f].first, end = first + faces[f].count;
+      if (first == end || !problem.interactions[problem.interaction[first]].law)
+        continue;
+      const bool whole = bonded.shares_nodes()[f];
+      for (unsigned int i = first; i < end; ++i)
+        if (state.kind[i] == PointKind::bonded)
+          shares[i] =
+              whole && i > first ? shares[first]
+              : whole
+                  ? way_of_face<dim>(problem, faces[f], mean, state, state).now
+                  : way_of_point<dim>(problem, i, state, state).now;
+    }
+    return shares;
+  }
 
   template <int dim>
   BondReport release_bonds(const OneStepProblem<dim> &problem,
@@ -186,7 +210,7 @@ namespace nsfd
     std::vector<double> in_bonds(problem.n_owned, 0.), in_laws(in_bonds);
     unsigned int released = 0;
     for (const auto &[i, way] :
-         points_let_go(problem, bonded, mean, old, next)) {
+         points_at_share(problem, bonded, mean, 1., old, next)) {
       // those that could not part before ask for no shorter step
       if (way.before < 1.) {
         report.overshoot = std::max(report.overshoot, way.now - 1.);
@@ -219,8 +243,19 @@ namespace nsfd
     return report;
   }
 
-  template void set_bond_tractions(const BulkTraction<2> &, State &);
-  template void set_bond_tractions(const BulkTraction<3> &, State &);
+#define INSTANTIATE(dim)                                                       \
+  template void set_bond_tractions(const BulkTraction<dim> &, State &);        \
+  template double opening_at_release(const OneStepProblem<dim> &,              \
+                                     std::size_t);                             \
+  template std::vector<std::pair<std::size_t, BondWay>> points_at_share(       \
+      const OneStepProblem<dim> &, BondedDelassus<dim> &, bool, double,        \
+      const State &, const State &);                                           \
+  template std::vector<double> bond_shares(const OneStepProblem<dim> &,        \
+                                           const BondedDelassus<dim> &, bool,  \
+                                           const State &)
+  INSTANTIATE(2);
+  INSTANTIATE(3);
+#undef INSTANTIATE
   template BondReport release_bonds(const OneStepProblem<2> &,
                                     const BulkTraction<2> &,
                                     BondedDelassus<2> &, bool, const State &,

@@ -2,7 +2,11 @@
 
 #include "delassus/bonded.h"
 #include "discretization/discretization.h"
+#include "nonsmooth/one_step_problem.h"
 #include "state/state.h"
+
+#include <utility>
+#include <vector>
 
 namespace nsfd
 {
@@ -22,6 +26,33 @@ namespace nsfd
    */
   template <int dim>
   void set_bond_tractions(const BulkTraction<dim> &bulk, State &state);
+
+  /** How far a bonded point is on its way to its strength; 1: there. */
+  struct BondWay {
+    double before = 0., now = 0.; ///< at the start and at the end of a step
+  };
+
+  /**
+   * Bonded points of @p next that carry @p share of their strength or more and
+   * can part, as release_bonds() has it, in ascending order. Collective.
+   */
+  template <int dim>
+  std::vector<std::pair<std::size_t, BondWay>>
+  points_at_share(const OneStepProblem<dim> &problem,
+                  BondedDelassus<dim> &bonded, bool mean, double share,
+                  const State &old, const State &next);
+
+  /** Of the strength that every bonded point carries, by the same rule. */
+  template <int dim>
+  std::vector<double> bond_shares(const OneStepProblem<dim> &problem,
+                                  const BondedDelassus<dim> &bonded, bool mean,
+                                  const State &state);
+
+  /** At which a released point enters its law: a thousand millionth of the
+      toughness is taken then. */
+  template <int dim>
+  double opening_at_release(const OneStepProblem<dim> &problem,
+                            std::size_t point);
 
   /**
    * After a step: bonded points whose mean bulk traction has reached the

@@ -21,8 +21,9 @@ namespace nsfd
   namespace
   {
     // The longest and the shortest pseudo-time step, as Courant numbers.
-    // Above, (h/crossing)^2 times round-off would be seen in the jumps.
-    constexpr double longest = 300., shortest = 0.05;
+    // Above, (h/crossing)^2 times round-off would be seen in the jumps. Of n
+    // cells with common nodes it is divided by n: they float together.
+    constexpr double longest = 300., shortest = 0.05, of_joined = 100.;
     constexpr unsigned int most_rounds = 200, accelerated = 12;
     // with springs in place of laws; and how often these are damaged further
     constexpr unsigned int most_held_rounds = 40, most_bits = 100;
@@ -59,8 +60,9 @@ namespace nsfd
         h_(first_step(input, discretization)), first_h_(h_)
   {
     delassus_->reinit(h_, 1.);
-    relaxation_ = std::make_unique<Relaxation<dim>>(*scene_, discretization,
-                                                    *delassus_, *solver_);
+    relaxation_ = std::make_unique<Relaxation<dim>>(
+        *scene_, discretization, *delassus_, *solver_,
+        dynamic_cast<BondedDelassus<dim> *>(delassus_.get()));
     balance_ = std::make_unique<StaticBalance<dim>>(*scene_, discretization,
                                                     *delassus_);
   }
@@ -116,6 +118,20 @@ namespace nsfd
     return state;
   }
 
+  /** A load step from @p old, by steps as long as its bodies allow. */
+  template <int dim>
+  void EquilibriumSearch<dim>::begin(const State &old, const double time)
+  {
+    relaxation_->begin(old, time, time - old.time);
+    StaticBonds<dim> *const bonds = relaxation_->bonds();
+    if (!bonds)
+      return;
+    bonds->set();
+    crossing_ = discretization_.crossing_time() *
+                std::sqrt(bonds->cells_of_smallest_body());
+    first_h_ = of_joined * crossing_;
+  }
+
   /** Named by the last rank that has the largest @p value. */
   template <int dim>
   std::string EquilibriumSearch<dim>::face_of_all(const double value,
@@ -167,7 +183,7 @@ namespace nsfd
       return try_way(old, time, Way::near, false, next);
 
     // nothing damages: one equilibrium, and next to the last one
-    relaxation_->begin(old, time, time - old.time);
+    begin(old, time);
     relaxation_->laws().hold();
     held_ = old.displacement;
     StepReport held;
@@ -193,6 +209,11 @@ namespace nsfd
     for (const Way way : {Way::held, Way::near, Way::damped}) {
       if (way == Way::held && ahead.damages)
         continue;
+      // a shorter step is cheaper than the path of a motion, which is for what
+      // none is short enough for
+      if (way == Way::damped && found && may_be_shortened &&
+          relaxation_->bonds())
+        break;
       EquilibriumReport report;
       try {
         report = try_way(old, time, way, at_peak && way == Way::damped, next);
@@ -251,7 +272,7 @@ namespace nsfd
   bool EquilibriumSearch<dim>::round(std::vector<double> &q, StepReport &report)
   {
     // round-off of floating cells is seen in the jumps by (h/crossing)^2
-    const double ratio = h_ / crossing_,
+    const double ratio = std::min(h_ / crossing_, 100.),
                  tolerance = std::max(0.1 * goal_, 1e-15 * ratio * ratio);
     ++counters_.rounds;
     const SolverReport solve = relaxation_->relax(q, h_, tolerance);
@@ -293,8 +314,13 @@ namespace nsfd
     h_ = first_h_;
     for (unsigned int n = 0; n < rounds; ++n) {
       round(q, report);
-      if (converged)
-        break;
+      if (converged) {
+        if (!relaxation_->bonds() || !relaxation_->bonds()->let_go())
+          break;
+        converged = false;
+        last = std::numeric_limits<double>::infinity();
+        continue;
+      }
       if (!solved_) { // several solutions: closer to the last iterate
         if (h_ <= shortest * crossing_)
           break;
@@ -375,7 +401,7 @@ namespace nsfd
       q = held_;
       relaxation_->laws().release();
     } else
-      relaxation_->begin(old, time, time - old.time);
+      begin(old, time);
     if (way == Way::damped)
       follow_damped(q, report);
     if (!settle(q, most_rounds, input_.statics->tolerance, report, &old)) {

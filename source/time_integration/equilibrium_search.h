@@ -11,6 +11,8 @@
 namespace nsfd
 {
   template <int dim>
+  class BondedDelassus;
+  template <int dim>
   class Relaxation;
   template <int dim>
   class StaticBalance;
@@ -56,7 +58,7 @@ namespace nsfd
   public:
     /**
      * The scene must ask for equilibria: SceneInput::statics. @p delassus is
-     * one of small motions without bonds between bodies, of its own.
+     * one of small motions, of its own; a BondedDelassus if faces are bonded.
      */
     EquilibriumSearch(const SceneInput &input,
                       const Discretization<dim> &discretization,
@@ -109,6 +111,7 @@ namespace nsfd
     std::string face_of_all(double value, std::size_t point) const;
     bool round(std::vector<double> &q, StepReport &report);
     bool accelerate(std::vector<double> &q, StepReport &report);
+    void begin(const State &old, double time);
     void refuse_rigid_body_modes(const State &old, double time);
 
     const SceneInput &input_;
@@ -119,7 +122,9 @@ namespace nsfd
     std::unique_ptr<NonsmoothSolver<dim>> solver_;
     std::unique_ptr<Relaxation<dim>> relaxation_;
     std::unique_ptr<StaticBalance<dim>> balance_;
-    double crossing_, h_;      ///< s, of a cell; pseudo-time step of the rounds
+    /// s: across a cell, or what holds what floats as well; pseudo-time step
+    /// of the rounds
+    double crossing_, h_;
     double first_h_;           ///< of every solve
     double goal_ = 0.;         ///< of the rounds: share of the forces left over
     std::vector<double> held_; ///< where springs in place of laws balance

@@ -2,6 +2,7 @@
 
 #include "activation.h"
 #include "peak_rule.h"
+#include "static_bonds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,16 +23,26 @@ namespace nsfd
   template <int dim>
   bool HeldLaws<dim>::may_damage(const std::size_t i) const
   {
-    const PointKind kind = iterate_.old->kind[i];
-    return (kind == PointKind::cohesive || kind == PointKind::rigid) &&
+    return (iterate_.old->kind[i] == PointKind::cohesive ||
+            iterate_.starts_joined(i)) &&
            problem_.interactions[problem_.interaction[i]].law;
   }
 
   template <int dim>
   Reach HeldLaws<dim>::history(const std::size_t i) const
   {
-    return {iterate_.old->opening_max[i],
+    // a bond that has let go has next to none
+    return {iterate_.activated[i] ? iterate_.at.opening_max[i]
+                                  : iterate_.old->opening_max[i],
             iterate_.old->slip_max.empty() ? 0. : iterate_.old->slip_max[i]};
+  }
+
+  /** G/R_max of a point, m. */
+  template <int dim>
+  double HeldLaws<dim>::opening_scale(const std::size_t i) const
+  {
+    const CohesiveLaw &law = *interactions_[interaction_[i]].law;
+    return law.toughness() / (law.strength() * problem_.opening_factor[i]);
   }
 
   template <int dim>
@@ -62,23 +73,32 @@ namespace nsfd
     problem_.interaction = interaction_;
   }
 
-  /** How much of its strength every rigid point carries; collective. */
+  /** How much of its strength every joined point carries; collective. */
   template <int dim>
   std::vector<double> HeldLaws<dim>::joint_shares() const
   {
-    if (!has_extrinsic_)
-      return {};
-    std::vector<double> impulse = iterate_.force;
-    for (double &P : impulse)
-      P *= iterate_.h;
-    return strength_shares(delassus_, discretization_.origins(), impulse,
-                           problem_);
+    std::vector<double> shares;
+    if (has_extrinsic_) {
+      std::vector<double> impulse = iterate_.force;
+      for (double &P : impulse)
+        P *= iterate_.h;
+      shares = strength_shares(delassus_, discretization_.origins(), impulse,
+                               problem_);
+    }
+    if (!bonds_)
+      return shares;
+    const auto of_bonds = bonds_->shares();
+    shares.resize(of_bonds.size(), 0.);
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      if (iterate_.old->kind[i] == PointKind::bonded)
+        shares[i] = of_bonds[i];
+    return shares;
   }
 
   template <int dim>
   void HeldLaws<dim>::find_joint_loads()
   {
-    if (joint_loads_known_ || !has_extrinsic_)
+    if (joint_loads_known_ || !(has_extrinsic_ || bonds_))
       return;
     joint_loads_ = joint_shares();
     joint_loads_known_ = true;
@@ -96,6 +116,8 @@ namespace nsfd
       const Interaction &law = interactions_[interaction_[i]];
       if (law.plateau)
         continue; // no spring: it carries a traction at no opening
+      // of bonds that have let go since
+      held_[i].opening = std::max(held_[i].opening, iterate_.at.opening_max[i]);
       const FrozenPoint frozen = frozen_state<dim>(problem, i, held_[i], 1.);
       Interaction spring = law;
       spring.law = nullptr;
@@ -128,14 +150,25 @@ namespace nsfd
     return reach_of<dim>(interactions_[interaction_[i]], jump);
   }
 
+  /**
+   * Of its strength that a point had carried as a bond, which carries @p now
+   * by the forces of its nodes: these are to the bulk traction then as now.
+   */
+  template <int dim>
+  double HeldLaws<dim>::load_at_start(const std::size_t i, const double now,
+                                      const std::vector<double> &joints) const
+  {
+    return joints[i] > 0. ? joint_loads_[i] * now / joints[i] : 0.;
+  }
+
   template <int dim>
   auto HeldLaws<dim>::prediction() -> Prediction
   {
     const auto &communicator = delassus_.communicator();
     auto &problem = problem_;
-    const auto joints = joint_shares();
     std::vector<unsigned int> springs = interaction_;
     springs.swap(problem.interaction); // of the laws
+    const auto joints = joint_shares();
     Prediction result;
     bool damages = false;
     for (std::size_t i = 0; i < problem.n_points; ++i) {
@@ -143,6 +176,8 @@ namespace nsfd
         continue;
       double before, after;
       bool certain = true;
+      if (iterate_.at.kind[i] == PointKind::bonded)
+        continue; // far from its strength
       if (iterate_.old->kind[i] == PointKind::rigid) {
         before = joint_loads_.empty() ? 0. : joint_loads_[i];
         after = joints.empty() ? 0. : joints[i];
@@ -151,15 +186,24 @@ namespace nsfd
         const PointEnvelope envelope(problem, i);
         const Reach last = history(i), reach = held_reach(i);
         const Interaction &law = interactions_[interaction_[i]];
-        before = envelope.load(
-            last, reach_of<dim>(law, &iterate_.old->jump[i * dim]));
-        after = envelope.load(last, reach);
+        const bool closed = bonds_ && bonds_->is_closed(iterate_.at, i);
+        after = closed ? bonds_->share_of(iterate_.force, i)
+                       : envelope.load(last, reach);
+        before =
+            iterate_.old->kind[i] == PointKind::bonded
+                ? load_at_start(i, after, joints)
+            : closed
+                ? bonds_->share_of(iterate_.old->point_force, i)
+                : envelope.load(
+                      last, reach_of<dim>(law, &iterate_.old->jump[i * dim]));
         const double harmless = std::max(
             last.opening, envelope.law.mixed()
                               ? 0.
                               : envelope.law.elastic_limit() / envelope.l);
-        damages = damages || reach.opening > harmless * (1. + least_growth) ||
-                  reach.slip > last.slip * (1. + least_growth);
+        damages = damages ||
+                  (closed ? after > 1. + least_growth
+                          : reach.opening > harmless * (1. + least_growth) ||
+                                reach.slip > last.slip * (1. + least_growth));
         certain = envelope.is_elastic_to_the_peak(last);
       }
       if (before >= Passage::least_share || !(after > 1. + least_growth))
@@ -179,38 +223,54 @@ namespace nsfd
     return result;
   }
 
+  /** What the last round has held joined above its strength. */
+  template <int dim>
+  void HeldLaws<dim>::let_joints_go(std::vector<char> &fresh)
+  {
+    const auto joints = joint_shares();
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (iterate_.at.kind[i] != PointKind::rigid ||
+          !(joints[i] > 1. + least_growth))
+        continue;
+      held_[i] = {first_opening * opening_scale(i), 0.};
+      fresh[i] = 1;
+      iterate_.activated[i] = LoadStepIterate<dim>::lets_go;
+      iterate_.at.kind[i] = PointKind::cohesive;
+      iterate_.at.opening_max[i] = 1e-9 * held_[i].opening;
+    }
+  }
+
   template <int dim>
   bool HeldLaws<dim>::let_damage_grow(double &largest_growth,
                                       const double stretch)
   {
     const auto &communicator = delassus_.communicator();
     auto &problem = problem_;
-    largest_growth = 0.;
-    const auto joints = joint_shares();
-    for (std::size_t i = 0; i < joints.size(); ++i)
-      if (joints[i] > 1. + least_growth) {
-        const CohesiveLaw &law = *interactions_[interaction_[i]].law;
-        held_[i] = {first_opening * law.toughness() /
-                        (law.strength() * problem.opening_factor[i]),
-                    0.};
-        iterate_.activated[i] = 1;
-        iterate_.at.kind[i] = PointKind::cohesive;
-        iterate_.at.opening_max[i] = 1e-9 * held_[i].opening;
-        largest_growth = std::numeric_limits<double>::max();
-      }
+    std::vector<char> fresh(problem.n_points, 0);
+    let_joints_go(fresh);
+    largest_growth =
+        std::any_of(fresh.begin(), fresh.end(), [](const char f) { return f; })
+            ? std::numeric_limits<double>::max()
+            : 0.;
     std::vector<unsigned int> springs = interaction_;
     springs.swap(problem.interaction);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
-      if (iterate_.at.kind[i] != PointKind::cohesive ||
+      if (iterate_.at.kind[i] != PointKind::cohesive || fresh[i] ||
           (iterate_.old->kind[i] != PointKind::cohesive &&
-           !iterate_.activated[i]) ||
-          (iterate_.activated[i] && problem.kind[i] == PointKind::prescribed))
-        continue; // the last round has held it rigid
+           !iterate_.activated[i]))
+        continue; // the last round has held it joined
       const CohesiveLaw &law = *interactions_[interaction_[i]].law;
-      const double l = problem.opening_factor[i];
-      const double scale = law.toughness() / (law.strength() * l);
+      const double l = problem.opening_factor[i], scale = opening_scale(i);
       Reach &held = held_[i];
       const Reach reach = held_reach(i);
+      if (problem.kind[i] == PointKind::prescribed) { // held together so far
+        if (bonds_->share_of(iterate_.force, i) > 1. + least_growth) {
+          held.opening = first_opening * scale;
+          iterate_.activated[i] = LoadStepIterate<dim>::opened;
+          largest_growth = std::numeric_limits<double>::max();
+        }
+        continue;
+      }
       const double elastic = law.mixed() ? 0. : law.elastic_limit() / l;
       const auto grow = [&](double &x, const double to, const double least) {
         const double from = std::max(x, least);
@@ -236,12 +296,12 @@ namespace nsfd
     const auto &problem = problem_;
     std::pair<double, std::size_t> least(1., 0);
     for (std::size_t i = 0; i < problem.n_owned; ++i) {
-      if (!may_damage(i) || (iterate_.old->kind[i] == PointKind::rigid &&
-                             next.kind[i] == iterate_.old->kind[i]))
+      if (!may_damage(i) ||
+          (iterate_.starts_joined(i) && next.kind[i] == iterate_.old->kind[i]))
         continue;
       const Interaction &interaction =
           problem.interactions[problem.interaction[i]];
-      if (interaction.plateau && iterate_.old->kind[i] != PointKind::rigid)
+      if (interaction.plateau && !iterate_.starts_joined(i))
         continue; // carries its traction at any opening
       const Reach end = {next.opening_max[i],
                          next.slip_max.empty() ? 0. : next.slip_max[i]};
@@ -250,8 +310,10 @@ namespace nsfd
       Passage way = passage(
           envelope, last,
           reach_of<dim>(interaction, &iterate_.old->jump[i * dim]), end);
-      if (iterate_.old->kind[i] == PointKind::rigid)
+      if (iterate_.starts_joined(i))
         way.start = joint_loads_.empty() ? 0. : joint_loads_[i];
+      else if (bonds_ && bonds_->is_closed(*iterate_.old, i))
+        way.start = bonds_->share_of(iterate_.old->point_force, i);
       double share = std::min(1., std::max(way.start, way.end));
       if (path && share < 1. &&
           (held_[i].opening > last.opening || held_[i].slip > last.slip)) {

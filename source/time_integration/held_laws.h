@@ -1,25 +1,18 @@
 #pragma once
 
+#include "load_step_iterate.h"
+
 #include "delassus/delassus_operator.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/solver.h"
-#include "state/state.h"
 
 #include <utility>
 #include <vector>
 
 namespace nsfd
 {
-  /** Where the rounds from one equilibrium to the next one stand. */
   template <int dim>
-  struct LoadStepIterate {
-    const State *old = nullptr;  ///< the equilibrium at the start
-    State at;                    ///< the iterate as the start of a round
-    double h = 0.;               ///< of the last round, s
-    std::vector<double> force;   ///< r of the last round in N
-    std::vector<char> activated; ///< extrinsic points that opened in this step
-    std::vector<LocalSolution<dim>> solutions; ///< of the last round
-  };
+  class StaticBonds;
 
   /**
    * The laws of a load step held as what they are as long as nothing is damaged
@@ -31,13 +24,14 @@ namespace nsfd
   class HeldLaws
   {
   public:
-    /** All are those of the rounds and outlive this. */
+    /** All are those of the rounds and outlive this; @p bonds or null. */
     HeldLaws(const Discretization<dim> &discretization,
              const DelassusOperator<dim> &delassus,
              OneStepProblem<dim> &problem, LoadStepIterate<dim> &iterate,
-             const bool has_extrinsic)
+             const bool has_extrinsic, StaticBonds<dim> *const bonds)
         : discretization_(discretization), delassus_(delassus),
-          problem_(problem), iterate_(iterate), has_extrinsic_(has_extrinsic)
+          problem_(problem), iterate_(iterate), has_extrinsic_(has_extrinsic),
+          bonds_(bonds)
     {
     }
 
@@ -54,7 +48,7 @@ namespace nsfd
     void put_springs();
 
     /**
-     * The loads of rigid points over their strength at the start of the step,
+     * The loads of joined points over their strength at the start of the step,
      * from the forces at hand, once per step. Collective.
      */
     void find_joint_loads();
@@ -89,7 +83,11 @@ namespace nsfd
   private:
     bool may_damage(std::size_t point) const;
     std::vector<double> joint_shares() const;
+    void let_joints_go(std::vector<char> &fresh);
+    double opening_scale(std::size_t point) const;
     Reach history(std::size_t point) const;
+    double load_at_start(std::size_t point, double now,
+                         const std::vector<double> &joints) const;
     Reach held_reach(std::size_t point) const;
 
     const Discretization<dim> &discretization_;
@@ -97,6 +95,7 @@ namespace nsfd
     OneStepProblem<dim> &problem_;
     LoadStepIterate<dim> &iterate_;
     const bool has_extrinsic_; ///< points that are rigid until they activate
+    StaticBonds<dim> *bonds_;  ///< of bodies that share nodes, or null
     bool holds_ = false;
     std::vector<Reach> held_;               ///< histories of the springs
     std::vector<Interaction> interactions_; ///< of the laws

@@ -62,29 +62,6 @@ namespace nsfd
                               this->discretization_.points().position, i);
   }
 
-  /**
-   * Points at one node say the same of its motion: one of them is enough, and
-   * two would differ by round-off.
-   */
-  template <int dim>
-  void LinearMoreauJean<dim>::prescribe_once(const bool others)
-  {
-    const auto &origins = this->discretization_.origins();
-    auto &masks = this->problem_.mask;
-    std::vector<std::uint8_t> given(masks.size(), 0);
-    for (std::size_t i = 0; i < given.size(); ++i)
-      if (origins[i].kind == PointOrigin::Kind::motion)
-        given[i] = masks[i];
-    if (this->delassus_.communicator().any(others ||
-                                           given != prescribed_.given)) {
-      prescribed_.once = bonded_->once_per_node(given);
-      prescribed_.given = given;
-    }
-    for (std::size_t i = 0; i < given.size(); ++i)
-      if (given[i])
-        masks[i] = prescribed_.once[i];
-  }
-
   /** What the step does without impulses, and the data of its points. */
   template <int dim>
   void LinearMoreauJean<dim>::start(const State &old, const double h,
@@ -101,7 +78,8 @@ namespace nsfd
     this->step_problem_.set(this->discretization_.origins(), old, h,
                             this->problem_);
     if (bonded_)
-      prescribe_once(others);
+      supports_.prescribe_once(*bonded_, this->discretization_.origins(),
+                               others, this->problem_);
     if (this->free_motion_.set_loads(old.time + time.bulk_theta() * h))
       ++this->counters_.load_assemblies;
     this->free_motion_.set_pressure(old, old.time + time.theta * h,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "moreau_jean.h"
+#include "node_supports.h"
 
 namespace nsfd
 {
@@ -38,16 +39,13 @@ namespace nsfd
     std::string describe(std::size_t point) const override;
 
   private:
-    void prescribe_once(bool others);
     void start(const State &old, double time_step, State &next);
     void finish(const State &old, const LawEvaluation<dim> &evaluation,
                 State &next) const;
 
     NonsmoothSolver<dim> &solver_;
-    BondedDelassus<dim> *bonded_; ///< or null
-    struct {
-      std::vector<std::uint8_t> given, once;
-    } prescribed_; ///< masks of supports, as they are and each node once
+    BondedDelassus<dim> *bonded_;             ///< or null
+    NodeSupports<dim> supports_;              ///< of bodies that share nodes
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
     std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
   };

@@ -108,8 +108,12 @@ namespace nsfd
 
   bool PointEnvelope::is_elastic_to_the_peak(const Reach &history) const
   {
-    return !law.mixed() && !law.extrinsic() &&
-           law.traction(law.elastic_limit()) >= (1. - 1e-9) * law.strength() &&
+    if (law.mixed())
+      return false;
+    if (law.extrinsic()) // held together next to no opening
+      return history.opening > 0. &&
+             law.traction(l * history.opening) >= (1. - 1e-6) * law.strength();
+    return law.traction(law.elastic_limit()) >= (1. - 1e-9) * law.strength() &&
            l * history.opening <= law.elastic_limit();
   }
 

@@ -31,14 +31,20 @@ namespace nsfd
   Relaxation<dim>::Relaxation(const SceneInput &input,
                               const Discretization<dim> &discretization,
                               DelassusOperator<dim> &delassus,
-                              NonsmoothSolver<dim> &solver)
+                              NonsmoothSolver<dim> &solver,
+                              BondedDelassus<dim> *const bonded)
       : input_(input), discretization_(discretization), delassus_(delassus),
         solver_(solver), problem_(constant_data(input, discretization)),
         free_motion_(input, discretization, delassus),
         step_problem_(input, discretization, delassus, counters_),
         balance_(delassus, free_motion_),
+        bonds_(bonded
+                   ? std::make_unique<StaticBonds<dim>>(
+                         discretization, *bonded,
+                         input.discretization.degree == 1, problem_, iterate_)
+                   : nullptr),
         laws_(discretization, delassus, problem_, iterate_,
-              step_problem_.has_extrinsic())
+              step_problem_.has_extrinsic(), bonds_.get())
   {
   }
 
@@ -122,9 +128,26 @@ namespace nsfd
                 (target_[i * dim + c] - u[c]) / h;
         continue;
       }
+      if (iterate_.at.kind[i] == PointKind::bonded)
+        continue;
       for (unsigned int c = 1; c < dim; ++c)
         problem.sliding_offset[i * dim + c] = (u[c] - start[c]) / h;
       double closed = std::min(0., start[0]);
+      if (bonds_ && bonds_->is_closed(iterate_.at, i) &&
+          iterate_.activated[i] != LoadStepIterate<dim>::opened) {
+        problem.kind[i] =
+            laws_.holds() ? PointKind::prescribed : PointKind::rigid;
+        closed = start[0];
+        for (unsigned int c = 0; c < dim; ++c) {
+          const std::size_t k = i * dim + c;
+          problem.jump_free[k] = problem.jump_old[k] = u[c] - start[c];
+          problem.given_velocity[k] = -problem.jump_free[k] / h;
+        }
+        if (laws_.holds()) {
+          problem.mask[i] = std::uint8_t((1u << dim) - 1u);
+          continue;
+        }
+      }
       if (old.kind[i] == PointKind::rigid) {
         // the law counts from the joint, not from its drift
         closed = start[0];
@@ -207,9 +230,13 @@ namespace nsfd
         iterate_.at.jump[k] += iterate_.old->jump[k];
       iterate_.at.displacement = q;
       iterate_.at.time = time_ - h;
+      if (bonds_)
+        bonds_->set();
       delassus.reinit(h, 1.);
       set_step(input_, discretization_, discretization_.origins(), delassus,
                step_problem_.motion(), iterate_.at, h, problem_);
+      if (bonds_)
+        bonds_->constrain();
       constrain(h);
       laws_.find_joint_loads();
       if (laws_.holds())
@@ -243,17 +270,25 @@ namespace nsfd
     report.converged = report.residual <= 10. * tolerance;
     if (!report.converged)
       return report;
-    std::vector<double> velocity = free_motion_.velocity();
-    delassus.add_velocity_change(impulse.data(), velocity.data());
+    std::vector<double> velocity;
+    if (bonds_)
+      velocity = free_motion_.from_rest(q, pressure_, h, impulse);
+    else {
+      velocity = free_motion_.velocity();
+      delassus.add_velocity_change(impulse.data(), velocity.data());
+    }
     for (std::size_t k = 0; k < n; ++k)
       q[k] += h * velocity[k];
+    iterate_.at.displacement = q;
     for (std::size_t k = 0; k < impulse.size(); ++k)
       iterate_.force[k] = impulse[k] / h;
     iterate_.solutions = evaluation.solutions;
     for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
       if (problem_.kind[i] == PointKind::rigid &&
-          iterate_.solutions[i].damages && !iterate_.activated[i]) {
-        iterate_.activated[i] = 1;
+          iterate_.solutions[i].damages) {
+        iterate_.activated[i] = LoadStepIterate<dim>::opened;
+        if (iterate_.at.kind[i] != PointKind::rigid)
+          continue;
         // on its envelope from now on; far below any opening it is held
         iterate_.at.kind[i] = PointKind::cohesive;
         iterate_.at.opening_max[i] = 1e-9 * iterate_.solutions[i].reach.opening;
@@ -273,9 +308,11 @@ namespace nsfd
     set_step(input_, discretization_, discretization_.origins(), delassus_,
              step_problem_.motion(), start, iterate_.h, problem);
     for (std::size_t i = 0; i < iterate_.activated.size(); ++i)
-      if (iterate_.activated[i]) {
+      if (iterate_.activated[i] || (bonds_ && bonds_->is_closed(start, i))) {
         problem.kind[i] = PointKind::rigid;
         problem.mask[i] = 0;
+        if (start.kind[i] != PointKind::rigid)
+          problem.opening_max[i] = iterate_.at.opening_max[i];
       }
     return problem;
   }

@@ -2,11 +2,13 @@
 
 #include "force_balance.h"
 #include "held_laws.h"
+#include "static_bonds.h"
 #include "step_problem.h"
 
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,10 +40,14 @@ namespace nsfd
   class Relaxation
   {
   public:
-    /** @p input is a static_scene() and outlives this. */
+    /**
+     * @p input is a static_scene() and outlives this; @p bonded is @p delassus
+     * where the scene has bonded faces, else null.
+     */
     Relaxation(const SceneInput &input,
                const Discretization<dim> &discretization,
-               DelassusOperator<dim> &delassus, NonsmoothSolver<dim> &solver);
+               DelassusOperator<dim> &delassus, NonsmoothSolver<dim> &solver,
+               BondedDelassus<dim> *bonded);
 
     /**
      * From the equilibrium @p old, which outlives the rounds, to loads and
@@ -54,6 +60,8 @@ namespace nsfd
 
     /** Laws held as springs, and how far points are from their peaks. */
     HeldLaws<dim> &laws() { return laws_; }
+    /** Of bodies that share nodes, or null. */
+    StaticBonds<dim> *bonds() { return bonds_.get(); }
     /** Points have laws that damage, on any rank. */
     bool has_laws() const;
     /** See ForceBalance. */
@@ -112,6 +120,7 @@ namespace nsfd
 
     ForceBalance<dim> balance_;
     LoadStepIterate<dim> iterate_;
+    std::unique_ptr<StaticBonds<dim>> bonds_; ///< or null
     HeldLaws<dim> laws_;
     double time_ = 0.;
     std::vector<double> target_; ///< jumps of driven points

@@ -1,20 +1,29 @@
 #include "relaxation.h"
 
+#include "delassus/velocity_solver.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
   namespace
   {
-    /** T/d - T'(d) on the envelope of a point. */
+    /** b - T'(d) on the envelope of a point, b its secant @p secant or less. */
     double softening_slope(const CohesiveLaw &law, const double a,
-                           const double l, const double opening)
+                           const double l, const double opening,
+                           const double secant)
     {
-      const double x = l * opening, step = 1e-6 * x;
+      const double x = l * opening,
+                   step =
+                       1e-6 * std::max(x, law.extrinsic()
+                                              ? law.toughness() / law.strength()
+                                              : 0.),
+                   back = std::min(step, x / 2.);
       const double slope =
-          (law.traction(x + step) - law.traction(x - step)) / (2. * step);
-      return a * l * std::max(0., law.traction(x) / x - slope);
+          (law.traction(x + step) - law.traction(x - back)) / (step + back);
+      return std::max(0., secant - a * l * slope);
     }
 
     /** -d k/d ln(s) of the secant k along the ray s (x, y), as above. */
@@ -54,6 +63,10 @@ namespace nsfd
         continue;
       }
       const bool held = solution.frozen.is_rigid();
+      // next to no opening the secant of an extrinsic law drowns its slope
+      const double largest = solution.damages && interaction.law->extrinsic()
+                                 ? 10. * support_[i] / problem.weight[i]
+                                 : std::numeric_limits<double>::infinity();
       for (unsigned int c = 0; c < dim; ++c) {
         double b = held    ? 0.
                    : c > 0 ? solution.frozen.secant.tangential
@@ -65,7 +78,9 @@ namespace nsfd
             held || (c == 0 ? solution.contact_impulse > 0.
                             : solution.status == PointStatus::stick &&
                                   solution.frozen.threshold > 0.);
-        D[i * dim + c] = rests ? 0. : b > 0. ? 1. / (w_h2 * b) : -1.;
+        D[i * dim + c] = rests    ? 0.
+                         : b > 0. ? 1. / (w_h2 * std::min(b, largest))
+                                  : -1.;
       }
       if (!solution.damages || held)
         continue;
@@ -75,8 +90,12 @@ namespace nsfd
       const MixedLaw *mixed = interaction.law->mixed();
       const double d = std::hypot(solution.reach.opening, solution.reach.slip);
       const double size = std::sqrt(
-          w_h2 * (mixed ? softening_slope(*mixed, a, l, solution.reach)
-                        : softening_slope(*interaction.law, a, l, d)));
+          w_h2 * (mixed
+                      ? softening_slope(*mixed, a, l, solution.reach)
+                      : softening_slope(
+                            *interaction.law, a, l, d,
+                            std::min(largest,
+                                     a * l * interaction.law->secant(l * d)))));
       const double tangential = mixed ? 1.
                                       : std::sqrt(interaction.stiffness_ratio *
                                                   interaction.shear_weight);
@@ -95,22 +114,46 @@ namespace nsfd
     std::vector<double> least(n);
     for (std::size_t k = 0; k < n; ++k)
       least[k] = 1e-6 / (iterate_.h * iterate_.h * support_[k / dim]);
-    delassus.set_least_compliance(std::move(least));
-    delassus.prepare_preconditioner(D);
-    std::vector<double> share(problem.n_points, 1.), f(n), z(n);
+    auto *const nodes = dynamic_cast<VelocitySolver *>(&delassus);
+    std::vector<double> springs; // of bodies that share nodes
+    if (nodes) {
+      springs.assign(n * dim, 0.);
+      for (std::size_t k = 0; k < n; ++k)
+        if (D[k] >= 0.)
+          springs[k * dim + k % dim] = 1. / std::max(D[k], least[k]);
+    } else {
+      delassus.set_least_compliance(std::move(least));
+      delassus.prepare_preconditioner(D);
+    }
+    // D (W + D)^-1 W f, the flexibility next to the springs
+    const auto respond = [&](const std::vector<double> &f,
+                             std::vector<double> &u) {
+      if (nodes) {
+        std::vector<double> dP;
+        return nodes->solve_linearised(springs, true, f, dP, u);
+      }
+      std::vector<double> r(n), z(n, 0.);
+      for (std::size_t k = 0; k < n; ++k)
+        r[k] = D[k] > 0. ? D[k] * f[k] : 0.;
+      delassus.precondition(r.data(), z.data());
+      for (std::size_t k = 0; k < n; ++k)
+        u[k] = D[k] > 0. ? r[k] - D[k] * z[k] : 0.;
+      return true;
+    };
+    std::vector<double> share(problem.n_points, 1.), f(n), u(n);
     double largest = 0.;
     for (unsigned int round = 0; round < 60; ++round) {
       for (std::size_t k = 0; k < n; ++k)
-        f[k] = D[k] > 0. ? D[k] * direction[k] * share[k / dim] : 0.;
-      std::fill(z.begin(), z.end(), 0.);
-      delassus.precondition(f.data(), z.data());
+        f[k] = direction[k] * share[k / dim];
+      if (!respond(f, u))
+        return std::numeric_limits<double>::infinity();
       std::vector<double> terms(2 * problem.n_owned, 0.);
       std::vector<double> next(problem.n_points, 0.);
       for (std::size_t i = 0; i < problem.n_points; ++i) {
         for (unsigned int c = 0; c < dim; ++c) {
           const std::size_t k = i * dim + c;
           if (direction[k] != 0.)
-            next[i] += direction[k] * (f[k] - D[k] * z[k]);
+            next[i] += direction[k] * u[k];
         }
         if (i < problem.n_owned) {
           terms[i] = next[i] * next[i];

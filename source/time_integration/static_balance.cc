@@ -99,7 +99,8 @@ namespace nsfd
       Vector traction{};
       const PointKind kind = old_.kind[i];
       const auto &interaction = problem_.interactions[problem_.interaction[i]];
-      if (kind == PointKind::rigid) {
+      if (kind == PointKind::rigid || (kind == PointKind::cohesive &&
+                                       problem_.kind[i] == PointKind::rigid)) {
         for (unsigned int c = 0; c < dim; ++c)
           traction[c] = -old_force(i * dim + c) / problem_.weight[i];
         return traction;
@@ -125,8 +126,11 @@ namespace nsfd
       Vector velocity;
       for (unsigned int c = 0; c < dim; ++c)
         velocity[c] = (next_.jump[i * dim + c] - old_.jump[i * dim + c]) / h;
-      const auto energies =
+      auto energies =
           point_energies<dim>(problem_, i, velocity, solution.frozen);
+      if (problem_.kind[i] == PointKind::rigid &&
+          energies.history.opening <= problem_.opening_max[i])
+        energies.stored = 0.; // still closed: it counts from there again
       const Vector before = old_cohesion(i);
       double cohesive_work = 0., normal_work = 0., rubbing = 0., square = 0.,
              rubbing_before = 0.; // by the forces before the step
@@ -217,6 +221,9 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       if (has_pressure_)
         points.add_pressure(i);
+      if (old.kind[i] == PointKind::bonded &&
+          problem.kind[i] != PointKind::rigid)
+        continue; // in the stiffness of the bodies
       if (problem.kind[i] != PointKind::prescribed)
         points.add_law(i);
       else if (discretization_.origins()[i].kind == PointOrigin::Kind::motion)
@@ -224,8 +231,14 @@ namespace nsfd
       else
         points.add_joint(i);
     }
-    const auto sums =
-        communicator.sums(points.terms.data(), n_rows, problem.n_owned);
+    auto sums = communicator.sums(points.terms.data(), n_rows, problem.n_owned);
+    if (StaticBonds<dim> *const bonds = relaxation.bonds()) {
+      const double work = bonds->work_of_released(forces_old, next);
+      sums[rest] -= work;
+      sums[cohesive_rest] -= work;
+      sums[moved] += std::abs(work);
+      bonds->set_tractions(next);
+    }
 
     const std::size_t n = next.displacement.size();
     std::vector<double> terms(3 * n);

@@ -14,6 +14,9 @@ namespace nsfd
   {
     /// A over R: of what a point carries beyond P_0 so much is left as an error
     constexpr double first_share = 1e-2, last_share = 1e-7;
+    /// round-off of P - S, which a spring of A = share R makes larger by
+    /// 1/share
+    constexpr double round_off = 1e-15;
     /// a step of Newton's method is long enough
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
@@ -23,6 +26,23 @@ namespace nsfd
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
+
+    /**
+     * The largest h^2 theta^2 K / M on the diagonal of a body: so much larger
+     * than a change of U its parts U_free and W P are where bodies float.
+     * Collective.
+     */
+    template <int dim>
+    double length_of_step(const OneStepProblem<dim> &problem,
+                          const DelassusOperator<dim> &delassus)
+    {
+      const double h_theta = problem.time_step * delassus.bulk_theta();
+      double largest = 0.;
+      for (const auto &body : delassus.bodies().classes)
+        for (unsigned int k = 0; k < body.n_dofs && !body.rigid; ++k)
+          largest = std::max(largest, body.stiffness(k, k) / body.mass(k, k));
+      return h_theta * h_theta * delassus.communicator().max(largest);
+    }
 
     /** T with damage and the friction threshold frozen. */
     template <int dim>
@@ -218,8 +238,9 @@ namespace nsfd
   void AugmentedLagrangian<dim>::remove_springs(const Work &work)
   {
     for (const std::size_t i : work.problem.acting) {
-      const double left =
-          solutions_[i].coupled ? left_to_differences : last_share;
+      const double left = solutions_[i].coupled
+                              ? std::max(left_to_differences, least_share_)
+                              : least_share_;
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
       dealii::Tensor<2, dim> block, own;
       dealii::Tensor<1, dim> right;
@@ -281,11 +302,16 @@ namespace nsfd
       // would go on into later steps
       const double share = std::min(1e-2, 0.1 * error);
       if (!work.bodies.solve_linearised(tangents_, symmetric, right_side_, dP_,
-                                        dU_, &defect_, share))
+                                        dU_, by_changes_ ? nullptr : &defect_,
+                                        by_changes_ ? 0. : share))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k)
         impulse_[k] += dP_[k];
-      set_velocity(work);
+      if (!by_changes_)
+        set_velocity(work);
+      else
+        for (std::size_t k = 0; k < velocity_.size(); ++k)
+          velocity_[k] += dU_[k];
     }
     impulse_.swap(best);
     velocity_.swap(best_velocity);
@@ -348,6 +374,25 @@ namespace nsfd
       impulse_[k] += length * dP_[k];
   }
 
+  /**
+   * The changes of U have led where U_free + W P is, as far as that is known:
+   * of its largest part not better than to the last digits. Collective.
+   */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::is_round_off(const Work &work) const
+  {
+    constexpr double last_digits = 1e-12;
+    double difference = 0., largest = 0.;
+    for (std::size_t k = 0; k < velocity_.size(); ++k) {
+      difference = std::max(
+          difference, std::abs(work.evaluation.velocity[k] - velocity_[k]));
+      largest = std::max(largest, std::abs(work.problem.free_velocity[k]));
+    }
+    const auto &communicator = work.delassus.communicator();
+    return communicator.max(difference) <=
+           last_digits * communicator.max(largest);
+  }
+
   template <int dim>
   SolverReport
   AugmentedLagrangian<dim>::solve(const OneStepProblem<dim> &problem,
@@ -359,6 +404,8 @@ namespace nsfd
     const Work work{problem, delassus, dynamic_cast<VelocitySolver &>(delassus),
                     evaluation, report};
     const double tolerance = control.tolerance;
+    least_share_ = std::max(last_share, round_off / tolerance);
+    by_changes_ = round_off * length_of_step(problem, delassus) > tolerance;
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
     double share = first_share;
@@ -366,11 +413,18 @@ namespace nsfd
       for (const std::size_t i : work.problem.acting)
         evaluation.solutions[i].reach = solutions_[i].reach;
       evaluation.update(impulse_);
+      if (evaluation.error > tolerance && by_changes_ && is_round_off(work)) {
+        evaluation.velocity = velocity_;
+        evaluation.update_laws(impulse_);
+      }
       velocity_ = evaluation.velocity; // without the round-off of all changes
       return evaluation.error <= tolerance;
     };
     bool solved = false;
-    for (unsigned int k = 0; k < 2 && !solved && jump(work, tolerance); ++k)
+    // changes that were large at first leave more of it
+    const unsigned int repeats = by_changes_ ? 5 : 2;
+    for (unsigned int k = 0; k < repeats && !solved && jump(work, tolerance);
+         ++k)
       solved = judge(); // anew where round-off was left
     if (!solved) {
       report.switches.push_back("multipliers");
@@ -382,12 +436,14 @@ namespace nsfd
         break;
       advance(work);
       const Errors errors = this->errors(work);
-      if (errors.defect > 0.1 * std::max(tolerance, share * errors.shift))
+      if (errors.defect >
+          std::max(0.1 * std::max(tolerance, share * errors.shift),
+                   by_changes_ ? round_off / share : 0.))
         continue;
       if (share * errors.shift <= 0.1 * tolerance)
         solved = judge();
       else
-        share = std::max(last_share, 0.01 * share);
+        share = std::max(least_share_, 0.01 * share);
       soften(work, share);
       answer(work, velocity_);
     }

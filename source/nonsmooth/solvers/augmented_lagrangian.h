@@ -66,9 +66,13 @@ namespace nsfd
     bool find_direction(const Work &work);
     void try_length(const Work &work, double length);
     void advance(const Work &work);
+    bool is_round_off(const Work &work) const;
 
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
+    double least_share_ = 0.;          ///< A over R, at the end
+    /// U by its changes: U_free + W P leaves less digits than are asked for
+    bool by_changes_ = false;
     std::vector<LocalSolution<dim>> solutions_;
     Vector tangents_; ///< T, dim x dim per point
     Vector right_side_, defect_, dP_, dU_;
