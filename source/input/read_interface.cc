@@ -436,15 +436,20 @@ namespace nsfd
     /**
      * In a scene with equilibria an intact body is one body of finite elements
      * with common nodes, whatever word joins its cells; rigid cells and cells
-     * of two sizes have none, and interior points need the matrices of cells.
+     * of two sizes have none, interior points need the matrices of cells, and
+     * path = local asks for them.
      */
     bool may_share_nodes(const SceneInput &scene, const ParameterFile &file)
     {
       const ParameterSection *solver = file.find("Solver");
-      const ParameterEntry *method = solver ? solver->find("method") : nullptr;
+      const auto asks_for = [solver](const char *entry, const char *value) {
+        const ParameterEntry *found = solver ? solver->find(entry) : nullptr;
+        return found && found->value.text() == value;
+      };
       return scene.statics && scene.time.scheme.theta_scheme &&
              !scene.iterates() && !file.find("Adaptivity") &&
-             !(method && method->value.text() == "interior point") &&
+             !asks_for("method", "interior point") &&
+             !asks_for("path", "local") &&
              std::none_of(
                  scene.materials.begin(), scene.materials.end(),
                  [](const MaterialInput &material) { return material.rigid; });

@@ -404,8 +404,9 @@ namespace nsfd
     const Work work{problem, delassus, dynamic_cast<VelocitySolver &>(delassus),
                     evaluation, report};
     const double tolerance = control.tolerance;
-    least_share_ = std::max(last_share, round_off / tolerance);
     by_changes_ = round_off * length_of_step(problem, delassus) > tolerance;
+    least_share_ = by_changes_ ? std::max(last_share, round_off / tolerance)
+                               : last_share;
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
     double share = first_share;
