@@ -195,6 +195,13 @@ namespace nsfd
     return outcome;
   }
 
+  void ConformingSolver::restrict_to_space(const Vector &b, Vector &own)
+  {
+    own.resize(b_.size());
+    restrict_to_space(b.data(), own.data());
+    own.resize(n_own_);
+  }
+
   void ConformingSolver::add(const Vector &own, double *x)
   {
     std::copy(own.begin(), own.end(), x_.begin());

@@ -49,6 +49,9 @@ namespace nsfd
     /** The same with own values of the space. Collective. */
     krylov::Outcome solve_own(const std::vector<double> &b,
                               std::vector<double> &x, double tolerance);
+    /** P^T b, own values of the space. Collective. */
+    void restrict_to_space(const std::vector<double> &b,
+                           std::vector<double> &own);
     /** @p x += P of own values. Collective. */
     void add(const std::vector<double> &own, double *x);
     /** @p n columns of @p rows values each. */

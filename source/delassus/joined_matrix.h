@@ -52,7 +52,7 @@ namespace nsfd
      */
     void apply(Operator op, const std::vector<double> &x,
                std::vector<double> &y) const;
-    /** The same, A = M_hat + H^T T H. Collective. */
+    /** The same, A = M_hat + H^T T H; @p springs may be null. Collective. */
     void apply_step(const double *springs, const std::vector<double> &x,
                     std::vector<double> &y) const;
 

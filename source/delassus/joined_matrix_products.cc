@@ -114,7 +114,7 @@ namespace nsfd
     fetch_ghosts(x);
     const std::vector<double> in(shared_.values);
     multiply(operators_.step, in.data());
-    for (std::size_t i = 0; i < points_.n_points; ++i) {
+    for (std::size_t i = 0; springs && i < points_.n_points; ++i) {
       const std::size_t first = sights_.first[i], end = sights_.first[i + 1];
       if (first == end)
         continue;

@@ -27,5 +27,42 @@ namespace nsfd
                                   std::vector<double> &dU,
                                   const std::vector<double> *defect = nullptr,
                                   double share = 0.) = 0;
+
+    /**
+     * A step of h from rest, which is known by the motion v of the nodes and
+     * not by v_free + M_hat^-1 H^T P: what nothing but impulses holds floats by
+     * (h/transit time)^2 times what it does in the end, and their digits would
+     * be lost in the difference. @p momentum is h F by unknown of the bodies,
+     * @p impulse what acts besides (of pressure in cracks) or empty, and
+     * @p displacement is q at the start. Collective.
+     */
+    virtual void start_from_rest(double h, const std::vector<double> &momentum,
+                                 const std::vector<double> &impulse,
+                                 const std::vector<double> &displacement) = 0;
+    /** The present step is such a one. */
+    virtual bool starts_from_rest() const = 0;
+    /**
+     * The Newton step from v under @p P, which need not balance yet:
+     *
+     *     (M_hat + H^T T H) dv = p - M_hat v + H^T (P + c),
+     *
+     * p the momentum of F - K q; the rest as for solve_linearised(). Iterations
+     * leave @p tolerance of the right-hand side.
+     */
+    virtual bool solve_from_rest(const std::vector<double> &T, bool symmetric,
+                                 const std::vector<double> &P,
+                                 const std::vector<double> &c, double tolerance,
+                                 std::vector<double> &dP,
+                                 std::vector<double> &dU) = 0;
+    /** v += @p length dv, of the last Newton step; U = H v. Collective. */
+    virtual void move(double length, std::vector<double> &U) = 0;
+    /** v by own node, to come back to. */
+    virtual const std::vector<double> &motion() const = 0;
+    virtual void set_motion(const std::vector<double> &v) = 0;
+    /** v by unknown of the bodies, and p + H^T P - (M_hat - M) v with all of a
+        node at one of its unknowns. Collective. */
+    virtual void finish_from_rest(const std::vector<double> &P,
+                                  std::vector<double> &velocity,
+                                  std::vector<double> &left) = 0;
   };
 } // namespace nsfd

@@ -99,6 +99,7 @@ namespace nsfd
     step.length = control.step();
     step.end = control.next_time();
     step.can_be_shorter = control.can_bisect();
+    step.bisections = control.level();
     // A shorter step is the cure for a step with several solutions, but not
     // for every hard one: each further attempt may cost twice as much.
     step.idle_rounds <<= step.can_be_shorter ? std::min(attempts_, 10u) : 10;

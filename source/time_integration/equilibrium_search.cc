@@ -23,7 +23,7 @@ namespace nsfd
     // The longest and the shortest pseudo-time step, as Courant numbers.
     // Above, (h/crossing)^2 times round-off would be seen in the jumps. Of n
     // cells with common nodes it is divided by n: they float together.
-    constexpr double longest = 300., shortest = 0.05, of_joined = 100.;
+    constexpr double longest = 300., shortest = 0.05, of_joined = 1e4;
     constexpr unsigned int most_rounds = 200, accelerated = 12;
     // with springs in place of laws; and how often these are damaged further
     constexpr unsigned int most_held_rounds = 40, most_bits = 100;
@@ -230,7 +230,9 @@ namespace nsfd
         best_next = next;
         reactions = balance_->reactions();
       }
-      if (best.accepted())
+      // or a jump downhill, where no shorter step is to show another way
+      if (best.accepted() ||
+          (!may_be_shortened && best.may_follow() && best.stable))
         break;
     }
     if (!found)

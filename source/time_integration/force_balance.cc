@@ -72,18 +72,26 @@ namespace nsfd
   }
 
   template <int dim>
-  void ForceBalance<dim>::measure(const std::vector<double> &q, const double h,
-                                  const std::vector<double> &velocity,
+  std::vector<double>
+  ForceBalance<dim>::left_over(const double h,
+                               const std::vector<double> &velocity) const
+  {
+    std::vector<double> result(velocity.size());
+    delassus_.apply(DelassusOperator<dim>::Operator::mass, velocity.data(),
+                    result.data());
+    for (double &value : result)
+      value /= h;
+    return result;
+  }
+
+  template <int dim>
+  void ForceBalance<dim>::measure(const std::vector<double> &q,
+                                  std::vector<double> left_over,
                                   const std::vector<double> &force)
   {
-    using Operator = typename DelassusOperator<dim>::Operator;
-    const auto &delassus = delassus_;
-    const auto &communicator = delassus.communicator();
+    const auto &communicator = delassus_.communicator();
     const std::size_t n = q.size();
-    residual_.resize(n);
-    delassus.apply(Operator::mass, velocity.data(), residual_.data());
-    for (double &value : residual_)
-      value /= h;
+    residual_ = std::move(left_over);
     const double left =
         std::sqrt(communicator.dot(residual_.data(), residual_.data(), n));
     const double present =

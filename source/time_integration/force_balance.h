@@ -32,11 +32,13 @@ namespace nsfd
                const std::vector<double> &support, std::size_t n_owned,
                double largest, double tolerance);
 
-    /** After a round to @p q with @p velocity; M v/h is what the forces leave
-        over. Collective. */
-    void measure(const std::vector<double> &q, double h,
-                 const std::vector<double> &velocity,
+    /** After a round to @p q that leaves over the forces @p left. Collective.
+     */
+    void measure(const std::vector<double> &q, std::vector<double> left,
                  const std::vector<double> &force);
+    /** M v/h, which the forces leave over in a step of @p h. Collective. */
+    std::vector<double> left_over(double h,
+                                  const std::vector<double> &velocity) const;
 
     /** |F + H^T r - K q| over the largest forces so far. */
     double imbalance() const { return imbalance_; }

@@ -94,27 +94,6 @@ namespace nsfd
   }
 
   template <int dim>
-  std::vector<double>
-  FreeMotion<dim>::from_rest(const std::vector<double> &displacement,
-                             const std::vector<double> &pressure,
-                             const double h,
-                             const std::vector<double> &impulse) const
-  {
-    using Operator = typename DelassusOperator<dim>::Operator;
-    std::vector<double> all = impulse, momentum(displacement.size()),
-                        elastic(displacement.size()), velocity(elastic.size());
-    const auto of_pressure = pressure_impulse(pressure, h);
-    for (std::size_t k = 0; k < of_pressure.size(); ++k)
-      all[k] += of_pressure[k];
-    delassus_.generalised_impulse(all.data(), momentum.data());
-    delassus_.apply(Operator::stiffness, displacement.data(), elastic.data());
-    for (std::size_t k = 0; k < momentum.size(); ++k)
-      momentum[k] += h * (loads_[k] - elastic[k]);
-    delassus_.apply(Operator::inverse, momentum.data(), velocity.data());
-    return velocity;
-  }
-
-  template <int dim>
   double FreeMotion<dim>::kinetic_product()
   {
     delassus_.apply(DelassusOperator<dim>::Operator::mass, velocity_.data(),

@@ -56,14 +56,6 @@ namespace nsfd
     void move(const State &old, const std::vector<double> &pressure,
               OneStepProblem<dim> &problem,
               const std::vector<double> *elastic = nullptr);
-    /**
-     * v after a step of @p h from rest at @p displacement under impulses
-     * @p impulse of the points: one solve for all forces, where v_free and its
-     * change would cancel each other to round-off if bodies float. Collective.
-     */
-    std::vector<double> from_rest(const std::vector<double> &displacement,
-                                  const std::vector<double> &pressure, double h,
-                                  const std::vector<double> &impulse) const;
     /** v_free by unknown, m/s. */
     const std::vector<double> &velocity() const { return velocity_; }
     /** v_free.M v_free, J. Collective. */

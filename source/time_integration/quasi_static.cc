@@ -30,11 +30,16 @@ namespace nsfd
   StepReport QuasiStatic<dim>::take_step(const State &old,
                                          const StepRequest &step, State &next)
   {
+    // A jump that is to be followed is found to a 32nd of the load step.
+    constexpr unsigned int close = 5;
+    const bool may_relax = statics_.at_jump == SolutionJump::relax &&
+                           (step.bisections >= close || !step.can_be_shorter);
     EquilibriumReport equilibrium;
     std::string what;
     bool found = true;
     try {
-      equilibrium = search_.advance(old, step.end, next, step.can_be_shorter);
+      equilibrium = search_.advance(old, step.end, next,
+                                    step.can_be_shorter && !may_relax);
     } catch (const StepRejected &rejected) {
       found = false;
       what = rejected.what();
@@ -44,7 +49,8 @@ namespace nsfd
       report.changes = changes_of_energy(old.energy, next);
     if (found && equilibrium.accepted())
       return report;
-    if (step.can_be_shorter) {
+    const bool may_follow = found && equilibrium.may_follow();
+    if (step.can_be_shorter && !(may_relax && may_follow)) {
       ++shortened_;
       // to where the first point comes to its peak
       throw StepRejected(what, StepRejected::Cure::shorter_step,
@@ -53,7 +59,6 @@ namespace nsfd
     ++jumps_;
     if (jumps_ == 1)
       first_jump_ = old.time;
-    const bool may_follow = found && equilibrium.may_follow();
     if (may_follow) {
       released_ += equilibrium.released_energy;
       what = fmt::format(

@@ -242,7 +242,11 @@ namespace nsfd
       if (laws_.holds())
         laws_.put_springs();
       soften(h);
-      free_motion_.move(iterate_.at, pressure_, problem_);
+      if (bonds_)
+        bonds_->start_from_rest(h, free_motion_.loads(),
+                                free_motion_.pressure_impulse(pressure_, h), q);
+      else
+        free_motion_.move(iterate_.at, pressure_, problem_);
     }
     // the floor of the natural map: the largest forces so far
     const double share = std::max(1e-6, 1e-14 / tolerance);
@@ -270,12 +274,13 @@ namespace nsfd
     report.converged = report.residual <= 10. * tolerance;
     if (!report.converged)
       return report;
-    std::vector<double> velocity;
+    std::vector<double> velocity, left;
     if (bonds_)
-      velocity = free_motion_.from_rest(q, pressure_, h, impulse);
+      bonds_->finish_from_rest(h, impulse, velocity, left);
     else {
       velocity = free_motion_.velocity();
       delassus.add_velocity_change(impulse.data(), velocity.data());
+      left = balance_.left_over(h, velocity);
     }
     for (std::size_t k = 0; k < n; ++k)
       q[k] += h * velocity[k];
@@ -293,7 +298,7 @@ namespace nsfd
         iterate_.at.kind[i] = PointKind::cohesive;
         iterate_.at.opening_max[i] = 1e-9 * iterate_.solutions[i].reach.opening;
       }
-    balance_.measure(q, h, velocity, iterate_.force);
+    balance_.measure(q, std::move(left), iterate_.force);
     return report;
   }
 

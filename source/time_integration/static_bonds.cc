@@ -41,6 +41,30 @@ namespace nsfd
   }
 
   template <int dim>
+  void
+  StaticBonds<dim>::start_from_rest(const double h,
+                                    const std::vector<double> &loads,
+                                    const std::vector<double> &impulse,
+                                    const std::vector<double> &displacement)
+  {
+    std::vector<double> momentum = loads;
+    for (double &p : momentum)
+      p *= h;
+    nodes_.start_from_rest(h, momentum, impulse, displacement);
+  }
+
+  template <int dim>
+  void StaticBonds<dim>::finish_from_rest(const double h,
+                                          const std::vector<double> &impulse,
+                                          std::vector<double> &velocity,
+                                          std::vector<double> &left)
+  {
+    nodes_.finish_from_rest(impulse, velocity, left);
+    for (double &p : left)
+      p /= h;
+  }
+
+  template <int dim>
   void StaticBonds<dim>::set_tractions(State &state) const
   {
     set_bond_tractions(bulk_, state);

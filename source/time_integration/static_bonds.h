@@ -4,6 +4,7 @@
 #include "node_supports.h"
 
 #include "delassus/bonded.h"
+#include "delassus/velocity_solver.h"
 #include "discretization/discretization.h"
 
 #include <utility>
@@ -31,7 +32,8 @@ namespace nsfd
                 BondedDelassus<dim> &bonded, bool mean,
                 OneStepProblem<dim> &problem, LoadStepIterate<dim> &iterate)
         : discretization_(discretization), bonded_(bonded), bulk_(bonded),
-          mean_(mean), problem_(problem), iterate_(iterate)
+          mean_(mean), problem_(problem), iterate_(iterate),
+          nodes_(dynamic_cast<VelocitySolver &>(bonded))
     {
     }
 
@@ -41,6 +43,17 @@ namespace nsfd
     double cells_of_smallest_body() const;
     /** Supports once per node, after the data of a round. Collective. */
     void constrain();
+
+    /** A round of h from rest at @p displacement, see VelocitySolver; @p
+       impulse is that of the pressure in cracks, or empty. Collective. */
+    void start_from_rest(double h, const std::vector<double> &loads,
+                         const std::vector<double> &impulse,
+                         const std::vector<double> &displacement);
+    /** v, and the forces that are left over: F + H^T r - K q of its end.
+        Collective. */
+    void finish_from_rest(double h, const std::vector<double> &impulse,
+                          std::vector<double> &velocity,
+                          std::vector<double> &left);
 
     /** Mean bulk tractions of bonded points. Collective. */
     void set_tractions(State &state) const;
@@ -85,6 +98,7 @@ namespace nsfd
     const bool mean_;
     OneStepProblem<dim> &problem_;
     LoadStepIterate<dim> &iterate_;
+    VelocitySolver &nodes_; ///< bonded_
     NodeSupports<dim> supports_;
     bool changed_ = true; ///< bonds, since the last constrain()
   };

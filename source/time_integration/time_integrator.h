@@ -45,6 +45,7 @@ namespace nsfd
     double length = 0.;          ///< s
     double end = 0.;             ///< s, without the round-off of start + length
     bool can_be_shorter = false; ///< shorter ones are left to be tried
+    unsigned int bisections = 0; ///< of the step that was asked for
     unsigned int idle_rounds = SolverControl().idle_rounds;
   };
 

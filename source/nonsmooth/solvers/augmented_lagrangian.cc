@@ -17,6 +17,11 @@ namespace nsfd
     /// round-off of P - S, which a spring of A = share R makes larger by
     /// 1/share
     constexpr double round_off = 1e-15;
+    /// the same, where U is that of the nodes and not a difference of large
+    /// numbers: what is rigid is so beside laws that have just begun to open
+    constexpr double of_nodes = 1e-11;
+    /// over A: a law that gives way by less is rigid to machine precision
+    constexpr double own_compliance = 1e-11;
     /// a step of Newton's method is long enough
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
@@ -26,23 +31,6 @@ namespace nsfd
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
-
-    /**
-     * The largest h^2 theta^2 K / M on the diagonal of a body: so much larger
-     * than a change of U its parts U_free and W P are where bodies float.
-     * Collective.
-     */
-    template <int dim>
-    double length_of_step(const OneStepProblem<dim> &problem,
-                          const DelassusOperator<dim> &delassus)
-    {
-      const double h_theta = problem.time_step * delassus.bulk_theta();
-      double largest = 0.;
-      for (const auto &body : delassus.bodies().classes)
-        for (unsigned int k = 0; k < body.n_dofs && !body.rigid; ++k)
-          largest = std::max(largest, body.stiffness(k, k) / body.mass(k, k));
-      return h_theta * h_theta * delassus.communicator().max(largest);
-    }
 
     /** T with damage and the friction threshold frozen. */
     template <int dim>
@@ -81,7 +69,8 @@ namespace nsfd
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
     dU_.assign(n, 0.);
-    set_velocity(work);
+    if (!from_rest_)
+      set_velocity(work);
   }
 
   template <int dim>
@@ -238,10 +227,19 @@ namespace nsfd
   void AugmentedLagrangian<dim>::remove_springs(const Work &work)
   {
     for (const std::size_t i : work.problem.acting) {
-      const double left = solutions_[i].coupled
-                              ? std::max(left_to_differences, least_share_)
-                              : least_share_;
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
+      double left = solutions_[i].coupled ? left_to_differences
+                    : from_rest_          ? of_nodes
+                                          : last_share;
+      // Points that are more than motions: what each of them carries is known
+      // from its own compliance alone, as small as that may be.
+      bool gives_way = from_rest_ && !solutions_[i].coupled;
+      for (unsigned int c = 0; c < dim; ++c)
+        gives_way =
+            gives_way &&
+            1. - T[c * dim + c] * compliance_[i * dim + c] > own_compliance;
+      if (gives_way)
+        left = 0.;
       dealii::Tensor<2, dim> block, own;
       dealii::Tensor<1, dim> right;
       for (unsigned int c = 0; c < dim; ++c) {
@@ -271,21 +269,27 @@ namespace nsfd
   template <int dim>
   bool AugmentedLagrangian<dim>::jump(const Work &work, const double tolerance)
   {
-    Vector best = impulse_, best_velocity = velocity_;
-    double least = std::numeric_limits<double>::infinity();
+    constexpr double none = std::numeric_limits<double>::infinity();
+    Vector best = impulse_, best_velocity = velocity_, best_motion;
+    double least = none;
     std::array<double, 2> before{least, least};
     unsigned int idle = 0;
     for (;;) {
       soften(work, 1.);
       answer(work, velocity_);
       const double error = errors(work).defect;
-      if (error <= (work.report.newton == 0 ? untouched : 1.) * tolerance)
+      // a start from rest balances from its first step on
+      const bool balances = !from_rest_ || work.report.newton > 0;
+      if (balances &&
+          error <= (work.report.newton == 0 ? untouched : 1.) * tolerance)
         return true;
       idle = error < 0.5 * least ? 0 : idle + 1;
-      if (error < least) {
+      if (balances && error < least) {
         least = error;
         best = impulse_;
         best_velocity = velocity_;
+        if (from_rest_)
+          best_motion = work.bodies.motion();
       }
       const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
       before = {error, before[0]};
@@ -301,21 +305,35 @@ namespace nsfd
       // as far as a step of Newton's method is right; what is left at its end
       // would go on into later steps
       const double share = std::min(1e-2, 0.1 * error);
-      if (!work.bodies.solve_linearised(tangents_, symmetric, right_side_, dP_,
-                                        dU_, by_changes_ ? nullptr : &defect_,
-                                        by_changes_ ? 0. : share))
+      if (!solve(work, symmetric, share))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k)
         impulse_[k] += dP_[k];
-      if (!by_changes_)
-        set_velocity(work);
+      if (from_rest_)
+        work.bodies.move(1., velocity_);
       else
-        for (std::size_t k = 0; k < velocity_.size(); ++k)
-          velocity_[k] += dU_[k];
+        set_velocity(work);
     }
+    if (least == none)
+      return false;
     impulse_.swap(best);
     velocity_.swap(best_velocity);
+    if (from_rest_)
+      work.bodies.set_motion(best_motion);
     return false;
+  }
+
+  /** dP and dU of the tangents, see VelocitySolver. Collective. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::solve(const Work &work, const bool symmetric,
+                                       const double share)
+  {
+    return from_rest_ ? work.bodies.solve_from_rest(tangents_, symmetric,
+                                                    impulse_, right_side_,
+                                                    0.01 * tolerance_, dP_, dU_)
+                      : work.bodies.solve_linearised(
+                            tangents_, symmetric, right_side_, dP_, dU_,
+                            share > 0. ? &defect_ : nullptr, share);
   }
 
   /** Downhill; false where there is no such system. Collective. */
@@ -325,9 +343,7 @@ namespace nsfd
     ++work.report.newton;
     set_right_side(work);
     const auto solved = [&](const bool symmetric) {
-      return work.bodies.solve_linearised(tangents_, symmetric, right_side_,
-                                          dP_, dU_) &&
-             slope(work, 0.) <= 0.;
+      return solve(work, symmetric, 0.) && slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);
     if (symmetric)
@@ -369,28 +385,12 @@ namespace nsfd
       (value < 0. ? low : high) = length;
       (value < 0. ? at_low : at_high) = value;
     }
-    velocity_.swap(moved_);
+    if (from_rest_)
+      work.bodies.move(length, velocity_);
+    else
+      velocity_.swap(moved_);
     for (std::size_t k = 0; k < impulse_.size(); ++k)
       impulse_[k] += length * dP_[k];
-  }
-
-  /**
-   * The changes of U have led where U_free + W P is, as far as that is known:
-   * of its largest part not better than to the last digits. Collective.
-   */
-  template <int dim>
-  bool AugmentedLagrangian<dim>::is_round_off(const Work &work) const
-  {
-    constexpr double last_digits = 1e-12;
-    double difference = 0., largest = 0.;
-    for (std::size_t k = 0; k < velocity_.size(); ++k) {
-      difference = std::max(
-          difference, std::abs(work.evaluation.velocity[k] - velocity_[k]));
-      largest = std::max(largest, std::abs(work.problem.free_velocity[k]));
-    }
-    const auto &communicator = work.delassus.communicator();
-    return communicator.max(difference) <=
-           last_digits * communicator.max(largest);
   }
 
   template <int dim>
@@ -404,28 +404,24 @@ namespace nsfd
     const Work work{problem, delassus, dynamic_cast<VelocitySolver &>(delassus),
                     evaluation, report};
     const double tolerance = control.tolerance;
-    by_changes_ = round_off * length_of_step(problem, delassus) > tolerance;
-    least_share_ = by_changes_ ? std::max(last_share, round_off / tolerance)
-                               : last_share;
+    tolerance_ = tolerance;
+    from_rest_ = work.bodies.starts_from_rest();
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
     double share = first_share;
     const auto judge = [&] {
       for (const std::size_t i : work.problem.acting)
         evaluation.solutions[i].reach = solutions_[i].reach;
-      evaluation.update(impulse_);
-      if (evaluation.error > tolerance && by_changes_ && is_round_off(work)) {
+      if (from_rest_) {
         evaluation.velocity = velocity_;
         evaluation.update_laws(impulse_);
-      }
+      } else
+        evaluation.update(impulse_);
       velocity_ = evaluation.velocity; // without the round-off of all changes
       return evaluation.error <= tolerance;
     };
     bool solved = false;
-    // changes that were large at first leave more of it
-    const unsigned int repeats = by_changes_ ? 5 : 2;
-    for (unsigned int k = 0; k < repeats && !solved && jump(work, tolerance);
-         ++k)
+    for (unsigned int k = 0; k < 2 && !solved && jump(work, tolerance); ++k)
       solved = judge(); // anew where round-off was left
     if (!solved) {
       report.switches.push_back("multipliers");
@@ -439,12 +435,12 @@ namespace nsfd
       const Errors errors = this->errors(work);
       if (errors.defect >
           std::max(0.1 * std::max(tolerance, share * errors.shift),
-                   by_changes_ ? round_off / share : 0.))
+                   from_rest_ ? round_off / share : 0.))
         continue;
       if (share * errors.shift <= 0.1 * tolerance)
         solved = judge();
       else
-        share = std::max(least_share_, 0.01 * share);
+        share = std::max(last_share, 0.01 * share);
       soften(work, share);
       answer(work, velocity_);
     }

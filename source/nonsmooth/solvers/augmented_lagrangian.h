@@ -63,16 +63,15 @@ namespace nsfd
     void set_right_side(const Work &work);
     void remove_springs(const Work &work);
     bool jump(const Work &work, double tolerance);
+    bool solve(const Work &work, bool symmetric, double share);
     bool find_direction(const Work &work);
     void try_length(const Work &work, double length);
     void advance(const Work &work);
-    bool is_round_off(const Work &work) const;
 
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
-    double least_share_ = 0.;          ///< A over R, at the end
-    /// U by its changes: U_free + W P leaves less digits than are asked for
-    bool by_changes_ = false;
+    double tolerance_ = 0.;            ///< of the solve
+    bool from_rest_ = false;           ///< U is that of the motion of the nodes
     std::vector<LocalSolution<dim>> solutions_;
     Vector tangents_; ///< T, dim x dim per point
     Vector right_side_, defect_, dP_, dU_;

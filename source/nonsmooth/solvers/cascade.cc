@@ -112,7 +112,9 @@ namespace nsfd
         const std::vector<double> start(impulse);
         SolverReport report = joined_.solve(problem, delassus, energy_scale,
                                             control, impulse, evaluation);
-        if (report.converged)
+        // others know no motion of nodes
+        if (report.converged ||
+            dynamic_cast<VelocitySolver &>(delassus).starts_from_rest())
           return report;
         const std::vector<double> best(impulse);
         const double error = evaluation.error;
