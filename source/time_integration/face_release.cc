@@ -15,8 +15,8 @@ namespace nsfd
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    /// of the strength: a face lets go early that would be further in the next
-    /// step
+    /// of the strength: a face is released early that would be further in the
+    /// next step
     constexpr double too_far = 1.03;
   } // namespace
 

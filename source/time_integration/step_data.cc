@@ -108,7 +108,7 @@ namespace nsfd
         problem.mask[i] = all_components;
         for (unsigned int c = 0; c < dim; ++c) {
           problem.given_velocity[i * dim + c] = 0.;
-          // the law counts from where the joint lets go, not from its drift
+          // the law counts from where the joint is released, not from its drift
           problem.jump_free[i * dim + c] -= old.jump[i * dim + c];
           problem.jump_old[i * dim + c] = 0.;
         }
