@@ -367,17 +367,6 @@ namespace test_law_path
     }
   }
 
-  // Trapezoids between kinks are exact for straight pieces.
-  TEST(LawPath, KinksInsideAreStepsOfTheirOwn)
-  {
-    const Curve curve =
-        drive("tabulated",
-              {"points=0 : 3 MPa, 0.7 um : 1 MPa, 2 um : 0", "Path/steps=10"});
-    const double G = (3. + 1.) / 2. * 0.7 + 1. / 2. * 1.3;
-    EXPECT_NEAR(curve.back().damage, G, 1e-12 * G);
-    EXPECT_NEAR(curve.back().numerical(), 0., 1e-12 * G);
-  }
-
   TEST(LawPath, FormulaInPlaceOfMarks)
   {
     const Curve curve = drive(
