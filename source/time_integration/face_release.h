@@ -59,6 +59,7 @@ namespace nsfd
               std::vector<double> &tractions) const;
 
   private:
+    void reserve(std::size_t n_sites);
     LawPoint law(std::size_t site) const;
     std::array<double, dim> in_frame(std::size_t point,
                                      const std::array<double, dim> &t) const;

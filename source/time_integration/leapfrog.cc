@@ -15,26 +15,6 @@
 
 namespace nsfd
 {
-  namespace
-  {
-    /** Without what only steps of all points need. */
-    template <int dim>
-    OneStepProblem<dim> point_data(const SceneInput &input,
-                                   const Discretization<dim> &discretization)
-    {
-      auto problem = constant_data(input, discretization);
-      const auto drop = [](auto &...arrays) {
-        ((arrays = std::decay_t<decltype(arrays)>()), ...);
-      };
-      drop(problem.kind, problem.mask, problem.contact, problem.opening_max,
-           problem.compression_stiffness, problem.target, problem.free_velocity,
-           problem.given_velocity, problem.jump_old, problem.jump_free,
-           problem.sliding_offset, problem.majorant_normal,
-           problem.majorant_tangential);
-      return problem;
-    }
-  } // namespace
-
   template <int dim>
   Leapfrog<dim>::Leapfrog(const SceneInput &input,
                           const Discretization<dim> &discretization,
@@ -43,9 +23,9 @@ namespace nsfd
       : input_(input), communicator_(communicator),
         ghosts_(communicator, discretization, std::move(layer)),
         discretization_(ghosts_.discretization()),
-        all_(point_data(input, discretization_)),
+        all_(point_constants(input, discretization_)),
         own_(ghosts_.layer() ? std::make_unique<const OneStepProblem<dim>>(
-                                   point_data(input, discretization))
+                                   point_constants(input, discretization))
                              : nullptr),
         mesh_(discretization_, ghosts_.cells()),
         hanging_(discretization_, mesh_, ghosts_.layer()),

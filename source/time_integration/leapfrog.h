@@ -75,7 +75,7 @@ namespace nsfd
       return faces_.worst_held(communicator_);
     }
 
-    State start_from(const State &given) override;
+    State start_from(State given) override;
     void resume_from(const State &given) override;
     StepReport advance(const State &old, double time_step, State &next,
                        unsigned int idle_rounds) override;
