@@ -24,7 +24,7 @@ Line(5) = {4, 5};
 Line(6) = {5, 6};
 Line(8) = {7, 1};
 Line(9) = {7, 8};
-If (Exists(open)) // lips that nothing joins, see kalthoff_open.geo
+If (Exists(open)) // crack faces that nothing joins, see kalthoff_open.geo
   Point(17) = {0, 25, 0, h};
   Line(19) = {17, 8};
   lip = 19;

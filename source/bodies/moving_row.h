@@ -46,8 +46,8 @@ namespace nsfd
     /// place of the corner that would ask for nearly the same from the other
     /// side: both know the same bound of their overlap
     std::size_t twin = nowhere;
-    bool released = false; ///< a body has been let go of in the last step
-    double share = 1.;     ///< of the impulse that its place keeps
+    bool released = false;          ///< a body has been left in the last step
+    double share = 1.;              ///< of the impulse that its place keeps
     std::array<double, dim> jump{}; ///< of a pin: how far it is off, m
   };
 } // namespace nsfd

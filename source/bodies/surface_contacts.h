@@ -40,7 +40,7 @@ namespace nsfd
     /** What State::surface_contact says of a place, added up. */
     enum Mark : std::uint8_t {
       touches = 1,
-      released = 2 ///< something let go of its body in the last step
+      released = 2 ///< something left its body in the last step
     };
 
     /**

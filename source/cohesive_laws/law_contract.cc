@@ -240,9 +240,12 @@ namespace nsfd::law_contract
 
   std::vector<double> kinks(const CohesiveLaw &law)
   {
-    std::vector<double> result{0., law.elastic_limit(), law.peak_opening()};
-    if (std::isfinite(law.final_opening()))
-      result.push_back(law.final_opening());
+    std::vector<double> result = law.kinks();
+    result.insert(result.end(), {0., law.elastic_limit(), law.peak_opening(),
+                                 law.final_opening()});
+    result.erase(std::remove_if(result.begin(), result.end(),
+                                [](const double d) { return std::isinf(d); }),
+                 result.end());
     std::sort(result.begin(), result.end());
     result.erase(std::unique(result.begin(), result.end()), result.end());
     return result;

@@ -31,7 +31,7 @@ namespace nsfd
    * The folder that this process writes to, on the first rank of a run: locked
    * against others, with a list of its files in `run.json`. Everything that
    * writes a file says so before, see note(); outside the folder, or where
-   * there is none, nothing is booked.
+   * there is none, nothing is charged.
    */
   class OutputFolder
   {

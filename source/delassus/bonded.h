@@ -13,7 +13,7 @@ namespace nsfd
    * Bodies joined at bonded points, which have no row in W. In implicit steps
    * bodies whose face is bonded all over share their nodes, and where one is
    * smaller its nodes follow those of the other. Where that cannot be (explicit
-   * bodies, rigid bodies, faces of which a part has let go) the symmetric
+   * bodies, rigid bodies, faces of which a part is released) the symmetric
    * interior penalty method joins them through the bulk,
    *
    *     K = sum of body stiffnesses

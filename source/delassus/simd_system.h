@@ -36,7 +36,7 @@ namespace nsfd
      * (I - J (W + shift R - R)) x = r by GMRES, preconditioned from the right.
      * Faces that stick all around an edge make W singular, and the system
      * without a shift may have no solution; with a shift, impulses move along
-     * the null space until one of these faces lets go.
+     * the null space until one of these faces is released.
      */
     unsigned int gmres(const InnerSystem &system, const std::vector<double> &r,
                        std::vector<double> &x);

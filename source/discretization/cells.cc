@@ -148,9 +148,17 @@ namespace nsfd
     first_node.push_back(0);
     bodies.first_dof.push_back(0);
     bodies.first_slot.push_back(0);
-    for (const auto &cell : cells_of(triangulation, set)) {
+    const auto cells = cells_of(triangulation, set);
+    corners.reserve(cells.size());
+    global_cell.reserve(cells.size());
+    cell_id.reserve(cells.size());
+    bodies.class_of.reserve(cells.size());
+    for (auto *first : {&first_node, &bodies.first_dof, &bodies.first_slot})
+      first->reserve(cells.size() + 1);
+    for (const auto &cell : cells) {
       const unsigned int material = materials[cell->active_cell_index()];
       auto &own_corners = corners.emplace_back();
+      own_corners.reserve(cell->n_vertices());
       for (const unsigned int v : cell->vertex_indices())
         own_corners.push_back(cell->vertex(v));
       const RoundedCorners<dim> rounded(own_corners);

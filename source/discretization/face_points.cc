@@ -36,22 +36,12 @@ namespace nsfd
       return value;
     }
 
-    /** A face with its points, before all of them are put into flat arrays. */
+    /** A face with its points, in the order in which they are found. */
     template <int dim>
     struct NewFace {
-      using Frame = std::array<Tensor<1, dim>, dim>;
-
       typename InterfacePoints<dim>::Face face;
       PointOrigin origin;
-      std::vector<Point<dim>> positions;
-      std::vector<Frame> frames;
-      std::vector<double> weights;
       bool owned = true;
-
-      void set_frame(const Frame &frame)
-      {
-        std::fill(frames.begin(), frames.end(), frame);
-      }
     };
 
     /** Goes through the faces of the cells of this rank. */
@@ -67,7 +57,10 @@ namespace nsfd
                     const std::vector<unsigned int> &driven,
                     const SceneInput &input, CellSet set);
 
-      std::vector<NewFace<dim>> faces; ///< those of this rank first
+      using Frame = std::array<Tensor<1, dim>, dim>;
+
+      std::vector<NewFace<dim>> faces;
+      InterfacePoints<dim> points; ///< theirs: positions, frames and weights
       std::vector<int> springs_inside; ///< per body, or empty: none
       std::vector<ObstacleFace> obstacle_faces;
       std::vector<InnerFace> inner_faces;
@@ -76,7 +69,7 @@ namespace nsfd
 
     private:
       NewFace<dim> make_face(const Cell &cell, unsigned int face_no,
-                             PointOrigin origin) const;
+                             PointOrigin origin, const Frame *frame = nullptr);
       void add_boundary(const Cell &cell, unsigned int face_no);
       bool is_inner(const Cell &cell, const Cell &neighbor) const;
       void add_interior(const Cell &cell, unsigned int face_no);
@@ -118,14 +111,14 @@ namespace nsfd
             add_interior(cell, f);
         }
       }
-      std::stable_partition(faces.begin(), faces.end(),
-                            [](const auto &face) { return face.owned; });
     }
 
+    /** In the frame of the face, or in @p frame. */
     template <int dim>
     NewFace<dim> FaceCollector<dim>::make_face(const Cell &cell,
                                                const unsigned int f,
-                                               const PointOrigin origin) const
+                                               const PointOrigin origin,
+                                               const Frame *const frame)
     {
       std::vector<Point<dim>> corners;
       for (const unsigned int v : cell->vertex_indices())
@@ -143,14 +136,22 @@ namespace nsfd
       const Point<dim> centre = mean(geometry.corners());
       for (unsigned int c = 0; c < dim; ++c)
         result.face.centre[c] = centre[c];
+      result.face.first = unsigned(points.n_points);
+      result.face.count = quadrature.size();
+      points.n_points += quadrature.size();
       for (unsigned int q = 0; q < quadrature.size(); ++q) {
         const auto xi = quadrature.point(q);
         Tensor<1, dim> n = geometry.normal(xi);
         const double measure = n.norm();
         n /= measure;
-        result.positions.push_back(geometry.position(xi));
-        result.frames.push_back(local_frame<dim>(n));
-        result.weights.push_back(measure * quadrature.weight(q));
+        const Point<dim> position = geometry.position(xi);
+        const Frame axes = frame ? *frame : local_frame<dim>(n);
+        for (unsigned int c = 0; c < dim; ++c)
+          points.position.push_back(position[c]);
+        for (const auto &axis : axes)
+          for (unsigned int c = 0; c < dim; ++c)
+            points.frame.push_back(axis[c]);
+        points.weight.push_back(measure * quadrature.weight(q));
       }
       return result;
     }
@@ -167,12 +168,10 @@ namespace nsfd
       for (const unsigned int b : driven_) {
         if (!groups_.holds_boundary_face(input_.boundaries[b].where, cell, f))
           continue;
-        auto face = make_face(cell, f, {PointOrigin::Kind::motion, b});
-        typename NewFace<dim>::Frame axes; // rows of a support are x, y, z
+        Frame axes; // rows of a support are x, y, z
         for (unsigned int i = 0; i < dim; ++i)
           axes[i][i] = 1.;
-        face.set_frame(axes);
-        add(std::move(face));
+        add(make_face(cell, f, {PointOrigin::Kind::motion, b}, &axes));
       }
       for (unsigned int b = 0; b < input_.obstacles.size(); ++b) {
         const auto &obstacle = input_.obstacles[b];
@@ -183,12 +182,11 @@ namespace nsfd
               {unsigned(body_of_[cell->active_cell_index()]), f, b});
           continue;
         }
-        auto face = make_face(cell, f, {PointOrigin::Kind::obstacle, b});
         Tensor<1, dim> n;
         for (unsigned int c = 0; c < dim; ++c)
           n[c] = obstacle.normal[c];
-        face.set_frame(local_frame<dim>(n / n.norm()));
-        add(std::move(face));
+        const Frame axes = local_frame<dim>(n / n.norm());
+        add(make_face(cell, f, {PointOrigin::Kind::obstacle, b}, &axes));
       }
     }
 
@@ -338,6 +336,45 @@ namespace nsfd
           "): add a last block with `set where = all`");
     }
 
+    /**
+     * The faces and their points, those of this rank first, otherwise in the
+     * order in which they were found.
+     */
+    template <int dim>
+    InterfacePoints<dim> owned_first(std::vector<NewFace<dim>> &faces,
+                                     InterfacePoints<dim> &&found)
+    {
+      const auto others =
+          std::stable_partition(faces.begin(), faces.end(),
+                                [](const auto &face) { return face.owned; });
+      InterfacePoints<dim> points;
+      points.n_points = found.n_points;
+      // one after the other: there is never more than one of them twice
+      const auto move = [&](std::vector<double> &from, const unsigned int width,
+                            std::vector<double> &to) {
+        to.reserve(from.size());
+        for (const auto &face : faces) {
+          const auto first =
+              from.begin() + long(std::size_t(face.face.first) * width);
+          to.insert(to.end(), first, first + face.face.count * width);
+        }
+        from = std::vector<double>();
+      };
+      move(found.position, dim, points.position);
+      move(found.frame, dim * dim, points.frame);
+      move(found.weight, 1, points.weight);
+      unsigned int first = 0;
+      for (auto face = faces.begin(); face != faces.end(); ++face) {
+        if (face == others)
+          points.n_owned = first;
+        face->face.first = first;
+        first += face->face.count;
+      }
+      if (others == faces.end())
+        points.n_owned = first;
+      return points;
+    }
+
     /** Points of shared faces by rank, in an order that both ranks know. */
     template <int dim>
     void set_neighbors(InterfacePoints<dim> &points)
@@ -379,32 +416,14 @@ namespace nsfd
     result.obstacle_faces = std::move(collector.obstacle_faces);
     result.inner_faces = std::move(collector.inner_faces);
     auto &points = result.points;
-    std::size_t n = 0;
-    for (const auto &face : collector.faces)
-      n += face.positions.size();
-    points.position.reserve(n * dim);
-    points.frame.reserve(n * dim * dim);
-    points.weight.reserve(n);
-    points.face_of.reserve(n);
+    points = owned_first(collector.faces, std::move(collector.points));
     points.faces.reserve(collector.faces.size());
-    result.origins.reserve(n);
-    for (auto &face : collector.faces) {
-      const unsigned int f = unsigned(points.faces.size());
-      face.face.first = unsigned(points.n_points);
-      face.face.count = unsigned(face.positions.size());
-      points.n_points += face.positions.size();
-      if (face.owned)
-        points.n_owned = points.n_points;
-      for (unsigned int q = 0; q < face.positions.size(); ++q) {
-        for (unsigned int c = 0; c < dim; ++c)
-          points.position.push_back(face.positions[q][c]);
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int c = 0; c < dim; ++c)
-            points.frame.push_back(face.frames[q][i][c]);
-        points.weight.push_back(face.weights[q]);
-        points.face_of.push_back(f);
-        result.origins.push_back(face.origin);
-      }
+    points.face_of.reserve(points.n_points);
+    result.origins.reserve(points.n_points);
+    for (const auto &face : collector.faces) {
+      points.face_of.insert(points.face_of.end(), face.face.count,
+                            unsigned(points.faces.size()));
+      result.origins.insert(result.origins.end(), face.face.count, face.origin);
       points.faces.push_back(face.face);
     }
     set_neighbors(points);

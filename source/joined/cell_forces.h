@@ -9,9 +9,10 @@
 namespace nsfd
 {
   /**
-   * Faces that may let go: where the mean traction of both sides is compared
-   * with a strength. A site is a face (its points let go together, the traction
-   * is averaged along it), or a point of cells of higher degree.
+   * Faces that may be released: where the mean traction of both sides is
+   * compared with a strength. A site is a face (its points are released
+   * together, the traction is averaged along it), or a point of cells of higher
+   * degree.
    */
   struct StrengthSites {
     /// share of its strength from which on the traction of a site is computed

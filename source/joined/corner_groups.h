@@ -7,7 +7,7 @@ namespace nsfd
   /**
    * Corners of a node that hang together through intact links are one group:
    * one position, one velocity, the sum of their masses. An intact body is an
-   * ordinary finite element mesh; nodes split as their links let go.
+   * ordinary finite element mesh; nodes split as their links are released.
    */
   template <int dim>
   class CornerGroups
@@ -29,7 +29,7 @@ namespace nsfd
     }
 
     /**
-     * After links of @p node have let go: what does not hang together any more
+     * After links of @p node are released: what does not hang together any more
      * gets groups of its own, behind all others, at the same place and speed.
      * False if nothing was cut. Forces are to be set anew.
      */

@@ -96,7 +96,8 @@ namespace nsfd
   template <int dim>
   void GhostLayer<dim>::match_points()
   {
-    constexpr std::size_t n_faces = 2 * dim; // of simplices fewer
+    const std::size_t n_faces =
+        all_->cells().element->reference_cell().n_faces();
     const auto per_face =
         std::size_t(communicator_.max(double(most_at_a_face(all_->cells()))));
     const auto per_slot =

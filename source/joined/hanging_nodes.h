@@ -33,11 +33,11 @@ namespace nsfd
    * what is followed: a larger cell that comes off takes what hangs from it
    * along.
    *
-   * A face never lets go that is between cells of two sizes or that a hanging
-   * node lies on: a hanging node is one group from the start on. Of two larger
-   * cells that a node hangs from the first one counts; that the other one has
-   * the same trace there is looked after by the faces between them, which have
-   * the node on them.
+   * A face is never released that is between cells of two sizes or that a
+   * hanging node lies on: a hanging node is one group from the start on. Of two
+   * larger cells that a node hangs from the first one counts; that the other
+   * one has the same trace there is looked after by the faces between them,
+   * which have the node on them.
    */
   template <int dim>
   class HangingNodes
@@ -58,14 +58,14 @@ namespace nsfd
     {
       return any_ && (flags_[corner] & hanging) != 0;
     }
-    /** By point: its face never lets go; empty: there are none. */
+    /** By point: its face is never released; empty: there are none. */
     const std::vector<std::uint8_t> &held() const { return held_; }
     /** The largest sum of |C| along a row. */
     double spread() const { return spread_; }
 
     /**
      * What the present groups follow, and their masses. False where two larger
-     * cells that a node hangs from have parted. Collective.
+     * cells that a node hangs from have separated. Collective.
      */
     bool tie(CornerGroups<dim> &groups);
     /** A group that follows, and the corners of a cell that it follows. */

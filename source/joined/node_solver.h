@@ -20,7 +20,7 @@ namespace nsfd
    *
    * A semismooth Newton method from the impulses of the last step solves nearly
    * all, most in one step. Where points of a cycle hold each other more than
-   * they can, what is left over does not change until one of them lets go:
+   * they can, what is left over does not change until one of them is released:
    * softened directions go there at an equal error. What stalls is reached by
    * softer laws (NodePath). What is left is swept and begun again from other
    * impulses, drawn from the number of the attempt: the result depends on

@@ -359,7 +359,7 @@ namespace nsfd
       if (!(largest * largest >= quiet * sites.least[f]))
         continue;
       for (std::size_t k = first; k < sites.first_of_face[f + 1]; ++k)
-        if (std::isfinite(sites.limit[k])) // it has not let go
+        if (std::isfinite(sites.limit[k])) // it is not released
           squares[k] = sites.square(k, traction(sites, k));
     }
   }

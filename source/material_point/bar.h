@@ -115,7 +115,7 @@ namespace nsfd
 
     /**
      * Opened to @p opening, with this speed; intrinsic points not below their
-     * elastic limit are damaged by it, extrinsic ones let go.
+     * elastic limit are damaged by it, extrinsic ones are activated.
      */
     void set_state(double opening, double velocity);
 

@@ -11,8 +11,7 @@ namespace nsfd
     std::vector<double> remarkable_openings(const CohesiveLaw &law)
     {
       std::vector<double> result;
-      for (const double d :
-           {law.elastic_limit(), law.peak_opening(), law.final_opening()}) {
+      for (const double d : law.kinks()) {
         if (!(d > 0.) || !std::isfinite(d))
           continue;
         const double below = d * (1. - 1e-9), above = d * (1. + 1e-9);

@@ -4,7 +4,10 @@
 #include "level_mesh.h"
 
 #include "body_table.h"
+#include "named_mesh.h"
+#include "spread_simplices.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/distributed/tria.h>
 
@@ -88,29 +91,43 @@ namespace nsfd
     }
 
     /** Every rank has read the file, or made the mesh of its geometry. */
-    template <int dim>
-    bool is_same_on_all_ranks(const CoarseMesh<dim> &mesh,
+    bool is_same_on_all_ranks(const NamedMesh &mesh,
                               const MPI_Comm communicator)
     {
       std::uint64_t hash = 0;
-      const auto add = [&](const std::uint64_t bits) {
-        hash = mixed(hash + bits);
-      };
-      for (const auto &p : mesh.vertices)
-        for (unsigned int d = 0; d < dim; ++d) {
-          std::uint64_t bits;
-          std::memcpy(&bits, &p[d], sizeof bits);
-          add(bits);
+      const auto add = [&](const auto &numbers) {
+        for (const auto number : numbers) {
+          std::uint64_t bits = 0;
+          std::memcpy(&bits, &number, sizeof number);
+          hash = mixed(hash + bits);
         }
-      for (const auto &cell : mesh.cells) {
-        add(cell.material_id);
-        for (const unsigned int v : cell.vertices)
-          add(v);
+      };
+      add(mesh.coordinates);
+      for (const auto *elements : {&mesh.cells, &mesh.faces}) {
+        add(elements->vertices);
+        add(elements->set);
       }
       std::array<std::uint64_t, 2> ends = {{hash, ~hash}};
       MPI_Allreduce(MPI_IN_PLACE, ends.data(), 2, MPI_UINT64_T, MPI_MIN,
                     communicator);
       return ends[0] == hash && ends[1] == ~hash;
+    }
+
+    /** All cells are triangles or tetrahedra; those of bodies in contact are
+        on all ranks. */
+    bool can_be_spread(const SceneInput &input)
+    {
+      const auto has_simplices = [](const MeshInput &mesh) {
+        const auto type = find_mesh_type(mesh.type);
+        return !mesh.split_simplices && type && type->has_simplices(mesh);
+      };
+      return !input.large_motion &&
+             (input.mesh.type == "bodies"
+                  ? std::all_of(input.bodies.begin(), input.bodies.end(),
+                                [&](const BodyInput &body) {
+                                  return has_simplices(body.mesh);
+                                })
+                  : has_simplices(input.mesh));
     }
 
     /** Every rank knows all cells; whole bodies belong to one. */
@@ -160,16 +177,23 @@ namespace nsfd
     const bool by_p4est =
         (mesh_input.type == "rectangle" || mesh_input.type == "brick") &&
         mesh_input.distortion == 0. && !input.adaptivity;
+    const bool is_spread = Utilities::MPI::n_mpi_processes(communicator) > 1 &&
+                           can_be_spread(input);
     std::vector<std::string> found;
-    CoarseMesh<dim> mesh =
-        mesh_input.type == "bodies"
-            ? mesh_of_bodies<dim>(input, found)
-            : one_mesh<dim>(mesh_input, by_p4est ? 0 : mesh_input.refinements,
-                            found);
-    if (found.empty())
-      check(mesh, found);
+    CoarseMesh<dim> mesh;
+    if (!is_spread || Utilities::MPI::this_mpi_process(communicator) == 0) {
+      mesh = mesh_input.type == "bodies"
+                 ? mesh_of_bodies<dim>(input, found)
+                 : one_mesh<dim>(mesh_input,
+                                 by_p4est ? 0 : mesh_input.refinements, found);
+      if (found.empty())
+        check(mesh, found);
+    }
+    if (is_spread)
+      found = Utilities::MPI::broadcast(communicator, found, 0);
     if (mesh_input.named) {
-      const int differs = !is_same_on_all_ranks(mesh, communicator);
+      const int differs =
+          !is_same_on_all_ranks(*mesh_input.named, communicator);
       int any = differs;
       MPI_Allreduce(&differs, &any, 1, MPI_INT, MPI_MAX, communicator);
       if (any != 0)
@@ -179,7 +203,8 @@ namespace nsfd
     std::unique_ptr<Triangulation<dim>> result;
     if (found.empty())
       try {
-        result = make(mesh, input, communicator);
+        result = is_spread ? spread_simplices(std::move(mesh), communicator)
+                           : make(mesh, input, communicator);
         if (by_p4est)
           result->refine_global(mesh_input.refinements);
       } catch (const std::exception &exception) {

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <set>
 
 namespace nsfd
 {
@@ -74,28 +75,25 @@ namespace nsfd
     if (input.mesh.type == "bodies")
       for (const BodyInput &body : input.bodies)
         bodies_.push_back(body.name);
-    // every rank knows all cells of the first level
-    std::vector<bool> materials, boundaries;
-    const auto mark = [](std::vector<bool> &ids, const unsigned int id) {
-      ids.resize(std::max<std::size_t>(ids.size(), id + 1));
-      ids[id] = true;
-    };
-    for (auto cell = triangulation.begin(0); cell != triangulation.end(0);
-         ++cell) {
-      mark(materials, cell->material_id());
+    std::set<unsigned int> materials, boundaries;
+    for (const auto &cell : triangulation.active_cell_iterators()) {
+      if (!cell->is_locally_owned())
+        continue;
+      materials.insert(cell->material_id());
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary())
-          mark(boundaries, cell->face(f)->boundary_id());
+          boundaries.insert(cell->face(f)->boundary_id());
     }
-    const auto name = [](const std::vector<bool> &ids) {
-      std::vector<std::string> names;
-      for (std::size_t id = 0; id < ids.size(); ++id)
-        if (ids[id])
-          names.push_back(std::to_string(id));
-      return names;
+    const auto names = [&](std::set<unsigned int> &ids) {
+      ids = Utilities::MPI::compute_set_union(ids,
+                                              triangulation.get_communicator());
+      std::vector<std::string> result;
+      for (const unsigned int id : ids)
+        result.push_back(std::to_string(id));
+      return result;
     };
-    material_ids_ = name(materials);
-    boundary_ids_ = name(boundaries);
+    material_ids_ = names(materials);
+    boundary_ids_ = names(boundaries);
 
     has_named_ = input.mesh.named != nullptr;
     if (has_named_)

@@ -151,7 +151,7 @@ namespace nsfd
                            double contact_impulse);
 
   /**
-   * The traction in Pa at which a rigid point lets go: R_max, or what the
+   * The traction in Pa at which a rigid point is activated: R_max, or what the
    * largest opening has left of it (plateau).
    */
   template <int dim>

@@ -286,9 +286,19 @@ namespace nsfd
   auto FragmentMotion<dim>::bodies(const State &state) const
       -> std::vector<Body>
   {
-    const auto displacement = discretization_.to_nodal(state.displacement);
-    const auto velocity = discretization_.to_nodal(state.velocity);
+    // where no cell is rigid unknowns are values at nodes
+    const bool has_rigid =
+        discretization_.cells().n_nodal() > state.displacement.size();
+    std::vector<double> nodal[2];
+    if (has_rigid) {
+      nodal[0] = discretization_.to_nodal(state.displacement);
+      nodal[1] = discretization_.to_nodal(state.velocity);
+    }
+    const auto &displacement = has_rigid ? nodal[0] : state.displacement;
+    const auto &velocity = has_rigid ? nodal[1] : state.velocity;
     std::vector<Body> result;
+    if (!moving_)
+      result.reserve(discretization_.bodies().size());
     std::vector<char> seen(moving_ ? moving_->layout().size() : 0, 0);
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
       if (!moving_ ||

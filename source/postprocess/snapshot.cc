@@ -160,7 +160,8 @@ namespace nsfd
       const auto &faces = discretization_.points().faces;
       std::vector<char> hidden(n_bodies_ * cell_.n_faces(), 0);
       for (std::size_t f = 0; f < faces.size(); ++f)
-        if (!faces[f].boundary && carries<dim>(state, faces[f]))
+        if (!faces[f].boundary &&
+            connection<dim>(state, faces[f]) != Connection::open)
           for (unsigned int side = 0; side < 2; ++side)
             if (faces[f].bodies[side] >= 0)
               hidden[faces[f].bodies[side] * cell_.n_faces() +

@@ -23,7 +23,8 @@ namespace nsfd
     std::string advice;            ///< what gives less; may be empty
   };
 
-  /** Faces that cannot let go because a node of smaller cells hangs there. */
+  /** Faces that cannot be released because a node of smaller cells hangs there.
+   */
   struct HeldFaces {
     double share = 0.; ///< the largest traction over the strength
     std::string place; ///< "(1, 2) of Interface: all"

@@ -17,7 +17,7 @@ namespace nsfd
   /**
    * A mesh that follows the motion: the parts of a model are built again
    * whenever cells change, and the state goes with them. What a change does to
-   * the stored energies is booked as numerical.
+   * the stored energies counts as numerical.
    */
   template <int dim>
   class AdaptiveMesh

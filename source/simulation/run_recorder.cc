@@ -11,6 +11,7 @@
 #include "records/run_options.h"
 
 #include <iostream>
+#include <optional>
 
 namespace nsfd
 {
@@ -91,12 +92,16 @@ namespace nsfd
         observers_ ? observers_->records() : std::vector<ObservableRecord>(),
         options_.resume);
     if (has_fragments(input_, *model_.discretization, *fragments_,
-                      communicator_))
+                      communicator_)) {
+      std::optional<State> given; // else it is `state`
+      if (input_.mesh_changes())
+        given = model_.initial_state();
       output_->set_fragments(std::make_unique<FragmentOutput<dim>>(
           input_.output.directory,
           FragmentMotion<dim>(*model_.discretization, communicator_,
-                              model_.moving.get(), model_.initial_state()),
+                              model_.moving.get(), given ? *given : state),
           communicator_, options_.resume));
+    }
     if (observers_ && !options_.resume)
       observers_->start_files();
     if (communicator_.is_root() && !options_.quiet)

@@ -38,7 +38,7 @@ namespace nsfd
     control.set_ceiling(limit);
   }
 
-  /** True if the step is to be taken again, by the first rule that says so. */
+  /** True if the step is to be repeated, by the first rule that says so. */
   template <int dim>
   bool StepController<dim>::is_too_long(const StepLimits &limits,
                                         const StepReport &report,

@@ -11,7 +11,7 @@ namespace nsfd
   template <int dim>
   void TimeStepping<dim>::start(State &state)
   {
-    state = integrator().start_from(state);
+    state = integrator().start_from(std::move(state));
     if (!integrator().takes_steps())
       hand_over(state);
   }
@@ -27,7 +27,7 @@ namespace nsfd
     last.hand_over(state, model_.control->step());
     controller_.restart();
     ++stage_;
-    state = integrator().start_from(state);
+    state = integrator().start_from(std::move(state));
   }
 
   template <int dim>

@@ -19,7 +19,7 @@ namespace nsfd
                                       const OneStepProblem<dim> &problem);
 
   /**
-   * Let go of rigidly joined extrinsic points whose traction exceeds the
+   * Activate rigidly joined extrinsic points whose traction exceeds the
    * strength: they take part in @p problem with their law. True if there was
    * one. Collective.
    */

@@ -39,7 +39,7 @@ namespace nsfd
       return false;
     next.beta[i] = std::min(old.beta[i], energies.beta);
     if (energies.beta < 1.)
-      next.two_sided[i] = 0; // its overlap is booked in point_energies()
+      next.two_sided[i] = 0; // its overlap is in point_energies()
     if (next.beta[i] <= 0.)
       next.kind[i] = PointKind::free;
     return next.beta[i] < 1e-3 && old.beta[i] >= 1e-3;

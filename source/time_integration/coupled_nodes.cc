@@ -98,7 +98,7 @@ namespace nsfd
     rigid_.move(y, groups_);
     own_.assign((2 + n_) * n_, {});
     ++report_.rounds;
-    report_.loose = 0;
+    report_.inexact = 0;
     report_.residual = 0.;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       NodeProblem<dim> &problem = *nodes_[k].problem;
@@ -112,7 +112,7 @@ namespace nsfd
       if (nodes_[k].counts) {
         report_.sweeps += node.sweeps;
         report_.newton += node.newton;
-        report_.loose += !node.converged;
+        report_.inexact += !node.converged;
       }
       if (!(node.residual <= report_.residual)) {
         report_.residual = node.residual;

@@ -31,7 +31,7 @@ namespace nsfd
       bool converged = true;
       double residual = 0.;
       unsigned int sweeps = 0, newton = 0; ///< at nodes that count
-      unsigned int loose = 0;              ///< nodes that are not solved
+      unsigned int inexact = 0;            ///< nodes that are not solved
       unsigned int rounds = 0;
       std::size_t worst = 0; ///< point of `chains`
     };

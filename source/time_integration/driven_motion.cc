@@ -29,11 +29,12 @@ namespace nsfd
                                   const Discretization<dim> &discretization)
       : input_(input), discretization_(discretization)
   {
+    if (input.time.scheme.at_nodes)
+      return; // groups take each component once, where the points are
     const std::size_t n = discretization.points().n_points;
     const auto &bodies = discretization.bodies();
     const auto places = point_places(bodies, n);
     std::vector<double> coordinates;
-    const bool at_nodes = input.time.scheme.at_nodes;
     first_.assign(1, 0);
     for (std::size_t i = 0; i < n; ++i) {
       if (boundary_of(input, discretization, i)) {
@@ -42,7 +43,7 @@ namespace nsfd
         const BodyClass *body =
             place.body >= 0 ? &bodies.classes[bodies.class_of[place.body]]
                             : nullptr;
-        if (body == nullptr || body->rigid || at_nodes)
+        if (body == nullptr || body->rigid)
           samples_.push_back({position_of(discretization.points(), i), 1.});
         else {
           if (coordinates.empty())
@@ -69,10 +70,7 @@ namespace nsfd
       }
       first_.push_back(samples_.size());
     }
-    if (at_nodes)
-      chosen_.assign(n * dim, 1); // groups take each component once
-    else
-      choose_rows();
+    choose_rows();
   }
 
   /** A motion that jumps across the face between two cells is each one's own.
@@ -203,7 +201,8 @@ namespace nsfd
   bool DrivenMotion<dim>::drives(const std::size_t i,
                                  const unsigned int c) const
   {
-    return chosen_[i * dim + c] && (velocity(i, c) || displacement(i, c));
+    return (chosen_.empty() || chosen_[i * dim + c]) &&
+           (velocity(i, c) || displacement(i, c));
   }
 
   template <int dim>
@@ -212,6 +211,8 @@ namespace nsfd
   {
     if (motion.is_constant())
       return motion(0., 0., 0., t);
+    if (first_.empty())
+      return motion.at(position_of(discretization_.points(), i), t);
     double sum = 0.;
     for (std::size_t s = first_[i]; s < first_[i + 1]; ++s)
       sum += samples_[s].share * motion.at(samples_[s].place, t);

@@ -53,8 +53,9 @@ namespace nsfd
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
-    std::vector<std::size_t> first_; ///< per point, size n + 1
+    /// per point, size n + 1; empty: each is one by itself
+    std::vector<std::size_t> first_;
     std::vector<Sample> samples_;
-    std::vector<char> chosen_; ///< per point and component
+    std::vector<char> chosen_; ///< per point and component; empty: all
   };
 } // namespace nsfd

@@ -15,8 +15,8 @@ namespace nsfd
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    /// of the strength: a face lets go early that would be further in the next
-    /// step
+    /// of the strength: a face is released early that would be further in the
+    /// next step
     constexpr double too_far = 1.03;
   } // namespace
 
@@ -30,6 +30,8 @@ namespace nsfd
     const auto &input = discretization.input();
     const Cells<dim> &cells = discretization.cells();
     site_of_.assign(points.n_points, -1);
+    if (input.discretization.degree == 1)
+      reserve(points.faces.size()); // a site per face
     for (const auto &face : points.faces) {
       const PointOrigin &origin = discretization.origins()[face.first];
       if (origin.kind != PointOrigin::Kind::interface ||
@@ -85,6 +87,20 @@ namespace nsfd
       sites_.least.push_back(least);
     }
     sites_.first_of_face.push_back(sites_.size());
+  }
+
+  template <int dim>
+  void FaceRelease<dim>::reserve(const std::size_t n)
+  {
+    sites_.first_point.reserve(n);
+    sites_.n_points.reserve(n);
+    sites_.cells.reserve(n);
+    sites_.normal.reserve(n * dim);
+    sites_.first_of_face.reserve(n + 1);
+    factors_.reserve(n);
+    for (auto *list :
+         {&sites_.shear_weight, &sites_.limit, &sites_.least, &share_})
+      list->reserve(n);
   }
 
   template <int dim>

@@ -14,10 +14,10 @@ namespace nsfd
   struct SceneInput;
 
   /**
-   * Which faces of joined cells let go: where the mean traction of both sides
-   * reaches their strength, or would be well beyond it in the next step. To let
-   * go is not to open: the points are held as before until the problem of the
-   * node opens them.
+   * Which faces of joined cells are released: where the mean traction of both
+   * sides reaches their strength, or would be well beyond it in the next step.
+   * To let go is not to open: the points are held as before until the problem
+   * of the node opens them.
    */
   template <int dim>
   class FaceRelease
@@ -33,7 +33,7 @@ namespace nsfd
     void start(std::vector<std::uint8_t> intact);
     const std::vector<std::uint8_t> &intact() const { return intact_; }
 
-    /** Of the face of a point, where there is one that lets go. */
+    /** Of the face of a point, where there is one that may be released. */
     typename LeapfrogPoints<dim>::Factors factors(unsigned int point) const;
 
     /**
@@ -42,8 +42,8 @@ namespace nsfd
      */
     std::vector<unsigned int> reached(const CellForces<dim> &forces,
                                       double &excess);
-    /** Of the faces that never let go, the one that was nearest to its strength
-        or furthest beyond it, so far as has been looked at. */
+    /** Of the faces that are never released, the one that was nearest to its
+       strength or furthest beyond it, so far as has been looked at. */
     struct Held {
       double share = 0.; ///< traction over strength, 0: below `looked_at`
       std::array<double, dim> centre{};
@@ -59,6 +59,7 @@ namespace nsfd
               std::vector<double> &tractions) const;
 
   private:
+    void reserve(std::size_t n_sites);
     LawPoint law(std::size_t site) const;
     std::array<double, dim> in_frame(std::size_t point,
                                      const std::array<double, dim> &t) const;
@@ -71,7 +72,7 @@ namespace nsfd
     std::vector<double> share_; ///< of sites: traction over the mean that is
                                 ///< computed, 2 beside a rigid cell
     std::vector<typename LeapfrogPoints<dim>::Factors> factors_; ///< of sites
-    std::vector<int> site_of_; ///< by point, -1: it never lets go
+    std::vector<int> site_of_; ///< by point, -1: it is never released
     std::vector<double> squares_, old_squares_; ///< of this step and the last
     std::vector<std::uint8_t> intact_;          ///< by point
     std::vector<std::uint8_t> held_;            ///< by site; empty: none is

@@ -5,16 +5,14 @@
 namespace nsfd
 {
   template <int dim>
-  State spread_state(const GhostLayer<dim> &layer, const State &own)
+  void spread_state(const GhostLayer<dim> &layer, State &state)
   {
-    State all = own;
-    all.displacement = layer.spread_unknowns(own.displacement);
-    all.velocity = layer.spread_unknowns(own.velocity);
+    state.displacement = layer.spread_unknowns(state.displacement);
+    state.velocity = layer.spread_unknowns(state.velocity);
     for_point_fields(
         [&](const PointField &field, const auto member, const auto &...) {
-          all.*member = layer.spread_points(own.*member, field.width(dim));
+          state.*member = layer.spread_points(state.*member, field.width(dim));
         });
-    return all;
   }
 
   template <int dim>
@@ -29,13 +27,13 @@ namespace nsfd
   }
 
   template <int dim>
-  void take_own(const GhostLayer<dim> &layer, const State &all, State &own)
+  void take_own(const GhostLayer<dim> &layer, State &state)
   {
-    own.displacement = layer.own_unknowns(all.displacement);
-    own.velocity = layer.own_unknowns(all.velocity);
+    state.displacement = layer.own_unknowns(state.displacement);
+    state.velocity = layer.own_unknowns(state.velocity);
     for_point_fields(
         [&](const PointField &field, const auto member, const auto &...) {
-          own.*member = layer.own_points(all.*member, field.width(dim));
+          state.*member = layer.own_points(state.*member, field.width(dim));
         });
   }
 
@@ -66,9 +64,9 @@ namespace nsfd
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
-  template State spread_state(const GhostLayer<dim> &, const State &);         \
+  template void spread_state(const GhostLayer<dim> &, State &);                \
   template void fetch_state(const GhostLayer<dim> &, State &);                 \
-  template void take_own(const GhostLayer<dim> &, const State &, State &);     \
+  template void take_own(const GhostLayer<dim> &, State &);                    \
   template class GhostArchive<dim>
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);

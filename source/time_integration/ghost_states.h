@@ -6,17 +6,18 @@
 
 namespace nsfd
 {
-  /** @p own with the cells and points of @p layer: those that are known. */
+  /** Of the cells of this rank: with those of @p layer, vector by vector. What
+      is known of them. */
   template <int dim>
-  State spread_state(const GhostLayer<dim> &layer, const State &own);
+  void spread_state(const GhostLayer<dim> &layer, State &state);
 
   /** The other ones. Collective. */
   template <int dim>
   void fetch_state(const GhostLayer<dim> &layer, State &all);
 
-  /** Motion and points of @p all, of the cells of this rank, into @p own. */
+  /** Motion and points of the cells of this rank alone. */
   template <int dim>
-  void take_own(const GhostLayer<dim> &layer, const State &all, State &own);
+  void take_own(const GhostLayer<dim> &layer, State &state);
 
   /**
    * For parts that look at ghosts too: their values over bodies and points, in

@@ -12,12 +12,6 @@ namespace nsfd
 {
   namespace
   {
-    bool is_joined(const PointKind kind)
-    {
-      return kind == PointKind::bonded || kind == PointKind::rigid ||
-             kind == PointKind::prescribed;
-    }
-
     /** A law between two rigid bodies. */
     template <int dim>
     bool is_held(const Discretization<dim> &discretization,

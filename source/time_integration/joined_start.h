@@ -15,7 +15,7 @@ namespace nsfd
   bool has_rigid_cells(const SceneInput &input);
 
   /**
-   * By point: what is joined by common nodes before anything has let go, as
+   * By point: what is joined by common nodes before anything is released, as
    * @p state has it, where its kind becomes `bonded`. A law between two rigid
    * cells of different materials holds them from the start instead: they have
    * no stress that would tell when it is needed. Those of one material are one

@@ -15,26 +15,6 @@
 
 namespace nsfd
 {
-  namespace
-  {
-    /** Without what only steps of all points need. */
-    template <int dim>
-    OneStepProblem<dim> point_data(const SceneInput &input,
-                                   const Discretization<dim> &discretization)
-    {
-      auto problem = constant_data(input, discretization);
-      const auto drop = [](auto &...arrays) {
-        ((arrays = std::decay_t<decltype(arrays)>()), ...);
-      };
-      drop(problem.kind, problem.mask, problem.contact, problem.opening_max,
-           problem.compression_stiffness, problem.target, problem.free_velocity,
-           problem.given_velocity, problem.jump_old, problem.jump_free,
-           problem.sliding_offset, problem.majorant_normal,
-           problem.majorant_tangential);
-      return problem;
-    }
-  } // namespace
-
   template <int dim>
   Leapfrog<dim>::Leapfrog(const SceneInput &input,
                           const Discretization<dim> &discretization,
@@ -43,9 +23,9 @@ namespace nsfd
       : input_(input), communicator_(communicator),
         ghosts_(communicator, discretization, std::move(layer)),
         discretization_(ghosts_.discretization()),
-        all_(point_data(input, discretization_)),
+        all_(point_constants(input, discretization_)),
         own_(ghosts_.layer() ? std::make_unique<const OneStepProblem<dim>>(
-                                   point_data(input, discretization))
+                                   point_constants(input, discretization))
                              : nullptr),
         mesh_(discretization_, ghosts_.cells()),
         hanging_(discretization_, mesh_, ghosts_.layer()),
@@ -160,8 +140,8 @@ namespace nsfd
   }
 
   /**
-   * Faces that have reached their strength let go: nodes fall apart where they
-   * are cut. Returns the number of points that count here.
+   * Faces that have reached their strength are released: nodes fall apart where
+   * they are cut. Returns the number of points that count here.
    */
   template <int dim>
   unsigned int Leapfrog<dim>::let_go()
@@ -223,14 +203,14 @@ namespace nsfd
                             StepReport &report)
   {
     const double here[7] = {double(mine.problems),   double(mine.sweeps),
-                            double(mine.newton),     double(mine.loose),
+                            double(mine.newton),     double(mine.inexact),
                             double(report.released), double(!mine.converged),
                             double(mine.held)};
     const auto all = communicator_.sums(here, 7, 1);
     counters_.problems += std::uint64_t(all[0]);
     counters_.sweeps += std::uint64_t(all[1]);
     counters_.newton += std::uint64_t(all[2]);
-    counters_.loose += std::uint64_t(all[3]);
+    counters_.inexact += std::uint64_t(all[3]);
     counters_.released += std::uint64_t(all[4]);
     counters_.held += std::uint64_t(all[6]);
     counters_.excess = std::max(counters_.excess, mine.excess);
@@ -316,7 +296,7 @@ namespace nsfd
     energies.power_after = ghosts_.dot(g, g.force, g.velocity) + front.after;
     front_ = front;
     try {
-      book(old, h, energies, next, report);
+      account(old, h, energies, next, report);
     } catch (const StepRejected &rejected) {
       // the state before it is what the run can still show
       before_.displacement.swap(g.displacement);

@@ -24,9 +24,9 @@ namespace nsfd
    *   M (v_{k+1/2} - v_{k-1/2}) = k f(q_k) + P,   q_{k+1} = q_k + h v_{k+1/2},
    *
    * k = h, and h/2 in the first step. Faces whose mean traction has reached the
-   * strength let go before the forces of a step act; their points, contact and
-   * friction are implicit in small problems at the nodes, so that only the free
-   * cells bound the step. For any loads and any impulses,
+   * strength are released before the forces of a step act; their points,
+   * contact and friction are implicit in small problems at the nodes, so that
+   * only the free cells bound the step. For any loads and any impulses,
    *
    *   E_{k+1/2} = v.M v/2 + U(q_k) - (h/2) f.v
    *             = v.(M - h^2 K/4) v/2 + U(q_k + h v/2)
@@ -75,7 +75,7 @@ namespace nsfd
       return faces_.worst_held(communicator_);
     }
 
-    State start_from(const State &given) override;
+    State start_from(State given) override;
     void resume_from(const State &given) override;
     StepReport advance(const State &old, double time_step, State &next,
                        unsigned int idle_rounds) override;
@@ -112,8 +112,8 @@ namespace nsfd
                StepReport &report);
     void move_freely(double kick, double time, double h);
     void damp(double h, double last, Energies &energies);
-    void book(const State &old, double h, const Energies &bodies, State &next,
-              StepReport &report);
+    void account(const State &old, double h, const Energies &bodies,
+                 State &next, StepReport &report);
 
     const SceneInput &input_;
     const Communicator &communicator_;
@@ -140,7 +140,7 @@ namespace nsfd
     struct Counters {
       double excess = 0.; ///< of a traction over the strength, less 1
       unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0,
-                         loose = 0, held = 0;
+                         inexact = 0, held = 0;
       double seconds = 0.; ///< of steps
     } counters_;
   };

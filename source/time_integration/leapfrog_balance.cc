@@ -159,7 +159,7 @@ namespace nsfd
   /**
    * Jump and way of the chain at the end of the step. What is held stays where
    * it is, without the round-off of its velocity: the points of a cycle could
-   * not all undo that, and would hold each other until one of them lets go.
+   * not all undo that, and would hold each other until one of them is released.
    */
   template <int dim>
   void LeapfrogPoints<dim>::keep_jump(const unsigned int a, const bool held)

@@ -27,24 +27,21 @@ namespace nsfd
   }
 
   template <int dim>
-  State LeapfrogGhosts<dim>::with(const State &own) const
+  State LeapfrogGhosts<dim>::with(State own) const
   {
-    if (!layer_)
-      return own;
-    State all = spread_state(*layer_, own);
-    fetch_state(*layer_, all);
-    return all;
+    if (layer_) {
+      spread_state(*layer_, own);
+      fetch_state(*layer_, own);
+    }
+    return own;
   }
 
   template <int dim>
-  State LeapfrogGhosts<dim>::without(State &&all) const
+  State LeapfrogGhosts<dim>::without(State all) const
   {
-    State own = std::move(all);
-    if (layer_) {
-      const State taken = own;
-      take_own(*layer_, taken, own);
-    }
-    return own;
+    if (layer_)
+      take_own(*layer_, all);
+    return all;
   }
 
   template <int dim>

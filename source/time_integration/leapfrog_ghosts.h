@@ -42,8 +42,8 @@ namespace nsfd
     const GhostLayer<dim> *layer() const { return layer_.get(); }
 
     /** A state of the cells of this rank, with ghosts. Collective. */
-    State with(const State &own) const;
-    State without(State &&all) const;
+    State with(State own) const;
+    State without(State all) const;
 
     /** Before the first exchange; @p hanging nodes follow others. Collective.
      */

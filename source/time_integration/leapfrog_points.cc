@@ -339,7 +339,7 @@ namespace nsfd
     } while (turn_friction(first, !solved));
     outcome.converged = outcome.converged && solved;
     if (mesh_.counts(node.node))
-      outcome.loose += !report.converged;
+      outcome.inexact += !report.converged;
     if (!(report.residual <= outcome.residual)) {
       outcome.residual = report.residual;
       outcome.worst = chains_.point[moved_[first]];
@@ -418,7 +418,7 @@ namespace nsfd
       report = coupled.solve();
       outcome.sweeps += report.sweeps;
       outcome.newton += report.newton;
-      return (report.converged && report.loose == 0) ||
+      return (report.converged && report.inexact == 0) ||
              report.residual <= tolerance;
     };
     bool solved;
@@ -432,7 +432,7 @@ namespace nsfd
           solved = solve();
       }
       set_velocities(first, groups);
-      if (communicator.any(!report.converged || report.loose > 0) &&
+      if (communicator.any(!report.converged || report.inexact > 0) &&
           communicator.any(stiff))
         outcome.impossible =
             "a rigid body that is free has met another one, a support or an "
@@ -441,7 +441,7 @@ namespace nsfd
     } while (!outcome.impossible &&
              communicator.any(turn_friction(first, communicator.any(!solved))));
     outcome.converged = outcome.converged && solved;
-    outcome.loose += report.loose;
+    outcome.inexact += report.inexact;
     if (!(report.residual <= outcome.residual)) {
       outcome.residual = report.residual;
       if (first < moved_.size()) // else it is on other ranks

@@ -19,7 +19,7 @@ namespace nsfd
   class RigidGroups;
 
   /**
-   * The points of faces that have let go, and of obstacles, in the steps of
+   * The points of released faces, and of obstacles, in the steps of
    * Leapfrog.
    *
    * For solve_point() the step of a chain has the length H = h_last + h and
@@ -53,10 +53,10 @@ namespace nsfd
       bool converged = true;
       double residual = 0.;
       unsigned int sweeps = 0, newton = 0, problems = 0;
-      unsigned int loose = 0; ///< problems not solved to round-off
-      unsigned int held = 0;  ///< solved with HeldNodes
-      double excess = 0.;     ///< of what these hold over the strength, less 1
-      std::size_t worst = 0;  ///< point of the mesh
+      unsigned int inexact = 0; ///< problems not solved to round-off
+      unsigned int held = 0;    ///< solved with HeldNodes
+      double excess = 0.;    ///< of what these hold over the strength, less 1
+      std::size_t worst = 0; ///< point of the mesh
       const char *impossible = nullptr; ///< why no step goes on from here
     };
     /**
@@ -81,16 +81,16 @@ namespace nsfd
       double damage = 0., friction = 0., positive_friction = 0., impact = 0.,
              numerical = 0., viscous = 0.;
       double broken = 0.;      ///< area, m^2 or m
-      double penetration = 0.; ///< beyond overlaps of springs that let go, m
+      double penetration = 0.; ///< beyond overlaps of released springs, m
       unsigned int active = 0;
       bool beyond_unique = false;
       LineChanges changes; ///< of friction, damage, impact, numerical
     };
-    /** Books the step; what the points keep does not change. Collective. */
+    /** Balances the step; what the points keep does not change. Collective. */
     Balance account(const Communicator &communicator);
     /**
-     * The booked step is taken: jumps and histories move on. True if a face has
-     * lost its last hold.
+     * The balanced step is taken: jumps and histories move on. True if a face
+     * has lost its last hold.
      */
     bool accept();
 

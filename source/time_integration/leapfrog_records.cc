@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-// What Leapfrog books of a step, shows and keeps.
+// What Leapfrog accounts for in a step, shows and keeps.
 
 namespace nsfd
 {
@@ -29,9 +29,9 @@ namespace nsfd
   }
 
   template <int dim>
-  void Leapfrog<dim>::book(const State &old, const double h,
-                           const Energies &bodies, State &next,
-                           StepReport &report)
+  void Leapfrog<dim>::account(const State &old, const double h,
+                              const Energies &bodies, State &next,
+                              StepReport &report)
   {
     const auto balance = points_.account(communicator_);
     next.step = old.step + 1;
@@ -128,7 +128,7 @@ namespace nsfd
     counters["released_points"] = double(counters_.released);
     counters["active_points"] =
         double(communicator_.sum_integer(points_.n_counted()));
-    counters["node_problems_above_1e-12"] = double(counters_.loose);
+    counters["node_problems_above_1e-12"] = double(counters_.inexact);
     counters["held_node_problems"] = double(counters_.held);
     counters["groups"] = double(communicator_.sum_integer(
         groups_ ? groups_->size() - groups_->not_counted().size() : 0));
@@ -169,8 +169,8 @@ namespace nsfd
 
 #define NSFD_INSTANTIATE(dim)                                                  \
   template void Leapfrog<dim>::damp(double, double, Energies &);               \
-  template void Leapfrog<dim>::book(const State &, double, const Energies &,   \
-                                    State &, StepReport &);                    \
+  template void Leapfrog<dim>::account(                                        \
+      const State &, double, const Energies &, State &, StepReport &);         \
   template void Leapfrog<dim>::show(State &) const;                            \
   template void Leapfrog<dim>::show_at(                                        \
       State &, const std::vector<unsigned int> &) const;                       \

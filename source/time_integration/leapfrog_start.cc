@@ -71,9 +71,9 @@ namespace nsfd
   }
 
   template <int dim>
-  State Leapfrog<dim>::start_from(const State &given)
+  State Leapfrog<dim>::start_from(State given)
   {
-    State state = ghosts_.with(given);
+    State state = ghosts_.with(std::move(given));
     if (input_.statics) {
       EquilibriumSprings<dim> springs(all_, mesh_);
       JoinedEquilibrium<dim>(input_, communicator_, discretization_, mesh_,
@@ -108,7 +108,7 @@ namespace nsfd
 
 #define NSFD_INSTANTIATE(dim)                                                  \
   template State Leapfrog<dim>::initial_state() const;                         \
-  template State Leapfrog<dim>::start_from(const State &);                     \
+  template State Leapfrog<dim>::start_from(State);                             \
   template void Leapfrog<dim>::resume_from(const State &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);

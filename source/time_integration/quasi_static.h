@@ -26,10 +26,7 @@ namespace nsfd
                 std::unique_ptr<DelassusOperator<dim>> delassus,
                 std::unique_ptr<NonsmoothSolver<dim>> solver);
 
-    State start_from(const State &given) override
-    {
-      return search_.start(given);
-    }
+    State start_from(State given) override { return search_.start(given); }
     bool takes_steps() const override { return statics_.steps; }
 
     StepReport advance(const State &old, double time_step, State &next,

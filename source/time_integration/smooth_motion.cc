@@ -247,7 +247,7 @@ namespace nsfd
   SmoothMotion<dim>::~SmoothMotion() = default;
 
   template <int dim>
-  State SmoothMotion<dim>::start_from(const State &given)
+  State SmoothMotion<dim>::start_from(State given)
   {
     resume_from(given);
     return given;

@@ -37,7 +37,7 @@ namespace nsfd
      * The scales of the tolerances come from @p given and from the loads and
      * motions until the end. Collective.
      */
-    State start_from(const State &given) override;
+    State start_from(State given) override;
     void resume_from(const State &state) override;
 
     /**

@@ -108,7 +108,7 @@ namespace nsfd
         problem.mask[i] = all_components;
         for (unsigned int c = 0; c < dim; ++c) {
           problem.given_velocity[i * dim + c] = 0.;
-          // the law counts from where the joint lets go, not from its drift
+          // the law counts from where the joint is released, not from its drift
           problem.jump_free[i * dim + c] -= old.jump[i * dim + c];
           problem.jump_old[i * dim + c] = 0.;
         }
@@ -259,9 +259,32 @@ namespace nsfd
   OneStepProblem<dim> constant_data(const SceneInput &input,
                                     const Discretization<dim> &discretization)
   {
+    auto constants = point_constants(input, discretization);
+    OneStepProblem<dim> problem;
+    resize(problem, constants.n_points);
+    problem.n_owned = constants.n_owned;
+    problem.theta = constants.theta;
+    problem.rule = constants.rule;
+    problem.interactions.swap(constants.interactions);
+    problem.interaction.swap(constants.interaction);
+    for (const auto member :
+         {&OneStepProblem<dim>::weight, &OneStepProblem<dim>::strength_factor,
+          &OneStepProblem<dim>::opening_factor, &OneStepProblem<dim>::viscosity,
+          &OneStepProblem<dim>::dilatancy, &OneStepProblem<dim>::lift_left})
+      (problem.*member).swap(constants.*member);
+    return problem;
+  }
+
+  template <int dim>
+  OneStepProblem<dim> point_constants(const SceneInput &input,
+                                      const Discretization<dim> &discretization)
+  {
     const auto &points = discretization.points();
     OneStepProblem<dim> problem;
-    resize(problem, points.n_points);
+    problem.n_points = points.n_points;
+    problem.interaction.assign(points.n_points, 0);
+    problem.strength_factor.assign(points.n_points, 1.);
+    problem.opening_factor = problem.strength_factor;
     problem.n_owned = points.n_owned;
     problem.weight = points.weight;
     problem.theta = input.time.theta;
@@ -353,6 +376,10 @@ namespace nsfd
   template double intact_stiffness(const OneStepProblem<3> &, std::size_t);
   template OneStepProblem<2> constant_data(const SceneInput &,
                                            const Discretization<2> &);
+  template OneStepProblem<2> point_constants(const SceneInput &,
+                                             const Discretization<2> &);
+  template OneStepProblem<3> point_constants(const SceneInput &,
+                                             const Discretization<3> &);
   template OneStepProblem<3> constant_data(const SceneInput &,
                                            const Discretization<3> &);
   template void set_step(const SceneInput &, const Discretization<2> &,

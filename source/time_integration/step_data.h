@@ -21,6 +21,12 @@ namespace nsfd
   OneStepProblem<dim> constant_data(const SceneInput &input,
                                     const Discretization<dim> &discretization);
 
+  /** Of it what points have by themselves; the other lists are empty. */
+  template <int dim>
+  OneStepProblem<dim>
+  point_constants(const SceneInput &input,
+                  const Discretization<dim> &discretization);
+
   /**
    * The data of the step from @p old over @p time_step, all but the free
    * velocity: kinds of points, forecast and targets of contact, prescribed

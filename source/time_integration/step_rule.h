@@ -23,7 +23,7 @@ namespace nsfd
     const State &state;
   };
 
-  /** A solved step that is to be taken again. */
+  /** A solved step that is to be repeated. */
   struct ShorterStep {
     double length = 0.;  ///< s, at most
     bool to_end = false; ///< all steps up to the end of the present one
@@ -53,7 +53,7 @@ namespace nsfd
       return std::nullopt;
     }
 
-    /** Where the solved step to @p next is to be taken again. Collective. */
+    /** Where the solved step to @p next is to be repeated. Collective. */
     virtual std::optional<ShorterStep> repeat(const PresentStep &view,
                                               const StepReport &report,
                                               const State &next) const = 0;

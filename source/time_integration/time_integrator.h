@@ -108,7 +108,7 @@ namespace nsfd
      * What its first step starts from where the scene, or the integrator before
      * it, gives @p given. Collective. Errors raised: StepRejected.
      */
-    virtual State start_from(const State &given) { return given; }
+    virtual State start_from(State given) { return given; }
     /** Goes on from a stored @p state, before serialize(). Collective. */
     virtual void resume_from(const State &state) { (void)state; }
     /** False if all that it does is start_from(). */

@@ -218,7 +218,8 @@ end
         write_text(file, ramp(dimension, mode, GetParam().entries));
         // in 2D per metre of depth
         const double area = dimension == 2 ? 0.01 : 1e-4;
-        // no energy balance: all energies are round-off until the face lets go
+        // no energy balance: all energies are round-off until the face is
+        // activated
         const Result result = run(workspace, "ramp", {file});
         ASSERT_TRUE(result.completed()) << result.description();
         EXPECT_LE(result.number("residual_max"), 1e-11);

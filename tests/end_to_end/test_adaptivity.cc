@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-// Meshes that follow the motion: orders on hanging faces, energy balance,
-// ranks.
+// Meshes that follow the motion: orders on non-conforming faces, energy
+// balance, ranks.
 
 namespace end_to_end::test_adaptivity
 {

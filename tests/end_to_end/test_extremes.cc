@@ -304,8 +304,8 @@ end
     }
   }
 
-  // An extrinsic face lets go in a step far above its bound, which nothing
-  // announces: with `step = auto` that step is taken again in shorter ones.
+  // An extrinsic face is activated in a step far above its bound, which nothing
+  // announces: with `step = auto` that step is repeated in shorter ones.
   TEST(Extremes, AutomaticStepsAreRedoneWhereAFaceLetsGo)
   {
     const Workspace workspace;

@@ -114,6 +114,9 @@ end
           "Interface: all/crack pressure=20 MPa * (1 + x / 10 um)"}},
         {"dcb_dynamic", {"Constants/fine=2", "Time/end=1"}, true},
         {"rigid_punch", {"Time/end=15 us"}, true},
+        // materials, faces and ends are groups of a file
+        {"notched_plate", {"Time/end=3 us"}, true},
+        {"notched_plate_3d", {"Time/end=0.5 us"}, true},
     };
 
     class JoinedRanksTest : public testing::TestWithParam<JoinedRow>
@@ -126,8 +129,9 @@ end
     const JoinedRow &row = GetParam();
     const Workspace workspace;
     const auto file = !row.is_scene ? workspace.path() / "square.prm"
-                      : row.name == "rigid_punch" ? benchmark(row.name)
-                                                  : scene(row.name);
+                      : std::filesystem::exists(scene(row.name))
+                          ? scene(row.name)
+                          : benchmark(row.name);
     if (!row.is_scene)
       write_text(file, square);
     std::vector<std::string> set = {"Time/scheme=explicit", "Time/step=auto"};

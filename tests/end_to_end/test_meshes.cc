@@ -112,7 +112,7 @@ namespace end_to_end::test_meshes
   }
 
   // The elastic energy of an open crack is not known exactly here; that the
-  // lips part, and only there, is.
+  // crack faces part, and only there, is.
   TEST(Meshes, CrackByGroupIsOpen)
   {
     for (const char *file : {"plate_41_ascii.msh", "plate_quads.msh"}) {

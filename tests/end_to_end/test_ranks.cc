@@ -165,8 +165,8 @@ namespace end_to_end::test_ranks
                  energy_difference(one.history, two.history), 1e-9);
   }
 
-  // Bonded faces let go on one rank while nothing changes on the other: both
-  // must make the new factor. A rank that waits for ever is ended.
+  // Bonded faces are released on one rank while nothing changes on the other:
+  // both must make the new factor. A rank that waits for ever is ended.
   TEST(Ranks, BondsThatBreakOnOneRankAgree)
   {
     const Workspace workspace;

@@ -352,7 +352,7 @@ namespace end_to_end::test_restart
                      20),
                  former = storing(
                      with(midplane,
-                          {"Time/step=0.6 crossings", "Time/maximum halvings=5",
+                          {"Time/step=0.6 courant", "Time/maximum halvings=5",
                            "Solver/method=chain", "Solver/path=element-wise"}),
                      20);
     const Result whole = good_run(workspace, "whole", now);

@@ -4,6 +4,8 @@
 #include "mesh/mesh_builder.h"
 #include "mesh/named_mesh.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -62,9 +64,10 @@ namespace nsfd
       {
         double sum = 0.;
         for (const auto &cell : triangulation->active_cell_iterators())
-          if (groups->holds_cell(where(group), cell))
+          if (cell->is_locally_owned() &&
+              groups->holds_cell(where(group), cell))
             sum += cell->measure();
-        return sum;
+        return of_all_ranks(sum);
       }
 
       double boundary_area(const std::string &group) const
@@ -72,9 +75,10 @@ namespace nsfd
         double sum = 0.;
         for (const auto &cell : triangulation->active_cell_iterators())
           for (const unsigned int f : cell->face_indices())
-            if (groups->holds_boundary_face(where(group), cell, f))
+            if (cell->is_locally_owned() &&
+                groups->holds_boundary_face(where(group), cell, f))
               sum += cell->face(f)->measure();
-        return sum;
+        return of_all_ranks(sum);
       }
 
       double inner_area(const Where &where) const
@@ -83,19 +87,24 @@ namespace nsfd
         for (const auto &cell : triangulation->active_cell_iterators())
           for (const unsigned int f : cell->face_indices()) {
             const auto face = cell->face(f);
-            if (face->at_boundary() || cell->neighbor(f) < cell)
-              continue;
+            if (!cell->is_locally_owned() || face->at_boundary())
+              continue; // half of a face for each of its cells
             if (groups->holds_interior_face(
                     where, face->center(), "", "",
                     {{cell->material_id(), cell->neighbor(f)->material_id()}},
                     face->manifold_id()))
-              sum += face->measure();
+              sum += face->measure() / 2.;
           }
-        return sum;
+        return of_all_ranks(sum);
       }
       double inner_area(const std::string &group) const
       {
         return inner_area(where(group));
+      }
+
+      static double of_all_ranks(const double sum)
+      {
+        return dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
       }
 
       static Where where(const std::string &group)

@@ -7,7 +7,7 @@
 
 #include <numeric>
 
-// Stars of cells parted by faces that carry a law: random groups, loads and
+// Stars of cells separated by faces that carry a law: random groups, loads and
 // histories, and the steps of a leapfrog on them.
 
 namespace node_test

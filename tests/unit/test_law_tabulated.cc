@@ -1,5 +1,7 @@
 #include "law_checks.h"
 
+#include "material_point/drive_point.h"
+
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -222,5 +224,18 @@ namespace test_law_tabulated
                  "`no/such.csv` cannot be read");
     expect_error("tabulated", {{"curve", "."}}, "is a folder");
     expect_error("tabulated", {}, "needs `curve` or `points`");
+  }
+
+  // A path to 3 um has a step to each kink of the law.
+  TEST(LawTabulated, KinksAreStepsOfTheirOwn)
+  {
+    const auto law = tabulated("0, 3 MPa\n0.7 um, 1 MPa\n2 um, 0\n");
+    const auto path = with_kinks({{0., {}}, {1., {3e-6, 0., 0.}}}, *law);
+    const double expected[] = {0., 0.7e-6, 2e-6, 3e-6};
+    ASSERT_EQ(path.size(), 4u);
+    for (unsigned int i = 0; i < 4; ++i) {
+      EXPECT_NEAR(path[i].at.opening, expected[i], 1e-21);
+      EXPECT_NEAR(path[i].path, expected[i] / 3e-6, 1e-15);
+    }
   }
 } // namespace test_law_tabulated

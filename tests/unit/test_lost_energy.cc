@@ -96,7 +96,7 @@ end
           separated = separated && scene.state.beta[i] == 0.;
     }
     EXPECT_GE(e.impact, -1e-10);
-    EXPECT_NEAR(e.damage, 0.2, 1e-12) << "booked as damage";
+    EXPECT_NEAR(e.damage, 0.2, 1e-12) << "counted as damage";
     return (scene.state.initial_energy + e.work - e.kinetic - e.elastic -
             e.impact) /
            0.2;
@@ -108,8 +108,8 @@ end
       for (const std::string step : {"5", "1", "0.25", "0.05"}) {
         SCOPED_TRACE(law + ", step " + step);
         // Energies up to 200 G, solved to 1e-12. At Courant number 5 a
-        // softening step may have several solutions and be redone shorter: the
-        // work of those that are kept is the same.
+        // softening step may have several solutions and be repeated shorter:
+        // the work of those that are kept is the same.
         EXPECT_NEAR(removed_energy(law, "exact", step), 1., 1e-9);
       }
   }

@@ -1,5 +1,7 @@
 #include "mesh_checks.h"
 
+#include "mesh/owned_cells.h"
+
 namespace mesh_checks::test_mesh
 {
   TEST(Mesh, RectangleAndBrick)
@@ -38,6 +40,26 @@ namespace mesh_checks::test_mesh
     mesh = cells_of_side_one("tetrahedra", 3, 1);
     mesh.refinements = 1;
     EXPECT_EQ(report<3>(mesh).n_cells, 6 * 8u);
+  }
+
+  // A rank has its part and what is around it; some have none.
+  TEST(Mesh, SimplicesAreSpreadOverTheRanks)
+  {
+    const unsigned int n_ranks =
+        Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    const auto tetrahedra = build<3>(
+        scene_of(box("tetrahedra", {0., 0., 0.}, {8., 1., 1.}, {16, 2, 2})));
+    const auto n_own = owned_cells(*tetrahedra).size();
+    const unsigned int n_all = 6 * 64;
+    EXPECT_EQ(Utilities::MPI::sum(unsigned(n_own), MPI_COMM_WORLD), n_all);
+    EXPECT_LE(n_own, 1.1 * n_all / n_ranks);
+    // a layer of two cubes at each end
+    EXPECT_LE(tetrahedra->n_active_cells(), n_own + 2 * 2 * 6 * 4 * 1.5);
+    const auto two =
+        build<2>(scene_of(cells_of_side_one("diagonal triangles", 2, 1)));
+    EXPECT_EQ(
+        Utilities::MPI::sum(unsigned(owned_cells(*two).size()), MPI_COMM_WORLD),
+        2u);
   }
 
   // E-Z: l = 2 sqrt2 L p^2 + 2 p (p-1) L on 4 p^2 triangles

@@ -169,7 +169,7 @@ namespace node_test::test_node_solver
                   work += run.impulses[k] * change / (2. * run.h);
                   size += std::abs(run.impulses[k] * change) / (2. * run.h);
                 }
-                // over both steps, of which half is booked in each
+                // over both steps, of which half counts in each
                 const double kept =
                     run.problem.weight[i] *
                     (e.stored - e.stored_old + e.damage + e.viscous);

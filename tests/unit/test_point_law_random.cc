@@ -309,8 +309,8 @@ namespace point_law_test::test_point_law_random
   TEST(PointLaw, FrictionHoldsARigidPoint)
   {
     // kappa = 1: friction carries mu p_N of the shear from the start, so that
-    // the point lets go at a R_max + mu p_N; with kappa = (1 - beta)^s it does
-    // so at a R_max. Compression does not count against the strength.
+    // the point is activated at a R_max + mu p_N; with kappa = (1 - beta)^s it
+    // does so at a R_max. Compression does not count against the strength.
     const double p = 7., mu = 0.5, R_max = 2.;
     for (const double exponent : {0., 1., 2.}) {
       const double limit = R_max + (exponent == 0. ? mu * p : 0.);

@@ -237,8 +237,8 @@ subsection Time
 end
 )";
 
-    // a law everywhere: each grip is one body, and its border lets go by the
-    // traction of the strip
+    // a law everywhere: each grip is one body, and its border is released by
+    // the traction of the strip
     TEST(RigidGroups, GripsPullAndTurn)
     {
       Steps<2> run(grips);

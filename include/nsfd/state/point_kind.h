@@ -16,6 +16,13 @@ namespace nsfd
     separated   ///< broken, its crack faces are left to the search for contacts
   };
 
+  /** Its two sides are one body: there is no jump, or none that changes. */
+  inline bool is_joined(const PointKind kind)
+  {
+    return kind == PointKind::bonded || kind == PointKind::rigid ||
+           kind == PointKind::prescribed;
+  }
+
   /** Not what carries through the bulk or through other points. */
   inline bool has_impulse(const PointKind kind)
   {

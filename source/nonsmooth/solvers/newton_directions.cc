@@ -209,7 +209,7 @@ namespace nsfd
    * GMRES for (I - J (W + shift R - R)) dP = -Phi, preconditioned from the
    * right. Faces that stick all around an edge make W singular, and the
    * system without a shift may have no solution; with a shift, impulses move
-   * along the null space until one of these faces lets go.
+   * along the null space until one of these faces is released.
    */
   template <int dim>
   void DualNewton<dim>::coupled_direction(const Work &work,
