@@ -2,7 +2,7 @@
 
 #include "bond_release.h"
 
-#include "bodies/fragments.h"
+#include "joined/connected_cells.h"
 
 #include <algorithm>
 #include <utility>
@@ -26,14 +26,13 @@ namespace nsfd
   template <int dim>
   double StaticBonds<dim>::cells_of_smallest_body() const
   {
-    State bonds = iterate_.at; // as if nothing else held
-    for (PointKind &kind : bonds.kind)
-      if (kind != PointKind::bonded)
-        kind = PointKind::free;
-    Fragments<dim> bodies(discretization_, bonded_.communicator());
-    bodies.update(bonds);
+    ConnectedCells<dim> bodies(discretization_, bonded_.communicator());
+    bodies.connect([this](const typename InterfacePoints<dim>::Face &face) {
+      return face.count > 0 &&
+             iterate_.at.kind[face.first] == PointKind::bonded;
+    });
     std::vector<double> cells(bodies.count(), 0.);
-    for (const unsigned int body : bodies.number_bodies())
+    for (const unsigned int body : bodies.numbers())
       ++cells[body];
     MPI_Allreduce(MPI_IN_PLACE, cells.data(), int(cells.size()), MPI_DOUBLE,
                   MPI_SUM, bonded_.communicator().mpi());
