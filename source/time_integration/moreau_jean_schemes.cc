@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace nsfd
@@ -101,8 +102,11 @@ namespace nsfd
           "the velocity that friction opposes: that of the end of the step "
           "(velocity), the mean (increment), or that of the end but for points "
           "where friction would then give energy (energy safe)");
-      time.maximum_bisections = reader.integer(
-          "maximum bisections", "10", 0, 60, "of a step that is rejected");
+      time.maximum_bisections =
+          reader.integer("maximum bisections", "10", 0, 60,
+                         "of a step that is rejected; a solution jump that "
+                         "relaxes is found to "
+                         "a 32nd of the load step unless they are given");
       for (const auto &rule : all_step_rules())
         rule->read(reader, scene);
     }
@@ -243,6 +247,8 @@ namespace nsfd
       statics.at_jump = at_jump == "dynamic" ? SolutionJump::dynamic
                         : at_jump == "relax" ? SolutionJump::relax
                                              : SolutionJump::stop;
+      if (reader.has("maximum bisections"))
+        statics.jump_bisections = std::numeric_limits<unsigned int>::max();
       if (scene.may_move())
         read_step(reader, "dynamic step", time);
       else {

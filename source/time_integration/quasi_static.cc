@@ -30,10 +30,9 @@ namespace nsfd
   StepReport QuasiStatic<dim>::take_step(const State &old,
                                          const StepRequest &step, State &next)
   {
-    // A jump that is to be followed is found to a 32nd of the load step.
-    constexpr unsigned int close = 5;
-    const bool may_relax = statics_.at_jump == SolutionJump::relax &&
-                           (step.bisections >= close || !step.can_be_shorter);
+    const bool may_relax =
+        statics_.at_jump == SolutionJump::relax &&
+        (step.bisections >= statics_.jump_bisections || !step.can_be_shorter);
     EquilibriumReport equilibrium;
     std::string what;
     bool found = true;

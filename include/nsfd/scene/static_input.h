@@ -15,6 +15,8 @@ namespace nsfd
     double until = 0.;  ///< s, end of the quasi-static steps
     double step = 0.;   ///< s, of the load
     SolutionJump at_jump = SolutionJump::stop;
+    /// of a load step before it relaxes: it is found to a 32nd of the step
+    unsigned int jump_bisections = 5;
     double tolerance = 1e-11; ///< unbalanced force, relative to those present
   };
 } // namespace nsfd
