@@ -1,4 +1,6 @@
 #include "joined_bodies.h"
+#include "joined_from_rest.h"
+#include "node_values.h"
 
 #include "linear_algebra/positive_part.h"
 #include "sparse_assembly.h"
@@ -13,17 +15,6 @@
 
 namespace nsfd
 {
-  namespace
-  {
-    void take(const std::vector<int> &places, const double *x,
-              std::vector<double> &values)
-    {
-      values.resize(places.size());
-      for (std::size_t k = 0; k < values.size(); ++k)
-        values[k] = x[places[k]];
-    }
-  } // namespace
-
   template <int dim>
   JoinedBodies<dim>::JoinedBodies(const Communicator &communicator,
                                   const Bodies &bodies,
@@ -47,6 +38,7 @@ namespace nsfd
     conforming_ = std::make_unique<ConformingSpace>(
         communicator, dim, nodes.unknowns(), nodes.node_pairs(),
         share_nodes ? nodes.node_ties() : NodeTies());
+    this->from_rest_ = std::make_unique<JoinedFromRest<dim>>(*this);
     JoinedBodies::bonds_changed();
   }
 
@@ -155,51 +147,33 @@ namespace nsfd
     return tangent_.factor(assemble(springs), springs);
   }
 
-  /** From rows_ to columns_ with any T, preconditioned by the springs that were
-      factored. */
+  /**
+   * From rows_ to columns_ with any T, preconditioned by the springs that were
+   * factored; the positive part of what is not symmetric.
+   */
   template <int dim>
   bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
+                                        const bool symmetric,
                                         const double tolerance)
-  {
-    const Charge charge(Cost::precondition);
-    matrix_->set_step(this->shares(this->time_step_, this->theta_));
-    if (tangent_.is_of(T))
-      tangent_.solver().set_product(nullptr);
-    else
-      tangent_.solver().set_product(
-          [this, &T](const std::vector<double> &x, std::vector<double> &y) {
-            matrix_->apply_step(T.data(), x, y);
-          });
-    return solve(tangent_.solver(), tolerance);
-  }
-
-  /** The same; the positive part preconditions what is not symmetric. */
-  template <int dim>
-  bool JoinedBodies<dim>::solve_by_tangent(const std::vector<double> &T,
-                                           const bool symmetric,
-                                           const double tolerance)
   {
     std::vector<double> positive = T;
     for (std::size_t k = 0; k < T.size() && !symmetric; k += dim * dim)
       take_positive_part<dim>(&positive[k]);
-    return (tangent_.may_keep(positive) && solve_tangent(T, tolerance)) ||
-           (factor_tangent(positive) && solve_tangent(T, tolerance));
+    const auto solved = [&] {
+      const Charge charge(Cost::precondition);
+      matrix_->set_step(this->shares(this->time_step_, this->theta_));
+      if (tangent_.is_of(T))
+        tangent_.solver().set_product(nullptr);
+      else
+        tangent_.solver().set_product(
+            [this, &T](const std::vector<double> &x, std::vector<double> &y) {
+              matrix_->apply_step(T.data(), x, y);
+            });
+      return solve(tangent_.solver(), tolerance);
+    };
+    return (tangent_.may_keep(positive) && solved()) ||
+           (factor_tangent(positive) && solved());
   }
-
-  namespace
-  {
-    /** dP = c - T dU. */
-    template <int dim>
-    void
-    answer_of_points(const std::vector<double> &T, const std::vector<double> &c,
-                     const std::vector<double> &dU, std::vector<double> &dP)
-    {
-      dP = c;
-      for (std::size_t k = 0; k < c.size(); ++k)
-        for (unsigned int e = 0; e < dim; ++e)
-          dP[k] -= T[k * dim + e] * dU[k / dim * dim + e];
-    }
-  } // namespace
 
   template <int dim>
   bool JoinedBodies<dim>::solve_linearised(const std::vector<double> &T,
@@ -222,83 +196,11 @@ namespace nsfd
       if (all > 0.)
         tolerance = std::max(tight, share * norm(columns_) / all);
     }
-    if (!solve_by_tangent(T, symmetric, tolerance))
+    if (!solve_tangent(T, symmetric, tolerance))
       return false;
     matrix_->velocity(columns_, dU.data());
     answer_of_points<dim>(T, c, dU, dP);
     return true;
-  }
-
-  template <int dim>
-  void
-  JoinedBodies<dim>::start_from_rest(const double h,
-                                     const std::vector<double> &momentum,
-                                     const std::vector<double> &impulse,
-                                     const std::vector<double> &displacement)
-  {
-    rest_.any = true;
-    factor_.restrict_to_space(momentum, rest_.momentum);
-    rest_.v.assign(rest_.momentum.size(), 0.);
-    rest_.dv = rest_.v;
-    if (!impulse.empty()) {
-      matrix_->impulse(impulse.data(), rows_);
-      for (std::size_t k = 0; k < rows_.size(); ++k)
-        rest_.momentum[k] += rows_[k];
-    }
-    take(representative_, displacement.data(), rows_);
-    matrix_->apply(Operator::stiffness, rows_, columns_);
-    for (std::size_t k = 0; k < columns_.size(); ++k)
-      rest_.momentum[k] -= h * columns_[k];
-  }
-
-  template <int dim>
-  bool JoinedBodies<dim>::solve_from_rest(
-      const std::vector<double> &T, const bool symmetric,
-      const std::vector<double> &P, const std::vector<double> &c,
-      const double tolerance, std::vector<double> &dP, std::vector<double> &dU)
-  {
-    matrix_->set_step(this->shares(this->time_step_, this->theta_));
-    std::vector<double> all = P;
-    for (std::size_t k = 0; k < all.size(); ++k)
-      all[k] += c[k];
-    matrix_->apply_step(nullptr, rest_.v, columns_);
-    matrix_->impulse(all.data(), rows_);
-    for (std::size_t k = 0; k < rows_.size(); ++k)
-      rows_[k] += rest_.momentum[k] - columns_[k];
-    if (!solve_by_tangent(T, symmetric, std::max(tight, tolerance)))
-      return false;
-    rest_.dv = columns_;
-    dU.resize(c.size());
-    matrix_->velocity(columns_, dU.data());
-    answer_of_points<dim>(T, c, dU, dP);
-    return true;
-  }
-
-  template <int dim>
-  void JoinedBodies<dim>::move(const double length, std::vector<double> &U)
-  {
-    for (std::size_t k = 0; k < rest_.v.size(); ++k)
-      rest_.v[k] += length * rest_.dv[k];
-    matrix_->velocity(rest_.v, U.data());
-  }
-
-  template <int dim>
-  void JoinedBodies<dim>::finish_from_rest(const std::vector<double> &P,
-                                           std::vector<double> &velocity,
-                                           std::vector<double> &left)
-  {
-    velocity.assign(this->bodies_.n_dofs(), 0.);
-    left.assign(velocity.size(), 0.);
-    factor_.add(rest_.v, velocity.data());
-    matrix_->set_step(this->shares(this->time_step_, this->theta_));
-    std::vector<double> inertia;
-    matrix_->apply(Operator::mass, rest_.v, inertia);
-    matrix_->apply_step(nullptr, rest_.v, columns_);
-    matrix_->impulse(P.data(), rows_);
-    for (std::size_t k = 0; k < rows_.size(); ++k)
-      rows_[k] += rest_.momentum[k] - columns_[k] + inertia[k];
-    spread(rows_, left.data());
-    rest_.any = false;
   }
 
   template <int dim>
@@ -335,7 +237,7 @@ namespace nsfd
     // a step that was resumed has none of the step before: what is counted,
     // and with that when W is condensed, would differ
     last_.rows.clear();
-    rest_.any = false;
+    this->from_rest_->cancel();
     DelassusOperator<dim>::reinit(time_step, theta);
   }
 
@@ -394,17 +296,7 @@ namespace nsfd
     }
     take(representative_, x, rows_);
     matrix_->apply(op, rows_, columns_);
-    spread(columns_, y);
-  }
-
-  /** All of a node at one of its unknowns. */
-  template <int dim>
-  void JoinedBodies<dim>::spread(const std::vector<double> &own,
-                                 double *y) const
-  {
-    std::fill(y, y + this->bodies_.n_dofs(), 0.);
-    for (std::size_t k = 0; k < own.size(); ++k)
-      y[representative_[k]] = own[k];
+    spread(representative_, columns_, this->bodies_.n_dofs(), y);
   }
 
   template <int dim>

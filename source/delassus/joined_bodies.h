@@ -12,6 +12,9 @@
 
 namespace nsfd
 {
+  template <int dim>
+  class JoinedFromRest;
+
   /**
    * Implicit bodies that share nodes: W = H P (P^T M_hat P)^-1 P^T H^T, P the
    * motions of the bodies that the space of the nodes allows.
@@ -44,21 +47,6 @@ namespace nsfd
                           std::vector<double> &dU,
                           const std::vector<double> *defect,
                           double share) override;
-    void start_from_rest(double h, const std::vector<double> &momentum,
-                         const std::vector<double> &impulse,
-                         const std::vector<double> &displacement) override;
-    bool starts_from_rest() const override { return rest_.any; }
-    bool solve_from_rest(const std::vector<double> &T, bool symmetric,
-                         const std::vector<double> &P,
-                         const std::vector<double> &c, double tolerance,
-                         std::vector<double> &dP,
-                         std::vector<double> &dU) override;
-    void move(double length, std::vector<double> &U) override;
-    const std::vector<double> &motion() const override { return rest_.v; }
-    void set_motion(const std::vector<double> &v) override { rest_.v = v; }
-    void finish_from_rest(const std::vector<double> &P,
-                          std::vector<double> &velocity,
-                          std::vector<double> &left) override;
     bool join_motion(std::vector<double> &x) override;
     std::vector<std::uint8_t>
     once_per_node(const std::vector<std::uint8_t> &masks) override;
@@ -84,11 +72,10 @@ namespace nsfd
     mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
 
   private:
+    friend JoinedFromRest<dim>;
     bool factor_tangent(const std::vector<double> &springs);
-    bool solve_tangent(const std::vector<double> &T, double tolerance);
-    bool solve_by_tangent(const std::vector<double> &T, bool symmetric,
-                          double tolerance);
-    void spread(const std::vector<double> &own, double *y) const;
+    bool solve_tangent(const std::vector<double> &T, bool symmetric,
+                       double tolerance);
     std::vector<char> joined_by(const std::vector<std::uint8_t> &bonded) const;
     bool solve(ConformingSolver &solver, double tolerance = tight) const;
     void answer() const;
@@ -106,11 +93,5 @@ namespace nsfd
     struct {
       std::vector<double> rows, columns;
     } mutable last_; ///< system that was solved with factor_; empty: none
-    /// of a step from rest, own values of the space: h (F - K q) and what acts
-    /// besides, v and dv
-    struct {
-      bool any = false;
-      std::vector<double> momentum, v, dv;
-    } rest_;
   };
 } // namespace nsfd

@@ -49,7 +49,7 @@ namespace nsfd
     std::vector<double> momentum = loads;
     for (double &p : momentum)
       p *= h;
-    nodes_.start_from_rest(h, momentum, impulse, displacement);
+    nodes_.from_rest().start(h, momentum, impulse, displacement);
   }
 
   template <int dim>
@@ -58,7 +58,7 @@ namespace nsfd
                                           std::vector<double> &velocity,
                                           std::vector<double> &left)
   {
-    nodes_.finish_from_rest(impulse, velocity, left);
+    nodes_.from_rest().finish(impulse, velocity, left);
     for (double &p : left)
       p /= h;
   }

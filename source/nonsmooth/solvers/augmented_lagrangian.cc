@@ -289,7 +289,7 @@ namespace nsfd
         best = impulse_;
         best_velocity = velocity_;
         if (from_rest_)
-          best_motion = work.bodies.motion();
+          best_motion = work.bodies.from_rest().motion();
       }
       const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
       before = {error, before[0]};
@@ -310,7 +310,7 @@ namespace nsfd
       for (std::size_t k = 0; k < impulse_.size(); ++k)
         impulse_[k] += dP_[k];
       if (from_rest_)
-        work.bodies.move(1., velocity_);
+        work.bodies.from_rest().move(1., velocity_);
       else
         set_velocity(work);
     }
@@ -319,7 +319,7 @@ namespace nsfd
     impulse_.swap(best);
     velocity_.swap(best_velocity);
     if (from_rest_)
-      work.bodies.set_motion(best_motion);
+      work.bodies.from_rest().set_motion(best_motion);
     return false;
   }
 
@@ -328,12 +328,13 @@ namespace nsfd
   bool AugmentedLagrangian<dim>::solve(const Work &work, const bool symmetric,
                                        const double share)
   {
-    return from_rest_ ? work.bodies.solve_from_rest(tangents_, symmetric,
-                                                    impulse_, right_side_,
-                                                    0.01 * tolerance_, dP_, dU_)
-                      : work.bodies.solve_linearised(
-                            tangents_, symmetric, right_side_, dP_, dU_,
-                            share > 0. ? &defect_ : nullptr, share);
+    return from_rest_
+               ? work.bodies.from_rest().solve(tangents_, symmetric, impulse_,
+                                               right_side_, 0.01 * tolerance_,
+                                               dP_, dU_)
+               : work.bodies.solve_linearised(
+                     tangents_, symmetric, right_side_, dP_, dU_,
+                     share > 0. ? &defect_ : nullptr, share);
   }
 
   /** Downhill; false where there is no such system. Collective. */
@@ -386,7 +387,7 @@ namespace nsfd
       (value < 0. ? at_low : at_high) = value;
     }
     if (from_rest_)
-      work.bodies.move(length, velocity_);
+      work.bodies.from_rest().move(length, velocity_);
     else
       velocity_.swap(moved_);
     for (std::size_t k = 0; k < impulse_.size(); ++k)
@@ -405,7 +406,7 @@ namespace nsfd
                     evaluation, report};
     const double tolerance = control.tolerance;
     tolerance_ = tolerance;
-    from_rest_ = work.bodies.starts_from_rest();
+    from_rest_ = work.bodies.from_rest().is_on();
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
     double share = first_share;

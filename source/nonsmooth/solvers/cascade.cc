@@ -114,7 +114,7 @@ namespace nsfd
                                             control, impulse, evaluation);
         // others know no motion of nodes
         if (report.converged ||
-            dynamic_cast<VelocitySolver &>(delassus).starts_from_rest())
+            dynamic_cast<VelocitySolver &>(delassus).from_rest().is_on())
           return report;
         const std::vector<double> best(impulse);
         const double error = evaluation.error;

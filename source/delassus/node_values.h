@@ -1,0 +1,38 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace nsfd
+{
+  /** @p x at @p places, one unknown for each node. */
+  inline void take(const std::vector<int> &places, const double *x,
+                   std::vector<double> &values)
+  {
+    values.resize(places.size());
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = x[places[k]];
+  }
+
+  /** All of a node at its one unknown, of @p n of them. */
+  inline void spread(const std::vector<int> &places,
+                     const std::vector<double> &values, const std::size_t n,
+                     double *x)
+  {
+    std::fill(x, x + n, 0.);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      x[places[k]] = values[k];
+  }
+
+  /** dP = c - T dU, T a block of dim x dim per point. */
+  template <int dim>
+  void answer_of_points(const std::vector<double> &T,
+                        const std::vector<double> &c,
+                        const std::vector<double> &dU, std::vector<double> &dP)
+  {
+    dP = c;
+    for (std::size_t k = 0; k < c.size(); ++k)
+      for (unsigned int e = 0; e < dim; ++e)
+        dP[k] -= T[k * dim + e] * dU[k / dim * dim + e];
+  }
+} // namespace nsfd
