@@ -247,13 +247,13 @@ namespace nsfd
     const auto &communicator = delassus_.communicator();
     auto &problem = problem_;
     std::vector<char> fresh(problem.n_points, 0);
+    std::vector<unsigned int> springs = interaction_;
+    springs.swap(problem.interaction); // of the laws
     let_joints_go(fresh);
     largest_growth =
         std::any_of(fresh.begin(), fresh.end(), [](const char f) { return f; })
             ? std::numeric_limits<double>::max()
             : 0.;
-    std::vector<unsigned int> springs = interaction_;
-    springs.swap(problem.interaction);
     for (std::size_t i = 0; i < problem.n_points; ++i) {
       if (iterate_.at.kind[i] != PointKind::cohesive || fresh[i] ||
           (iterate_.old->kind[i] != PointKind::cohesive &&
