@@ -435,9 +435,9 @@ namespace nsfd
 
     /**
      * In a scene with equilibria an intact body is one body of finite elements
-     * with common nodes, whatever word joins its cells; rigid cells and cells
-     * of two sizes have none, interior points need the matrices of cells, and
-     * path = local asks for them.
+     * with common nodes, whatever word joins its cells, or else of rigid
+     * joints: rigid cells and cells of two sizes have no such nodes, interior
+     * points need the matrices of cells, and path = local asks for them.
      */
     bool may_share_nodes(const SceneInput &scene, const ParameterFile &file)
     {
@@ -446,8 +446,7 @@ namespace nsfd
         const ParameterEntry *found = solver ? solver->find(entry) : nullptr;
         return found && found->value.text() == value;
       };
-      return scene.statics && scene.time.scheme.theta_scheme &&
-             !scene.iterates() && !file.find("Adaptivity") &&
+      return !file.find("Adaptivity") &&
              !asks_for("method", "interior point") &&
              !asks_for("path", "local") &&
              std::none_of(
@@ -467,13 +466,16 @@ namespace nsfd
     if (scene.has_bonded_faces() && scene.time.scheme.theta_scheme)
       for (std::size_t b = 0; b < blocks.size(); ++b)
         share_nodes(*blocks[b], scene.interfaces[b]);
-    if (may_share_nodes(scene, file))
+    if (scene.statics && scene.time.scheme.theta_scheme && !scene.iterates()) {
+      const bool shares = may_share_nodes(scene, file);
       for (InterfaceInput &interface : scene.interfaces)
-        if (interface.intact == IntactFaces::rigid) {
-          interface.intact = IntactFaces::bonded;
+        if (interface.intact ==
+            (shares ? IntactFaces::rigid : IntactFaces::bonded)) {
+          interface.intact = shares ? IntactFaces::bonded : IntactFaces::rigid;
           if (!interface.law)
-            interface.law_name = "bonded";
+            interface.law_name = shares ? "bonded" : "rigid";
         }
+    }
     if (scene.interfaces.empty())
       errors.error(file.location(),
                    "no Interface block says what holds the faces together",
