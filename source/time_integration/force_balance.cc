@@ -86,12 +86,12 @@ namespace nsfd
 
   template <int dim>
   void ForceBalance<dim>::measure(const std::vector<double> &q,
-                                  std::vector<double> left_over,
+                                  std::vector<double> residual,
                                   const std::vector<double> &force)
   {
     const auto &communicator = delassus_.communicator();
     const std::size_t n = q.size();
-    residual_ = std::move(left_over);
+    residual_ = std::move(residual);
     const double left =
         std::sqrt(communicator.dot(residual_.data(), residual_.data(), n));
     const double present =

@@ -32,9 +32,8 @@ namespace nsfd
                const std::vector<double> &support, std::size_t n_owned,
                double largest, double tolerance);
 
-    /** After a round to @p q that leaves over the forces @p left. Collective.
-     */
-    void measure(const std::vector<double> &q, std::vector<double> left,
+    /** After a round to @p q that leaves over @p residual. Collective. */
+    void measure(const std::vector<double> &q, std::vector<double> residual,
                  const std::vector<double> &force);
     /** M v/h, which the forces leave over in a step of @p h. Collective. */
     std::vector<double> left_over(double h,

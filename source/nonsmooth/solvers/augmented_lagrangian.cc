@@ -269,7 +269,7 @@ namespace nsfd
    * the problem.
    */
   template <int dim>
-  bool AugmentedLagrangian<dim>::jump(const Work &work, const double tolerance)
+  bool AugmentedLagrangian<dim>::jump(const Work &work)
   {
     constexpr double none = std::numeric_limits<double>::infinity();
     Vector best = impulse_, best_velocity = velocity_, best_motion;
@@ -283,7 +283,7 @@ namespace nsfd
       // a start from rest balances from its first step on
       const bool balances = !from_rest_ || work.report.newton > 0;
       if (balances &&
-          error <= (work.report.newton == 0 ? untouched : 1.) * tolerance)
+          error <= (work.report.newton == 0 ? untouched : 1.) * work.tolerance)
         return true;
       idle = error < 0.5 * least ? 0 : idle + 1;
       if (balances && error < least) {
@@ -307,7 +307,7 @@ namespace nsfd
       // as far as a step of Newton's method is right; what is left at its end
       // would go on into later steps
       const double share = std::min(1e-2, 0.1 * error);
-      if (!solve(work, symmetric, share))
+      if (!solve_system(work, symmetric, share))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k)
         impulse_[k] += dP_[k];
@@ -327,13 +327,14 @@ namespace nsfd
 
   /** dP and dU of the tangents, see VelocitySolver. Collective. */
   template <int dim>
-  bool AugmentedLagrangian<dim>::solve(const Work &work, const bool symmetric,
-                                       const double share)
+  bool AugmentedLagrangian<dim>::solve_system(const Work &work,
+                                              const bool symmetric,
+                                              const double share)
   {
     return from_rest_
                ? work.bodies.from_rest().solve(tangents_, symmetric, impulse_,
-                                               right_side_, 0.01 * tolerance_,
-                                               dP_, dU_)
+                                               right_side_,
+                                               0.01 * work.tolerance, dP_, dU_)
                : work.bodies.solve_linearised(
                      tangents_, symmetric, right_side_, dP_, dU_,
                      share > 0. ? &defect_ : nullptr, share);
@@ -346,7 +347,7 @@ namespace nsfd
     ++work.report.newton;
     set_right_side(work);
     const auto solved = [&](const bool symmetric) {
-      return solve(work, symmetric, 0.) && slope(work, 0.) <= 0.;
+      return solve_system(work, symmetric, 0.) && slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);
     if (symmetric)
@@ -404,10 +405,10 @@ namespace nsfd
                                   LawEvaluation<dim> &evaluation)
   {
     SolverReport report;
-    const Work work{problem, delassus, dynamic_cast<VelocitySolver &>(delassus),
-                    evaluation, report};
     const double tolerance = control.tolerance;
-    tolerance_ = tolerance;
+    const Work work{
+        problem,    delassus,  dynamic_cast<VelocitySolver &>(delassus),
+        evaluation, tolerance, report};
     from_rest_ = work.bodies.from_rest().is_on();
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
@@ -424,7 +425,7 @@ namespace nsfd
       return evaluation.error <= tolerance;
     };
     bool solved = false;
-    for (unsigned int k = 0; k < 2 && !solved && jump(work, tolerance); ++k)
+    for (unsigned int k = 0; k < 2 && !solved && jump(work); ++k)
       solved = judge(); // anew where round-off was left
     if (!solved) {
       report.switches.push_back("multipliers");
@@ -443,9 +444,10 @@ namespace nsfd
       if (share * errors.shift <= 0.1 * tolerance) {
         solved = judge();
         // what is left are the last digits, which stiff springs do not show
-        if (!solved && from_rest_ && !(jump(work, tolerance) && judge()))
+        if (!solved && from_rest_) {
+          solved = jump(work) && judge();
           break;
-        solved = solved || evaluation.error <= tolerance;
+        }
       } else
         share = std::max(last_share, 0.01 * share);
       soften(work, share);

@@ -45,6 +45,7 @@ namespace nsfd
       const DelassusOperator<dim> &delassus;
       VelocitySolver &bodies; ///< the same
       LawEvaluation<dim> &evaluation;
+      double tolerance;
       SolverReport &report;
     };
 
@@ -62,15 +63,14 @@ namespace nsfd
     double slope(const Work &work, double length) const;
     void set_right_side(const Work &work);
     void remove_springs(const Work &work);
-    bool jump(const Work &work, double tolerance);
-    bool solve(const Work &work, bool symmetric, double share);
+    bool jump(const Work &work);
+    bool solve_system(const Work &work, bool symmetric, double share);
     bool find_direction(const Work &work);
     void try_length(const Work &work, double length);
     void advance(const Work &work);
 
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
-    double tolerance_ = 0.;            ///< of the solve
     bool from_rest_ = false;           ///< U is that of the motion of the nodes
     std::vector<LocalSolution<dim>> solutions_;
     Vector tangents_; ///< T, dim x dim per point
