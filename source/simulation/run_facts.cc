@@ -81,6 +81,8 @@ namespace nsfd
                  std::any_of(b.displacement.begin(), b.displacement.end(),
                              given);
         });
+      case WatchedLine::load_steps:
+        return input.statics && input.statics->steps;
       default:
         return true;
       }
@@ -107,6 +109,8 @@ namespace nsfd
                : time.cohesion_rule != CohesionRule::exact && !input.statics
                    ? "set cohesion rule = exact"
                    : "set step to a shorter time";
+      case WatchedLine::load_steps:
+        return "set step to a shorter time";
       default:
         return "";
       }
@@ -120,6 +124,8 @@ namespace nsfd
       // frames of large motions make comes and goes: as well as curves can be
       // read
       constexpr double of_pure_rules = 1e-2;
+      // the loads' work follows from their forces at the ends of load steps
+      constexpr double of_load_steps = 1e-3;
       const double scale = std::max(watch.scale, state.largest_energy);
       const auto share = [scale](const double energy) {
         return energy == 0. ? 0. : energy / scale;
@@ -141,6 +147,8 @@ namespace nsfd
           given.bound = never_gives(line, input) || input.time.scheme.at_nodes
                             ? energy_round_off + share(watch.noise)
                             : of_pure_rules;
+        if (line == WatchedLine::load_steps)
+          given.bound = of_load_steps;
         given.advice = advice_of(line, input);
         result.push_back(std::move(given));
       }

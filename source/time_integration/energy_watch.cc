@@ -29,6 +29,8 @@ namespace nsfd
       return "supports";
     case WatchedLine::scheme:
       return "numerical";
+    case WatchedLine::load_steps:
+      return "load steps";
     }
     return "";
   }

@@ -19,9 +19,11 @@ namespace nsfd
     plastic,
     joints,   ///< rows of joints: no work, either way
     supports, ///< rows of supports beyond their prescribed motion: none
-    scheme    ///< what the rules of the time step make: `numerical`
+    scheme,   ///< what the rules of the time step make: `numerical`
+    /// work of the loads between two equilibria above that of their mean
+    load_steps
   };
-  constexpr std::size_t n_watched_lines = 8;
+  constexpr std::size_t n_watched_lines = 9;
 
   /** "friction", ...: as the certificate names it. */
   const char *name_of(WatchedLine line);

@@ -1,5 +1,6 @@
 #include "equilibrium_search.h"
 
+#include "energy_watch.h"
 #include "peak_rule.h"
 #include "relaxation.h"
 #include "rigid_body_modes.h"
@@ -162,8 +163,11 @@ namespace nsfd
     const EnergyLeft left =
         balance_->account(*relaxation_, forces_old, old, next, report.step);
     report.released_energy = left.energy;
+    report.above_mean = left.above_mean;
+    report.round_off = energy_round_off * next.largest_energy;
     report.jumps =
-        !report.stable || std::abs(left.energy) > jump_share * left.turnover;
+        !report.stable || std::abs(left.energy) >
+                              jump_share * left.turnover + report.round_off;
     const auto [seen, point] = relaxation_->laws().least_passage(next, path);
     report.peak_seen = -communicator_.max(-seen);
     report.skips_peak = report.peak_seen < Passage::least_share;

@@ -21,6 +21,8 @@ namespace nsfd
   struct EquilibriumReport {
     StepReport step;
     double released_energy = 0.; ///< energy that the cohesion did not take, J
+    double above_mean = 0.; ///< work of the loads above that of their mean, J
+    double round_off = 0.;  ///< energy that counts as none, J
     bool stable = true;          ///< softening leaves some stiffness everywhere
     bool jumps = false; ///< not stable, or what is left over or missing is
                         ///< no small part of what the step has moved
@@ -33,7 +35,10 @@ namespace nsfd
     std::string place; ///< of the face that is worst in this
 
     /** No continuation, but what may follow one: downhill, over the peak. */
-    bool may_follow() const { return !skips_peak && released_energy >= 0.; }
+    bool may_follow() const
+    {
+      return !skips_peak && released_energy >= -round_off;
+    }
     bool accepted() const { return !jumps && !skips_peak; }
   };
 

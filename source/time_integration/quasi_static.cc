@@ -44,8 +44,11 @@ namespace nsfd
       what = rejected.what();
     }
     StepReport report = equilibrium.step;
-    if (found)
+    if (found) {
       report.changes = changes_of_energy(old.energy, next);
+      report.changes.taken[std::size_t(WatchedLine::load_steps)] =
+          -equilibrium.above_mean;
+    }
     if (found && equilibrium.accepted())
       return report;
     const bool may_follow = found && equilibrium.may_follow();

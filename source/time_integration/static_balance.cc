@@ -263,8 +263,9 @@ namespace nsfd
     energy.damage += sums[damage];
     energy.friction += sums[friction];
     energy.numerical += sums[released] + std::max(0., sums[rest]);
+    const double above_mean = std::max(0., -sums[rest]);
     const double work = sums[motion] + body[1] + sums[pressure_work] +
-                        std::max(0., -sums[rest]);
+                        above_mean;
     energy.work += work;
     next.pressure_work = old.pressure_work + sums[pressure_work];
     next.broken_area = old.broken_area + sums[broken];
@@ -300,6 +301,7 @@ namespace nsfd
 
     EnergyLeft left = points.left;
     left.energy = sums[cohesive_rest];
+    left.above_mean = above_mean;
     left.turnover = std::max({std::abs(work), sums[moved], sums[damage],
                               std::abs(energy.elastic - old.energy.elastic)});
     return left;

@@ -9,6 +9,7 @@ namespace nsfd
   struct EnergyLeft {
     double energy = 0.;   ///< in the cohesion, J
     double turnover = 0.; ///< what the step has moved: work, stored, dissipated
+    double above_mean = 0.; ///< work of the loads above that of their mean, J
     std::size_t worst_point = 0; ///< local, of the largest share
     double worst = 0.;           ///< its share, J, this rank
   };
@@ -28,7 +29,7 @@ namespace nsfd
    * the loads and the prescribed motion have given no less than what is stored
    * and dissipated: where their mean forces come to less (the traction between
    * the two equilibria is above the straight line between its ends), that
-   * least is their work.
+   * least is their work, and what it is above the mean is reported.
    */
   template <int dim>
   class StaticBalance

@@ -91,6 +91,45 @@ end
       }
     }
 
+    // Three planes of symmetry and a pull, each of them in one direction alone:
+    // F = E e A, with lateral contraction.
+    TEST(JoinedStatics, BlockOnRollers)
+    {
+      const double length = 8e-3, side = 12e-3, pull = 24e-6;
+      test::Scene<3> scene(fmt::format(R"(set dimension = 3
+subsection Mesh
+  set type         = brick
+  set upper corner = {0} m, {0} m, {1} m
+  set cells        = 3, 2, 2
+end
+)",
+                                       side, length) +
+                           material(0.2) + joined("joined") +
+                           fmt::format(R"(
+subsection Boundary: left
+  set displacement x = 0
+end
+subsection Boundary: bottom
+  set displacement y = 0
+end
+subsection Boundary: front
+  set displacement z = 0
+end
+subsection Boundary: back
+  set displacement z = {} m * t / 1 s
+end
+)",
+                                       pull) +
+                           time);
+      auto &statics = scene.equilibria->search();
+      State state = statics.start(scene.state), next = state;
+      const auto report = statics.advance(state, 1., next);
+      EXPECT_LT(report.step.solver.newton, 12u);
+      const double force = E * pull / length * side * side;
+      EXPECT_NEAR(next.energy.elastic / (force * pull / 2.), 1., 1e-10);
+      EXPECT_NEAR(statics.reactions()[3 * 3 + 2] / force, 1., 1e-10);
+    }
+
     // Linear displacements on the boundary of distorted cells: plane strain of
     // uniform stress, w = lambda/2 tr(e)^2 + mu e:e.
     TEST(JoinedStatics, PatchTest)
