@@ -40,6 +40,26 @@ namespace nsfd
              std::max(0.,
                       (secant(1. - step) - secant(1. + step)) / (2. * step));
     }
+
+    /**
+     * dS/ds of the bound S of friction, N s, along the ray of a reach that
+     * slides in contact: damage brings friction. Over @p ray, m.
+     */
+    template <int dim>
+    double
+    growth_of_friction(const OneStepProblem<dim> &problem, const std::size_t i,
+                       const LocalSolution<dim> &solution, const double ray)
+    {
+      constexpr double step = 1e-6;
+      if (!(solution.contact_impulse > 0. && ray > 0.))
+        return 0.;
+      const auto at = [&](const double s) {
+        const Reach reach{s * solution.reach.opening, s * solution.reach.slip};
+        return frozen_state<dim>(problem, i, reach, solution.contact_impulse)
+            .threshold;
+      };
+      return std::max(0., (at(1. + step) - at(1.)) / (step * ray));
+    }
   } // namespace
 
   template <int dim>
@@ -89,16 +109,19 @@ namespace nsfd
                    l = problem.opening_factor[i];
       const MixedLaw *mixed = interaction.law->mixed();
       const double d = std::hypot(solution.reach.opening, solution.reach.slip);
-      const double size = std::sqrt(
+      const double tangential = mixed ? 1.
+                                      : std::sqrt(interaction.stiffness_ratio *
+                                                  interaction.shear_weight);
+      const double slope =
           w_h2 * (mixed
                       ? softening_slope(*mixed, a, l, solution.reach)
                       : softening_slope(
                             *interaction.law, a, l, d,
                             std::min(largest,
-                                     a * l * interaction.law->secant(l * d)))));
-      const double tangential = mixed ? 1.
-                                      : std::sqrt(interaction.stiffness_ratio *
-                                                  interaction.shear_weight);
+                                     a * l * interaction.law->secant(l * d))));
+      const double size = std::sqrt(std::max(
+          0., slope - iterate_.h * growth_of_friction<dim>(problem, i, solution,
+                                                           d * tangential)));
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
         const double u =
