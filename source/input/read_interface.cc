@@ -436,8 +436,7 @@ namespace nsfd
     /**
      * In a scene with equilibria an intact body is one body of finite elements
      * with common nodes, whatever word joins its cells, or else of rigid
-     * joints: rigid cells and cells of two sizes have no such nodes, interior
-     * points need the matrices of cells, and path = local asks for them.
+     * joints: as SceneInput::equilibria_at_nodes(), before the rest is read.
      */
     bool may_share_nodes(const SceneInput &scene, const ParameterFile &file)
     {

@@ -75,6 +75,8 @@ namespace nsfd
           return true;
       return false;
     }
+    /** Equilibria are solved for the motion of the nodes of all bodies. */
+    bool equilibria_at_nodes() const;
     /** Share of critical damping of fronts in explicit steps. */
     double front_viscosity() const;
     /** Materials that keep how they were strained. */

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 namespace nsfd
@@ -432,6 +434,12 @@ namespace nsfd
       soften(work, share);
       answer(work, velocity_);
     }
+    double next = 1e-2; // share over the one before
+    unsigned int taken = 0;
+    Vector impulse_before = impulse_, velocity_before = velocity_,
+           motion_before;
+    if (from_rest_)
+      motion_before = work.bodies.from_rest().motion();
     while (!solved && report.newton < most) {
       if (!find_direction(work))
         break;
@@ -439,17 +447,35 @@ namespace nsfd
       const Errors errors = this->errors(work);
       if (errors.defect >
           std::max(0.1 * std::max(tolerance, share * errors.shift),
-                   from_rest_ ? round_off / share : 0.))
-        continue;
-      if (share * errors.shift <= 0.1 * tolerance) {
-        solved = judge();
-        // what is left are the last digits, which stiff springs do not show
-        if (!solved && from_rest_) {
-          solved = jump(work) && judge();
-          break;
+                   from_rest_ ? round_off / share : 0.)) {
+        if (++taken > 10 && share < first_share) {
+          share = std::min(10. * share, first_share);
+          next = std::min(1., 10. * next);
+          taken = 0;
+          impulse_ = impulse_before;
+          velocity_ = velocity_before;
+          if (from_rest_)
+            work.bodies.from_rest().set_motion(motion_before);
+          soften(work, share);
+          answer(work, velocity_);
         }
-      } else
-        share = std::max(last_share, 0.01 * share);
+        continue;
+      }
+      if (getenv("DBG2")) fprintf(stderr, "stage share %.1e taken %u shift %.2e defect %.2e\n", share, taken, errors.shift, errors.defect);
+      taken = 0;
+      impulse_before = impulse_;
+      velocity_before = velocity_;
+      if (from_rest_)
+        motion_before = work.bodies.from_rest().motion();
+      // the law is known here: what is left are digits
+      if (from_rest_ || share * errors.shift <= 0.1 * tolerance) {
+        solved = (from_rest_ && jump(work) && judge()) || (!from_rest_ && judge());
+        if (from_rest_ && getenv("DBG2")) fprintf(stderr, "jumped %d\n", int(solved));
+        if (!solved && from_rest_ && share * errors.shift <= 0.1 * tolerance)
+          break;
+      }
+      if (share * errors.shift > 0.1 * tolerance)
+        share = std::max(last_share, next * share);
       soften(work, share);
       answer(work, velocity_);
     }
