@@ -58,6 +58,43 @@ namespace nsfd
                                                     solution.velocity[c] *
                                                     solution.velocity[d] / size;
     }
+
+    /** What has no derivative at hand: damage that grows, sliding that lifts. */
+    template <int dim>
+    bool by_differences(const OneStepProblem<dim> &problem, const std::size_t i,
+                        const LocalSolution<dim> &solution)
+    {
+      return solution.coupled &&
+             (solution.damages || solution.frozen.is_rigid() ||
+              !has_frozen_law<dim>(problem, i));
+    }
+
+    /** To T of a frozen threshold, what the contact impulse does to it. */
+    template <int dim>
+    void add_friction(const OneStepProblem<dim> &problem, const std::size_t i,
+                      const LocalSolution<dim> &solution, const double A_N,
+                      const double A_T, double *T)
+    {
+      std::array<double, dim> direction{};
+      double size = 0.;
+      for (unsigned int c = 1; c < dim; ++c) {
+        direction[c] =
+            solution.velocity[c] + problem.sliding_offset[i * dim + c];
+        size += direction[c] * direction[c];
+      }
+      if (!(size > 0. && solution.contact_impulse > 0.))
+        return; // sticks, or does not touch
+      size = std::sqrt(size);
+      double along = 0.; // the slope in the direction of sliding
+      for (unsigned int c = 1; c < dim; ++c)
+        for (unsigned int d = 1; d < dim; ++d)
+          along += direction[c] * T[c * dim + d] * direction[d] / (size * size);
+      const double coefficient =
+          solution.frozen.threshold / solution.contact_impulse;
+      for (unsigned int c = 1; c < dim; ++c)
+        T[c * dim] =
+            -direction[c] / size * (1. - A_T * along) * coefficient / A_N;
+    }
   } // namespace
 
   template <int dim>
@@ -147,8 +184,13 @@ namespace nsfd
       const auto &solution = solutions_[i];
       const double A_N = compliance_[i * dim], A_T = compliance_[i * dim + 1];
       double *T = &tangents_[i * dim * dim];
-      if (!solution.coupled) {
+      if (!by_differences(problem, i, solution)) {
         frozen_tangent(problem, i, solution, A_N, A_T, T);
+        if (solution.coupled) {
+          add_friction(problem, i, solution, A_N, A_T, T);
+          for (unsigned int c = 1; c < dim; ++c)
+            symmetric = symmetric && T[c * dim] == 0.;
+        }
         continue;
       }
       // difference quotients of the local solve, friction and damage in it
@@ -232,12 +274,14 @@ namespace nsfd
   {
     for (const std::size_t i : work.problem.acting) {
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
-      double left = solutions_[i].coupled ? left_to_differences
-                    : from_rest_          ? of_nodes
-                                          : last_share;
+      const bool differences =
+          by_differences(work.problem, i, solutions_[i]);
+      double left = differences  ? left_to_differences
+                    : from_rest_ ? of_nodes
+                                 : last_share;
       // Points that are more than motions: what each of them carries is known
       // from its own compliance alone, as small as that may be.
-      bool gives_way = from_rest_ && !solutions_[i].coupled;
+      bool gives_way = from_rest_ && !differences;
       for (unsigned int c = 0; c < dim; ++c)
         gives_way =
             gives_way &&
