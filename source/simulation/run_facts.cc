@@ -124,8 +124,6 @@ namespace nsfd
       // frames of large motions make comes and goes: as well as curves can be
       // read
       constexpr double of_pure_rules = 1e-2;
-      // the loads' work follows from their forces at the ends of load steps
-      constexpr double of_load_steps = 1e-3;
       const double scale = std::max(watch.scale, state.largest_energy);
       const auto share = [scale](const double energy) {
         return energy == 0. ? 0. : energy / scale;
@@ -147,8 +145,8 @@ namespace nsfd
           given.bound = never_gives(line, input) || input.time.scheme.at_nodes
                             ? energy_round_off + share(watch.noise)
                             : of_pure_rules;
-        if (line == WatchedLine::load_steps)
-          given.bound = of_load_steps;
+        if (line == WatchedLine::load_steps) // as much as a single step may
+          given.bound = EquilibriumSearch<2>::jump_share;
         given.advice = advice_of(line, input);
         result.push_back(std::move(given));
       }
