@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 namespace nsfd
@@ -33,6 +31,8 @@ namespace nsfd
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
+    /// of springs that are stiffer than the first: then softer ones are taken
+    constexpr unsigned int most_of_stage = 10;
 
     /** T with damage and the friction threshold frozen. */
     template <int dim>
@@ -59,7 +59,8 @@ namespace nsfd
                                                     solution.velocity[d] / size;
     }
 
-    /** What has no derivative at hand: damage that grows, sliding that lifts. */
+    /** What has no derivative at hand: damage that grows, sliding that lifts.
+     */
     template <int dim>
     bool by_differences(const OneStepProblem<dim> &problem, const std::size_t i,
                         const LocalSolution<dim> &solution)
@@ -120,6 +121,23 @@ namespace nsfd
     work.delassus.apply_delassus(impulse_.data(), velocity_.data());
     for (std::size_t k = 0; k < velocity_.size(); ++k)
       velocity_[k] += work.problem.free_velocity[k];
+  }
+
+  template <int dim>
+  auto AugmentedLagrangian<dim>::iterate(const Work &work) const -> Iterate
+  {
+    return {impulse_, velocity_,
+            from_rest_ ? work.bodies.from_rest().motion() : Vector()};
+  }
+
+  template <int dim>
+  void AugmentedLagrangian<dim>::return_to(const Work &work,
+                                           const Iterate &iterate)
+  {
+    impulse_ = iterate.impulse;
+    velocity_ = iterate.velocity;
+    if (from_rest_)
+      work.bodies.from_rest().set_motion(iterate.motion);
   }
 
   /** A from now on, with springs that are slack at the present impulses. */
@@ -274,8 +292,7 @@ namespace nsfd
   {
     for (const std::size_t i : work.problem.acting) {
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
-      const bool differences =
-          by_differences(work.problem, i, solutions_[i]);
+      const bool differences = by_differences(work.problem, i, solutions_[i]);
       double left = differences  ? left_to_differences
                     : from_rest_ ? of_nodes
                                  : last_share;
@@ -318,7 +335,7 @@ namespace nsfd
   bool AugmentedLagrangian<dim>::jump(const Work &work)
   {
     constexpr double none = std::numeric_limits<double>::infinity();
-    Vector best = impulse_, best_velocity = velocity_, best_motion;
+    Iterate best = iterate(work);
     double least = none;
     std::array<double, 2> before{least, least};
     unsigned int idle = 0;
@@ -334,10 +351,7 @@ namespace nsfd
       idle = error < 0.5 * least ? 0 : idle + 1;
       if (balances && error < least) {
         least = error;
-        best = impulse_;
-        best_velocity = velocity_;
-        if (from_rest_)
-          best_motion = work.bodies.from_rest().motion();
+        best = iterate(work);
       }
       const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
       before = {error, before[0]};
@@ -364,10 +378,7 @@ namespace nsfd
     }
     if (least == none)
       return false;
-    impulse_.swap(best);
-    velocity_.swap(best_velocity);
-    if (from_rest_)
-      work.bodies.from_rest().set_motion(best_motion);
+    return_to(work, best);
     return false;
   }
 
@@ -478,48 +489,33 @@ namespace nsfd
       soften(work, share);
       answer(work, velocity_);
     }
-    double next = 1e-2; // share over the one before
+    Iterate start = iterate(work);
+    double smaller = 1e-2; // a share over the one before
     unsigned int taken = 0;
-    Vector impulse_before = impulse_, velocity_before = velocity_,
-           motion_before;
-    if (from_rest_)
-      motion_before = work.bodies.from_rest().motion();
     while (!solved && report.newton < most) {
       if (!find_direction(work))
         break;
       advance(work);
       const Errors errors = this->errors(work);
-      if (errors.defect >
-          std::max(0.1 * std::max(tolerance, share * errors.shift),
-                   from_rest_ ? round_off / share : 0.)) {
-        if (++taken > 10 && share < first_share) {
-          share = std::min(10. * share, first_share);
-          next = std::min(1., 10. * next);
-          taken = 0;
-          impulse_ = impulse_before;
-          velocity_ = velocity_before;
-          if (from_rest_)
-            work.bodies.from_rest().set_motion(motion_before);
-          soften(work, share);
-          answer(work, velocity_);
-        }
-        continue;
-      }
-      if (getenv("DBG2")) fprintf(stderr, "stage share %.1e taken %u shift %.2e defect %.2e\n", share, taken, errors.shift, errors.defect);
-      taken = 0;
-      impulse_before = impulse_;
-      velocity_before = velocity_;
-      if (from_rest_)
-        motion_before = work.bodies.from_rest().motion();
-      // the law is known here: what is left are digits
-      if (from_rest_ || share * errors.shift <= 0.1 * tolerance) {
-        solved = (from_rest_ && jump(work) && judge()) || (!from_rest_ && judge());
-        if (from_rest_ && getenv("DBG2")) fprintf(stderr, "jumped %d\n", int(solved));
-        if (!solved && from_rest_ && share * errors.shift <= 0.1 * tolerance)
+      const double left = share * errors.shift;
+      if (errors.defect <= std::max(0.1 * std::max(tolerance, left),
+                                    from_rest_ ? round_off / share : 0.)) {
+        taken = 0;
+        start = iterate(work);
+        // what is left may be digits, which stiff springs do not show
+        const bool last = left <= 0.1 * tolerance;
+        solved = from_rest_ ? jump(work) && judge() : last && judge();
+        if (from_rest_ && last)
           break;
-      }
-      if (share * errors.shift > 0.1 * tolerance)
-        share = std::max(last_share, next * share);
+        if (!last)
+          share = std::max(last_share, smaller * share);
+      } else if (++taken > most_of_stage && share < first_share) {
+        taken = 0;
+        return_to(work, start);
+        share = std::min(10. * share, first_share);
+        smaller = std::min(10. * smaller, 1.);
+      } else
+        continue;
       soften(work, share);
       answer(work, velocity_);
     }

@@ -24,7 +24,8 @@ namespace nsfd
    * its slope dU . (P + alpha dP - S(U + alpha dU)) needs the laws alone, and
    * where it vanishes the step ends. P_0 then follows P (method of multipliers:
    * Hestenes 1969, Powell 1969; with friction Alart & Curnier 1991), until the
-   * springs carry no more than the tolerance.
+   * springs carry no more than the tolerance. Springs that are too stiff for
+   * the method to get on are replaced by softer ones.
    *
    * The operator has to be a VelocitySolver.
    */
@@ -49,12 +50,18 @@ namespace nsfd
       SolverReport &report;
     };
 
+    /** What is sought: P, U, and the motion of nodes of a step from rest. */
+    struct Iterate {
+      Vector impulse, velocity, motion;
+    };
     struct Errors {
       double defect, shift;
     };
 
     void begin(const Work &work, const Vector &impulse);
     void set_velocity(const Work &work);
+    Iterate iterate(const Work &work) const;
+    void return_to(const Work &work, const Iterate &iterate);
     void soften(const Work &work, double share);
     void answer(const Work &work, const Vector &U);
     Errors errors(const Work &work) const;
