@@ -34,6 +34,24 @@ namespace nsfd
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
 
+    /** A unit vector in the plane of the face; 0 where nothing slides. */
+    template <int dim>
+    std::array<double, dim>
+    sliding_direction(const OneStepProblem<dim> &problem, const std::size_t i,
+                      const LocalSolution<dim> &solution)
+    {
+      std::array<double, dim> direction{};
+      double square = 0.;
+      for (unsigned int c = 1; c < dim; ++c) {
+        direction[c] =
+            solution.velocity[c] + problem.sliding_offset[i * dim + c];
+        square += direction[c] * direction[c];
+      }
+      for (double &value : direction)
+        value /= square > 0. ? std::sqrt(square) : 1.;
+      return direction;
+    }
+
     /** T with damage and the friction threshold frozen. */
     template <int dim>
     void frozen_tangent(const OneStepProblem<dim> &problem, const std::size_t i,
@@ -46,17 +64,14 @@ namespace nsfd
         T[c * dim + c] = slopes[c];
       if (problem.kind[i] == PointKind::prescribed)
         return; // component by component
-      double size = 0.;
-      for (unsigned int c = 1; c < dim; ++c)
-        size += solution.velocity[c] * solution.velocity[c];
-      if (dim == 2 || slopes[1] == slopes[dim - 1] || size == 0.)
+      if (dim == 2 || slopes[1] == slopes[dim - 1])
         return; // the same in all directions
+      const auto direction = sliding_direction(problem, i, solution);
       for (unsigned int c = 1; c < dim; ++c)
         for (unsigned int d = 1; d < dim; ++d)
           T[c * dim + d] =
-              (c == d ? slopes[dim - 1] : 0.) + (slopes[1] - slopes[dim - 1]) *
-                                                    solution.velocity[c] *
-                                                    solution.velocity[d] / size;
+              (c == d ? slopes[dim - 1] : 0.) +
+              (slopes[1] - slopes[dim - 1]) * direction[c] * direction[d];
     }
 
     /** What has no derivative at hand: damage that grows, sliding that lifts.
@@ -76,25 +91,17 @@ namespace nsfd
                       const LocalSolution<dim> &solution, const double A_N,
                       const double A_T, double *T)
     {
-      std::array<double, dim> direction{};
-      double size = 0.;
-      for (unsigned int c = 1; c < dim; ++c) {
-        direction[c] =
-            solution.velocity[c] + problem.sliding_offset[i * dim + c];
-        size += direction[c] * direction[c];
-      }
-      if (!(size > 0. && solution.contact_impulse > 0.))
-        return; // sticks, or does not touch
-      size = std::sqrt(size);
+      if (!(solution.contact_impulse > 0.))
+        return;
+      const auto direction = sliding_direction(problem, i, solution);
       double along = 0.; // the slope in the direction of sliding
       for (unsigned int c = 1; c < dim; ++c)
         for (unsigned int d = 1; d < dim; ++d)
-          along += direction[c] * T[c * dim + d] * direction[d] / (size * size);
+          along += direction[c] * T[c * dim + d] * direction[d];
       const double coefficient =
           solution.frozen.threshold / solution.contact_impulse;
       for (unsigned int c = 1; c < dim; ++c)
-        T[c * dim] =
-            -direction[c] / size * (1. - A_T * along) * coefficient / A_N;
+        T[c * dim] = -direction[c] * (1. - A_T * along) * coefficient / A_N;
     }
   } // namespace
 
