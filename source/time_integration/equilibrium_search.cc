@@ -25,6 +25,8 @@ namespace nsfd
     // Above, (h/crossing)^2 times round-off would be seen in the jumps. Of n
     // cells with common nodes it is divided by n: they float together.
     constexpr double longest = 300., shortest = 0.05, of_joined = 1e4;
+    // over the first one, where a shorter step of the load is to be tried
+    constexpr double shortest_hurried = 1. / 16.;
     constexpr unsigned int most_rounds = 200, accelerated = 12;
     // with springs in place of laws; and how often these are damaged further
     constexpr unsigned int most_held_rounds = 40, most_bits = 100;
@@ -187,6 +189,7 @@ namespace nsfd
       return try_way(old, time, Way::near, false, next);
 
     // nothing damages: one equilibrium, and next to the last one
+    hurried_ = may_be_shortened && relaxation_->bonds();
     begin(old, time);
     relaxation_->laws().hold();
     held_ = old.displacement;
@@ -318,6 +321,8 @@ namespace nsfd
     converged = false;
     goal_ = goal;
     h_ = first_h_;
+    const double least = hurried_ ? first_h_ * shortest_hurried
+                                  : shortest * crossing_;
     for (unsigned int n = 0; n < rounds; ++n) {
       round(q, report);
       if (converged) {
@@ -328,9 +333,9 @@ namespace nsfd
         continue;
       }
       if (!solved_) { // several solutions: closer to the last iterate
-        if (h_ <= shortest * crossing_)
+        if (h_ <= least)
           break;
-        h_ = std::max(h_ / 4., shortest * crossing_);
+        h_ = std::max(h_ / 4., least);
         last = std::numeric_limits<double>::infinity();
         ++counters_.step_changes;
         continue;

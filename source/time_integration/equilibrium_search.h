@@ -134,6 +134,7 @@ namespace nsfd
     double goal_ = 0.;         ///< of the rounds: share of the forces left over
     std::vector<double> held_; ///< where springs in place of laws balance
     bool solved_ = true;       ///< the point laws, in the last round
+    bool hurried_ = false;     ///< a shorter step of the load is cheaper
     Counters counters_;
   };
 } // namespace nsfd
