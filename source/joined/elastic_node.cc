@@ -1,6 +1,6 @@
 #include "elastic_node.h"
 
-#include "nonsmooth/damage.h"
+#include "linear_algebra/small_inverse.h"
 #include "nonsmooth/springs.h"
 
 #include <algorithm>
@@ -12,110 +12,10 @@ namespace nsfd
   {
     /// of velocities, over the size of those that they are differences of
     constexpr double round_off = 4e-15;
+    /// of a row: less is left only where closed points hold each other
+    constexpr double independent = 1e-10;
     constexpr unsigned int most_changes = 6, most_refinements = 3;
-    /// of W beside points that hold: in a cycle they share what they hold
-    constexpr double softening = 1e-10;
 
-    /** Below the history the law is a spring through the origin. */
-    template <int dim>
-    bool is_spring(const PointDamage<dim> &damage, const Secant &secant,
-                   const double largest)
-    {
-      for (unsigned int c = 0; c < 2; ++c) {
-        double u[dim] = {};
-        u[c] = 0.5 * largest;
-        const double k = c == 0 ? secant.normal : secant.tangential;
-        const Secant here = damage.secant(damage.reach(u));
-        const double energy = k * u[c] * u[c] / 2.;
-        if (!(std::abs(damage.stored(damage.history(), u) - energy) <=
-              1e-13 * energy) ||
-            !(std::abs(here.normal - secant.normal) <= 1e-13 * secant.normal) ||
-            !(std::abs(here.tangential - secant.tangential) <=
-              1e-13 * secant.tangential))
-          return false;
-      }
-      return true;
-    }
-  } // namespace
-
-  template <int dim>
-  bool ElasticPoint<dim>::reinit(const OneStepProblem<dim> &problem,
-                                 const std::size_t i, const double present_beta)
-  {
-    const PointKind kind = problem.kind[i];
-    const auto &interaction = problem.interactions[problem.interaction[i]];
-    if (problem.rule == CohesionRule::end_velocity || problem.mask[i] != 0 ||
-        (!problem.viscosity.empty() && problem.viscosity[i] > 0.))
-      return false;
-    beta = present_beta;
-    one_sided = problem.compression_stiffness[i] == 0.;
-    broken = kind == PointKind::free;
-    if (broken) {
-      largest = springs::infinity;
-      return one_sided;
-    }
-    holds = kind == PointKind::rigid;
-    if (holds) {
-      one_sided = false;
-      largest = springs::infinity;
-      return true;
-    }
-    if (kind == PointKind::elastic) {
-      const double k = interaction.normal_stiffness;
-      secant = {k, k * interaction.stiffness_ratio};
-      largest = springs::infinity;
-    } else if (kind == PointKind::cohesive && !interaction.law->mixed() &&
-               !interaction.plateau && problem.opening_max[i] > 0.) {
-      const PointDamage<dim> damage(problem, i);
-      secant = damage.secant({});
-      if (!is_spring(damage, secant, problem.opening_max[i]))
-        return false;
-      largest = springs::square(problem.opening_max[i]);
-    } else
-      return false;
-    const double compression = problem.compression_stiffness[i];
-    rubs = interaction.friction > 0. &&
-           (beta < 1. || interaction.friction_exponent == 0.);
-    return secant.normal > 0. && secant.tangential > 0. &&
-           (one_sided ||
-            std::abs(compression - secant.normal) <= 1e-13 * secant.normal);
-  }
-
-  template <int dim>
-  auto ElasticPoint<dim>::energies(const OneStepProblem<dim> &problem,
-                                   const std::size_t i,
-                                   const double *velocity) const -> Energies
-  {
-    Energies result;
-    const double h_theta = problem.time_step * problem.theta;
-    const double *before = &problem.jump_old[i * dim],
-                 *end = &problem.jump_free[i * dim];
-    std::array<double, 2> square;
-    for (unsigned int k = 0; k < 2; ++k) {
-      double slip = 0.,
-             u_N = k == 0 ? before[0] : end[0] + h_theta * velocity[0];
-      if (one_sided)
-        u_N = springs::positive(u_N);
-      for (unsigned int c = 1; c < dim; ++c)
-        slip += springs::square(k == 0 ? before[c]
-                                       : end[c] + h_theta * velocity[c]);
-      square[k] = secant.normal * u_N * u_N + secant.tangential * slip;
-    }
-    result.stored_old = square[0] / 2.;
-    result.stored = square[1] / 2.;
-    result.traction[0] =
-        springs::normal_spring<dim>(problem, i, secant.normal).at(velocity[0]);
-    const auto spring =
-        springs::tangential_spring<dim>(problem, secant.tangential);
-    for (unsigned int c = 1; c < dim; ++c)
-      result.traction[c] =
-          spring.stiffness * (springs::tangential_offset<dim>(problem, i, c) +
-                              spring.slope * velocity[c]);
-    return result;
-  }
-
-  namespace
-  {
     /** y += factor x, of a multiple of @p lanes numbers. */
     template <std::size_t lanes>
     void add(const double factor, const double *x, double *y,
@@ -125,175 +25,190 @@ namespace nsfd
         for (std::size_t l = 0; l < lanes; ++l)
           y[i + l] += factor * x[i + l];
     }
+
+    /** H v of a point between @p groups, with @p velocity by group. */
+    template <int dim>
+    std::array<double, dim>
+    jump_velocity(const double *frame, const std::array<int, 2> &groups,
+                  const std::array<double, dim> *velocity)
+    {
+      double v[dim];
+      for (unsigned int c = 0; c < dim; ++c)
+        v[c] = (groups[1] >= 0 ? velocity[groups[1]][c] : 0.) -
+               (groups[0] >= 0 ? velocity[groups[0]][c] : 0.);
+      std::array<double, dim> U;
+      for (unsigned int r = 0; r < dim; ++r) {
+        U[r] = frame[r * dim] * v[0];
+        for (unsigned int c = 1; c < dim; ++c)
+          U[r] += frame[r * dim + c] * v[c];
+      }
+      return U;
+    }
+
+    /** F^T P: in the axes of space. */
+    template <int dim>
+    std::array<double, dim> in_space(const double *frame,
+                                     const std::array<double, dim> &P)
+    {
+      std::array<double, dim> result{};
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          result[c] += frame[r * dim + c] * P[r];
+      return result;
+    }
   } // namespace
 
   template <int dim>
   bool ElasticNode<dim>::reinit(const OneStepProblem<dim> &problem,
-                                const std::vector<double> &frames,
                                 const NodeProblem<dim> &node,
                                 const std::vector<double> &beta)
   {
-    has_map_ = false;
+    has_map_ = any_held_ = false;
     points_.clear();
-    if (node.points.size() > most_points)
+    if (node.points.size() > most_points ||
+        node.inverse_mass.size() > most_points)
       return false;
-    std::size_t n = 0;
     const double slope = springs::tangential_spring<dim>(problem, 1.).slope;
+    std::vector<std::uint8_t> holds;
+    int n_held = 0;
     for (const auto &place : node.points) {
       const std::size_t i = place.point;
-      Point point;
-      if (!point.law.reinit(problem, i, beta[i]))
+      Placed point;
+      auto &law = point.own.law;
+      if (!law.reinit(problem, i, beta[i]))
         return false;
-      if (!point.law.holds && !point.law.broken) {
+      if (!law.holds && !law.broken) {
         const double w = problem.weight[i] * problem.time_step * slope;
-        point.flexibility.fill(1. / (w * point.law.secant.tangential));
-        point.flexibility[0] = 1. / (w * point.law.secant.normal);
+        point.own.flexibility.fill(1. / (w * law.secant.tangential));
+        point.own.flexibility[0] = 1. / (w * law.secant.normal);
       }
-      if (!point.law.broken) {
-        point.first = unsigned(n);
-        n += dim;
-      }
+      holds.push_back(law.holds);
+      if (law.holds)
+        point.held = n_held++;
       points_.push_back(point);
     }
-    return n <= most && set_open_map(n, node, frames);
+    any_held_ = n_held > 0;
+    merged_.reinit(node, holds);
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      Placed &point = points_[k];
+      for (unsigned int s = 0; s < 2; ++s)
+        point.groups[s] = merged_.of(node.points[k].groups[s]);
+      point.is_inside = point.held < 0 && point.groups[0] == point.groups[1];
+    }
+    return true;
   }
 
   template <int dim>
-  void ElasticNode<dim>::begin(const OneStepProblem<dim> &problem,
-                               const std::vector<double> &frames,
+  bool ElasticNode<dim>::begin(const OneStepProblem<dim> &problem,
                                const std::vector<std::uint8_t> &closed,
                                const NodeProblem<dim> &node, Step &step) const
   {
+    if (!merged_.merge(node.velocity, step.free.data()))
+      return false;
     const double slope = springs::tangential_spring<dim>(problem, 1.).slope;
     const double h_theta = problem.time_step * problem.theta;
     for (const auto &velocity : node.velocity)
       for (unsigned int c = 0; c < dim; ++c)
         step.speed = std::max(step.speed, std::abs(velocity[c]));
+    double way = 0.;
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      const auto &place = node.points[k];
-      const std::size_t i = place.point;
-      step.free[k] = relative_velocity<dim>(&frames[i * dim * dim],
-                                            place.groups, node.velocity);
-      for (unsigned int c = 0; c < dim; ++c)
+      const Placed &point = points_[k];
+      const auto &law = point.own.law;
+      step.closed[k] = false;
+      if (law.holds)
+        continue;
+      const std::size_t i = node.points[k].point;
+      for (unsigned int c = 0; c < dim; ++c) {
+        way = std::max(way, std::abs(problem.jump_free[i * dim + c]));
         step.offset[k][c] =
-            springs::tangential_offset<dim>(problem, i, c) / slope;
-      for (unsigned int c = 0; c < dim; ++c)
-        step.speed = std::max(
-            step.speed, std::abs(problem.jump_free[i * dim + c]) / h_theta);
-      if (points_[k].law.holds)
-        step.offset[k].fill(0.);
+            law.broken ? 0.
+                       : springs::tangential_offset<dim>(problem, i, c) / slope;
+      }
       step.target[k] = problem.target[i];
-      step.closed[k] = points_[k].law.one_sided && closed[i] != 0;
+      step.closed[k] = law.one_sided && closed[i] != 0;
     }
+    step.speed = std::max(step.speed, way / h_theta);
+    return true;
   }
 
-  /** With all points open: (W + 1/(kappa s)) P = -y_0/s - U_free. */
+  /** Rows of closed points last: of these some may follow from others. @return
+      their number, with @p row_of dim times the point plus the direction. */
   template <int dim>
-  bool ElasticNode<dim>::set_open_map(const std::size_t n,
-                                      const NodeProblem<dim> &node,
-                                      const std::vector<double> &frames)
+  std::size_t ElasticNode<dim>::number_rows(const Step &step,
+                                            std::array<int, most> &row_of)
   {
-    lu_.reinit(int(n));
-    for (std::size_t l = 0; l < points_.size(); ++l)
-      for (unsigned int d = 0; d < dim && !points_[l].law.broken; ++d) {
-        double P[dim] = {};
-        P[d] = 1.;
-        velocity_.assign(node.velocity.size(), {});
-        const auto &place = node.points[l];
-        push_groups<dim>(&frames[place.point * dim * dim], place.groups, P,
-                         node.inverse_mass, velocity_);
-        const std::size_t column = points_[l].first + d;
-        for (std::size_t k = 0; k < points_.size(); ++k) {
-          if (points_[k].law.broken)
-            continue;
-          const Vector U =
-              relative_velocity<dim>(&frames[node.points[k].point * dim * dim],
-                                     node.points[k].groups, velocity_);
-          for (unsigned int c = 0; c < dim; ++c)
-            lu_.row(int(points_[k].first + c))[column] = U[c];
+    std::size_t n = 0;
+    for (const bool contact : {false, true})
+      for (std::size_t k = 0; k < points_.size(); ++k) {
+        Placed &point = points_[k];
+        if (!contact) {
+          point.rows.fill(-1);
+          point.follows = false;
+          point.own.closed = step.closed[k];
         }
-        double &diagonal = lu_.row(int(column))[column];
-        diagonal += points_[l].law.holds ? softening * diagonal
-                                         : points_[l].flexibility[d];
+        if (point.held >= 0 || point.is_inside)
+          continue;
+        for (unsigned int c = 0; c < dim; ++c) {
+          const bool is_contact = c == 0 && step.closed[k];
+          if (is_contact != contact || (!is_contact && point.own.law.broken))
+            continue;
+          if (n < most)
+            row_of[n] = int(k * dim + c);
+          point.rows[c] = int(n++);
+        }
       }
-    if (!lu_.factorise())
+    return n;
+  }
+
+  /** The inverse of W + 1/(kappa s), of W alone where a point is closed. */
+  template <int dim>
+  bool ElasticNode<dim>::set_map(const NodeProblem<dim> &node,
+                                 const std::vector<double> &frames,
+                                 const Step &step)
+  {
+    std::array<int, most> row_of;
+    const std::size_t n = number_rows(step, row_of);
+    if (n > most)
       return false;
     size_ = n;
     stride_ = (n + lanes - 1) / lanes * lanes;
-    open_.assign(n * stride_, 0.);
-    for (std::size_t j = 0; j < n; ++j) {
-      open_[j * stride_ + j] = 1.;
-      lu_.solve(&open_[j * stride_]);
+    inverse_.assign(n * stride_, 0.);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t k = std::size_t(row_of[i]) / dim;
+      const unsigned int c = unsigned(row_of[i]) % dim;
+      const Placed &one = points_[k];
+      const double *normal = &frames[(node.points[k].point * dim + c) * dim];
+      for (std::size_t j = 0; j <= i; ++j) {
+        const std::size_t l = std::size_t(row_of[j]) / dim;
+        const double *other =
+            &frames[(node.points[l].point * dim + unsigned(row_of[j]) % dim) *
+                    dim];
+        double sum = 0.;
+        for (unsigned int s = 0; s < 2; ++s)
+          for (unsigned int t = 0; t < 2; ++t) {
+            const int g = one.groups[s];
+            if (g < 0 || g != points_[l].groups[t])
+              continue;
+            const Vector &inverse = merged_.inverse_mass()[std::size_t(g)];
+            double part = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              part += normal[d] * inverse[d] * other[d];
+            sum += s == t ? part : -part;
+          }
+        inverse_[i * stride_ + j] = inverse_[j * stride_ + i] = sum;
+      }
+      if (c > 0 || !one.own.closed)
+        inverse_[i * stride_ + i] += one.own.flexibility[c];
     }
-    return true;
-  }
-
-  /**
-   * W P = target - U_free where points are closed: each takes its flexibility
-   * from the diagonal, always from the same map and in the same order, so that
-   * nothing depends on the steps before.
-   */
-  template <int dim>
-  bool ElasticNode<dim>::set_map(const Step &step)
-  {
-    inverse_ = open_;
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      points_[k].closed = step.closed[k];
-      if (!step.closed[k])
-        continue;
-      const std::size_t j = points_[k].first;
-      const double share = points_[k].flexibility[0];
-      const double left =
-          points_[k].law.broken ? 0. : 1. - share * inverse_[j * stride_ + j];
-      if (!(left > 1e-12))
-        return false; // closed points hold each other
-      Unknowns column;
-      std::copy_n(&inverse_[j * stride_], stride_, column.begin());
-      for (std::size_t l = 0; l < size_; ++l)
-        add<lanes>(share / left * inverse_[l * stride_ + j], column.data(),
-                   &inverse_[l * stride_], stride_);
-    }
-    return true;
-  }
-
-  /** Impulses and velocities, refined until round-off is left. */
-  template <int dim>
-  bool ElasticNode<dim>::solve_map(const NodeProblem<dim> &node,
-                                   const std::vector<double> &frames,
-                                   Step &step)
-  {
-    std::fill_n(step.impulse.begin(), stride_, 0.);
-    std::copy_n(step.free.begin(), points_.size(), step.velocity.begin());
-    velocity_ = node.velocity;
-    for (unsigned int round = 0; round <= most_refinements; ++round) {
-      Unknowns rest;
-      double worst = 0.;
-      for (std::size_t k = 0; k < points_.size(); ++k)
-        for (unsigned int c = 0; c < dim && !points_[k].law.broken; ++c) {
-          const std::size_t j = points_[k].first + c;
-          rest[j] = c == 0 && points_[k].closed
-                        ? step.target[k] - step.velocity[k][0]
-                        : -step.offset[k][c] - step.velocity[k][c] -
-                              points_[k].flexibility[c] * step.impulse[j];
-          worst = std::max(worst, std::abs(rest[j]));
-        }
-      if (!(worst > round_off * step.speed))
-        return worst == worst;
-      for (std::size_t j = 0; j < size_; ++j)
-        add<lanes>(rest[j], &inverse_[j * stride_], step.impulse.data(),
-                   stride_);
-      velocity_ = node.velocity;
-      for (std::size_t k = 0; k < points_.size(); ++k)
-        if (!points_[k].law.broken)
-          push_groups<dim>(
-              &frames[node.points[k].point * dim * dim], node.points[k].groups,
-              &step.impulse[points_[k].first], node.inverse_mass, velocity_);
-      for (std::size_t k = 0; k < points_.size(); ++k)
-        step.velocity[k] =
-            relative_velocity<dim>(&frames[node.points[k].point * dim * dim],
-                                   node.points[k].groups, velocity_);
-    }
-    return false;
+    bool possible = true;
+    invert_in_place<most>(
+        inverse_.data(), n, stride_, independent, [&](const std::size_t i) {
+          Placed &point = points_[std::size_t(row_of[i]) / dim];
+          possible = possible && row_of[i] % dim == 0 && point.own.closed;
+          point.rows[0] = -1;
+          point.follows = true;
+        });
+    return possible;
   }
 
   /** What the normal spring of point @p k does in the step. */
@@ -305,44 +220,172 @@ namespace nsfd
   {
     const std::size_t i = node.points[k].point;
     return -problem.weight[i] * problem.time_step *
-           springs::normal_spring<dim>(problem, i, points_[k].law.secant.normal)
+           springs::normal_spring<dim>(problem, i,
+                                       points_[k].own.law.secant.normal)
                .at(velocity);
+  }
+
+  /** Those that do not depend on the map: of springs whose motion is known. */
+  template <int dim>
+  void ElasticNode<dim>::begin_impulses(const OneStepProblem<dim> &problem,
+                                        const NodeProblem<dim> &node,
+                                        Step &step) const
+  {
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const Placed &point = points_[k];
+      step.impulse[k].fill(0.);
+      if (point.follows)
+        step.impulse[k][0] = spring_impulse(problem, node, k, step.target[k]);
+      if (point.is_inside && !point.own.law.broken)
+        for (unsigned int c = 0; c < dim; ++c)
+          step.impulse[k][c] =
+              c == 0 ? spring_impulse(problem, node, k, 0.)
+                     : -step.offset[k][c] / point.own.flexibility[c];
+    }
+  }
+
+  /** Velocities of the merged groups with the impulses between them. */
+  template <int dim>
+  void ElasticNode<dim>::move(const NodeProblem<dim> &node,
+                              const std::vector<double> &frames,
+                              Step &step) const
+  {
+    const auto &inverse_mass = merged_.inverse_mass();
+    std::copy_n(step.free.begin(), merged_.size(), step.moving.begin());
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const Placed &point = points_[k];
+      if (!point.has_rows() && !point.follows)
+        continue;
+      const Vector P = in_space<dim>(&frames[node.points[k].point * dim * dim],
+                                     step.impulse[k]);
+      for (unsigned int s = 0; s < 2; ++s)
+        if (const int g = point.groups[s]; g >= 0)
+          for (unsigned int c = 0; c < dim; ++c)
+            step.moving[std::size_t(g)][c] +=
+                (s == 0 ? -P[c] : P[c]) * inverse_mass[std::size_t(g)][c];
+    }
+  }
+
+  /** Impulses and velocities, refined until round-off is left. */
+  template <int dim>
+  bool ElasticNode<dim>::solve_map(const NodeProblem<dim> &node,
+                                   const std::vector<double> &frames,
+                                   Step &step) const
+  {
+    for (unsigned int round = 0; round <= most_refinements; ++round) {
+      Unknowns rest, change;
+      std::fill_n(rest.begin(), size_, 0.); // rows that follow from others
+      double worst = 0.;
+      move(node, frames, step);
+      for (std::size_t k = 0; k < points_.size(); ++k) {
+        const Placed &point = points_[k];
+        Vector &U = step.velocity[k];
+        if (point.held >= 0 || point.is_inside) {
+          U.fill(0.);
+          continue;
+        }
+        U = jump_velocity<dim>(&frames[node.points[k].point * dim * dim],
+                               point.groups, step.moving.data());
+        for (unsigned int c = 0; c < dim; ++c) {
+          const int row = point.rows[c];
+          if (row < 0)
+            continue;
+          rest[std::size_t(row)] =
+              c == 0 && point.own.closed
+                  ? step.target[k] - U[0]
+                  : -step.offset[k][c] - U[c] -
+                        point.own.flexibility[c] * step.impulse[k][c];
+          worst = std::max(worst, std::abs(rest[std::size_t(row)]));
+        }
+      }
+      if (!(worst > round_off * step.speed))
+        return worst == worst;
+      std::fill_n(change.begin(), stride_, 0.);
+      for (std::size_t j = 0; j < size_; ++j)
+        add<lanes>(rest[j], &inverse_[j * stride_], change.data(), stride_);
+      for (std::size_t k = 0; k < points_.size(); ++k)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (const int row = points_[k].rows[c]; row >= 0)
+            step.impulse[k][c] += change[std::size_t(row)];
+    }
+    return false;
   }
 
   /** True if the closed points of @p step are those of its solution; else they
       are set. */
   template <int dim>
-  bool ElasticNode<dim>::find_closed(const OneStepProblem<dim> &problem,
-                                     const NodeProblem<dim> &node,
-                                     Step &step) const
+  auto ElasticNode<dim>::find_closed(const OneStepProblem<dim> &problem,
+                                     const NodeProblem<dim> &node, Step &step)
+      -> Found
   {
-    bool found = true;
+    const double little = round_off * step.speed;
+    Found found = Found::yes;
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      if (!points_[k].law.one_sided)
+      Placed &point = points_[k];
+      if (!point.own.law.one_sided)
         continue;
-      const double U = step.velocity[k][0];
+      const double U = step.velocity[k][0], short_by = step.target[k] - U;
+      if (point.is_inside || point.follows) {
+        // the sum of a few velocities
+        if (short_by > 8. * little)
+          return Found::impossible;
+        const bool closed = short_by >= -8. * little;
+        if (point.follows && !closed)
+          found = Found::no;
+        step.closed[k] = closed;
+        if (point.is_inside)
+          point.own.closed = closed;
+        continue;
+      }
       const bool closed =
-          points_[k].closed
-              ? step.impulse[points_[k].first] >=
+          point.own.closed
+              ? step.impulse[k][0] >=
                     spring_impulse(problem, node, k, step.target[k])
-              : U < step.target[k] - round_off * step.speed;
-      found = found && closed == points_[k].closed;
+              : short_by > little;
+      if (closed != point.own.closed)
+        found = Found::no;
       step.closed[k] = closed;
     }
     return found;
   }
 
+  /** What the points that hold carry. */
   template <int dim>
-  bool ElasticNode<dim>::can_hold(const OneStepProblem<dim> &problem,
-                                  const std::size_t i,
-                                  const double *impulse) const
+  void ElasticNode<dim>::carry(const NodeProblem<dim> &node,
+                               const std::vector<double> &frames,
+                               Step &step) const
   {
-    std::array<double, dim> pull;
-    for (unsigned int c = 0; c < dim; ++c)
-      pull[c] = -impulse[c];
-    return effective_traction<dim>(problem, i, pull[0], &pull[1]) <=
-           point_strength<dim>(problem, i) * problem.weight[i] *
-               problem.time_step;
+    for (std::size_t g = 0; g < node.velocity.size(); ++g) {
+      step.change[g].fill(0.);
+      if (!merged_.is_held(g))
+        continue;
+      const auto at = std::size_t(merged_.of(int(g)));
+      for (unsigned int c = 0; c < dim; ++c)
+        step.change[g][c] =
+            merged_.mass(g, c) * (step.moving[at][c] - node.velocity[g][c]);
+    }
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      if (points_[k].held >= 0 || step.impulse[k] == Vector{})
+        continue;
+      const Vector P = in_space<dim>(&frames[node.points[k].point * dim * dim],
+                                     step.impulse[k]);
+      for (unsigned int s = 0; s < 2; ++s)
+        if (const int g = node.points[k].groups[s]; g >= 0)
+          for (unsigned int c = 0; c < dim; ++c)
+            step.change[std::size_t(g)][c] -= s == 0 ? -P[c] : P[c];
+    }
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      if (points_[k].held < 0)
+        continue;
+      const Vector P =
+          merged_.carried(std::size_t(points_[k].held), step.change.data());
+      const double *frame = &frames[node.points[k].point * dim * dim];
+      for (unsigned int r = 0; r < dim; ++r) {
+        step.impulse[k][r] = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          step.impulse[k][r] += frame[r * dim + c] * P[c];
+      }
+    }
   }
 
   /** No point is open beyond its history, or rubs, or has come from an overlap,
@@ -355,14 +398,16 @@ namespace nsfd
     const double h_theta = problem.time_step * problem.theta;
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const std::size_t i = node.points[k].point;
-      const auto &law = points_[k].law;
-      if (points_[k].closed && law.rubs)
+      const auto &law = points_[k].own.law;
+      if (points_[k].own.closed && law.rubs)
         return false;
       if (law.holds) {
-        if (!can_hold(problem, i, &step.impulse[points_[k].first]))
+        if (!law.can_hold(problem, i, step.impulse[k].data()))
           return false;
         continue;
       }
+      if (law.broken)
+        continue;
       std::array<double, dim> u;
       for (unsigned int c = 0; c < dim; ++c)
         u[c] = problem.jump_free[i * dim + c] + h_theta * step.velocity[k][c];
@@ -373,7 +418,7 @@ namespace nsfd
           problem.interactions[problem.interaction[i]].shear_weight * slip;
       if (!(square <= law.largest))
         return false;
-      if (law.one_sided && !law.broken && !points_[k].closed &&
+      if (law.one_sided && !points_[k].own.closed &&
           problem.jump_old[i * dim] < -round_off * step.speed * h_theta)
         return false;
     }
@@ -389,34 +434,43 @@ namespace nsfd
                                std::vector<double> &velocities)
   {
     Step step;
-    begin(problem, frames, closed, node, step);
+    if (!begin(problem, closed, node, step))
+      return false;
     for (unsigned int change = 0; change < most_changes; ++change) {
       bool same = has_map_;
       for (std::size_t k = 0; k < points_.size(); ++k)
-        same = same && points_[k].closed == step.closed[k];
+        same = same && (points_[k].is_inside ||
+                        points_[k].own.closed == step.closed[k]);
       if (!same)
-        has_map_ = set_map(step);
-      if (!has_map_ || !solve_map(node, frames, step))
+        has_map_ = set_map(node, frames, step);
+      if (!has_map_)
         return false;
-      if (!find_closed(problem, node, step))
+      begin_impulses(problem, node, step);
+      if (!solve_map(node, frames, step))
+        return false;
+      const Found found = find_closed(problem, node, step);
+      if (found == Found::impossible)
+        return false;
+      if (found == Found::no)
         continue;
-      if (!is_elastic(problem, node, step))
-        return false;
-      node.velocity = velocity_;
+      if (any_held_)
+        carry(node, frames, step);
+      const bool elastic = is_elastic(problem, node, step);
       for (std::size_t k = 0; k < points_.size(); ++k)
-        for (unsigned int c = 0; c < dim; ++c) {
-          const std::size_t i = node.points[k].point * dim + c;
-          impulses[i] =
-              points_[k].law.broken ? 0. : step.impulse[points_[k].first + c];
-          velocities[i] = step.velocity[k][c];
-        }
+        std::copy_n(step.impulse[k].begin(), dim,
+                    &impulses[node.points[k].point * dim]);
+      if (!elastic)
+        return false;
+      for (std::size_t g = 0; g < node.velocity.size(); ++g)
+        node.velocity[g] = step.moving[std::size_t(merged_.of(int(g)))];
+      for (std::size_t k = 0; k < points_.size(); ++k)
+        std::copy_n(step.velocity[k].begin(), dim,
+                    &velocities[node.points[k].point * dim]);
       return true;
     }
     return false;
   }
 
-  template struct ElasticPoint<2>;
-  template struct ElasticPoint<3>;
   template class ElasticNode<2>;
   template class ElasticNode<3>;
 } // namespace nsfd

@@ -47,23 +47,33 @@ namespace nsfd
     LocalProblem<dim> here{problem, i, local, R, R};
     if (interaction.plateau || here.lifts())
       return false;
+    const double low = problem.opening_max[i];
+    double x = end.opening;
+    if (kind == PointKind::cohesive && !interaction.law->mixed() &&
+        !(x > (1. + 1e-9) * low))
+      return false;
     const PointDamage<dim> damage(problem, i);
     if (interaction.law->mixed())
       return solve_near_mixed<dim>(damage, end, here, solution);
-    const double low = damage.history().opening;
-    double x = end.opening;
-    if (!(x > (1. + 1e-9) * low) || damage.drops())
+    if (damage.drops())
       return false;
+    const double wh = problem.weight[i] * problem.time_step;
     if (kind == PointKind::rigid) {
       double pull[dim];
       for (unsigned int c = 0; c < dim; ++c)
         pull[c] = -local[c] / R;
       pull[0] = -pull[0];
-      if (damage.effective_traction(pull[0], pull + 1) <=
-          (1. + 1e-9) * problem.weight[i] * problem.time_step *
-              damage.strength())
+      const double size = damage.effective_traction(pull[0], pull + 1),
+                   strength = wh * damage.strength();
+      if (size <= (1. + 1e-9) * strength)
         return false;
+      if (!(x > 0.)) // what the strength leaves of the way
+        x = problem.time_step * problem.theta * R * (size - strength);
     }
+    // U = (U_loc - ...) / (1 + R kappa s): with this factor the distance from
+    // an end to that of its secant is nearly linear in the end, and has a
+    // slope also where x is small beside R kappa s x
+    const double give = R * wh * tangential_spring<dim>(problem, 1.).slope;
     // Against a nearly rigid law every end is a little short of itself: only
     // with a slope is a small distance one to the root. And after a short way
     // the impulse hangs on the last digits of the end: left to the search.
@@ -79,7 +89,9 @@ namespace nsfd
     };
     for (unsigned int k = 0; k < 6; ++k) {
       here.solve_end(damage, {x, 0.});
-      const double distance = here.solution.reach.opening - x;
+      const double short_by = here.solution.reach.opening - x;
+      const double distance =
+          short_by * (1. + give * here.solution.frozen.secant.tangential);
       if (k > 0 && std::abs(x - last_x) > 1e-9 * x) {
         slope = (distance - last) / (x - last_x);
         if (is_steep())
@@ -87,7 +99,7 @@ namespace nsfd
       }
       if (k > 0 && !(slope < -0.2))
         return false;
-      if (k > 0 && std::abs(distance) <= 2e-15 * x) {
+      if (k > 0 && std::abs(short_by) <= 2e-15 * x) {
         solution = here.solution;
         solution.reach = {x, 0.};
         solution.damages = solution.coupled = true;

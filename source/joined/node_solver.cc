@@ -12,6 +12,8 @@ namespace nsfd
   {
     /// of W beside points that hold: above the round-off of all that is refined
     constexpr double least_softening = 1e-12;
+    /// where a step goes too far, less is of no use
+    constexpr double least_help = 1e-2;
     constexpr unsigned int most_starts = 60;
     constexpr unsigned int most_flat_moves = 100;
   } // namespace
@@ -67,7 +69,7 @@ namespace nsfd
         const unsigned int n = !first ? 2 : report_.starts > 0 ? 6 : 3;
         for (unsigned int k = 0; k < n; ++k, length *= 0.5)
           if (accepts(length, first)) {
-            const double less = flat_moves_ == 0 ? 0.01 : first ? 0.1 : 0.3;
+            const double less = flat_moves_ == 0 ? 0.1 : first ? 0.1 : 0.3;
             soft_ = std::max(least_softening, less * soft_);
             return true;
           }
@@ -75,7 +77,7 @@ namespace nsfd
       system_.restore(0);
       if (nearly && !first)
         break;
-      soft_ = std::max(1e-10, (flat_moves_ == 0 ? 100. : 10.) * soft_);
+      soft_ = std::max(least_help, (flat_moves_ == 0 ? 100. : 10.) * soft_);
     }
     return false;
   }

@@ -61,7 +61,6 @@ namespace nsfd
     added.groups = point.groups;
     added.solution.reach = history(*problem_, i);
     added.solution.damages = false;
-    added.is_new = true;
     Vector sum{};
     double speed = 0.;
     for (const int g : point.groups)
@@ -97,7 +96,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void NodeSystem<dim>::answer(Point &point) const
+  void NodeSystem<dim>::answer(Point &point, const bool near_first) const
   {
     const Vector U =
         relative_velocity<dim>(point.frame, point.groups, velocity_);
@@ -116,13 +115,12 @@ namespace nsfd
       solution.velocity = point.local;
       return;
     }
-    const Reach near = solution.damages ? solution.reach
-                       : point.is_new && problem_->kind[i] != PointKind::free
-                           ? local::end_reach<dim>(*problem_, i, U)
-                           : Reach();
-    point.is_new = false;
-    if ((near.opening > 0. || near.slip > 0.) &&
-        solve_near<dim>(*problem_, i, point.local, point.R, near, solution))
+    if (near_first && problem_->kind[i] != PointKind::free &&
+        solve_near<dim>(*problem_, i, point.local, point.R,
+                        solution.damages
+                            ? solution.reach
+                            : local::end_reach<dim>(*problem_, i, U),
+                        solution))
       return;
     solution = solve_point<dim>(*problem_, i, point.local, point.R, point.R,
                                 solution.reach);
@@ -134,8 +132,7 @@ namespace nsfd
     Point &point = points_[0];
     velocity_ = free_;
     point.impulse.fill(0.);
-    point.is_new = false; // the same bits as solve_point()
-    answer(point);
+    answer(point, false); // the same bits as solve_point()
     point.impulse = point.solution.impulse;
   }
 

@@ -102,7 +102,6 @@ namespace nsfd
       std::array<int, 2> groups;
       double R, speed;
       bool scalar;                ///< W of the point is R times the identity
-      bool is_new;                ///< not answered yet
       Vector rest;                ///< impulse at which its spring is slack
       Matrix slopes;              ///< D = -dS/dU_loc
       Matrix inverse, stiffness;  ///< (1 - soft' R D)^-1 and this times D
@@ -130,7 +129,7 @@ namespace nsfd
              const std::vector<double> &frames);
     void push(const Point &point, const Vector &impulse,
               std::vector<Vector> &velocity) const;
-    void answer(Point &point) const;
+    void answer(Point &point, bool near_first = true) const;
     bool invert_slopes(Point &point, double soft, double &stiffest) const;
     void assemble();
     double correct(double soft);

@@ -271,7 +271,7 @@ namespace nsfd
     Energies energies;
     set_energies(kick, h, last, energies);
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
-    points_.add_impulses(supports_.row_of_group(), g, supports_.rows());
+    points_.add_impulses(supports_.row_of_group(), supports_.rows());
     energies.work += supports_.work(communicator_, kick, before_.velocity, g);
     if (rigid_)
       energies.work += rigid_->work(kick, supports_);

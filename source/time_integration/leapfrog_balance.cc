@@ -59,8 +59,24 @@ namespace nsfd
     const double *P = &chains_.impulse[a * dim],
                  *U = &chains_.velocity[a * dim],
                  *before = &chains_.old_velocity[a * dim];
+    const auto &law = springs_[row]->law;
     const bool closed = springs_[row]->closed;
-    const auto energies = springs_[row]->law.energies(p, a, U);
+    chains_.closed[a] = closed;
+    if (law.one_sided)
+      balance.penetration =
+          std::max(balance.penetration,
+                   -(p.jump_free[a * dim] + p.time_step * p.theta * U[0]) -
+                       chains_.released[a]);
+    if (law.broken && !closed)
+      return; // apart: nothing acts
+    if (law.holds) {
+      double work = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        work += P[c] * (U[c] + before[c]) / 2.;
+      terms_[numerical * n + row] = -work;
+      return;
+    }
+    const auto energies = law.energies(p, a, U);
     double cohesive_work = 0., residual = 0.;
     for (unsigned int c = 0; c < dim; ++c) {
       const double mean = (U[c] + before[c]) / 2.,
@@ -75,13 +91,7 @@ namespace nsfd
     const double change = w * (energies.stored - energies.stored_old);
     terms_[stored * n + row] = change;
     terms_[numerical * n + row] = -residual - cohesive_work - change;
-    chains_.closed[a] = closed;
     balance.active += closed;
-    if (springs_[row]->law.one_sided)
-      balance.penetration =
-          std::max(balance.penetration,
-                   -(p.jump_free[a * dim] + p.time_step * p.theta * U[0]) -
-                       chains_.released[a]);
   }
 
   template <int dim>
@@ -236,7 +246,7 @@ namespace nsfd
         account_spring(moved_[k], k, balance);
       else
         account_point(moved_[k], k, balance);
-      if (mesh_.counts(mesh_.node_of_point(chains_.point[moved_[k]])))
+      if (counts_[k])
         continue;
       balance.active = active;
       for (std::size_t row = 0; row < rows; ++row)
@@ -258,7 +268,7 @@ namespace nsfd
     const auto set = [&](const WatchedLine line, const Row row) {
       balance.changes.taken[std::size_t(line)] = sums[row];
       balance.changes.worst[std::size_t(line)] = LineChanges::no_point;
-      if (row >= rows)
+      if (row >= rows || !(sums[row] < 0.))
         return;
       const auto first = terms_.begin() + long(row * n);
       const auto least = std::min_element(first, first + long(n));

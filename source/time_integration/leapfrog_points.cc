@@ -15,33 +15,18 @@ namespace nsfd
 {
   namespace
   {
-    /** False where a point of @p node is broken and closed, rubs, or would go
-       on opening beyond its history at the speed that it has. */
+    /** False where a point of @p node is closed and rubs. */
     template <int dim>
     bool may_be_elastic(const LeapfrogChains<dim> &chains,
                         const NodeProblem<dim> &node)
     {
       const OneStepProblem<dim> &p = chains.problem;
-      const double h = p.time_step * p.theta;
       for (const auto &place : node.points) {
         const std::size_t a = place.point;
-        if (p.kind[a] == PointKind::elastic || p.kind[a] == PointKind::rigid)
-          continue;
-        if (p.kind[a] == PointKind::free) {
-          if (chains.closed[a])
-            return false;
-          continue;
-        }
-        if (p.kind[a] != PointKind::cohesive ||
-            (chains.closed[a] && chains.beta[a] < 1. &&
-             p.interactions[p.interaction[a]].friction > 0.))
-          return false;
-        std::array<double, dim> u;
-        for (unsigned int c = 0; c < dim; ++c)
-          u[c] =
-              p.jump_free[a * dim + c] + h * chains.old_velocity[a * dim + c];
-        if (!(effective_opening<dim>(p.interactions[p.interaction[a]],
-                                     u.data()) <= p.opening_max[a]))
+        if (chains.closed[a] &&
+            (p.kind[a] == PointKind::free ||
+             (p.kind[a] == PointKind::cohesive && chains.beta[a] < 1.)) &&
+            p.interactions[p.interaction[a]].friction > 0.)
           return false;
       }
       return true;
@@ -270,8 +255,8 @@ namespace nsfd
     auto &elastic = node.elastic[chain_];
     if (elastic.is_new) {
       elastic.is_new = false;
-      elastic.exists = elastic.node.reinit(chains_.problem, chains_.frame,
-                                           node.problem, chains_.beta);
+      elastic.exists =
+          elastic.node.reinit(chains_.problem, node.problem, chains_.beta);
     }
     return elastic.exists &&
            elastic.node.solve(chains_.problem, chains_.frame, chains_.closed,
@@ -286,6 +271,7 @@ namespace nsfd
       set_point(unsigned(x.point));
       moved_.push_back(unsigned(x.point));
     }
+    counts_.resize(moved_.size(), mesh_.counts(node.node));
     auto &velocity = node.problem.velocity;
     for (std::size_t k = 0; k < node.groups.size(); ++k)
       std::copy_n(&groups.velocity[node.groups[k] * dim], dim,
@@ -367,6 +353,7 @@ namespace nsfd
     const bool is_new = step != steps_[chain_];
     steps_[chain_] = step;
     moved_.clear();
+    counts_.clear();
     springs_.clear();
     for (Node &node : nodes_) {
       node.elastic[chain_].is_new |= is_new;
@@ -455,23 +442,27 @@ namespace nsfd
 
   template <int dim>
   void LeapfrogPoints<dim>::add_impulses(const std::vector<int> &row_of_group,
-                                         const CornerGroups<dim> &groups,
                                          std::vector<double> &rows) const
   {
-    for (const unsigned int a : moved_) {
-      const auto &corners = mesh_.corners(chains_.point[a]);
-      for (unsigned int side = 0; side < 2; ++side) {
-        if (corners[side] == JoinedMesh<dim>::none)
-          continue;
-        const int row = row_of_group[groups.of(corners[side])];
-        if (row < 0)
-          continue;
-        for (unsigned int r = 0; r < dim; ++r)
-          for (unsigned int c = 0; c < dim; ++c)
-            rows[std::size_t(row) * dim + c] +=
-                (side == 0 ? -1. : 1.) * chains_.impulse[a * dim + r] *
-                chains_.frame[(std::size_t(a) * dim + r) * dim + c];
-      }
+    for (const Node &node : nodes_) {
+      const auto has_row = [&](const unsigned int group) {
+        return row_of_group[group] >= 0;
+      };
+      if (std::none_of(node.groups.begin(), node.groups.end(), has_row))
+        continue;
+      for (const auto &[a, sides] : node.problem.points)
+        for (unsigned int side = 0; side < 2; ++side) {
+          if (sides[side] < 0)
+            continue;
+          const int row = row_of_group[node.groups[std::size_t(sides[side])]];
+          if (row < 0)
+            continue;
+          for (unsigned int r = 0; r < dim; ++r)
+            for (unsigned int c = 0; c < dim; ++c)
+              rows[std::size_t(row) * dim + c] +=
+                  (side == 0 ? -1. : 1.) * chains_.impulse[a * dim + r] *
+                  chains_.frame[(a * dim + r) * dim + c];
+        }
     }
   }
 

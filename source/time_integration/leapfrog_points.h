@@ -97,7 +97,6 @@ namespace nsfd
     /** Impulse of @p groups beside a prescribed motion: all that points gave in
         the last solve, x, y, z. */
     void add_impulses(const std::vector<int> &row_of_group,
-                      const CornerGroups<dim> &groups,
                       std::vector<double> &rows) const;
 
     const LeapfrogChains<dim> &chains() const { return chains_; }
@@ -150,8 +149,9 @@ namespace nsfd
     bool separates_ = false; ///< in accept()
 
     std::vector<Node> nodes_;
-    std::vector<int> node_index_;     ///< by node of the mesh, -1: none here
-    std::vector<unsigned int> moved_; ///< points of the step, nodes in order
+    std::vector<int> node_index_;      ///< by node of the mesh, -1: none here
+    std::vector<unsigned int> moved_;  ///< points of the step, nodes in order
+    std::vector<std::uint8_t> counts_; ///< of these, see JoinedMesh
     NodeSolver<dim> solver_;
     unsigned int chain_ = 0;                       ///< which one is in the step
     std::array<std::array<double, 2>, 2> steps_{}; ///< H and theta, by chain
