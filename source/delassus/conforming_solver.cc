@@ -7,12 +7,72 @@
 #include "core/stop_request.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 
 namespace nsfd
 {
   using Vector = std::vector<double>;
+
+  namespace
+  {
+    /** Scalar products over the own unknowns of all ranks, in one exchange. */
+    class OwnSums
+    {
+    public:
+      OwnSums(const Communicator &communicator, const std::size_t n)
+          : communicator_(communicator), n_(n)
+      {
+      }
+
+      double operator()(const Vector &a, const Vector &b) const
+      {
+        return add({of_rank(a, b)})[0];
+      }
+      std::array<double, 2> operator()(const Vector &a, const Vector &b,
+                                       const Vector &c) const
+      {
+        const auto both = add({of_rank(a, b), of_rank(b, c)});
+        return {both[0], both[1]};
+      }
+      /** With the first @p n of @p v, and with itself. */
+      Vector operator()(const Vector &a, const std::vector<Vector> &v,
+                        const unsigned int n) const
+      {
+        Vector all;
+        for (unsigned int j = 0; j < n; ++j)
+          all.push_back(of_rank(a, v[j]));
+        all.push_back(of_rank(a, a));
+        return add(std::move(all));
+      }
+
+    private:
+      double of_rank(const Vector &a, const Vector &b) const
+      {
+        double sum = 0.;
+        for (std::size_t i = 0; i < n_; ++i)
+          sum += a[i] * b[i];
+        return sum;
+      }
+
+      Vector add(Vector sums) const
+      {
+        // the last one: how many ranks are asked to stop
+        sums.push_back(stop_request::is_due(communicator_.size()) ? 1. : 0.);
+        if (communicator_.size() > 1)
+          MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE,
+                        MPI_SUM, communicator_.mpi());
+        if (sums.back() > 0.)
+          throw StopRequested();
+        sums.pop_back();
+        return sums;
+      }
+
+      const Communicator &communicator_;
+      const std::size_t n_;
+    };
+  } // namespace
 
   ConformingSolver::ConformingSolver(const Communicator &communicator,
                                      const long long largest_factor)
@@ -112,25 +172,15 @@ namespace nsfd
 
   krylov::Outcome ConformingSolver::iterate(const double tolerance)
   {
-    const auto dot = [this](const Vector &a, const Vector &b) {
-      // the second one: how many ranks are asked to stop
-      double sums[2] = {0.,
-                        stop_request::is_due(communicator_.size()) ? 1. : 0.};
-      for (std::size_t i = 0; i < n_own_; ++i)
-        sums[0] += a[i] * b[i];
-      if (communicator_.size() > 1)
-        MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM,
-                      communicator_.mpi());
-      if (sums[1] > 0.)
-        throw StopRequested();
-      return sums[0];
-    };
+    const OwnSums sums(communicator_, n_own_);
     const auto preconditioner = [&](const Vector &r, Vector &z) {
       precondition(r, z);
     };
+    Vector x(n_own_, 0.);
+    krylov::Outcome outcome;
     if (product_) {
       constexpr unsigned int most = 100;
-      Vector x(b_.begin(), b_.begin() + long(n_own_));
+      x.assign(b_.begin(), b_.begin() + long(n_own_));
       const auto product = [&](const Vector &p, Vector &q) {
         if (!ties_.any())
           return product_(p, q);
@@ -139,25 +189,21 @@ namespace nsfd
         product_(all, q);
         ties_.fold(q.data());
       };
-      const auto outcome = krylov::gmres(product, preconditioner, dot,
-                                         {tolerance, most}, {true, 2}, x);
-      std::copy(x.begin(), x.end(), x_.begin());
-      return outcome;
+      outcome = krylov::gmres(product, preconditioner, sums, {tolerance, most},
+                              {true, 2}, x);
+    } else {
+      Vector direction(n_own_ + matrix_.ghosts.size());
+      const auto product = [&](const Vector &p, Vector &q) {
+        std::copy_n(p.begin(), n_own_, direction.begin());
+        multiply(matrix_, of_matrix_, direction.data(), q.data());
+      };
+      vectors_.r.assign(b_.begin(), b_.begin() + long(n_own_));
+      for (Vector *v : {&vectors_.z, &vectors_.p, &vectors_.q})
+        v->assign(n_own_, 0.);
+      krylov::OneSumCgSystem system(product, preconditioner, sums, vectors_, x);
+      constexpr unsigned int limit = 1000;
+      outcome = krylov::conjugate_gradients(system, {tolerance, limit});
     }
-    Vector direction(n_own_ + matrix_.ghosts.size());
-    const auto product = [&](const Vector &p, Vector &q) {
-      std::copy_n(p.begin(), n_own_, direction.begin());
-      multiply(matrix_, of_matrix_, direction.data(), q.data());
-    };
-    const auto never = [] { return false; };
-    vectors_.r.assign(b_.begin(), b_.begin() + long(n_own_));
-    for (Vector *v : {&vectors_.z, &vectors_.p, &vectors_.q})
-      v->assign(n_own_, 0.);
-    Vector x(n_own_, 0.);
-    krylov::CgSystem system(product, preconditioner, dot, never, vectors_, x);
-    const unsigned int limit = 1000;
-    const auto outcome =
-        krylov::conjugate_gradients(system, {tolerance, limit});
     std::copy(x.begin(), x.end(), x_.begin());
     return outcome;
   }

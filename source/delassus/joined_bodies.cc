@@ -159,10 +159,11 @@ namespace nsfd
     std::vector<double> positive = T;
     for (std::size_t k = 0; k < T.size() && !symmetric; k += dim * dim)
       take_positive_part<dim>(&positive[k]);
-    const auto solved = [&] {
+    using Fit = typename TangentFactor<dim>::Fit;
+    const auto solved = [&](const bool exact) {
       const Charge charge(Cost::precondition);
       matrix_->set_step(this->shares(this->time_step_, this->theta_));
-      if (tangent_.is_of(T))
+      if (exact)
         tangent_.solver().set_product(nullptr);
       else
         tangent_.solver().set_product(
@@ -171,8 +172,9 @@ namespace nsfd
             });
       return solve(tangent_.solver(), tolerance);
     };
-    return (tangent_.may_keep(positive) && solved()) ||
-           (factor_tangent(positive) && solved());
+    const Fit fit = tangent_.fit(positive);
+    return (fit != Fit::none && solved(symmetric && fit == Fit::exact)) ||
+           (factor_tangent(positive) && solved(symmetric));
   }
 
   template <int dim>
@@ -187,14 +189,19 @@ namespace nsfd
     dU.resize(c.size());
     double tolerance = tight;
     matrix_->impulse(c.data(), rows_);
-    if (defect) {
+    if (defect == &c)
+      tolerance = std::max(tight, share);
+    else if (defect) {
       matrix_->impulse(defect->data(), columns_);
-      const auto norm = [this](const std::vector<double> &x) {
-        return std::sqrt(this->communicator_.dot(x.data(), x.data(), x.size()));
-      };
-      const double all = norm(rows_);
-      if (all > 0.)
-        tolerance = std::max(tight, share * norm(columns_) / all);
+      const std::size_t n = rows_.size();
+      std::vector<double> squares(2 * n);
+      for (std::size_t k = 0; k < n; ++k) {
+        squares[k] = rows_[k] * rows_[k];
+        squares[n + k] = columns_[k] * columns_[k];
+      }
+      const auto sums = this->communicator_.sums(squares.data(), 2, n);
+      if (sums[0] > 0.)
+        tolerance = std::max(tight, share * std::sqrt(sums[1] / sums[0]));
     }
     if (!solve_tangent(T, symmetric, tolerance))
       return false;

@@ -204,8 +204,10 @@ namespace nsfd
                              std::unique(begin, end));
       pattern_.first.push_back(pattern_.column.size());
     }
-    if (communicator_.size() > 1)
+    if (communicator_.size() > 1) {
+      joint_.rows = RowSums(communicator_, *space_, entries());
       return;
+    }
     matrix_ = SparseRows();
     matrix_.start.assign(1, 0);
     for (std::size_t r = 0; r < n_rows; ++r)
@@ -378,9 +380,9 @@ namespace nsfd
                           : ghosts_[std::size_t(block - n_own_)];
   }
 
-  /** Rows of other ranks go to them. */
+  /** Of the pattern, by scalar unknowns, in the order of the values. */
   template <int dim>
-  const SparseRows &JoinedMatrix<dim>::finish()
+  std::vector<SparseEntry> JoinedMatrix<dim>::entries() const
   {
     const auto number = [&](const Block block) {
       return block < n_own_
@@ -388,17 +390,14 @@ namespace nsfd
                  : ghosts_[std::size_t(block - n_own_)] * size_;
     };
     std::vector<SparseEntry> all;
-    all.reserve(values_.size());
+    all.reserve(pattern_.column.size() * size_ * size_);
     for (std::size_t r = 0; r + 1 < pattern_.first.size(); ++r)
       for (unsigned int k = 0; k < size_; ++k)
         for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1]; ++c)
           for (unsigned int l = 0; l < size_; ++l)
-            all.push_back({number(Block(r)) + k, number(pattern_.column[c]) + l,
-                           values_[pattern_.first[r] * size_ * size_ +
-                                   k * width(Block(r)) +
-                                   (c - pattern_.first[r]) * size_ + l]});
-    matrix_ = sum_at_owners(communicator_, *space_, std::move(all));
-    return matrix_;
+            all.push_back(
+                {number(Block(r)) + k, number(pattern_.column[c]) + l, 0.});
+    return all;
   }
 
   template <int dim>
@@ -420,11 +419,11 @@ namespace nsfd
   const SparseRows &JoinedMatrix<dim>::assemble(const double *springs)
   {
     const bool alone = communicator_.size() == 1;
-    auto &values = alone ? matrix_.value : values_;
+    auto &values = alone ? matrix_.value : joint_.values;
     values = operators_.step;
     if (springs)
       add_springs(springs, values);
-    return alone ? matrix_ : finish();
+    return alone ? matrix_ : joint_.rows.sum(values);
   }
 
   template class JoinedMatrix<2>;

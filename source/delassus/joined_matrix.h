@@ -4,6 +4,7 @@
 
 #include "bulk_traction.h"
 #include "linear_algebra/ghost_values.h"
+#include "linear_algebra/row_sums.h"
 #include "linear_algebra/spd_solver.h"
 
 #include <cstdint>
@@ -98,7 +99,7 @@ namespace nsfd
     void multiply(const std::vector<double> &values, const double *x) const;
     void fetch_ghosts(const std::vector<double> &own) const;
     void return_ghosts(std::vector<double> &own) const;
-    const SparseRows &finish();
+    std::vector<SparseEntry> entries() const;
 
     const Communicator &communicator_;
     const Bodies &bodies_;
@@ -129,8 +130,11 @@ namespace nsfd
       std::vector<double> mass, stiffness, damping, step;
     } operators_;           ///< by entry of the pattern; what vanishes is empty
     StepShares shares_{0.}; ///< of M_hat, operators_.step
-    std::vector<double> values_; ///< of several ranks
     SparseRows matrix_;
+    struct {
+      std::vector<double> values;
+      RowSums rows;
+    } joint_; ///< of several ranks
     struct {
       GhostValues exchange;
       std::vector<double> values; ///< own ones and ghosts

@@ -13,17 +13,19 @@ namespace nsfd
   }
 
   template <int dim>
-  bool TangentFactor<dim>::may_keep(const std::vector<double> &springs) const
+  auto TangentFactor<dim>::fit(const std::vector<double> &springs) const -> Fit
   {
     // Measured on a bar of hexes and a plate of grains that break: a point
     // that changes costs about an iteration, a factor some five of them.
     constexpr unsigned int few = 5;
     constexpr double same = 0.8, soft = 0.3;
-    if (communicator_.any(springs.size() != springs_.size()))
-      return false;
-    unsigned int changed = 0;
+    // in one sum: how many points have changed, ranks have others, or no factor
+    constexpr unsigned int bits = 16;
+    constexpr unsigned long long other = 1ull << 32, missing = other << bits;
+    const bool made = springs.size() == springs_.size();
+    unsigned long long changed = 0;
     const auto &faces = delassus_.points().faces;
-    for (std::size_t f = 0; f < faces.size(); ++f)
+    for (std::size_t f = 0; made && f < faces.size(); ++f)
       for (std::size_t i = 0; i < faces[f].count; ++i) {
         const std::size_t first = (faces[f].first + i) * dim * dim;
         double size = 0., change = 0.;
@@ -36,7 +38,13 @@ namespace nsfd
         const double W = delassus_.face_block(f)[i * dim * (n + 1)];
         changed += change > same * size && change * W > soft;
       }
-    return communicator_.sum_integer(changed) <= few;
+    const auto all = communicator_.sum_integer(
+        changed + (made && springs == springs_ ? 0 : other) +
+        (made ? 0 : missing));
+    return all == 0                    ? Fit::exact
+           : all >= missing            ? Fit::none
+           : (all & (other - 1)) > few ? Fit::none
+                                       : Fit::close;
   }
 
   template <int dim>

@@ -26,16 +26,13 @@ namespace nsfd
     /** The bodies are others: there is no factor. */
     void clear() { springs_.clear(); }
 
-    /**
-     * The factor of other @p springs (T, positive semidefinite) is good enough.
-     * Collective.
-     */
-    bool may_keep(const std::vector<double> &springs) const;
-    /** It is the factor of exactly these @p springs. Collective. */
-    bool is_of(const std::vector<double> &springs) const
-    {
-      return !communicator_.any(springs != springs_);
-    }
+    enum class Fit {
+      exact, ///< the factor is that of these springs
+      close, ///< good enough as a preconditioner
+      none
+    };
+    /** Of @p springs, T, positive semidefinite. Collective. */
+    Fit fit(const std::vector<double> &springs) const;
     /** False: not positive definite. Collective. */
     bool factor(const SparseRows &matrix, const std::vector<double> &springs);
 

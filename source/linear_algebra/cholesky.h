@@ -6,9 +6,12 @@
 
 namespace nsfd
 {
+  class DissectedFactor;
+
   /**
-   * Factor of a matrix on one rank, or gathered on the first of several. The
-   * order of elimination is kept while the pattern stays.
+   * Factor of a matrix on one rank (CHOLMOD), or of the rows of several
+   * (DissectedFactor). The order of elimination is kept while the pattern
+   * stays.
    */
   class Cholesky
   {
@@ -24,16 +27,12 @@ namespace nsfd
     /** @p n columns at once; on one rank. */
     void solve_columns(const double *B, double *X, std::size_t n);
 
-    /** Entries of the factor, 8 bytes each; 0 on other ranks. */
+    /** Entries of the factor on this rank, 8 bytes each. */
     double n_entries() const;
 
   private:
     struct Library;
     std::unique_ptr<Library> library_;
-    const Communicator &communicator_;
-    std::vector<int> counts_, offsets_; // rows per rank, on the first one
-    void gather(const SparseRows &matrix);
-    SparseRows gathered_;
-    std::vector<double> b_, x_;
+    std::unique_ptr<DissectedFactor> dissected_; ///< of several ranks
   };
 } // namespace nsfd

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -128,6 +131,69 @@ namespace nsfd::krylov
   };
 
   /**
+   * The same with one sum per iteration (Chronopoulos & Gear, 1989): A is
+   * applied to z and not to p, and
+   *
+   *     p.q = z.A z - beta^2 p_old.q_old.
+   *
+   *     sums(a, b, c)   a.b and b.c
+   */
+  template <typename Product, typename Preconditioner, typename Sums>
+  class OneSumCgSystem
+  {
+  public:
+    OneSumCgSystem(const Product &product, const Preconditioner &preconditioner,
+                   const Sums &sums, CgVectors &vectors, std::vector<double> &x)
+        : product_(product), preconditioner_(preconditioner), sums_(sums),
+          v_(vectors), x_(x), w_(x.size())
+    {
+    }
+
+    bool is_solved() const { return false; }
+
+    double precondition()
+    {
+      preconditioner_(v_.r, v_.z);
+      product_(v_.z, w_);
+      const std::array<double, 2> both = sums_(v_.r, v_.z, w_);
+      energy_ = both[1];
+      return both[0];
+    }
+
+    void turn(const double beta)
+    {
+      if (beta == 0.) {
+        v_.p = v_.z;
+        v_.q = w_;
+      } else
+        for (std::size_t k = 0; k < v_.p.size(); ++k) {
+          v_.p[k] = v_.z[k] + beta * v_.p[k];
+          v_.q[k] = w_[k] + beta * v_.q[k];
+        }
+      curvature_ = energy_ - beta * beta * curvature_;
+    }
+
+    double multiply() const { return curvature_; }
+
+    void advance(const double alpha)
+    {
+      for (std::size_t k = 0; k < x_.size(); ++k) {
+        x_[k] += alpha * v_.p[k];
+        v_.r[k] -= alpha * v_.q[k];
+      }
+    }
+
+  private:
+    const Product &product_;
+    const Preconditioner &preconditioner_;
+    const Sums &sums_;
+    CgVectors &v_;
+    std::vector<double> &x_;
+    std::vector<double> w_; ///< A z
+    double energy_ = 0., curvature_ = 0.;
+  };
+
+  /**
    * Adds to @p x the solution of A dx = r, r in @p vectors, which are of the
    * size of x. See CgSystem for the functions.
    */
@@ -246,7 +312,10 @@ namespace nsfd::krylov
     unsigned int passes = 2;
   };
 
-  /** The basis of gmres() in vectors of doubles; functions as in CgSystem. */
+  /**
+   * The basis of gmres() in vectors of doubles; functions as in CgSystem. Where
+   * dot(a, v, n) returns a.v_j, j < n, and a.a, a column takes one sum.
+   */
   template <typename Product, typename Preconditioner, typename Dot>
   class GmresBasis
   {
@@ -304,7 +373,32 @@ namespace nsfd::krylov
           value /= length;
     }
 
-    double orthogonalise(const unsigned int k, Vector &next, double *h) const
+    /**
+     * Classical Gram-Schmidt, again where digits were lost (Giraud et al.,
+     * 2005): one sum for all products.
+     */
+    double orthogonalise_at_once(const unsigned int k, Vector &next,
+                                 double *h) const
+    {
+      double length = 0.;
+      for (unsigned int pass = 0; pass < 2; ++pass) {
+        const std::vector<double> products = dot_(next, v_, k + 1);
+        double left = products[k + 1];
+        for (unsigned int j = 0; j <= k; ++j) {
+          h[j] += products[j];
+          left -= products[j] * products[j];
+          for (std::size_t i = 0; i < next.size(); ++i)
+            next[i] -= products[j] * v_[j][i];
+        }
+        length = std::sqrt(std::max(0., left));
+        if (length > 0.1 * std::sqrt(products[k + 1]))
+          return length;
+      }
+      return std::sqrt(dot_(next, next));
+    }
+
+    double orthogonalise_one_by_one(const unsigned int k, Vector &next,
+                                    double *h) const
     {
       double before = options_.passes > 1 ? std::sqrt(dot_(next, next)) : 0.,
              length = before;
@@ -321,6 +415,16 @@ namespace nsfd::krylov
         before = length;
       }
       return length;
+    }
+
+    double orthogonalise(const unsigned int k, Vector &next, double *h) const
+    {
+      if constexpr (std::is_invocable_v<Dot, const Vector &,
+                                        const std::vector<Vector> &,
+                                        unsigned int>)
+        return orthogonalise_at_once(k, next, h);
+      else
+        return orthogonalise_one_by_one(k, next, h);
     }
 
     const Product &product_;

@@ -132,8 +132,7 @@ namespace nsfd
   };
 
   /**
-   * Sparse Cholesky factor (CHOLMOD), supernodal. With several ranks the matrix
-   * is gathered on the first one, which solves alone.
+   * Sparse Cholesky factor, supernodal, as of class Cholesky.
    */
   std::unique_ptr<SpdSolver>
   make_cholesky_solver(const Communicator &communicator);

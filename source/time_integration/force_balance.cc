@@ -26,18 +26,18 @@ namespace nsfd
       for (unsigned int k = 0; k < body.n_dofs && !body.rigid; ++k)
         diagonal[bodies.first_dof[b] + k] = body.stiffness(k, k);
     }
-    round_off_ =
-        share * std::sqrt(communicator.dot(diagonal.data(), diagonal.data(),
-                                           bodies.n_dofs()));
-    std::vector<double> terms(n_owned, 0.), supports = terms;
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-      supports[i] = support[i];
+    std::vector<double> terms(2 * n_owned, 0.);
+    for (std::size_t i = 0; i < n_owned; ++i) {
       for (unsigned int c = 0; c < dim; ++c)
         terms[i] += force[i * dim + c] * force[i * dim + c] / support[i];
+      terms[n_owned + i] = support[i];
     }
-    point_round_off_ = share * share * communicator.sum(supports);
-    point_scale_ = std::max(point_scale_, communicator.sum(terms));
-    present_ = std::max(present_, forces_present(q, force));
+    const auto sums = communicator.sums(terms.data(), 2, n_owned);
+    point_scale_ = std::max(point_scale_, sums[0]);
+    point_round_off_ = share * share * sums[1];
+    const auto [present, stiffness] = forces_present(q, force, diagonal);
+    present_ = std::max(present_, present);
+    round_off_ = share * stiffness;
   }
 
   template <int dim>
@@ -52,23 +52,30 @@ namespace nsfd
     archive.numbers("largest_forces", point_scale_, present_);
   }
 
-  /** The largest of |K q|, |F| and |H^T r|, N. */
+  /** The largest of |K q|, |F| and |H^T r|, N, and |other|. */
   template <int dim>
-  double
+  std::pair<double, double>
   ForceBalance<dim>::forces_present(const std::vector<double> &q,
-                                    const std::vector<double> &force) const
+                                    const std::vector<double> &force,
+                                    const std::vector<double> &other) const
   {
-    const auto &delassus = delassus_;
     const std::size_t n = q.size();
-    const auto norm = [&](const std::vector<double> &x) {
-      return std::sqrt(delassus.communicator().dot(x.data(), x.data(), n));
+    std::vector<double> terms(4 * n);
+    const auto square = [n](const double *x, double *result) {
+      for (std::size_t k = 0; k < n; ++k)
+        result[k] = x[k] * x[k];
     };
     std::vector<double> forces(n);
-    delassus.apply(DelassusOperator<dim>::Operator::stiffness, q.data(),
-                   forces.data());
-    double present = std::max(norm(forces), norm(free_motion_.loads()));
-    delassus.generalised_impulse(force.data(), forces.data());
-    return std::max(present, norm(forces));
+    delassus_.apply(DelassusOperator<dim>::Operator::stiffness, q.data(),
+                    forces.data());
+    square(forces.data(), &terms[0]);
+    square(free_motion_.loads().data(), &terms[n]);
+    delassus_.generalised_impulse(force.data(), forces.data());
+    square(forces.data(), &terms[2 * n]);
+    square(other.data(), &terms[3 * n]);
+    const auto sums = delassus_.communicator().sums(terms.data(), 4, n);
+    return {std::sqrt(std::max({sums[0], sums[1], sums[2]})),
+            std::sqrt(sums[3])};
   }
 
   template <int dim>
@@ -89,13 +96,9 @@ namespace nsfd
                                   std::vector<double> residual,
                                   const std::vector<double> &force)
   {
-    const auto &communicator = delassus_.communicator();
-    const std::size_t n = q.size();
     residual_ = std::move(residual);
-    const double left =
-        std::sqrt(communicator.dot(residual_.data(), residual_.data(), n));
-    const double present =
-        std::max({present_, round_off_, forces_present(q, force)});
+    const auto [forces, left] = forces_present(q, force, residual_);
+    const double present = std::max({present_, round_off_, forces});
     imbalance_ = left == 0. ? 0. : left / present;
   }
 

@@ -2,6 +2,7 @@
 
 #include "free_motion.h"
 
+#include <utility>
 #include <vector>
 
 namespace nsfd
@@ -49,8 +50,10 @@ namespace nsfd
     void serialize(Archive &archive);
 
   private:
-    double forces_present(const std::vector<double> &q,
-                          const std::vector<double> &force) const;
+    std::pair<double, double>
+    forces_present(const std::vector<double> &q,
+                   const std::vector<double> &force,
+                   const std::vector<double> &other) const;
 
     const DelassusOperator<dim> &delassus_;
     const FreeMotion<dim> &free_motion_;

@@ -151,9 +151,9 @@ namespace nsfd
     // D (W + D)^-1 W f, the flexibility next to the springs
     const auto respond = [&](const std::vector<double> &f,
                              std::vector<double> &u) {
-      if (nodes) {
+      if (nodes) { // to some more digits than the eigenvalue is known to
         std::vector<double> dP;
-        return nodes->solve_linearised(springs, true, f, dP, u);
+        return nodes->solve_linearised(springs, true, f, dP, u, &f, 1e-6);
       }
       std::vector<double> r(n), z(n, 0.);
       for (std::size_t k = 0; k < n; ++k)

@@ -12,8 +12,10 @@ namespace nsfd
   template <int dim>
   void StaticBonds<dim>::set()
   {
-    if (bonded_.set_bonds(bonded_points(iterate_.at)))
+    if (bonded_.set_bonds(bonded_points(iterate_.at))) {
       changed_ = true;
+      smallest_ = 0.;
+    }
   }
 
   template <int dim>
@@ -24,8 +26,10 @@ namespace nsfd
   }
 
   template <int dim>
-  double StaticBonds<dim>::cells_of_smallest_body() const
+  double StaticBonds<dim>::cells_of_smallest_body()
   {
+    if (smallest_ > 0.)
+      return smallest_;
     ConnectedCells<dim> bodies(discretization_, bonded_.communicator());
     bodies.connect([this](const typename InterfacePoints<dim>::Face &face) {
       return face.count > 0 &&
@@ -36,7 +40,9 @@ namespace nsfd
       ++cells[body];
     MPI_Allreduce(MPI_IN_PLACE, cells.data(), int(cells.size()), MPI_DOUBLE,
                   MPI_SUM, bonded_.communicator().mpi());
-    return cells.empty() ? 1. : *std::min_element(cells.begin(), cells.end());
+    smallest_ =
+        cells.empty() ? 1. : *std::min_element(cells.begin(), cells.end());
+    return smallest_;
   }
 
   template <int dim>

@@ -40,7 +40,7 @@ namespace nsfd
     /** The bonds of the iterate, before the data of a round. Collective. */
     void set();
     /** Cells of the smallest body that they make. Collective. */
-    double cells_of_smallest_body() const;
+    double cells_of_smallest_body();
     /** Supports once per node, after the data of a round. Collective. */
     void constrain();
 
@@ -100,6 +100,7 @@ namespace nsfd
     LoadStepIterate<dim> &iterate_;
     VelocitySolver &nodes_; ///< bonded_
     NodeSupports<dim> supports_;
-    bool changed_ = true; ///< bonds, since the last constrain()
+    bool changed_ = true;  ///< bonds, since the last constrain()
+    double smallest_ = 0.; ///< cells_of_smallest_body(), 0 if not known
   };
 } // namespace nsfd

@@ -1,0 +1,289 @@
+#include "partial_cholesky.h"
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <new>
+
+extern "C" {
+void dpotrf_(const char *uplo, const int *n, double *A, const int *lda,
+             int *info);
+void dtrsm_(const char *side, const char *uplo, const char *transposed,
+            const char *diagonal, const int *m, const int *n,
+            const double *alpha, const double *A, const int *lda, double *B,
+            const int *ldb);
+void dsyrk_(const char *uplo, const char *transposed, const int *n,
+            const int *k, const double *alpha, const double *A, const int *lda,
+            const double *beta, double *C, const int *ldc);
+void dtrsv_(const char *uplo, const char *transposed, const char *diagonal,
+            const int *n, const double *A, const int *lda, double *x,
+            const int *step);
+void dgemv_(const char *transposed, const int *m, const int *n,
+            const double *alpha, const double *A, const int *lda,
+            const double *x, const int *step_x, const double *beta, double *y,
+            const int *step_y);
+}
+
+namespace nsfd
+{
+  namespace
+  {
+    constexpr double one = 1., minus_one = -1., zero = 0.;
+    constexpr int next = 1;
+
+    struct Analysis {
+      cholmod_common common;
+      cholmod_factor *factor = nullptr;
+
+      Analysis()
+      {
+        cholmod_start(&common);
+        common.supernodal = CHOLMOD_SUPERNODAL;
+        common.print = 0;
+        common.error_handler = nullptr;
+      }
+      Analysis(const Analysis &) = delete;
+      ~Analysis()
+      {
+        cholmod_free_factor(&factor, &common);
+        cholmod_finish(&common);
+      }
+
+      /** Of a lower triangle by columns, in @p order or one that is found. */
+      void run(std::vector<int> &start, std::vector<int> &row, int *order)
+      {
+        cholmod_sparse A{};
+        A.nrow = A.ncol = start.size() - 1;
+        A.nzmax = row.size();
+        A.p = start.data();
+        A.i = row.data();
+        A.stype = -1;
+        A.itype = CHOLMOD_INT;
+        A.xtype = CHOLMOD_PATTERN;
+        A.dtype = CHOLMOD_DOUBLE;
+        A.sorted = A.packed = 1;
+        cholmod_free_factor(&factor, &common);
+        common.nmethods = order ? 1 : 0;
+        common.method[0].ordering = CHOLMOD_GIVEN;
+        factor = cholmod_analyze_p(&A, order, nullptr, 0, &common);
+        if (!factor)
+          throw std::bad_alloc();
+      }
+    };
+
+    /** Lower triangle by columns of what is below @p n. */
+    void take_lower(const SparseRows &rows, const int n,
+                    std::vector<int> &start, std::vector<int> &row)
+    {
+      start.assign(1, 0);
+      row.clear();
+      for (int i = 0; i < rows.n_rows(); ++i) {
+        for (int k = rows.start[i]; k < rows.start[i + 1]; ++k)
+          if (rows.column[k] >= i && rows.column[k] < n)
+            row.push_back(rows.column[k]);
+        std::sort(row.begin() + start.back(), row.end());
+        start.push_back(int(row.size()));
+      }
+    }
+  } // namespace
+
+  void PartialCholesky::analyse(const SparseRows &rows, const int n_boundary)
+  {
+    n_inner_ = rows.n_rows();
+    n_boundary_ = n_boundary;
+    const int n = n_inner_ + n_boundary;
+    fronts_.clear();
+    values_.clear();
+    local_.assign(std::size_t(n), 0);
+    unknown_.resize(std::size_t(n));
+    place_.resize(std::size_t(n));
+    if (n_inner_ == 0)
+      return;
+    Analysis analysis;
+    std::vector<int> start, row;
+    take_lower(rows, n_inner_, start, row);
+    analysis.run(start, row, nullptr);
+    // the boundary behind it: its places among what is eliminated do not
+    // matter, and fronts know which of their rows it has
+    const int *inner = static_cast<const int *>(analysis.factor->Perm);
+    std::vector<int> order(inner, inner + n_inner_);
+    for (int k = n_inner_; k < n; ++k)
+      order.push_back(k);
+    take_lower(rows, n, start, row);
+    for (int k = n_inner_; k < n; ++k) {
+      row.push_back(k);
+      start.push_back(int(row.size()));
+    }
+    analysis.run(start, row, order.data());
+    const cholmod_factor &L = *analysis.factor;
+    const int *permutation = static_cast<const int *>(L.Perm),
+              *super = static_cast<const int *>(L.super),
+              *pi = static_cast<const int *>(L.pi),
+              *s = static_cast<const int *>(L.s);
+    for (int k = 0; k < n; ++k) {
+      unknown_[std::size_t(k)] = permutation[k];
+      place_[std::size_t(permutation[k])] = k;
+    }
+    const auto of_boundary = [&](const int place) {
+      return permutation[place] >= n_inner_;
+    };
+    std::vector<int> front_of(std::size_t(n), -1);
+    std::size_t n_values = 0;
+    for (std::size_t k = 0; k < L.nsuper; ++k) {
+      Front front;
+      front.first = super[k];
+      while (front.first + front.n_columns < super[k + 1] &&
+             !of_boundary(front.first + front.n_columns))
+        front_of[std::size_t(front.first + front.n_columns++)] =
+            int(fronts_.size());
+      if (front.n_columns == 0)
+        continue;
+      front.rows.assign(s + pi[k], s + pi[k + 1]);
+      // ancestors of the boundary are of the boundary
+      front.n_inner = int(
+          std::partition_point(front.rows.begin(), front.rows.end(),
+                               [&](const int r) { return !of_boundary(r); }) -
+          front.rows.begin());
+      front.values = n_values;
+      n_values += front.rows.size() * std::size_t(front.n_columns);
+      fronts_.push_back(std::move(front));
+    }
+    for (Front &front : fronts_)
+      if (front.n_columns < front.n_inner)
+        front.parent =
+            front_of[std::size_t(front.rows[std::size_t(front.n_columns)])];
+    values_.resize(n_values);
+  }
+
+  /** What the matrix has in the columns of @p front. */
+  void PartialCholesky::assemble(const SparseRows &rows, const Front &front,
+                                 double *L)
+  {
+    const int n = size(front);
+    for (int r = 0; r < n; ++r)
+      local_[std::size_t(front.rows[std::size_t(r)])] = r;
+    std::fill_n(L, std::size_t(n) * std::size_t(front.n_columns), 0.);
+    for (int c = 0; c < front.n_columns; ++c) {
+      const int i = unknown_[std::size_t(front.first + c)];
+      for (int k = rows.start[i]; k < rows.start[i + 1]; ++k) {
+        const int place = place_[std::size_t(rows.column[k])];
+        if (place >= front.first + c)
+          L[std::size_t(c) * std::size_t(n) +
+            std::size_t(local_[std::size_t(place)])] += rows.value[k];
+      }
+    }
+  }
+
+  /** Columns of @p update that are not of the boundary. */
+  void PartialCholesky::add_update(const Front &child,
+                                   const std::vector<double> &update,
+                                   const Front &front, double *L,
+                                   std::vector<double> &left)
+  {
+    const int n = size(front), n_left = n - front.n_columns,
+              m = size(child) - child.n_columns;
+    const int *rows = child.rows.data() + child.n_columns;
+    for (int c = 0; c < child.n_inner - child.n_columns; ++c) {
+      const int column = local_[std::size_t(rows[c])];
+      const double *from = &update[std::size_t(c) * std::size_t(m)];
+      double *to = column < front.n_columns
+                       ? L + std::size_t(column) * std::size_t(n)
+                       : &left[std::size_t(column - front.n_columns) *
+                               std::size_t(n_left)] -
+                             front.n_columns;
+      for (int r = c; r < m; ++r)
+        to[local_[std::size_t(rows[r])]] += from[r];
+    }
+  }
+
+  bool PartialCholesky::factorise(const SparseRows &rows,
+                                  std::vector<double> &boundary)
+  {
+    boundary.resize(std::size_t(n_boundary_) * std::size_t(n_boundary_), 0.);
+    std::vector<std::vector<double>> updates(fronts_.size());
+    std::vector<std::vector<int>> children(fronts_.size());
+    for (std::size_t f = 0; f < fronts_.size(); ++f) {
+      const Front &front = fronts_[f];
+      const int n = size(front), k = front.n_columns, n_left = n - k;
+      double *L = &values_[front.values];
+      auto &left = updates[f];
+      left.assign(std::size_t(n_left) * std::size_t(n_left), 0.);
+      assemble(rows, front, L);
+      for (const int child : children[f]) {
+        auto &update = updates[std::size_t(child)];
+        add_update(fronts_[std::size_t(child)], update, front, L, left);
+        std::vector<double>().swap(update);
+      }
+      int info = 0;
+      dpotrf_("L", &k, L, &n, &info);
+      if (info != 0)
+        return false;
+      if (n_left == 0)
+        continue;
+      dtrsm_("R", "L", "T", "N", &n_left, &k, &one, L, &n, L + k, &n);
+      dsyrk_("L", "N", &n_left, &k, &minus_one, L + k, &n, &one, left.data(),
+             &n_left);
+      const int *places = front.rows.data() + k;
+      for (int c = front.n_inner - k; c < n_left; ++c) {
+        const int column = unknown_[std::size_t(places[c])] - n_inner_;
+        for (int r = c; r < n_left; ++r) {
+          const int row = unknown_[std::size_t(places[r])] - n_inner_;
+          boundary[std::size_t(std::min(row, column)) *
+                       std::size_t(n_boundary_) +
+                   std::size_t(std::max(row, column))] +=
+              left[std::size_t(c) * std::size_t(n_left) + std::size_t(r)];
+        }
+      }
+      if (front.parent >= 0)
+        children[std::size_t(front.parent)].push_back(int(f));
+      else
+        std::vector<double>().swap(left);
+    }
+    return true;
+  }
+
+  void PartialCholesky::forward(std::vector<double> &x)
+  {
+    ordered_.assign(unknown_.size(), 0.);
+    for (int i = 0; i < n_inner_; ++i)
+      ordered_[std::size_t(place_[std::size_t(i)])] = x[std::size_t(i)];
+    for (const Front &front : fronts_) {
+      const int n = size(front), k = front.n_columns, n_left = n - k;
+      const double *L = &values_[front.values];
+      double *own = &ordered_[std::size_t(front.first)];
+      dtrsv_("L", "N", "N", &k, L, &n, own, &next);
+      if (n_left == 0)
+        continue;
+      part_.resize(std::size_t(n_left));
+      dgemv_("N", &n_left, &k, &minus_one, L + k, &n, own, &next, &zero,
+             part_.data(), &next);
+      for (int r = 0; r < n_left; ++r)
+        ordered_[std::size_t(front.rows[std::size_t(k + r)])] +=
+            part_[std::size_t(r)];
+    }
+    for (std::size_t k = 0; k < unknown_.size(); ++k)
+      x[std::size_t(unknown_[k])] = ordered_[k];
+  }
+
+  void PartialCholesky::backward(std::vector<double> &x)
+  {
+    for (std::size_t k = 0; k < unknown_.size(); ++k)
+      ordered_[k] = x[std::size_t(unknown_[k])];
+    for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
+      const int n = size(*front), k = front->n_columns, n_left = n - k;
+      const double *L = &values_[front->values];
+      double *own = &ordered_[std::size_t(front->first)];
+      if (n_left > 0) {
+        part_.resize(std::size_t(n_left));
+        for (int r = 0; r < n_left; ++r)
+          part_[std::size_t(r)] =
+              ordered_[std::size_t(front->rows[std::size_t(k + r)])];
+        dgemv_("T", &n_left, &k, &minus_one, L + k, &n, part_.data(), &next,
+               &one, own, &next);
+      }
+      dtrsv_("L", "T", "N", &k, L, &n, own, &next);
+    }
+    for (int i = 0; i < n_inner_; ++i)
+      x[std::size_t(i)] = ordered_[std::size_t(place_[std::size_t(i)])];
+  }
+} // namespace nsfd
