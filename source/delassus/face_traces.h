@@ -27,10 +27,13 @@ namespace nsfd
     void relative_velocity(const double *velocity, double *result) const;
 
     /**
-     * The sides of a point can move against each other: not where they are one
-     * node, as on a face that ends inside a body.
+     * By point: its sides can move against each other; not where they are one
+     * node, as on a face that ends inside a body. Collective.
      */
-    virtual bool parts(std::size_t /*point*/) const { return true; }
+    virtual std::vector<char> parting() const
+    {
+      return std::vector<char>(points_.n_points, 1);
+    }
 
     /** H v of a motion that bodies that share nodes share. */
     virtual void jumps(const double *velocity, double *result) const

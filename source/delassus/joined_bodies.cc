@@ -31,9 +31,8 @@ namespace nsfd
     const long long mine = static_cast<long long>(bodies.n_dofs());
     long long sum = 0;
     MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
-    matrix_ = std::make_unique<JoinedMatrix<dim>>(
-        communicator, bodies, points, point_traces(*this, sum - mine, true),
-        this->bulk_.bonds(), sum - mine);
+    matrix_ = std::make_unique<JoinedMatrix<dim>>(*this, this->bulk_.bonds(),
+                                                  sum - mine);
     const SparseAssembly<dim> nodes(communicator, bodies, points, coordinates);
     conforming_ = std::make_unique<ConformingSpace>(
         communicator, dim, nodes.unknowns(), nodes.node_pairs(),
@@ -58,8 +57,9 @@ namespace nsfd
       }
     };
     std::vector<Claim> claims;
+    const auto &matrix = this->matrix();
     for (std::size_t i = 0; i < masks.size(); ++i) {
-      const long long node = masks[i] ? matrix_->node_of_point(i) : -1;
+      const long long node = masks[i] ? matrix.node_of_point(i) : -1;
       if (node < 0)
         continue;
       const auto &face = this->points_.faces[this->points_.face_of[i]];
@@ -116,8 +116,7 @@ namespace nsfd
       if (this->shares_nodes_[f])
         std::fill_n(this->penalised_.begin() + this->points_.faces[f].first,
                     this->points_.faces[f].count, 0);
-    matrix_->set_space(conforming_->space(), this->shares_nodes_,
-                       this->penalised_);
+    placed_ = false;
     factor_.set_space(conforming_->space());
     tangent_.set_space(conforming_->space());
     // of several unknowns that are one node, the first
@@ -130,13 +129,28 @@ namespace nsfd
     }
   }
 
+  /**
+   * In the present space. It is made where it is asked for first: before the
+   * bonds of a scene are known, and in a run of equilibria for the bodies of
+   * its motions, no one does.
+   */
+  template <int dim>
+  JoinedMatrix<dim> &JoinedBodies<dim>::matrix() const
+  {
+    if (!placed_)
+      matrix_->set_space(conforming_->space(), this->shares_nodes_,
+                         this->penalised_);
+    placed_ = true;
+    return *matrix_;
+  }
+
   /** M_hat + H^T T H in the space, @p springs the blocks T; none if empty. */
   template <int dim>
   const SparseRows &
   JoinedBodies<dim>::assemble(const std::vector<double> &springs) const
   {
-    matrix_->set_step(this->shares(this->time_step_, this->theta_));
-    return matrix_->assemble(springs.empty() ? nullptr : springs.data());
+    matrix().set_step(this->shares(this->time_step_, this->theta_));
+    return matrix().assemble(springs.empty() ? nullptr : springs.data());
   }
 
   template <int dim>
@@ -162,13 +176,13 @@ namespace nsfd
     using Fit = typename TangentFactor<dim>::Fit;
     const auto solved = [&](const bool exact) {
       const Charge charge(Cost::precondition);
-      matrix_->set_step(this->shares(this->time_step_, this->theta_));
+      matrix().set_step(this->shares(this->time_step_, this->theta_));
       if (exact)
         tangent_.solver().set_product(nullptr);
       else
         tangent_.solver().set_product(
             [this, &T](const std::vector<double> &x, std::vector<double> &y) {
-              matrix_->apply_step(T.data(), x, y);
+              matrix().apply_step(T.data(), x, y);
             });
       return solve(tangent_.solver(), tolerance);
     };
@@ -188,11 +202,11 @@ namespace nsfd
   {
     dU.resize(c.size());
     double tolerance = tight;
-    matrix_->impulse(c.data(), rows_);
+    matrix().impulse(c.data(), rows_);
     if (defect == &c)
       tolerance = std::max(tight, share);
     else if (defect) {
-      matrix_->impulse(defect->data(), columns_);
+      matrix().impulse(defect->data(), columns_);
       const std::size_t n = rows_.size();
       std::vector<double> squares(2 * n);
       for (std::size_t k = 0; k < n; ++k) {
@@ -205,7 +219,7 @@ namespace nsfd
     }
     if (!solve_tangent(T, symmetric, tolerance))
       return false;
-    matrix_->velocity(columns_, dU.data());
+    matrix().velocity(columns_, dU.data());
     answer_of_points<dim>(T, c, dU, dP);
     return true;
   }
@@ -213,11 +227,15 @@ namespace nsfd
   template <int dim>
   bool JoinedBodies<dim>::join_motion(std::vector<double> &x)
   {
+    const bool rests =
+        std::all_of(x.begin(), x.end(), [](const double v) { return v == 0.; });
+    if (!this->communicator_.any(!rests))
+      return false;
     ConformingSolver mass(this->communicator_,
                           std::numeric_limits<long long>::max());
     mass.set_space(conforming_->space());
-    matrix_->set_step({0., 0.});
-    mass.prepare(matrix_->assemble(nullptr));
+    matrix().set_step({0., 0.});
+    mass.prepare(matrix().assemble(nullptr));
     std::vector<double> momentum(x.size()), joined(x.size());
     BondedDelassus<dim>::apply(Operator::mass, x.data(), momentum.data());
     mass.solve(momentum.data(), joined.data(), tight);
@@ -302,15 +320,25 @@ namespace nsfd
       return;
     }
     take(representative_, x, rows_);
-    matrix_->apply(op, rows_, columns_);
+    matrix().apply(op, rows_, columns_);
     spread(representative_, columns_, this->bodies_.n_dofs(), y);
+  }
+
+  template <int dim>
+  std::vector<char> JoinedBodies<dim>::parting() const
+  {
+    const auto &matrix = this->matrix();
+    std::vector<char> result(this->points_.n_points);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] = matrix.parts(i);
+    return result;
   }
 
   template <int dim>
   void JoinedBodies<dim>::jumps(const double *velocity, double *result) const
   {
     take(representative_, velocity, rows_);
-    matrix_->velocity(rows_, result);
+    matrix().velocity(rows_, result);
   }
 
   template <int dim>
@@ -323,9 +351,9 @@ namespace nsfd
       condensed_.apply(impulse, velocity);
       return;
     }
-    matrix_->impulse(impulse, rows_);
+    matrix().impulse(impulse, rows_);
     answer();
-    matrix_->velocity(columns_, velocity);
+    matrix().velocity(columns_, velocity);
   }
 
   /** U = H x of the answer x to H^T P. */
@@ -334,9 +362,9 @@ namespace nsfd
                                   const double *impulse, double *velocity,
                                   const double tolerance) const
   {
-    matrix_->impulse(impulse, rows_);
+    matrix().impulse(impulse, rows_);
     const bool solved = solve(solver, tolerance);
-    matrix_->velocity(columns_, velocity);
+    matrix().velocity(columns_, velocity);
     return solved;
   }
 
@@ -344,7 +372,7 @@ namespace nsfd
   void JoinedBodies<dim>::add_velocity_change(const double *impulse,
                                               double *velocity) const
   {
-    matrix_->impulse(impulse, rows_);
+    matrix().impulse(impulse, rows_);
     answer();
     factor_.add(columns_, velocity);
   }

@@ -38,10 +38,7 @@ namespace nsfd
                              double *velocity) const override;
     void apply(Operator op, const double *x, double *y) const override;
     void jumps(const double *velocity, double *result) const override;
-    bool parts(const std::size_t point) const override
-    {
-      return matrix_->parts(point);
-    }
+    std::vector<char> parting() const override;
     bool solve_linearised(const std::vector<double> &T, bool symmetric,
                           const std::vector<double> &c, std::vector<double> &dP,
                           std::vector<double> &dU,
@@ -81,8 +78,11 @@ namespace nsfd
     void answer() const;
     void update() const;
 
+    JoinedMatrix<dim> &matrix() const;
+
     mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
-    const bool may_share_; ///< nodes
+    mutable bool placed_ = false; ///< matrix_ is that of the present space
+    const bool may_share_;        ///< nodes
     std::unique_ptr<ConformingSpace> conforming_;
     mutable ConformingSolver factor_; ///< of M_hat
     TangentFactor<dim> tangent_;

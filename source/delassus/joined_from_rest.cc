@@ -13,7 +13,7 @@ namespace nsfd
                                   const std::vector<double> &displacement)
   {
     is_on_ = true;
-    auto &matrix = *bodies_.matrix_;
+    auto &matrix = bodies_.matrix();
     bodies_.factor_.restrict_to_space(momentum, momentum_);
     v_.assign(momentum_.size(), 0.);
     dv_ = v_;
@@ -33,7 +33,7 @@ namespace nsfd
   template <int dim>
   void JoinedFromRest<dim>::set_right_side(const std::vector<double> &P)
   {
-    auto &matrix = *bodies_.matrix_;
+    auto &matrix = bodies_.matrix();
     matrix.set_step(bodies_.shares(bodies_.time_step_, bodies_.theta_));
     matrix.apply_step(nullptr, v_, bodies_.columns_);
     matrix.impulse(P.data(), bodies_.rows_);
@@ -56,7 +56,7 @@ namespace nsfd
       return false;
     dv_ = bodies_.columns_;
     dU.resize(c.size());
-    bodies_.matrix_->velocity(dv_, dU.data());
+    bodies_.matrix().velocity(dv_, dU.data());
     answer_of_points<dim>(T, c, dU, dP);
     return true;
   }
@@ -66,7 +66,7 @@ namespace nsfd
   {
     for (std::size_t k = 0; k < v_.size(); ++k)
       v_[k] += length * dv_[k];
-    bodies_.matrix_->velocity(v_, U.data());
+    bodies_.matrix().velocity(v_, U.data());
   }
 
   template <int dim>
@@ -79,7 +79,7 @@ namespace nsfd
     bodies_.factor_.add(v_, velocity.data());
     set_right_side(P);
     std::vector<double> inertia;
-    bodies_.matrix_->apply(Operator::mass, v_, inertia);
+    bodies_.matrix().apply(Operator::mass, v_, inertia);
     for (std::size_t k = 0; k < v_.size(); ++k)
       inertia[k] += bodies_.rows_[k];
     spread(bodies_.representative_, inertia, left.size(), left.data());

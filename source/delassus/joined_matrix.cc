@@ -8,25 +8,38 @@
 namespace nsfd
 {
   template <int dim>
-  JoinedMatrix<dim>::JoinedMatrix(const Communicator &communicator,
-                                  const Bodies &bodies,
-                                  const InterfacePoints<dim> &points,
-                                  std::array<std::vector<PointTrace>, 2> traces,
-                                  std::vector<Bond> bonds,
+  JoinedMatrix<dim>::JoinedMatrix(const DelassusOperator<dim> &delassus,
+                                  const std::vector<Bond> &bonds,
                                   const long long first_dof)
-      : communicator_(communicator), bodies_(bodies), points_(points),
-        traces_(std::move(traces)), bonds_(std::move(bonds)),
+      : delassus_(delassus), communicator_(delassus.communicator()),
+        bodies_(delassus.bodies()), points_(delassus.points()), bonds_(bonds),
         first_dof_(first_dof)
   {
-    const auto end = first_dof + static_cast<long long>(bodies.n_dofs());
-    for (const auto &side : traces_)
-      for (const PointTrace &trace : side)
-        if (trace.first >= 0 && (trace.first < first_dof || trace.first >= end))
+  }
+
+  /** And the unknowns of other ranks that they see. */
+  template <int dim>
+  void JoinedMatrix<dim>::set_traces(const std::vector<char> &shares_nodes)
+  {
+    std::vector<char> wanted(points_.n_points);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      wanted[i] = !shares_nodes[points_.face_of[i]];
+    const bool penalty =
+        std::any_of(penalised_.begin(), penalised_.end(),
+                    [](const std::uint8_t p) { return p != 0; });
+    traces_ =
+        PointTraces(delassus_, first_dof_, wanted, communicator_.any(penalty));
+    const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
+    remote_.clear();
+    for (const unsigned int side : {0u, 1u})
+      for (const PointTrace &trace : traces_.of_side(side))
+        if (trace.first >= 0 &&
+            (trace.first < first_dof_ || trace.first >= end))
           for (unsigned int j = 0; j < trace.n_dofs; ++j)
             remote_.push_back(trace.first + j);
     std::sort(remote_.begin(), remote_.end());
     remote_.erase(std::unique(remote_.begin(), remote_.end()), remote_.end());
-    fetch_ = GhostValues(communicator, first_dof, bodies.n_dofs(), remote_);
+    fetch_ = GhostValues(communicator_, first_dof_, bodies_.n_dofs(), remote_);
   }
 
   template <int dim>
@@ -84,7 +97,7 @@ namespace nsfd
       -> std::vector<Block>
   {
     std::vector<Block> result;
-    const PointTrace &trace = traces_[side][point];
+    const PointTrace &trace = traces_(side, point);
     if (trace.first < 0)
       return result;
     const long long mine = trace.first - first_dof_;
@@ -111,7 +124,7 @@ namespace nsfd
       double largest = 0.;
       for (unsigned int s = 0; s < 2 && !shares_nodes[points_.face_of[i]];
            ++s) {
-        const PointTrace &trace = traces_[s][i];
+        const PointTrace &trace = traces_(s, i);
         const bool own =
             trace.first >= first_dof_ &&
             trace.first < first_dof_ + static_cast<long long>(bodies_.n_dofs());
@@ -225,6 +238,7 @@ namespace nsfd
                                     const std::vector<std::uint8_t> &penalised)
   {
     penalised_ = penalised;
+    set_traces(shares_nodes);
     number_blocks(space);
     set_entries(shares_nodes);
     set_pattern(shares_nodes);
@@ -307,13 +321,13 @@ namespace nsfd
         return rows.empty() ? 0. : rows[k];
       };
       for (unsigned int s = 0; s < 2; ++s) {
-        const PointTrace &row = traces_[s][i];
+        const PointTrace &row = traces_(s, i);
         if (row.first < first_dof_ || row.first >= end)
           continue;
         const auto rows = blocks_of_side(i, s);
         const double row_beta = f * (s == 0 ? bond.weight_1 : bond.weight_2);
         for (unsigned int t = 0; t < 2; ++t) {
-          const PointTrace &column = traces_[t][i];
+          const PointTrace &column = traces_(t, i);
           const auto columns = blocks_of_side(i, t);
           const double beta = f * (t == 0 ? bond.weight_1 : bond.weight_2);
           const unsigned int n = row.n_dofs, m = column.n_dofs;

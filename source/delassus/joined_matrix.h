@@ -27,11 +27,10 @@ namespace nsfd
     using Bond = typename BulkTraction<dim>::Bond;
     using Operator = typename DelassusOperator<dim>::Operator;
 
-    /** @p first_dof of this rank among the unknowns of all. Collective. */
-    JoinedMatrix(const Communicator &communicator, const Bodies &bodies,
-                 const InterfacePoints<dim> &points,
-                 std::array<std::vector<PointTrace>, 2> traces,
-                 std::vector<Bond> bonds, long long first_dof);
+    /** @p bonds outlive this; @p first_dof of this rank among the unknowns of
+        all. */
+    JoinedMatrix(const DelassusOperator<dim> &delassus,
+                 const std::vector<Bond> &bonds, long long first_dof);
 
     /**
      * From now on bodies share the nodes of the faces that are marked, and the
@@ -85,6 +84,7 @@ namespace nsfd
       std::array<double, std::size_t(dim) * dim> own, all;
     };
 
+    void set_traces(const std::vector<char> &shares_nodes);
     Block block_of(long long number) const;
     void number_blocks(const CoarseSpace &space);
     std::vector<Block> blocks_of_side(std::size_t point,
@@ -101,12 +101,13 @@ namespace nsfd
     void return_ghosts(std::vector<double> &own) const;
     std::vector<SparseEntry> entries() const;
 
-    const Communicator &communicator_;
+    const DelassusOperator<dim> &delassus_;
+    const Communicator &communicator_; ///< its parts
     const Bodies &bodies_;
     const InterfacePoints<dim> &points_;
-    const std::array<std::vector<PointTrace>, 2> traces_;
-    const std::vector<Bond> bonds_;
+    const std::vector<Bond> &bonds_;
     const long long first_dof_;
+    PointTraces traces_;            ///< of points whose sides are not one node
     std::vector<long long> remote_; ///< unknowns of bodies of other ranks
     GhostValues fetch_;             ///< what is at them
 

@@ -21,9 +21,31 @@ namespace nsfd
         viscous_traction; ///< of velocities; empty: none viscous
   };
 
-  /** Per side and point. Collective. */
-  template <int dim>
-  std::array<std::vector<PointTrace>, 2>
-  point_traces(const DelassusOperator<dim> &delassus, long long first_dof,
-               bool with_traction);
+  /** Those of some of the points. */
+  class PointTraces
+  {
+  public:
+    PointTraces() = default;
+
+    /** Of the points that are @p wanted, none of the others. Collective. */
+    template <int dim>
+    PointTraces(const DelassusOperator<dim> &delassus, long long first_dof,
+                const std::vector<char> &wanted, bool with_traction);
+
+    const PointTrace &operator()(const unsigned int side,
+                                 const std::size_t point) const
+    {
+      static const PointTrace none;
+      return place_[point] < 0 ? none : sides_[side][place_[point]];
+    }
+    /** All of a side, in the order of the points. */
+    const std::vector<PointTrace> &of_side(const unsigned int side) const
+    {
+      return sides_[side];
+    }
+
+  private:
+    std::vector<int> place_; ///< by point, or -1
+    std::array<std::vector<PointTrace>, 2> sides_;
+  };
 } // namespace nsfd

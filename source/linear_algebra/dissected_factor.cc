@@ -47,7 +47,7 @@ namespace nsfd
     for (int i = 0; i < n; ++i)
       for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k)
         if (matrix.column[k] >= n &&
-            matrix.ghosts[matrix.column[k] - n] < matrix.first_row)
+            matrix.ghosts[matrix.column[k] - n] > matrix.first_row)
           common[i] = 1;
     own_.count = int(std::count(common.begin(), common.end(), 1));
     std::vector<int> counts(communicator_.size());
@@ -189,6 +189,7 @@ namespace nsfd
     }
     const std::size_t m = own_.boundary.size();
     left.resize(m * m, 0.);
+    result.reserve(std::size_t(values_.counts[communicator_.rank()]));
     for (std::size_t r = 0; r < m; ++r)
       for (std::size_t c = 0; c <= r; ++c)
         result.push_back(left[c * m + r]);

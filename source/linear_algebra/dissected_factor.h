@@ -9,7 +9,8 @@ namespace nsfd
 {
   /**
    * Cholesky's factor of a matrix whose rows lie on several ranks. Rows that
-   * are coupled to those of an earlier rank are common. Every rank eliminates
+   * are coupled to those of a later rank are common: of joined cells the nodes
+   * between ranks, which belong to the first of them. Every rank eliminates
    * the rest of its own by itself; what that leaves for the common ones is
    * summed and factored on every rank, so that none waits for another one's
    * factor. A solution takes one exchange.

@@ -101,19 +101,18 @@ namespace nsfd
       return;
     Analysis analysis;
     std::vector<int> start, row;
-    take_lower(rows, n_inner_, start, row);
-    analysis.run(start, row, nullptr);
-    // the boundary behind it: its places among what is eliminated do not
-    // matter, and fronts know which of their rows it has
-    const int *inner = static_cast<const int *>(analysis.factor->Perm);
-    std::vector<int> order(inner, inner + n_inner_);
-    for (int k = n_inner_; k < n; ++k)
-      order.push_back(k);
     take_lower(rows, n, start, row);
     for (int k = n_inner_; k < n; ++k) {
       row.push_back(k);
       start.push_back(int(row.size()));
     }
+    // an order of all, so that what is next to the boundary is not cut off from
+    // it, but the boundary at its end
+    analysis.run(start, row, nullptr);
+    const int *all = static_cast<const int *>(analysis.factor->Perm);
+    std::vector<int> order(all, all + n);
+    std::stable_partition(order.begin(), order.end(),
+                          [&](const int i) { return i < n_inner_; });
     analysis.run(start, row, order.data());
     const cholmod_factor &L = *analysis.factor;
     const int *permutation = static_cast<const int *>(L.Perm),
@@ -201,28 +200,44 @@ namespace nsfd
   {
     boundary.resize(std::size_t(n_boundary_) * std::size_t(n_boundary_), 0.);
     std::vector<std::vector<double>> updates(fronts_.size());
+    // what was taken once is kept: pages that are new cost as much as sums
+    const auto take = [this](std::vector<double> &update, const std::size_t n) {
+      if (!free_.empty()) {
+        update.swap(free_.back());
+        free_.pop_back();
+      }
+      update.resize(n);
+    };
+    const auto give_back = [this](std::vector<double> &update) {
+      free_.emplace_back().swap(update);
+    };
     std::vector<std::vector<int>> children(fronts_.size());
     for (std::size_t f = 0; f < fronts_.size(); ++f) {
       const Front &front = fronts_[f];
       const int n = size(front), k = front.n_columns, n_left = n - k;
       double *L = &values_[front.values];
       auto &left = updates[f];
-      left.assign(std::size_t(n_left) * std::size_t(n_left), 0.);
+      take(left, std::size_t(n_left) * std::size_t(n_left));
+      const bool is_leaf = children[f].empty();
+      if (!is_leaf)
+        std::fill(left.begin(), left.end(), 0.);
       assemble(rows, front, L);
       for (const int child : children[f]) {
         auto &update = updates[std::size_t(child)];
         add_update(fronts_[std::size_t(child)], update, front, L, left);
-        std::vector<double>().swap(update);
+        give_back(update);
       }
       int info = 0;
       dpotrf_("L", &k, L, &n, &info);
       if (info != 0)
         return false;
-      if (n_left == 0)
+      if (n_left == 0) {
+        give_back(left);
         continue;
+      }
       dtrsm_("R", "L", "T", "N", &n_left, &k, &one, L, &n, L + k, &n);
-      dsyrk_("L", "N", &n_left, &k, &minus_one, L + k, &n, &one, left.data(),
-             &n_left);
+      dsyrk_("L", "N", &n_left, &k, &minus_one, L + k, &n,
+             is_leaf ? &zero : &one, left.data(), &n_left);
       const int *places = front.rows.data() + k;
       for (int c = front.n_inner - k; c < n_left; ++c) {
         const int column = unknown_[std::size_t(places[c])] - n_inner_;
@@ -237,7 +252,7 @@ namespace nsfd
       if (front.parent >= 0)
         children[std::size_t(front.parent)].push_back(int(f));
       else
-        std::vector<double>().swap(left);
+        give_back(left);
     }
     return true;
   }

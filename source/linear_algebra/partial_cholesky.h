@@ -61,5 +61,6 @@ namespace nsfd
     std::vector<double> values_;
     std::vector<int> local_; ///< by place: row of the present front
     std::vector<double> ordered_, part_;
+    std::vector<std::vector<double>> free_; ///< room for updates
   };
 } // namespace nsfd

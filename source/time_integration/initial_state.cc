@@ -94,6 +94,10 @@ namespace nsfd
                         const typename DelassusOperator<dim>::Operator op,
                         const std::vector<double> &x)
     {
+      if (!delassus.communicator().any(
+              std::any_of(x.begin(), x.end(),
+                          [](const double value) { return value != 0.; })))
+        return 0.; // without a matrix
       std::vector<double> y(x.size());
       delassus.apply(op, x.data(), y.data());
       return delassus.communicator().dot(x.data(), y.data(), x.size()) / 2.;

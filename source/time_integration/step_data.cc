@@ -361,8 +361,9 @@ namespace nsfd
       problem.jump_free[k] =
           old.jump[k] + h * (1. - input.time.theta) * old.relative_velocity[k];
     problem.acting.clear();
+    const auto parting = delassus.parting();
     for (std::size_t i = 0; i < problem.n_points; ++i) {
-      if (has_impulse(old.kind[i]) && delassus.parts(i))
+      if (has_impulse(old.kind[i]) && parting[i])
         problem.acting.push_back(unsigned(i));
       set_point(input.time, discretization.extent(), old, i, problem);
     }
