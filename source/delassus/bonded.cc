@@ -117,7 +117,7 @@ namespace nsfd
       set_diagonal();
       inverse_D_.assign(D.size(), 0.);
       for (std::size_t row = 0; row < D.size(); ++row)
-        if (D[row] >= 0. && this->is_row(row))
+        if (D[row] >= 0. && !this->bonded_[row / dim])
           inverse_D_[row] =
               1. / std::max(D[row], least_compliance(row, diagonal_[row]));
       prepare_joined();

@@ -391,7 +391,7 @@ namespace nsfd
       return true;
     std::vector<std::size_t> rows;
     for (std::size_t k = 0; k < this->bonded_.size() * dim; ++k)
-      if (is_row(k))
+      if (!this->bonded_[k / dim])
         rows.push_back(k);
     // Many columns at once cost a quarter of as many single ones; a product
     // by the factor reads it twice.

@@ -61,7 +61,6 @@ namespace nsfd
     void bonds_changed() override;
     bool respond(ConformingSolver &solver, const double *impulse,
                  double *velocity, double tolerance = tight) const;
-    bool is_row(const std::size_t k) const { return !this->bonded_[k / dim]; }
     bool condense() const;
     const SparseRows &assemble(const std::vector<double> &springs) const;
     const CoarseSpace &space() const { return conforming_->space(); }

@@ -11,35 +11,9 @@ namespace nsfd
   JoinedMatrix<dim>::JoinedMatrix(const DelassusOperator<dim> &delassus,
                                   const std::vector<Bond> &bonds,
                                   const long long first_dof)
-      : delassus_(delassus), communicator_(delassus.communicator()),
-        bodies_(delassus.bodies()), points_(delassus.points()), bonds_(bonds),
-        first_dof_(first_dof)
+      : delassus_(delassus), bodies_(delassus.bodies()),
+        points_(delassus.points()), bonds_(bonds), first_dof_(first_dof)
   {
-  }
-
-  /** And the unknowns of other ranks that they see. */
-  template <int dim>
-  void JoinedMatrix<dim>::set_traces(const std::vector<char> &shares_nodes)
-  {
-    std::vector<char> wanted(points_.n_points);
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      wanted[i] = !shares_nodes[points_.face_of[i]];
-    const bool penalty =
-        std::any_of(penalised_.begin(), penalised_.end(),
-                    [](const std::uint8_t p) { return p != 0; });
-    traces_ =
-        PointTraces(delassus_, first_dof_, wanted, communicator_.any(penalty));
-    const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
-    remote_.clear();
-    for (const unsigned int side : {0u, 1u})
-      for (const PointTrace &trace : traces_.of_side(side))
-        if (trace.first >= 0 &&
-            (trace.first < first_dof_ || trace.first >= end))
-          for (unsigned int j = 0; j < trace.n_dofs; ++j)
-            remote_.push_back(trace.first + j);
-    std::sort(remote_.begin(), remote_.end());
-    remote_.erase(std::unique(remote_.begin(), remote_.end()), remote_.end());
-    fetch_ = GhostValues(communicator_, first_dof_, bodies_.n_dofs(), remote_);
   }
 
   template <int dim>
@@ -54,9 +28,31 @@ namespace nsfd
                  ghosts_.begin());
   }
 
+  /** With what points see, and the unknowns of other ranks among it. */
   template <int dim>
-  void JoinedMatrix<dim>::number_blocks(const CoarseSpace &space)
+  void JoinedMatrix<dim>::number_blocks(const CoarseSpace &space,
+                                        const std::vector<char> &shares_nodes)
   {
+    std::vector<char> wanted(points_.n_points);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      wanted[i] = !shares_nodes[points_.face_of[i]];
+    const bool penalty =
+        std::any_of(penalised_.begin(), penalised_.end(),
+                    [](const std::uint8_t p) { return p != 0; });
+    traces_ = PointTraces(delassus_, first_dof_, wanted,
+                          delassus_.communicator().any(penalty));
+    const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
+    remote_.clear();
+    for (const unsigned int side : {0u, 1u})
+      for (const PointTrace &trace : traces_.of_side(side))
+        if (trace.first >= 0 &&
+            (trace.first < first_dof_ || trace.first >= end))
+          for (unsigned int j = 0; j < trace.n_dofs; ++j)
+            remote_.push_back(trace.first + j);
+    std::sort(remote_.begin(), remote_.end());
+    remote_.erase(std::unique(remote_.begin(), remote_.end()), remote_.end());
+    fetch_ = GhostValues(delassus_.communicator(), first_dof_, bodies_.n_dofs(),
+                         remote_);
     space_ = &space;
     size_ = space.per_node;
     n_own_ = int(space.n_own / size_);
@@ -79,7 +75,7 @@ namespace nsfd
     for (const long long block : ghosts_)
       for (unsigned int c = 0; c < size_; ++c)
         ghosts.push_back(block * size_ + c);
-    shared_.exchange = GhostValues(communicator_, space.first,
+    shared_.exchange = GhostValues(delassus_.communicator(), space.first,
                                    std::size_t(space.n_own), ghosts);
     shared_.values.resize(std::size_t(space.n_own) + ghosts.size());
     block_.own.clear();
@@ -217,8 +213,8 @@ namespace nsfd
                              std::unique(begin, end));
       pattern_.first.push_back(pattern_.column.size());
     }
-    if (communicator_.size() > 1) {
-      joint_.rows = RowSums(communicator_, *space_, entries());
+    if (delassus_.communicator().size() > 1) {
+      joint_.rows = RowSums(delassus_.communicator(), *space_, entries());
       return;
     }
     matrix_ = SparseRows();
@@ -238,8 +234,7 @@ namespace nsfd
                                     const std::vector<std::uint8_t> &penalised)
   {
     penalised_ = penalised;
-    set_traces(shares_nodes);
-    number_blocks(space);
+    number_blocks(space, shares_nodes);
     set_entries(shares_nodes);
     set_pattern(shares_nodes);
     set_operators();
@@ -432,7 +427,7 @@ namespace nsfd
   template <int dim>
   const SparseRows &JoinedMatrix<dim>::assemble(const double *springs)
   {
-    const bool alone = communicator_.size() == 1;
+    const bool alone = delassus_.communicator().size() == 1;
     auto &values = alone ? matrix_.value : joint_.values;
     values = operators_.step;
     if (springs)

@@ -84,9 +84,9 @@ namespace nsfd
       std::array<double, std::size_t(dim) * dim> own, all;
     };
 
-    void set_traces(const std::vector<char> &shares_nodes);
     Block block_of(long long number) const;
-    void number_blocks(const CoarseSpace &space);
+    void number_blocks(const CoarseSpace &space,
+                       const std::vector<char> &shares_nodes);
     std::vector<Block> blocks_of_side(std::size_t point,
                                       unsigned int side) const;
     void set_entries(const std::vector<char> &shares_nodes);
@@ -102,8 +102,7 @@ namespace nsfd
     std::vector<SparseEntry> entries() const;
 
     const DelassusOperator<dim> &delassus_;
-    const Communicator &communicator_; ///< its parts
-    const Bodies &bodies_;
+    const Bodies &bodies_; ///< of it
     const InterfacePoints<dim> &points_;
     const std::vector<Bond> &bonds_;
     const long long first_dof_;

@@ -85,6 +85,8 @@ namespace nsfd
     }
     if (support_.empty())
       set_support();
+    if (bonds_)
+      bonds_->set();
     balance_.begin(old.displacement, iterate_.force, support_, problem_.n_owned,
                    largest_motion(), input_.statics->tolerance);
     if (free_motion_.set_loads(time))
