@@ -12,6 +12,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
+#include <functional>
+#include <memory>
 
 namespace nsfd
 {
@@ -129,12 +132,28 @@ namespace nsfd
       scene.description = has_title ? paragraph.substr(dash + 3) : paragraph;
     }
 
+    /** In place of what the file or the command line says. */
+    void put(ParameterSection &section, const std::string &entry,
+             const std::string &value)
+    {
+      const ParameterEntry *old = section.find(entry);
+      const SourceLocation place =
+          old ? old->value.location() : section.location();
+      section.assign({entry, {value, place}, old ? old->name_location : place});
+    }
+
+    using Entries = std::vector<std::pair<std::string, std::string>>;
+
+    /** With @p chosen entries of section Time. */
     std::unique_ptr<SceneInput>
     read_parsed(ParameterFile &file, const std::string &name,
-                const std::vector<std::string> &overrides, InputErrors &errors)
+                const std::vector<std::string> &overrides, InputErrors &errors,
+                const Entries &chosen = {})
     {
       for (const std::string &assignment : overrides)
         file.override_entry(assignment, all_kinds(), errors);
+      for (const auto &[entry, value] : chosen)
+        put(*file.find("Time"), entry, value);
       for (const ParameterSection *section : file.sections())
         check_section_name(*section, errors);
 
@@ -169,17 +188,90 @@ namespace nsfd
       scene->echo = file.print();
       return scene;
     }
+    bool has_entry(const ParameterFile &file, const std::string &section,
+                   const std::string &name, const std::string &value = "")
+    {
+      const ParameterSection *found = file.find(section);
+      const ParameterEntry *entry = found ? found->find(name) : nullptr;
+      return entry && (value.empty() || entry->value.text() == value);
+    }
+
+    using Parse = std::function<bool(ParameterFile &, InputErrors &)>;
+
+    /**
+     * A scene with `scheme = auto`, with implicit steps and with explicit ones:
+     * which of them is predicted to cost less is known with the mesh.
+     */
+    std::unique_ptr<SceneInput>
+    read_automatic(const Parse &parse, const std::string &name,
+                   const std::vector<std::string> &overrides,
+                   const bool has_step, InputErrors &errors)
+    {
+      const auto read = [&](const Entries &chosen, InputErrors &found) {
+        ParameterFile parsed;
+        parse(parsed, found);
+        return read_parsed(parsed, name, overrides, found, chosen);
+      };
+      InputErrors of_implicit, of_explicit, of_given;
+      auto scene = read({{"scheme", "moreau-jean"}}, of_implicit);
+      auto choice = std::make_shared<AutomaticScheme>();
+      std::unique_ptr<SceneInput> longest =
+          read({{"scheme", "explicit"}, {"step", "auto"}}, of_explicit);
+      const bool only_explicit = !scene && longest;
+      for (const Diagnostic &one :
+           (only_explicit ? of_explicit : of_implicit).diagnostics())
+        errors.add(one);
+      if (only_explicit) {
+        longest->scheme_choice =
+            "explicit: an entry of the scene is for explicit steps alone";
+        return longest;
+      }
+      if (!scene)
+        return nullptr;
+      for (const Diagnostic &one : of_explicit.diagnostics())
+        if (one.is_error() && choice->refused.empty())
+          choice->refused = one.message;
+      // printed as it was written: what is chosen depends on the mesh
+      choice->implicit_echo = scene->echo;
+      const std::size_t entry = scene->echo.find("set scheme"),
+                        value = scene->echo.find("moreau-jean", entry);
+      scene->echo.replace(value, std::strlen("moreau-jean"), "auto");
+      if (longest && has_step)
+        choice->given_steps = read({{"scheme", "explicit"}}, of_given);
+      choice->longest_steps = std::move(longest);
+      scene->automatic = std::move(choice);
+      return scene;
+    }
+
+    std::unique_ptr<SceneInput> read(const Parse &parse,
+                                     const std::string &name,
+                                     const std::vector<std::string> &overrides,
+                                     InputErrors &errors)
+    {
+      ParameterFile parsed;
+      if (!parse(parsed, errors))
+        return nullptr;
+      InputErrors said_later;
+      ParameterFile changed;
+      parse(changed, said_later);
+      for (const std::string &assignment : overrides)
+        changed.override_entry(assignment, all_kinds(), said_later);
+      return has_entry(changed, "Time", "scheme", "auto")
+                 ? read_automatic(parse, name, overrides,
+                                  has_entry(changed, "Time", "step"), errors)
+                 : read_parsed(parsed, name, overrides, errors);
+    }
   } // namespace
 
   std::unique_ptr<SceneInput>
   read_scene(const std::string &file, const std::vector<std::string> &overrides,
              InputErrors &errors)
   {
-    ParameterFile parsed;
     // what cannot be read would look like a file in which all is missing
-    if (!parsed.read_file(file, errors))
-      return nullptr;
-    return read_parsed(parsed, file, overrides, errors);
+    const Parse parse = [&file](ParameterFile &parsed, InputErrors &found) {
+      return parsed.read_file(file, found);
+    };
+    return read(parse, file, overrides, errors);
   }
 
   std::unique_ptr<SceneInput>
@@ -187,9 +279,11 @@ namespace nsfd
                   const std::vector<std::string> &overrides,
                   InputErrors &errors)
   {
-    ParameterFile parsed;
-    parsed.read_text(text, name, errors);
-    return read_parsed(parsed, name, overrides, errors);
+    const Parse parse = [&](ParameterFile &parsed, InputErrors &found) {
+      parsed.read_text(text, name, found);
+      return true;
+    };
+    return read(parse, name, overrides, errors);
   }
 
   std::vector<NamedPart> named_parts()

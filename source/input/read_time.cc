@@ -140,9 +140,13 @@ namespace nsfd
     SectionReader reader(file.open("Time"), errors);
     TimeInput &time = scene.time;
     time.end = reader.number("end", "", units::time, Range::positive(), "s");
-    const std::vector<std::string> names = time_scheme_names();
-    time.scheme_name =
-        reader.choice("scheme", names.front(), names, list_of(names));
+    std::vector<std::string> names = time_scheme_names();
+    const std::string text = list_of(names) +
+                             "; auto: explicit or moreau-jean, what is "
+                             "predicted to come to `end` at less cost";
+    // read_scene() reads it as one of the two
+    names.push_back("auto");
+    time.scheme_name = reader.choice("scheme", names.front(), names, text);
     const auto scheme = find_time_scheme(time.scheme_name);
     time.scheme = scheme->traits();
     scene.statics.reset();

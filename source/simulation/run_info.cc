@@ -83,6 +83,8 @@ namespace nsfd
                              : obstacle.name);
     if (model.discretization->loads().any())
       parts.emplace_back("loads", "body forces and tractions");
+    if (!input.scheme_choice.empty())
+      parts.emplace_back("scheme", input.scheme_choice);
     parts.emplace_back("linear algebra", model.path);
     parts.emplace_back("solver", model.method);
     if (input.statics)

@@ -1,6 +1,7 @@
 #include "simulation.h"
 
 #include "check.h"
+#include "choose_scheme.h"
 #include "print_problems.h"
 #include "run_store.h"
 
@@ -312,8 +313,9 @@ namespace nsfd
                 const MPI_Comm mpi)
   {
     const Communicator communicator(mpi);
-    if (input.dimension == 2)
-      return Simulation<2>(input, options, communicator).run();
-    return Simulation<3>(input, options, communicator).run();
+    const SceneInput scene = choose_scheme(input, communicator);
+    if (scene.dimension == 2)
+      return Simulation<2>(scene, options, communicator).run();
+    return Simulation<3>(scene, options, communicator).run();
   }
 } // namespace nsfd

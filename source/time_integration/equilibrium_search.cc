@@ -168,8 +168,8 @@ namespace nsfd
     report.above_mean = left.above_mean;
     report.round_off = energy_round_off * next.largest_energy;
     report.jumps =
-        !report.stable || std::abs(left.energy) >
-                              jump_share * left.turnover + report.round_off;
+        !report.stable ||
+        std::abs(left.energy) > jump_share * left.turnover + report.round_off;
     const auto [seen, point] = relaxation_->laws().least_passage(next, path);
     report.peak_seen = -communicator_.max(-seen);
     report.skips_peak = report.peak_seen < Passage::least_share;
@@ -321,8 +321,8 @@ namespace nsfd
     converged = false;
     goal_ = goal;
     h_ = first_h_;
-    const double least = hurried_ ? first_h_ * shortest_hurried
-                                  : shortest * crossing_;
+    const double least =
+        hurried_ ? first_h_ * shortest_hurried : shortest * crossing_;
     for (unsigned int n = 0; n < rounds; ++n) {
       round(q, report);
       if (converged) {

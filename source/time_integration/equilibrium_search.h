@@ -23,9 +23,9 @@ namespace nsfd
     double released_energy = 0.; ///< energy that the cohesion did not take, J
     double above_mean = 0.; ///< work of the loads above that of their mean, J
     double round_off = 0.;  ///< energy that counts as none, J
-    bool stable = true;          ///< softening leaves some stiffness everywhere
-    bool jumps = false; ///< not stable, or what is left over or missing is
-                        ///< no small part of what the step has moved
+    bool stable = true;     ///< softening leaves some stiffness everywhere
+    bool jumps = false;     ///< not stable, or what is left over or missing is
+                            ///< no small part of what the step has moved
     /// a point is beyond the peak of its law, and was never pulled as far as a
     /// hundredth below it
     bool skips_peak = false;

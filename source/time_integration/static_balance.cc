@@ -264,8 +264,8 @@ namespace nsfd
     energy.friction += sums[friction];
     energy.numerical += sums[released] + std::max(0., sums[rest]);
     const double above_mean = std::max(0., -sums[rest]);
-    const double work = sums[motion] + body[1] + sums[pressure_work] +
-                        above_mean;
+    const double work =
+        sums[motion] + body[1] + sums[pressure_work] + above_mean;
     energy.work += work;
     next.pressure_work = old.pressure_work + sums[pressure_work];
     next.broken_area = old.broken_area + sums[broken];

@@ -24,6 +24,17 @@ namespace nsfd
 {
   class VerificationCase;
 
+  struct SceneInput;
+
+  /** `scheme = auto`: the same scene with explicit steps, where it can be. */
+  struct AutomaticScheme {
+    std::shared_ptr<const SceneInput> longest_steps; ///< with step = auto
+    /// with the step of the scene, if it names one
+    std::shared_ptr<const SceneInput> given_steps;
+    std::string refused;       ///< why there is none, a sentence
+    std::string implicit_echo; ///< SceneInput::echo, if there are none
+  };
+
   /**
    * What a parameter file says, checked and typed: plain data, in SI or the
    * bare units of the scene. Built by read_scene(); every other part reads
@@ -58,6 +69,9 @@ namespace nsfd
     /// only if the mesh follows the motion, or is refined before it
     std::optional<AdaptivityInput> adaptivity;
     std::vector<ObservableInput> observables;
+    /// what `scheme = auto` says besides the scene with implicit steps; or null
+    std::shared_ptr<const AutomaticScheme> automatic;
+    std::string scheme_choice; ///< what `scheme = auto` has found; or empty
     /** In the run; joined cells of explicit steps are refined before it. */
     bool mesh_changes() const { return adaptivity && !time.scheme.at_nodes; }
     bool has_viscous_bodies() const

@@ -3,6 +3,7 @@
 #include "core/cost.h"
 #include "linear_algebra/positive_part.h"
 #include "nonsmooth/natural_map.h"
+#include "nonsmooth/point_tangent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,7 @@ namespace nsfd
     /// a step of Newton's method is long enough
     constexpr double flat = 0.5;
     /// what difference quotients leave of their digits
-    constexpr double of_differences = 1e-5, left_to_differences = 1e-5;
+    constexpr double left_to_differences = 1e-5;
     /// of the tolerance, of impulses that may stay without any iteration: what
     /// they lack is the same in every step of bodies at rest, and adds up
     constexpr double untouched = 1e-4;
@@ -33,76 +34,6 @@ namespace nsfd
     constexpr unsigned int patience = 4;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
-
-    /** A unit vector in the plane of the face; 0 where nothing slides. */
-    template <int dim>
-    std::array<double, dim>
-    sliding_direction(const OneStepProblem<dim> &problem, const std::size_t i,
-                      const LocalSolution<dim> &solution)
-    {
-      std::array<double, dim> direction{};
-      double square = 0.;
-      for (unsigned int c = 1; c < dim; ++c) {
-        direction[c] =
-            solution.velocity[c] + problem.sliding_offset[i * dim + c];
-        square += direction[c] * direction[c];
-      }
-      for (double &value : direction)
-        value /= square > 0. ? std::sqrt(square) : 1.;
-      return direction;
-    }
-
-    /** T with damage and the friction threshold frozen. */
-    template <int dim>
-    void frozen_tangent(const OneStepProblem<dim> &problem, const std::size_t i,
-                        const LocalSolution<dim> &solution, const double A_N,
-                        const double A_T, double *T)
-    {
-      const auto slopes =
-          frozen_slopes<dim>(problem, i, solution.frozen, solution, A_N, A_T);
-      for (unsigned int c = 0; c < dim; ++c)
-        T[c * dim + c] = slopes[c];
-      if (problem.kind[i] == PointKind::prescribed)
-        return; // component by component
-      if (dim == 2 || slopes[1] == slopes[dim - 1])
-        return; // the same in all directions
-      const auto direction = sliding_direction(problem, i, solution);
-      for (unsigned int c = 1; c < dim; ++c)
-        for (unsigned int d = 1; d < dim; ++d)
-          T[c * dim + d] =
-              (c == d ? slopes[dim - 1] : 0.) +
-              (slopes[1] - slopes[dim - 1]) * direction[c] * direction[d];
-    }
-
-    /** What has no derivative at hand: damage that grows, sliding that lifts.
-     */
-    template <int dim>
-    bool by_differences(const OneStepProblem<dim> &problem, const std::size_t i,
-                        const LocalSolution<dim> &solution)
-    {
-      return solution.coupled &&
-             (solution.damages || solution.frozen.is_rigid() ||
-              !has_frozen_law<dim>(problem, i));
-    }
-
-    /** To T of a frozen threshold, what the contact impulse does to it. */
-    template <int dim>
-    void add_friction(const OneStepProblem<dim> &problem, const std::size_t i,
-                      const LocalSolution<dim> &solution, const double A_N,
-                      const double A_T, double *T)
-    {
-      if (!(solution.contact_impulse > 0.))
-        return;
-      const auto direction = sliding_direction(problem, i, solution);
-      double along = 0.; // the slope in the direction of sliding
-      for (unsigned int c = 1; c < dim; ++c)
-        for (unsigned int d = 1; d < dim; ++d)
-          along += direction[c] * T[c * dim + d] * direction[d];
-      const double coefficient =
-          solution.frozen.threshold / solution.contact_impulse;
-      for (unsigned int c = 1; c < dim; ++c)
-        T[c * dim] = -direction[c] * (1. - A_T * along) * coefficient / A_N;
-    }
   } // namespace
 
   template <int dim>
@@ -209,40 +140,12 @@ namespace nsfd
       const auto &solution = solutions_[i];
       const double A_N = compliance_[i * dim], A_T = compliance_[i * dim + 1];
       double *T = &tangents_[i * dim * dim];
-      if (!by_differences(problem, i, solution)) {
-        frozen_tangent(problem, i, solution, A_N, A_T, T);
-        if (solution.coupled) {
-          add_friction(problem, i, solution, A_N, A_T, T);
-          for (unsigned int c = 1; c < dim; ++c)
-            symmetric = symmetric && T[c * dim] == 0.;
-        }
-        continue;
-      }
-      // difference quotients of the local solve, friction and damage in it
       std::array<double, dim> local;
-      double size = 0.;
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
         local[c] = velocity_[k] - compliance_[k] * rest_[k];
-        size = std::max({size, std::abs(local[c]),
-                         compliance_[k] * std::abs(solution.impulse[c])});
       }
-      double largest = 0., skew = 0.;
-      for (unsigned int c = 0; c < dim; ++c) {
-        auto moved = local;
-        moved[c] += 1e-7 * size;
-        const double h = moved[c] - local[c];
-        const auto other =
-            solve_point<dim>(problem, i, moved, A_N, A_T, solution.reach);
-        for (unsigned int d = 0; d < dim && h > 0.; ++d)
-          T[d * dim + c] = (solution.impulse[d] - other.impulse[d]) / h;
-      }
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d) {
-          largest = std::max(largest, std::abs(T[c * dim + d]));
-          skew = std::max(skew, std::abs(T[c * dim + d] - T[d * dim + c]));
-        }
-      symmetric = symmetric && skew <= of_differences * largest;
+      symmetric &= point_tangent<dim>(problem, i, solution, local, A_N, A_T, T);
     }
     return !work.delassus.communicator().any(!symmetric);
   }
@@ -299,7 +202,8 @@ namespace nsfd
   {
     for (const std::size_t i : work.problem.acting) {
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
-      const bool differences = by_differences(work.problem, i, solutions_[i]);
+      const bool differences =
+          has_difference_quotients(work.problem, i, solutions_[i]);
       double left = differences  ? left_to_differences
                     : from_rest_ ? of_nodes
                                  : last_share;

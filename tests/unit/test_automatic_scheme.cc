@@ -1,0 +1,118 @@
+#include "input/read_scene.h"
+#include "simulation/choose_scheme.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+// `scheme = auto`: what is predicted to come to the end at less cost.
+
+namespace nsfd::test_automatic_scheme
+{
+  namespace
+  {
+    std::string plate(const std::string &material, const std::string &time)
+    {
+      return R"(set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 1 m, 1 m
+  set cells        = 4, 4
+end
+subsection Material: plate
+  set Young modulus = 1 Pa
+  set Poisson ratio = 0
+  set density       = 1 kg/m^3
+)" + material +
+             R"(end
+subsection Interface: all
+  set law = joined
+end
+subsection Time
+  set scheme = auto
+)" + time + "end\n";
+    }
+
+    std::unique_ptr<SceneInput> read(const std::string &text)
+    {
+      InputErrors errors;
+      auto scene = read_scene_text(text, "test.prm", {}, errors);
+      EXPECT_NE(scene, nullptr) << errors.report();
+      return scene;
+    }
+
+    SceneInput chosen(const std::string &text)
+    {
+      const auto scene = read(text);
+      return choose_scheme(*scene, Communicator(MPI_COMM_SELF));
+    }
+  } // namespace
+
+  // A cell of 1/4 m is crossed in 1/4 s: explicit steps have the same length.
+  TEST(AutomaticScheme, WavesAreFollowedByExplicitSteps)
+  {
+    const SceneInput scene = chosen(plate("", "  set end = 10 s\n"));
+    EXPECT_EQ(scene.time.scheme_name, "explicit");
+    EXPECT_EQ(scene.time.step_kind, StepKind::automatic);
+    EXPECT_NE(scene.echo.find("explicit #"), std::string::npos)
+        << "a run of the echo takes the same steps";
+    EXPECT_EQ(scene.scheme_choice.find("explicit: "), 0u);
+  }
+
+  TEST(AutomaticScheme, LongStepsAreImplicit)
+  {
+    // some 10 explicit steps in 1 s
+    EXPECT_EQ(chosen(plate("", "  set end = 200 s\n  set step = 1 s\n"))
+                  .time.scheme_name,
+              "explicit");
+    const SceneInput scene =
+        chosen(plate("", "  set end = 20000 s\n  set step = 100 s\n"));
+    EXPECT_EQ(scene.time.scheme_name, "moreau-jean");
+    EXPECT_DOUBLE_EQ(scene.time.step, 100.);
+    EXPECT_NE(scene.echo.find("moreau-jean #"), std::string::npos);
+  }
+
+  TEST(AutomaticScheme, ShorterStepsThanNeededAreTakenAsGiven)
+  {
+    const SceneInput scene =
+        chosen(plate("", "  set end = 1 s\n  set step = 1 ms\n"));
+    EXPECT_EQ(scene.time.scheme_name, "explicit");
+    EXPECT_EQ(scene.time.step_kind, StepKind::time);
+    EXPECT_DOUBLE_EQ(scene.time.step, 1e-3);
+  }
+
+  // What explicit steps are refused for has implicit ones, and says why.
+  TEST(AutomaticScheme, WhatIsNotExplicitIsImplicit)
+  {
+    const SceneInput scene = chosen(plate("  set model = j2 plastic\n"
+                                          "  set yield stress = 1 mPa\n",
+                                          "  set end = 1 s\n"));
+    EXPECT_EQ(scene.time.scheme_name, "moreau-jean");
+    EXPECT_NE(scene.scheme_choice.find("j2 plastic"), std::string::npos)
+        << scene.scheme_choice;
+  }
+
+  TEST(AutomaticScheme, WhatIsNotImplicitIsExplicit)
+  {
+    const auto scene =
+        read(plate("", "  set end = 1 s\n  set front viscosity = 0.1\n"));
+    EXPECT_EQ(scene->time.scheme_name, "explicit");
+    EXPECT_EQ(scene->automatic, nullptr);
+  }
+
+  TEST(AutomaticScheme, IsPrintedAsItWasWritten)
+  {
+    const auto scene = read(plate("", "  set end = 1 s\n"));
+    EXPECT_NE(scene->echo.find("= auto # moreau-jean"), std::string::npos)
+        << scene->echo;
+  }
+
+  TEST(AutomaticScheme, ErrorsAreSaidOnce)
+  {
+    InputErrors errors;
+    EXPECT_EQ(read_scene_text(plate("", "  set end = -1 s\n"), "test.prm", {},
+                              errors),
+              nullptr);
+    EXPECT_EQ(errors.n_errors(), 1u) << errors.report();
+  }
+} // namespace nsfd::test_automatic_scheme
