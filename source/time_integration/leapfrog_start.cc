@@ -4,10 +4,13 @@
 #include "joined_equilibrium.h"
 #include "joined_start.h"
 
+#include "core/pages_of_zeros.h"
 #include "joined/rigid_clusters.h"
 #include "nsfd/scene/scene_input.h"
+#include "state/point_fields.h"
 
 #include <algorithm>
+#include <type_traits>
 
 // What the steps of Leapfrog start from.
 
@@ -19,6 +22,20 @@ namespace nsfd
     {
       return origin.kind == PointOrigin::Kind::interface;
     }
+
+    /** What is joined has no jump, no impulse and no history: most lists of the
+        points are zeros until faces are released, and to be shown then. */
+    void release_zeros(State &state)
+    {
+      release_pages_of_zeros(state.displacement);
+      release_pages_of_zeros(state.velocity);
+      for_point_fields(
+          [&](const PointField &, const auto member, const auto &...) {
+            using List = std::decay_t<decltype(state.*member)>;
+            if constexpr (!std::is_same_v<List, std::vector<PointKind>>)
+              release_pages_of_zeros(state.*member);
+          });
+    }
   } // namespace
 
   template <int dim>
@@ -26,6 +43,7 @@ namespace nsfd
   {
     State state = initial_motion(input_, discretization_);
     set_jumps(discretization_, mesh_, state);
+    release_zeros(state); // before there are more lists
     const auto &points = discretization_.points();
     set_points(input_, discretization_, all_, state);
     for (std::size_t i = 0; i < points.n_points; ++i)
@@ -33,6 +51,7 @@ namespace nsfd
         state.released_overlap[i] = std::max(0., -state.jump[i * dim]);
     State own = ghosts_.without(std::move(state));
     own.bond_traction.assign(own.jump.size(), 0.);
+    release_zeros(own);
     return own;
   }
 
@@ -91,7 +110,9 @@ namespace nsfd
     state.energy.elastic = -ghosts_.dot(g, g.force, g.displacement) / 2.;
     state.energy.cohesive = points_.initial_energy(communicator_);
     begin_balance(state);
-    return ghosts_.without(std::move(state));
+    State own = ghosts_.without(std::move(state));
+    release_zeros(own);
+    return own;
   }
 
   template <int dim>
