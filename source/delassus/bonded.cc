@@ -180,12 +180,12 @@ namespace nsfd
       const std::vector<double> &coordinates, const bool share_nodes)
   {
     constexpr long long any = std::numeric_limits<long long>::max();
-    return std::make_unique<Bonded<dim>>(communicator, bodies, points,
-                                         coordinates,
-                                         solver == "direct" ? any
-                                         : solver == "cg"   ? 0
-                                                          : largest_factor<dim>,
-                                         share_nodes);
+    return std::make_unique<Bonded<dim>>(
+        communicator, bodies, points, coordinates,
+        solver == "direct" ? any
+        : solver == "cg"   ? 0
+                           : largest_joined_factor<dim>,
+        share_nodes);
   }
 
   template std::unique_ptr<BondedDelassus<2>>
