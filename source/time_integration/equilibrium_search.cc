@@ -170,11 +170,13 @@ namespace nsfd
     report.jumps =
         !report.stable ||
         std::abs(left.energy) > jump_share * left.turnover + report.round_off;
-    const auto [seen, point] = relaxation_->laws().least_passage(next, path);
-    report.peak_seen = -communicator_.max(-seen);
+    const auto seen = relaxation_->laws().passages(next, path);
+    report.peak_seen = -communicator_.max(-seen.least);
+    report.starts_at_peak =
+        communicator_.max(seen.largest) >= Passage::least_share;
     report.skips_peak = report.peak_seen < Passage::least_share;
     if (report.skips_peak)
-      report.place = face_of_all(-seen, point);
+      report.place = face_of_all(-seen.least, seen.point);
     else if (report.jumps)
       report.place = face_of_all(left.worst, left.worst_point);
     return report;
@@ -227,6 +229,11 @@ namespace nsfd
       } catch (const StepRejected &rejected) {
         failure = rejected.what();
         continue;
+      }
+      // other points follow in the jump from one that was at its peak
+      if (!may_be_shortened && report.skips_peak && report.starts_at_peak) {
+        report.skips_peak = false;
+        report.jumps = true;
       }
       const auto merit = [](const EquilibriumReport &x) {
         return x.accepted() ? 3 : x.may_follow() ? 1 + x.stable : 0;

@@ -29,7 +29,8 @@ namespace nsfd
     /// a point is beyond the peak of its law, and was never pulled as far as a
     /// hundredth below it
     bool skips_peak = false;
-    double peak_seen = 1.; ///< the most that it has seen of it
+    double peak_seen = 1.;       ///< the most that it has seen of it
+    bool starts_at_peak = false; ///< another point that damages was there
     /// of the step to take instead, where that can be told
     double share = 1.;
     std::string place; ///< of the face that is worst in this

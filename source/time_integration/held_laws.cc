@@ -290,11 +290,11 @@ namespace nsfd
   }
 
   template <int dim>
-  std::pair<double, std::size_t>
-  HeldLaws<dim>::least_passage(const State &next, const bool path) const
+  auto HeldLaws<dim>::passages(const State &next, const bool path) const
+      -> Passages
   {
     const auto &problem = problem_;
-    std::pair<double, std::size_t> least(1., 0);
+    Passages passages;
     for (std::size_t i = 0; i < problem.n_owned; ++i) {
       if (!may_damage(i) ||
           (iterate_.starts_joined(i) && next.kind[i] == iterate_.old->kind[i]))
@@ -321,10 +321,14 @@ namespace nsfd
                      all = largest_on_the_way(envelope, last, end);
         share = std::max(share, std::min(1., seen / all));
       }
-      if (share < least.first)
-        least = {share, i};
+      if (grows(last, end))
+        passages.largest = std::max(passages.largest, share);
+      if (share < passages.least) {
+        passages.least = share;
+        passages.point = i;
+      }
     }
-    return least;
+    return passages;
   }
 
   template class HeldLaws<2>;

@@ -72,13 +72,17 @@ namespace nsfd
      */
     bool let_damage_grow(double &largest_growth, double stretch);
 
+    /** How the points of this rank went along their laws, see Passage. */
+    struct Passages {
+      double least = 1.;     ///< what the point has seen that saw least
+      std::size_t point = 0; ///< that point
+      double largest = 0.;   ///< of the points that damage
+    };
     /**
-     * The point that has skipped the peak of its law furthest in the step from
-     * the last equilibrium to @p next, see Passage; 1 where none has. What was
+     * In the step from the last equilibrium to @p next. What was
      * damaged on an overdamped @p path has seen what it carried on it.
      */
-    std::pair<double, std::size_t> least_passage(const State &next,
-                                                 bool path) const;
+    Passages passages(const State &next, bool path) const;
 
   private:
     bool may_damage(std::size_t point) const;
