@@ -38,6 +38,9 @@ namespace nsfd
     pointers.push_back(nullptr);
     int argc = words.size();
     char **argv = pointers.data();
+    // a rank that waits lets others run: where cores have other work, too, each
+    // exchange costs a slice of the scheduler otherwise
+    setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
     const bool root =
         dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
