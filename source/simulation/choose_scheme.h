@@ -21,11 +21,11 @@ namespace nsfd
   /**
    * Explicit steps at the cost of an implicit one, per cell, of bodies that
    * hold together: as measured on 10^4 to 4 10^4 quadrilaterals of degree 1
-   * (64 to 72) and 8 10^3 to 2.7 10^4 hexahedra (530 to 600) at a Courant
-   * number of 1, rounded downwards.
+   * (46 to 72) and 8 10^3 to 2.7 10^4 hexahedra (90 to 120) at a Courant
+   * number of 1.
    */
   constexpr double implicit_over_explicit(const unsigned int dimension)
   {
-    return dimension == 2 ? 60. : 500.;
+    return dimension == 2 ? 60. : 100.;
   }
 } // namespace nsfd
