@@ -436,7 +436,8 @@ namespace nsfd
     /**
      * In a scene with equilibria an intact body is one body of finite elements
      * with common nodes, whatever word joins its cells, or else of rigid
-     * joints: as SceneInput::equilibria_at_nodes(), before the rest is read.
+     * joints: rigid cells and cells of two sizes have no such nodes, interior
+     * points need the matrices of cells, and path = local asks for them.
      */
     bool may_share_nodes(const SceneInput &scene, const ParameterFile &file)
     {
@@ -465,11 +466,13 @@ namespace nsfd
     if (scene.has_bonded_faces() && scene.time.scheme.theta_scheme)
       for (std::size_t b = 0; b < blocks.size(); ++b)
         share_nodes(*blocks[b], scene.interfaces[b]);
-    if (scene.statics && scene.time.scheme.theta_scheme && !scene.iterates()) {
+    if (scene.statics && !scene.iterates()) {
       const bool shares = may_share_nodes(scene, file);
+      scene.equilibria_at_nodes = shares;
       for (InterfaceInput &interface : scene.interfaces)
-        if (interface.intact ==
-            (shares ? IntactFaces::rigid : IntactFaces::bonded)) {
+        if (scene.time.scheme.theta_scheme &&
+            interface.intact ==
+                (shares ? IntactFaces::rigid : IntactFaces::bonded)) {
           interface.intact = shares ? IntactFaces::bonded : IntactFaces::rigid;
           if (!interface.law)
             interface.law_name = shares ? "bonded" : "rigid";

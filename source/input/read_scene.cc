@@ -142,18 +142,10 @@ namespace nsfd
       section.assign({entry, {value, place}, old ? old->name_location : place});
     }
 
-    using Entries = std::vector<std::pair<std::string, std::string>>;
-
-    /** With @p chosen entries of section Time. */
-    std::unique_ptr<SceneInput>
-    read_parsed(ParameterFile &file, const std::string &name,
-                const std::vector<std::string> &overrides, InputErrors &errors,
-                const Entries &chosen = {})
+    std::unique_ptr<SceneInput> read_parsed(ParameterFile &file,
+                                            const std::string &name,
+                                            InputErrors &errors)
     {
-      for (const std::string &assignment : overrides)
-        file.override_entry(assignment, all_kinds(), errors);
-      for (const auto &[entry, value] : chosen)
-        put(*file.find("Time"), entry, value);
       for (const ParameterSection *section : file.sections())
         check_section_name(*section, errors);
 
@@ -188,6 +180,7 @@ namespace nsfd
       scene->echo = file.print();
       return scene;
     }
+
     bool has_entry(const ParameterFile &file, const std::string &section,
                    const std::string &name, const std::string &value = "")
     {
@@ -196,21 +189,25 @@ namespace nsfd
       return entry && (value.empty() || entry->value.text() == value);
     }
 
+    /** A file with what the command line says; false if it cannot be read. */
     using Parse = std::function<bool(ParameterFile &, InputErrors &)>;
+    using Entries = std::vector<std::pair<std::string, std::string>>;
 
     /**
      * A scene with `scheme = auto`, with implicit steps and with explicit ones:
      * which of them is predicted to cost less is known with the mesh.
      */
-    std::unique_ptr<SceneInput>
-    read_automatic(const Parse &parse, const std::string &name,
-                   const std::vector<std::string> &overrides,
-                   const bool has_step, InputErrors &errors)
+    std::unique_ptr<SceneInput> read_automatic(const Parse &parse,
+                                               const std::string &name,
+                                               const bool has_step,
+                                               InputErrors &errors)
     {
       const auto read = [&](const Entries &chosen, InputErrors &found) {
         ParameterFile parsed;
         parse(parsed, found);
-        return read_parsed(parsed, name, overrides, found, chosen);
+        for (const auto &[entry, value] : chosen)
+          put(*parsed.find("Time"), entry, value);
+        return read_parsed(parsed, name, found);
       };
       InputErrors of_implicit, of_explicit, of_given;
       auto scene = read({{"scheme", "moreau-jean"}}, of_implicit);
@@ -243,23 +240,26 @@ namespace nsfd
       return scene;
     }
 
-    std::unique_ptr<SceneInput> read(const Parse &parse,
-                                     const std::string &name,
-                                     const std::vector<std::string> &overrides,
-                                     InputErrors &errors)
+    std::unique_ptr<SceneInput>
+    read(const Parse &parse, const std::string &name, InputErrors &errors)
     {
       ParameterFile parsed;
-      if (!parse(parsed, errors))
-        return nullptr;
-      InputErrors said_later;
-      ParameterFile changed;
-      parse(changed, said_later);
-      for (const std::string &assignment : overrides)
-        changed.override_entry(assignment, all_kinds(), said_later);
-      return has_entry(changed, "Time", "scheme", "auto")
-                 ? read_automatic(parse, name, overrides,
-                                  has_entry(changed, "Time", "step"), errors)
-                 : read_parsed(parsed, name, overrides, errors);
+      InputErrors found;
+      const bool can_be_read = parse(parsed, found);
+      if (can_be_read && has_entry(parsed, "Time", "scheme", "auto"))
+        return read_automatic(parse, name, has_entry(parsed, "Time", "step"),
+                              errors);
+      for (const Diagnostic &one : found.diagnostics())
+        errors.add(one);
+      return can_be_read ? read_parsed(parsed, name, errors) : nullptr;
+    }
+
+    void override_entries(ParameterFile &file,
+                          const std::vector<std::string> &assignments,
+                          InputErrors &errors)
+    {
+      for (const std::string &assignment : assignments)
+        file.override_entry(assignment, all_kinds(), errors);
     }
   } // namespace
 
@@ -267,11 +267,15 @@ namespace nsfd
   read_scene(const std::string &file, const std::vector<std::string> &overrides,
              InputErrors &errors)
   {
-    // what cannot be read would look like a file in which all is missing
-    const Parse parse = [&file](ParameterFile &parsed, InputErrors &found) {
-      return parsed.read_file(file, found);
-    };
-    return read(parse, file, overrides, errors);
+    return read(
+        [&](ParameterFile &parsed, InputErrors &found) {
+          // what cannot be read would look like a file in which all is missing
+          if (!parsed.read_file(file, found))
+            return false;
+          override_entries(parsed, overrides, found);
+          return true;
+        },
+        file, errors);
   }
 
   std::unique_ptr<SceneInput>
@@ -279,11 +283,13 @@ namespace nsfd
                   const std::vector<std::string> &overrides,
                   InputErrors &errors)
   {
-    const Parse parse = [&](ParameterFile &parsed, InputErrors &found) {
-      parsed.read_text(text, name, found);
-      return true;
-    };
-    return read(parse, name, overrides, errors);
+    return read(
+        [&](ParameterFile &parsed, InputErrors &found) {
+          parsed.read_text(text, name, found);
+          override_entries(parsed, overrides, found);
+          return true;
+        },
+        name, errors);
   }
 
   std::vector<NamedPart> named_parts()

@@ -22,7 +22,8 @@ namespace nsfd
   public:
     /** The largest numbers of unknowns, since the map of a node is dense, and
        of points and groups. */
-    static constexpr unsigned int most = 48, most_points = 80;
+    static constexpr unsigned int most = 48,
+                                  most_points = MergedGroups<dim>::most;
 
     /**
      * Of the points as they are, with @p beta by point of the problem; until

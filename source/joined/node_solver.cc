@@ -69,7 +69,7 @@ namespace nsfd
         const unsigned int n = !first ? 2 : report_.starts > 0 ? 6 : 3;
         for (unsigned int k = 0; k < n; ++k, length *= 0.5)
           if (accepts(length, first)) {
-            const double less = flat_moves_ == 0 ? 0.1 : first ? 0.1 : 0.3;
+            const double less = flat_moves_ == 0 || first ? 0.1 : 0.3;
             soft_ = std::max(least_softening, less * soft_);
             return true;
           }

@@ -1,10 +1,10 @@
 #include "cholesky.h"
 
 #include "dissected_factor.h"
+#include "start_cholmod.h"
 
 #include "core/large_pages.h"
 
-#include <cholmod.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -24,10 +24,7 @@ namespace nsfd
       // CHOLMOD asks for four threads of its own whatever the environment
       // says; ranks are what shares the cores
       omp_set_max_active_levels(0);
-      cholmod_start(&common);
-      common.supernodal = CHOLMOD_SUPERNODAL;
-      common.print = 0;
-      common.error_handler = nullptr;
+      start_cholmod(common);
     }
     Library(const Library &) = delete;
     ~Library()

@@ -67,6 +67,15 @@ namespace nsfd::krylov
   /** The vectors of an iteration, kept from one solve to the next. */
   struct CgVectors {
     std::vector<double> r, z, p, q;
+
+    /** By @p alpha along p, from the iterate @p x. */
+    void advance(const double alpha, std::vector<double> &x)
+    {
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        x[k] += alpha * p[k];
+        r[k] -= alpha * q[k];
+      }
+    }
   };
 
   /**
@@ -113,13 +122,7 @@ namespace nsfd::krylov
       return dot_(v_.p, v_.q);
     }
 
-    void advance(const double alpha)
-    {
-      for (std::size_t k = 0; k < x_.size(); ++k) {
-        x_[k] += alpha * v_.p[k];
-        v_.r[k] -= alpha * v_.q[k];
-      }
-    }
+    void advance(const double alpha) { v_.advance(alpha, x_); }
 
   private:
     const Product &product_;
@@ -175,13 +178,7 @@ namespace nsfd::krylov
 
     double multiply() const { return curvature_; }
 
-    void advance(const double alpha)
-    {
-      for (std::size_t k = 0; k < x_.size(); ++k) {
-        x_[k] += alpha * v_.p[k];
-        v_.r[k] -= alpha * v_.q[k];
-      }
-    }
+    void advance(const double alpha) { v_.advance(alpha, x_); }
 
   private:
     const Product &product_;

@@ -1,6 +1,6 @@
 #include "partial_cholesky.h"
 
-#include <cholmod.h>
+#include "start_cholmod.h"
 
 #include <algorithm>
 #include <new>
@@ -35,13 +35,7 @@ namespace nsfd
       cholmod_common common;
       cholmod_factor *factor = nullptr;
 
-      Analysis()
-      {
-        cholmod_start(&common);
-        common.supernodal = CHOLMOD_SUPERNODAL;
-        common.print = 0;
-        common.error_handler = nullptr;
-      }
+      Analysis() { start_cholmod(common); }
       Analysis(const Analysis &) = delete;
       ~Analysis()
       {

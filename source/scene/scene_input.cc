@@ -13,18 +13,6 @@ namespace nsfd
            std::any_of(input.contacts.begin(), input.contacts.end(), lifts);
   }
 
-  bool SceneInput::equilibria_at_nodes() const
-  {
-    // rigid cells and cells of two sizes have no such nodes, interior points
-    // need the matrices of cells, and path = local asks for them
-    return has_bonded_faces() ||
-           (!iterates() && !adaptivity && solver.method != "interior point" &&
-            solver.path != "local" &&
-            std::none_of(
-                materials.begin(), materials.end(),
-                [](const MaterialInput &material) { return material.rigid; }));
-  }
-
   double SceneInput::front_viscosity() const
   {
     // tension behind a compressive front is then at most 4 % of its amplitude

@@ -84,7 +84,7 @@ namespace nsfd
   {
     // interior points know the matrices of single bodies only
     const bool any_solver = input.solver.method != "interior point";
-    if (input.equilibria_at_nodes())
+    if (input.equilibria_at_nodes)
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
           make_bonded_delassus<dim>(communicator, discretization->bodies(),

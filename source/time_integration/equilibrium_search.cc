@@ -126,10 +126,9 @@ namespace nsfd
   void EquilibriumSearch<dim>::begin(const State &old, const double time)
   {
     relaxation_->begin(old, time, time - old.time);
-    StaticBonds<dim> *const bonds = relaxation_->bonds();
+    const auto bonds = relaxation_->bonds();
     if (!bonds)
       return;
-    bonds->set();
     crossing_ = discretization_.crossing_time() *
                 std::sqrt(bonds->cells_of_smallest_body());
     first_h_ = of_joined * crossing_;

@@ -66,6 +66,8 @@ namespace nsfd
     std::string echo;
     /// only if the scene asks for equilibria
     std::optional<StaticInput> statics;
+    /// they are solved for the motion of the nodes of all bodies
+    bool equilibria_at_nodes = false;
     /// only if the mesh follows the motion, or is refined before it
     std::optional<AdaptivityInput> adaptivity;
     std::vector<ObservableInput> observables;
@@ -89,8 +91,6 @@ namespace nsfd
           return true;
       return false;
     }
-    /** Equilibria are solved for the motion of the nodes of all bodies. */
-    bool equilibria_at_nodes() const;
     /** Share of critical damping of fronts in explicit steps. */
     double front_viscosity() const;
     /** Materials that keep how they were strained. */

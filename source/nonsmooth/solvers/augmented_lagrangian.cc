@@ -395,12 +395,13 @@ namespace nsfd
     bool solved = false;
     for (unsigned int k = 0; k < 2 && !solved && jump(work); ++k)
       solved = judge(); // anew where round-off was left
+    Iterate start;      // of a stage
     if (!solved) {
+      start = iterate(work);
       report.switches.push_back("multipliers");
       soften(work, share);
       answer(work, velocity_);
     }
-    Iterate start = iterate(work);
     double smaller = 1e-2; // a share over the one before
     unsigned int taken = 0;
     while (!solved && report.newton < most) {
