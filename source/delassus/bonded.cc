@@ -27,7 +27,7 @@ namespace nsfd
                               largest_factor, share_nodes),
             joined_(communicator, largest_factor)
       {
-        joined_.set_space(this->space());
+        joined_.set_space(this->conforming_->space());
       }
 
       void reinit(double time_step, double theta) override;
@@ -59,7 +59,7 @@ namespace nsfd
     {
       JoinedBodies<dim>::bonds_changed();
       joined_valid_ = false;
-      joined_.set_space(this->space());
+      joined_.set_space(this->conforming_->space());
     }
 
     template <int dim>

@@ -17,6 +17,9 @@ namespace nsfd
 
   namespace
   {
+    /// iterations: where they do not do, a factor or multigrid is cheaper
+    constexpr unsigned int most_of_given = 300;
+
     /** Scalar products over the own unknowns of all ranks, in one exchange. */
     class OwnSums
     {
@@ -125,6 +128,7 @@ namespace nsfd
   bool ConformingSolver::try_to_prepare(const SparseRows &given)
   {
     product_ = nullptr;
+    given_ = {};
     SparseRows folded;
     if (ties_.any())
       folded = ties_.fold(given);
@@ -142,6 +146,16 @@ namespace nsfd
       multigrid_ = std::make_unique<Multigrid>(communicator_);
     multigrid_->prepare(matrix_, space_->modes, space_->per_node);
     return true;
+  }
+
+  void ConformingSolver::iterate_with(Product product, Product preconditioner)
+  {
+    product_ = nullptr;
+    factor_.reset();
+    multigrid_.reset();
+    matrix_ = SparseRows();
+    new_pattern_ = true;
+    given_ = {std::move(product), std::move(preconditioner)};
   }
 
   /** P^T b. */
@@ -164,7 +178,9 @@ namespace nsfd
 
   void ConformingSolver::precondition(const Vector &r, Vector &z)
   {
-    if (factor_)
+    if (given_.preconditioner)
+      given_.preconditioner(r, z);
+    else if (factor_)
       factor_->solve(r.data(), z.data());
     else
       multigrid_->apply(r.data(), z.data());
@@ -194,6 +210,8 @@ namespace nsfd
     } else {
       Vector direction(n_own_ + matrix_.ghosts.size());
       const auto product = [&](const Vector &p, Vector &q) {
+        if (given_.product)
+          return given_.product(p, q);
         std::copy_n(p.begin(), n_own_, direction.begin());
         multiply(matrix_, of_matrix_, direction.data(), q.data());
       };
@@ -201,7 +219,7 @@ namespace nsfd
       for (Vector *v : {&vectors_.z, &vectors_.p, &vectors_.q})
         v->assign(n_own_, 0.);
       krylov::OneSumCgSystem system(product, preconditioner, sums, vectors_, x);
-      constexpr unsigned int limit = 1000;
+      const unsigned int limit = given_.product ? most_of_given : 1000;
       outcome = krylov::conjugate_gradients(system, {tolerance, limit});
     }
     std::copy(x.begin(), x.end(), x_.begin());

@@ -19,7 +19,7 @@ namespace nsfd
    * Solves among the functions of a space alone, x = P A^{-1} P^T b: joined
    * cells with common nodes. A on the space is given. It has a sparse Cholesky
    * factor up to a number of unknowns; beyond, conjugate gradients that one
-   * V-cycle of smoothed aggregation preconditions.
+   * V-cycle of smoothed aggregation preconditions, or what the caller gives.
    */
   class ConformingSolver
   {
@@ -37,6 +37,11 @@ namespace nsfd
     /** y = A x of own values; collective. */
     using Product = std::function<void(const std::vector<double> &x,
                                        std::vector<double> &y)>;
+    /**
+     * From now on conjugate gradients with these solve, until a matrix is
+     * prepared; both map own values, and @p preconditioner is of the matrix.
+     */
+    void iterate_with(Product product, Product preconditioner);
     /**
      * From now on solutions are those of another matrix, symmetric or not, by
      * generalised minimal residuals that what was prepared last preconditions;
@@ -78,6 +83,9 @@ namespace nsfd
     TiedUnknowns ties_;
     bool new_pattern_ = true;
     Product product_; ///< or null
+    struct {
+      Product product, preconditioner;
+    } given_; ///< by the caller, or null
     std::unique_ptr<Cholesky> factor_;
     std::unique_ptr<Multigrid> multigrid_;
     SparseRows matrix_; ///< of the iterations

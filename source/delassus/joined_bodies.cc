@@ -2,7 +2,7 @@
 #include "joined_from_rest.h"
 #include "node_values.h"
 
-#include "linear_algebra/positive_part.h"
+#include "linear_algebra/factor_limits.h"
 #include "sparse_assembly.h"
 
 #include "core/cost.h"
@@ -24,7 +24,7 @@ namespace nsfd
                                   const bool share_nodes)
       : BondedDelassus<dim>(communicator, bodies, points),
         may_share_(share_nodes), factor_(communicator, largest_factor),
-        tangent_(*this, communicator, largest_factor)
+        jacobi_(communicator), tangent_(*this, communicator, largest_factor)
   {
     // K >= so much of the bodies' own: their blocks bound W from above
     this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
@@ -100,6 +100,7 @@ namespace nsfd
   void JoinedBodies<dim>::bonds_changed()
   {
     valid_ = false;
+    means_ = Means::unknown;
     this->shares_nodes_ = joined_by(this->bonded_);
     bool changed = true;
     while (this->communicator_.any(changed)) {
@@ -144,6 +145,46 @@ namespace nsfd
     return *matrix_;
   }
 
+  namespace
+  {
+    /** The largest entry of f K over that of M on the diagonals of bodies. */
+    double stiffest_entry(const Bodies &bodies, const StepShares &shares)
+    {
+      double ratio = 0.;
+      for (const BodyClass &body : bodies.classes)
+        for (unsigned int i = 0; i < body.n_dofs && !body.rigid; ++i)
+          if (body.mass(i, i) > 0.)
+            ratio = std::max(ratio, shares.stiffness * body.stiffness(i, i) /
+                                        body.mass(i, i));
+      return ratio;
+    }
+  } // namespace
+
+  /**
+   * Conjugate gradients with blocks on the diagonal are cheaper than factors
+   * where steps are short and unknowns are many. The step of the matrix is the
+   * present one from then on. Collective.
+   */
+  template <int dim>
+  bool JoinedBodies<dim>::iterates() const
+  {
+    matrix().set_step(this->shares(this->time_step_, this->theta_));
+    if (means_ == Means::unknown) {
+      const CoarseSpace &space = conforming_->space();
+      const long long n = space.n_global;
+      const double stiffest = n <= largest_joined_factor<dim>
+                                  ? stiffest_beside_factor
+                                  : stiffest_of_iterations;
+      const bool does =
+          n > smallest_of_iterations<dim> && space.ties.empty() &&
+          this->communicator_.max(stiffest_entry(
+              this->bodies_, this->shares(this->time_step_, this->theta_))) <
+              stiffest;
+      means_ = does ? Means::iterations : Means::factors;
+    }
+    return means_ == Means::iterations;
+  }
+
   /** M_hat + H^T T H in the space, @p springs the blocks T; none if empty. */
   template <int dim>
   const SparseRows &
@@ -151,77 +192,6 @@ namespace nsfd
   {
     matrix().set_step(this->shares(this->time_step_, this->theta_));
     return matrix().assemble(springs.empty() ? nullptr : springs.data());
-  }
-
-  template <int dim>
-  bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &springs)
-  {
-    const Charge charge(Cost::preconditioner);
-    ++this->counters_.global_factorisations;
-    return tangent_.factor(assemble(springs), springs);
-  }
-
-  /**
-   * From rows_ to columns_ with any T, preconditioned by the springs that were
-   * factored; the positive part of what is not symmetric.
-   */
-  template <int dim>
-  bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
-                                        const bool symmetric,
-                                        const double tolerance)
-  {
-    std::vector<double> positive = T;
-    for (std::size_t k = 0; k < T.size() && !symmetric; k += dim * dim)
-      take_positive_part<dim>(&positive[k]);
-    using Fit = typename TangentFactor<dim>::Fit;
-    const auto solved = [&](const bool exact) {
-      const Charge charge(Cost::precondition);
-      matrix().set_step(this->shares(this->time_step_, this->theta_));
-      if (exact)
-        tangent_.solver().set_product(nullptr);
-      else
-        tangent_.solver().set_product(
-            [this, &T](const std::vector<double> &x, std::vector<double> &y) {
-              matrix().apply_step(T.data(), x, y);
-            });
-      return solve(tangent_.solver(), tolerance);
-    };
-    const Fit fit = tangent_.fit(positive);
-    return (fit != Fit::none && solved(symmetric && fit == Fit::exact)) ||
-           (factor_tangent(positive) && solved(symmetric));
-  }
-
-  template <int dim>
-  bool JoinedBodies<dim>::solve_linearised(const std::vector<double> &T,
-                                           const bool symmetric,
-                                           const std::vector<double> &c,
-                                           std::vector<double> &dP,
-                                           std::vector<double> &dU,
-                                           const std::vector<double> *defect,
-                                           const double share)
-  {
-    dU.resize(c.size());
-    double tolerance = tight;
-    matrix().impulse(c.data(), rows_);
-    if (defect == &c)
-      tolerance = std::max(tight, share);
-    else if (defect) {
-      matrix().impulse(defect->data(), columns_);
-      const std::size_t n = rows_.size();
-      std::vector<double> squares(2 * n);
-      for (std::size_t k = 0; k < n; ++k) {
-        squares[k] = rows_[k] * rows_[k];
-        squares[n + k] = columns_[k] * columns_[k];
-      }
-      const auto sums = this->communicator_.sums(squares.data(), 2, n);
-      if (sums[0] > 0.)
-        tolerance = std::max(tight, share * std::sqrt(sums[1] / sums[0]));
-    }
-    if (!solve_tangent(T, symmetric, tolerance))
-      return false;
-    matrix().velocity(columns_, dU.data());
-    answer_of_points<dim>(T, c, dU, dP);
-    return true;
   }
 
   template <int dim>
@@ -257,6 +227,7 @@ namespace nsfd
   {
     if (time_step != this->time_step_ || theta != this->theta_) {
       valid_ = false;
+      means_ = Means::unknown;
       tangent_.clear();
     }
     // a step that was resumed has none of the step before: what is counted,
@@ -273,8 +244,20 @@ namespace nsfd
     if (valid_)
       return;
     const Charge charge(Cost::preconditioner);
-    factor_.prepare(assemble({}));
-    ++this->counters_.global_factorisations;
+    if (iterates()) {
+      jacobi_.prepare(matrix(), nullptr);
+      factor_.iterate_with(
+          [this](const std::vector<double> &x, std::vector<double> &y) {
+            matrix().set_step(this->shares(this->time_step_, this->theta_));
+            matrix().apply_step(nullptr, x, y);
+          },
+          [this](const std::vector<double> &r, std::vector<double> &z) {
+            jacobi_.apply(r, z);
+          });
+    } else {
+      factor_.prepare(assemble({}));
+      ++this->counters_.global_factorisations;
+    }
     valid_ = true;
     n_solves_ = 0;
     last_.rows.clear();
@@ -286,6 +269,12 @@ namespace nsfd
   bool JoinedBodies<dim>::solve(ConformingSolver &solver,
                                 const double tolerance) const
   {
+    const bool rests = std::all_of(rows_.begin(), rows_.end(),
+                                   [](const double r) { return r == 0.; });
+    if (!this->communicator_.any(!rests)) {
+      columns_.assign(rows_.size(), 0.);
+      return true;
+    }
     const auto outcome = solver.solve_own(rows_, columns_, tolerance);
     this->counters_.inner_iterations += outcome.iterations;
     ++this->counters_.global_solves;
@@ -302,7 +291,11 @@ namespace nsfd
       return;
     }
     ++n_solves_;
-    solve(factor_);
+    if (!solve(factor_) && iterates()) {
+      means_ = Means::factors; // for the rest of the step
+      valid_ = false;
+      return answer();
+    }
     last_.rows = rows_;
     last_.columns = columns_;
   }
@@ -317,7 +310,11 @@ namespace nsfd
       const auto outcome = factor_.solve(x, y, tight);
       this->counters_.inner_iterations += outcome.iterations;
       ++this->counters_.global_solves;
-      return;
+      if (outcome.converged || !iterates())
+        return;
+      means_ = Means::factors; // for the rest of the step
+      valid_ = false;
+      return apply(op, x, y);
     }
     take(representative_, x, rows_);
     matrix().apply(op, rows_, columns_);
@@ -398,7 +395,7 @@ namespace nsfd
     const double by_factor =
         2. * factor_.n_factor_entries() + 10. * double(rows.size());
     if (rows.empty() || rows.size() > CondensedDelassus::largest ||
-        (rows.size() > 64 &&
+        ((rows.size() > 64 || iterates()) &&
          (4 * n_solves_ < rows.size() ||
           double(rows.size()) * double(rows.size()) > by_factor)))
       return false;
@@ -447,7 +444,7 @@ namespace nsfd
       condense();
     }
     if (!tangent_.springs().empty())
-      factor_tangent(std::vector<double>(tangent_.springs()));
+      factor_tangent(std::vector<double>(tangent_.springs()), false);
     n_solves_ = n_solves;
   }
 

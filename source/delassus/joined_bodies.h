@@ -5,6 +5,7 @@
 #include "conforming_solver.h"
 #include "conforming_space.h"
 #include "joined_matrix.h"
+#include "node_jacobi.h"
 #include "tangent_factor.h"
 #include "velocity_solver.h"
 
@@ -59,17 +60,18 @@ namespace nsfd
     static constexpr double tight = 1e-12;
 
     void bonds_changed() override;
+    bool condense() const;
     bool respond(ConformingSolver &solver, const double *impulse,
                  double *velocity, double tolerance = tight) const;
-    bool condense() const;
     const SparseRows &assemble(const std::vector<double> &springs) const;
-    const CoarseSpace &space() const { return conforming_->space(); }
 
     mutable CondensedDelassus condensed_; ///< W of the rows, if it pays
+    std::unique_ptr<ConformingSpace> conforming_;
 
   private:
     friend JoinedFromRest<dim>;
-    bool factor_tangent(const std::vector<double> &springs);
+    bool iterates() const;
+    bool factor_tangent(const std::vector<double> &springs, bool general);
     bool solve_tangent(const std::vector<double> &T, bool symmetric,
                        double tolerance);
     std::vector<char> joined_by(const std::vector<std::uint8_t> &bonded) const;
@@ -80,10 +82,13 @@ namespace nsfd
     JoinedMatrix<dim> &matrix() const;
 
     mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
-    mutable bool placed_ = false; ///< matrix_ is that of the present space
-    const bool may_share_;        ///< nodes
-    std::unique_ptr<ConformingSpace> conforming_;
+    mutable bool placed_ = false;     ///< matrix_ is that of the present space
+    const bool may_share_;            ///< nodes
     mutable ConformingSolver factor_; ///< of M_hat
+    mutable NodeJacobi<dim> jacobi_;  ///< the same, in short steps
+    /// of the present step: factors, or conjugate gradients
+    enum class Means { unknown, factors, iterations };
+    mutable Means means_ = Means::unknown;
     TangentFactor<dim> tangent_;
     mutable bool valid_ = false;       ///< factor_
     mutable std::size_t n_solves_ = 0; ///< with the present factor

@@ -7,6 +7,12 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /// unknowns beyond which matrices of bodies are worth being spared
+    constexpr long long smallest_by_bodies = 15000;
+  } // namespace
+
   template <int dim>
   JoinedMatrix<dim>::JoinedMatrix(const DelassusOperator<dim> &delassus,
                                   const std::vector<Bond> &bonds,
@@ -37,28 +43,30 @@ namespace nsfd
     for (std::size_t i = 0; i < wanted.size(); ++i)
       wanted[i] = !shares_nodes[points_.face_of[i]];
     const bool penalty =
-        std::any_of(penalised_.begin(), penalised_.end(),
+        std::any_of(bonded_.penalised.begin(), bonded_.penalised.end(),
                     [](const std::uint8_t p) { return p != 0; });
     traces_ = PointTraces(delassus_, first_dof_, wanted,
                           delassus_.communicator().any(penalty));
     const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
-    remote_.clear();
+    remote_.numbers.clear();
     for (const unsigned int side : {0u, 1u})
       for (const PointTrace &trace : traces_.of_side(side))
         if (trace.first >= 0 &&
             (trace.first < first_dof_ || trace.first >= end))
           for (unsigned int j = 0; j < trace.n_dofs; ++j)
-            remote_.push_back(trace.first + j);
-    std::sort(remote_.begin(), remote_.end());
-    remote_.erase(std::unique(remote_.begin(), remote_.end()), remote_.end());
-    fetch_ = GhostValues(delassus_.communicator(), first_dof_, bodies_.n_dofs(),
-                         remote_);
+            remote_.numbers.push_back(trace.first + j);
+    std::sort(remote_.numbers.begin(), remote_.numbers.end());
+    remote_.numbers.erase(
+        std::unique(remote_.numbers.begin(), remote_.numbers.end()),
+        remote_.numbers.end());
+    remote_.values = GhostValues(delassus_.communicator(), first_dof_,
+                                 bodies_.n_dofs(), remote_.numbers);
     space_ = &space;
     size_ = space.per_node;
     n_own_ = int(space.n_own / size_);
     std::vector<double> own(space.number.begin(), space.number.end()),
-        remote(remote_.size()); // below 2^53
-    fetch_.fetch(own.data(), remote.data());
+        remote(remote_.numbers.size()); // below 2^53
+    remote_.values.fetch(own.data(), remote.data());
     ghosts_.clear();
     const auto note = [&](const long long number) {
       const long long mine = (number - space.first) / size_;
@@ -101,9 +109,9 @@ namespace nsfd
         mine >= 0 && mine < static_cast<long long>(bodies_.n_dofs());
     const std::size_t first =
         own ? std::size_t(mine)
-            : std::size_t(std::lower_bound(remote_.begin(), remote_.end(),
-                                           trace.first) -
-                          remote_.begin());
+            : std::size_t(std::lower_bound(remote_.numbers.begin(),
+                                           remote_.numbers.end(), trace.first) -
+                          remote_.numbers.begin());
     for (unsigned int j = 0; j < trace.n_dofs; j += size_)
       result.push_back((own ? block_.own : block_.remote)[first + j]);
     return result;
@@ -179,7 +187,7 @@ namespace nsfd
       const auto &face = points_.faces[f];
       if (shares_nodes[f])
         continue;
-      const auto first = penalised_.begin() + face.first;
+      const auto first = bonded_.penalised.begin() + face.first;
       if (std::any_of(first, first + face.count,
                       [](const std::uint8_t b) { return b; }))
         for (unsigned int s = 0; s < 2; ++s)
@@ -214,7 +222,20 @@ namespace nsfd
       pattern_.first.push_back(pattern_.column.size());
     }
     if (delassus_.communicator().size() > 1) {
-      joint_.rows = RowSums(delassus_.communicator(), *space_, entries());
+      const auto number = [&](const Block block) {
+        return block < n_own_
+                   ? space_->first + static_cast<long long>(block) * size_
+                   : ghosts_[std::size_t(block - n_own_)] * size_;
+      };
+      std::vector<SparseEntry> all; // in the order of the values
+      for (std::size_t r = 0; r < n_rows; ++r)
+        for (unsigned int k = 0; k < size_; ++k)
+          for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1];
+               ++c)
+            for (unsigned int l = 0; l < size_; ++l)
+              all.push_back(
+                  {number(Block(r)) + k, number(pattern_.column[c]) + l, 0.});
+      joint_.rows = RowSums(delassus_.communicator(), *space_, all);
       return;
     }
     matrix_ = SparseRows();
@@ -233,9 +254,18 @@ namespace nsfd
                                     const std::vector<char> &shares_nodes,
                                     const std::vector<std::uint8_t> &penalised)
   {
-    penalised_ = penalised;
+    bonded_.shares_nodes = shares_nodes;
+    bonded_.penalised = penalised;
     number_blocks(space, shares_nodes);
     set_entries(shares_nodes);
+    operators_ = {};
+    pattern_ = {};
+    by_bodies_.set(bodies_, block_.own, size_,
+                   space.n_global > smallest_by_bodies &&
+                       std::none_of(penalised.begin(), penalised.end(),
+                                    [](const std::uint8_t p) { return p; }));
+    if (by_bodies_.is_used())
+      return;
     set_pattern(shares_nodes);
     set_operators();
   }
@@ -263,40 +293,56 @@ namespace nsfd
            std::size_t(found - pattern_.column.begin() - long(first)) * size_;
   }
 
+  /** Add the block that @p select has for a class, or null, of all bodies. */
   template <int dim>
-  void JoinedMatrix<dim>::set_operators()
+  template <typename Select>
+  void JoinedMatrix<dim>::add_bodies(const Select &select,
+                                     std::vector<double> &values) const
   {
-    const std::size_t n_entries = pattern_.column.size() * size_ * size_;
-    const bool damped =
-        std::any_of(bodies_.classes.begin(), bodies_.classes.end(),
-                    [](const BodyClass &body) { return body.damping.rows; });
-    operators_.step.clear();
-    operators_.mass.assign(n_entries, 0.);
-    operators_.stiffness.assign(n_entries, 0.);
-    operators_.damping.assign(damped ? n_entries : 0, 0.);
-    for (const BodyClass &body : bodies_.classes)
+    for (std::size_t index = 0; index < bodies_.classes.size(); ++index) {
+      const BodyClass &body = bodies_.classes[index];
+      const nsfd::Block &from = select(index);
+      if (from.rows == 0)
+        continue;
       for (const unsigned int b : body.bodies)
         for (unsigned int i = 0; i < body.n_dofs; i += size_) {
           const Block row = block_.own[bodies_.first_dof[b] + i];
           for (unsigned int j = 0; j < body.n_dofs; j += size_) {
             const std::size_t first =
                 place(row, block_.own[bodies_.first_dof[b] + j]);
-            const auto add = [&](const nsfd::Block &from,
-                                 std::vector<double> &to) {
-              for (unsigned int k = 0; k < size_; ++k)
-                for (unsigned int l = 0; l < size_; ++l)
-                  to[first + k * width(row) + l] += from(i + k, j + l);
-            };
-            add(body.mass, operators_.mass);
-            if (!body.rigid)
-              add(body.stiffness, operators_.stiffness);
-            if (body.damping.rows)
-              add(body.damping, operators_.damping);
+            for (unsigned int k = 0; k < size_; ++k)
+              for (unsigned int l = 0; l < size_; ++l)
+                values[first + k * width(row) + l] += from(i + k, j + l);
           }
         }
+    }
+  }
+
+  template <int dim>
+  void JoinedMatrix<dim>::set_operators()
+  {
+    const std::size_t n_entries = pattern_.column.size() * size_ * size_;
+    const auto &classes = bodies_.classes;
+    const bool damped =
+        std::any_of(classes.begin(), classes.end(),
+                    [](const auto &body) { return body.damping.rows; });
+    operators_.step.clear();
+    operators_.mass.assign(n_entries, 0.);
+    operators_.stiffness.assign(n_entries, 0.);
+    operators_.damping.assign(damped ? n_entries : 0, 0.);
+    const auto add = [&](const auto block, std::vector<double> &to) {
+      const auto select = [&](const std::size_t k) -> const nsfd::Block & {
+        return classes[k].*block;
+      };
+      add_bodies(select, to);
+    };
+    add(&BodyClass::mass, operators_.mass);
+    add(&BodyClass::stiffness, operators_.stiffness);
     add_bonds(false, operators_.stiffness);
-    if (damped)
-      add_bonds(true, operators_.damping);
+    if (!damped)
+      return;
+    add(&BodyClass::damping, operators_.damping);
+    add_bonds(true, operators_.damping);
   }
 
   /** a' (alpha a + beta t) + t' (beta a) with the rows of either side. */
@@ -306,7 +352,7 @@ namespace nsfd
   {
     const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
     for (std::size_t i = 0; i < points_.n_points; ++i) {
-      if (!penalised_[i])
+      if (!bonded_.penalised[i])
         continue;
       const double f = points_.weight[i];
       const Bond &bond = bonds_[i];
@@ -389,33 +435,16 @@ namespace nsfd
                           : ghosts_[std::size_t(block - n_own_)];
   }
 
-  /** Of the pattern, by scalar unknowns, in the order of the values. */
-  template <int dim>
-  std::vector<SparseEntry> JoinedMatrix<dim>::entries() const
-  {
-    const auto number = [&](const Block block) {
-      return block < n_own_
-                 ? space_->first + static_cast<long long>(block) * size_
-                 : ghosts_[std::size_t(block - n_own_)] * size_;
-    };
-    std::vector<SparseEntry> all;
-    all.reserve(pattern_.column.size() * size_ * size_);
-    for (std::size_t r = 0; r + 1 < pattern_.first.size(); ++r)
-      for (unsigned int k = 0; k < size_; ++k)
-        for (std::size_t c = pattern_.first[r]; c < pattern_.first[r + 1]; ++c)
-          for (unsigned int l = 0; l < size_; ++l)
-            all.push_back(
-                {number(Block(r)) + k, number(pattern_.column[c]) + l, 0.});
-    return all;
-  }
-
   template <int dim>
   void JoinedMatrix<dim>::set_step(const StepShares &shares)
   {
-    if (!operators_.step.empty() && shares_.stiffness == shares.stiffness &&
+    if (!(operators_.step.empty() && by_bodies_.step(0).rows == 0) &&
+        shares_.stiffness == shares.stiffness &&
         shares_.damping == shares.damping)
       return;
     shares_ = shares;
+    if (by_bodies_.is_used())
+      return by_bodies_.set_step(shares);
     operators_.step.resize(operators_.mass.size());
     for (std::size_t k = 0; k < operators_.step.size(); ++k)
       operators_.step[k] =
@@ -427,9 +456,18 @@ namespace nsfd
   template <int dim>
   const SparseRows &JoinedMatrix<dim>::assemble(const double *springs)
   {
+    if (pattern_.first.empty())
+      set_pattern(bonded_.shares_nodes);
     const bool alone = delassus_.communicator().size() == 1;
     auto &values = alone ? matrix_.value : joint_.values;
     values = operators_.step;
+    if (by_bodies_.is_used()) {
+      values.assign(pattern_.column.size() * size_ * size_, 0.);
+      const auto block = [&](const std::size_t k) -> const nsfd::Block & {
+        return by_bodies_.step(k);
+      };
+      add_bodies(block, values);
+    }
     if (springs)
       add_springs(springs, values);
     return alone ? matrix_ : joint_.rows.sum(values);

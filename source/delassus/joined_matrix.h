@@ -2,6 +2,7 @@
 
 #include "point_traces.h"
 
+#include "body_products.h"
 #include "bulk_traction.h"
 #include "linear_algebra/ghost_values.h"
 #include "linear_algebra/row_sums.h"
@@ -12,6 +13,9 @@
 
 namespace nsfd
 {
+  template <int dim>
+  class NodeJacobi;
+
   /**
    * The rows of this rank of
    *
@@ -45,7 +49,6 @@ namespace nsfd
 
     /** M_hat and @p springs, the blocks T, row by row, or null. Collective. */
     const SparseRows &assemble(const double *springs);
-
     /**
      * y = P^T A P x of own values of the space, A mass, stiffness or damping.
      * Collective.
@@ -75,6 +78,7 @@ namespace nsfd
     void velocity(const std::vector<double> &x, double *U) const;
 
   private:
+    friend class NodeJacobi<dim>;
     /** Consecutive unknowns of the space that are coupled alike. */
     using Block = int;
     /** What a block of unknowns contributes to the jump at a point. */
@@ -94,24 +98,31 @@ namespace nsfd
     std::size_t width(Block row) const;
     std::size_t place(Block row, Block column) const;
     void set_operators();
+    template <typename Select>
+    void add_bodies(const Select &select, std::vector<double> &values) const;
     void add_bonds(bool viscous, std::vector<double> &values) const;
     void add_springs(const double *springs, std::vector<double> &values) const;
     void multiply(const std::vector<double> &values, const double *x) const;
     void fetch_ghosts(const std::vector<double> &own) const;
     void return_ghosts(std::vector<double> &own) const;
-    std::vector<SparseEntry> entries() const;
 
     const DelassusOperator<dim> &delassus_;
     const Bodies &bodies_; ///< of it
     const InterfacePoints<dim> &points_;
     const std::vector<Bond> &bonds_;
     const long long first_dof_;
-    PointTraces traces_;            ///< of points whose sides are not one node
-    std::vector<long long> remote_; ///< unknowns of bodies of other ranks
-    GhostValues fetch_;             ///< what is at them
+    PointTraces traces_; ///< of points whose sides are not one node
+    struct {
+      std::vector<long long> numbers;
+      GhostValues values; ///< what is at them
+    } remote_;            ///< unknowns of bodies of other ranks
 
     const CoarseSpace *space_ = nullptr;
-    std::vector<std::uint8_t> penalised_;
+    struct {
+      std::vector<char> shares_nodes;      ///< by face
+      std::vector<std::uint8_t> penalised; ///< by point
+    } bonded_;
+    BodyProducts by_bodies_;        ///< if it is in use, no entries are kept
     unsigned int size_ = 1;         ///< of a block
     int n_own_ = 0;                 ///< blocks
     std::vector<long long> ghosts_; ///< blocks of other ranks

@@ -81,6 +81,14 @@ namespace nsfd
   void JoinedMatrix<dim>::apply(const Operator op, const std::vector<double> &x,
                                 std::vector<double> &y) const
   {
+    if (by_bodies_.is_used()) {
+      fetch_ghosts(x);
+      by_bodies_.apply(op == Operator::mass        ? &BodyClass::mass
+                       : op == Operator::stiffness ? &BodyClass::stiffness
+                                                   : &BodyClass::damping,
+                       std::vector<double>(shared_.values), shared_.values);
+      return return_ghosts(y);
+    }
     const auto &values = op == Operator::mass        ? operators_.mass
                          : op == Operator::stiffness ? operators_.stiffness
                                                      : operators_.damping;
@@ -113,7 +121,10 @@ namespace nsfd
   {
     fetch_ghosts(x);
     const std::vector<double> in(shared_.values);
-    multiply(operators_.step, in.data());
+    if (by_bodies_.is_used())
+      by_bodies_.apply_step(in, shared_.values);
+    else
+      multiply(operators_.step, in.data());
     for (std::size_t i = 0; springs && i < points_.n_points; ++i) {
       const std::size_t first = sights_.first[i], end = sights_.first[i + 1];
       if (first == end)

@@ -58,6 +58,25 @@ namespace nsfd
     return true;
   }
 
+  template <int dim>
+  bool TangentFactor<dim>::precondition(const JoinedMatrix<dim> &matrix,
+                                        const std::vector<double> &springs,
+                                        const bool general)
+  {
+    clear();
+    if (!jacobi_.prepare(matrix, springs.data(), general))
+      return false;
+    springs_ = springs;
+    solver_.iterate_with(
+        [this, &matrix](const std::vector<double> &x, std::vector<double> &y) {
+          matrix.apply_step(springs_.data(), x, y);
+        },
+        [this](const std::vector<double> &r, std::vector<double> &z) {
+          jacobi_.apply(r, z);
+        });
+    return true;
+  }
+
   template class TangentFactor<2>;
   template class TangentFactor<3>;
 } // namespace nsfd

@@ -2,6 +2,7 @@
 
 #include "conforming_solver.h"
 #include "delassus_operator.h"
+#include "node_jacobi.h"
 
 namespace nsfd
 {
@@ -17,7 +18,7 @@ namespace nsfd
     TangentFactor(const DelassusOperator<dim> &delassus,
                   const Communicator &communicator, long long largest_factor)
         : delassus_(delassus), communicator_(communicator),
-          solver_(communicator, largest_factor)
+          solver_(communicator, largest_factor), jacobi_(communicator)
     {
     }
 
@@ -35,6 +36,10 @@ namespace nsfd
     Fit fit(const std::vector<double> &springs) const;
     /** False: not positive definite. Collective. */
     bool factor(const SparseRows &matrix, const std::vector<double> &springs);
+    /** The same for iterations on @p matrix, of short steps; @p general: the
+        springs are not symmetric, on one rank. */
+    bool precondition(const JoinedMatrix<dim> &matrix,
+                      const std::vector<double> &springs, bool general);
 
     ConformingSolver &solver() { return solver_; }
     /** Those that were factored; empty: none. */
@@ -44,6 +49,7 @@ namespace nsfd
     const DelassusOperator<dim> &delassus_;
     const Communicator &communicator_;
     ConformingSolver solver_;
+    NodeJacobi<dim> jacobi_;
     std::vector<double> springs_;
   };
 } // namespace nsfd

@@ -1,0 +1,111 @@
+#include "joined_bodies.h"
+
+#include "core/cost.h"
+#include "linear_algebra/positive_part.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  /** @p general: springs that are not symmetric, for iterations alone. */
+  template <int dim>
+  bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &springs,
+                                         const bool general)
+  {
+    const Charge charge(Cost::preconditioner);
+    if (iterates())
+      return tangent_.precondition(matrix(), springs, general);
+    ++this->counters_.global_factorisations;
+    return tangent_.factor(assemble(springs), springs);
+  }
+
+  /**
+   * From rows_ to columns_ with any T, preconditioned by the springs that were
+   * factored; of what is not symmetric, the positive part where its factor is
+   * one of Cholesky.
+   */
+  template <int dim>
+  bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
+                                        const bool symmetric,
+                                        const double tolerance)
+  {
+    const bool iterates = this->iterates(),
+               general =
+                   iterates && !symmetric && this->communicator_.size() == 1;
+    std::vector<double> springs = T;
+    for (std::size_t k = 0; k < T.size() && !symmetric && !general;
+         k += dim * dim)
+      take_positive_part<dim>(&springs[k]);
+    using Fit = typename TangentFactor<dim>::Fit;
+    const auto solved = [&](const bool exact) {
+      const Charge charge(Cost::precondition);
+      if (exact)
+        tangent_.solver().set_product(nullptr);
+      else
+        tangent_.solver().set_product(
+            [this, &T](const std::vector<double> &x, std::vector<double> &y) {
+              matrix().apply_step(T.data(), x, y);
+            });
+      return solve(tangent_.solver(), tolerance);
+    };
+    const Fit fit = tangent_.fit(springs);
+    const bool fits = fit == Fit::exact || (fit == Fit::close && !iterates);
+    if ((fits && solved(symmetric && fit == Fit::exact)) ||
+        (factor_tangent(springs, general) && solved(symmetric)))
+      return true;
+    if (!iterates)
+      return false;
+    means_ = Means::factors; // for the rest of the step
+    valid_ = false;
+    tangent_.clear();
+    return solve_tangent(T, symmetric, tolerance);
+  }
+
+  template <int dim>
+  bool JoinedBodies<dim>::solve_linearised(const std::vector<double> &T,
+                                           const bool symmetric,
+                                           const std::vector<double> &c,
+                                           std::vector<double> &dP,
+                                           std::vector<double> &dU,
+                                           const std::vector<double> *defect,
+                                           const double share)
+  {
+    dU.resize(c.size());
+    double tolerance = tight;
+    matrix().impulse(c.data(), rows_);
+    if (defect == &c)
+      tolerance = std::max(tight, share);
+    else if (defect) {
+      matrix().impulse(defect->data(), columns_);
+      const std::size_t n = rows_.size();
+      std::vector<double> squares(2 * n);
+      for (std::size_t k = 0; k < n; ++k) {
+        squares[k] = rows_[k] * rows_[k];
+        squares[n + k] = columns_[k] * columns_[k];
+      }
+      const auto sums = this->communicator_.sums(squares.data(), 2, n);
+      if (sums[0] > 0.)
+        tolerance = std::max(tight, share * std::sqrt(sums[1] / sums[0]));
+    }
+    if (!solve_tangent(T, symmetric, tolerance))
+      return false;
+    matrix().velocity(columns_, dU.data());
+    answer_of_points<dim>(T, c, dU, dP);
+    return true;
+  }
+
+#define INSTANTIATE(dim)                                                       \
+  template bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &, \
+                                                  bool);                       \
+  template bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &,  \
+                                                 bool, double);                \
+  template bool JoinedBodies<dim>::solve_linearised(                           \
+      const std::vector<double> &, bool, const std::vector<double> &,          \
+      std::vector<double> &, std::vector<double> &,                            \
+      const std::vector<double> *, double)
+
+  INSTANTIATE(2);
+  INSTANTIATE(3);
+#undef INSTANTIATE
+} // namespace nsfd
