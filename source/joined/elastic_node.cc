@@ -10,8 +10,6 @@ namespace nsfd
 {
   namespace
   {
-    /// of velocities, over the size of those that they are differences of
-    constexpr double round_off = 4e-15;
     /// of a row: less is left only where closed points hold each other
     constexpr double independent = 1e-10;
     constexpr unsigned int most_changes = 6, most_refinements = 3;
@@ -24,25 +22,6 @@ namespace nsfd
       for (std::size_t i = 0; i < n; i += lanes)
         for (std::size_t l = 0; l < lanes; ++l)
           y[i + l] += factor * x[i + l];
-    }
-
-    /** H v of a point between @p groups, with @p velocity by group. */
-    template <int dim>
-    std::array<double, dim>
-    jump_velocity(const double *frame, const std::array<int, 2> &groups,
-                  const std::array<double, dim> *velocity)
-    {
-      double v[dim];
-      for (unsigned int c = 0; c < dim; ++c)
-        v[c] = (groups[1] >= 0 ? velocity[groups[1]][c] : 0.) -
-               (groups[0] >= 0 ? velocity[groups[0]][c] : 0.);
-      std::array<double, dim> U;
-      for (unsigned int r = 0; r < dim; ++r) {
-        U[r] = frame[r * dim] * v[0];
-        for (unsigned int c = 1; c < dim; ++c)
-          U[r] += frame[r * dim + c] * v[c];
-      }
-      return U;
     }
 
     /** F^T P: in the axes of space. */
@@ -63,8 +42,9 @@ namespace nsfd
                                 const NodeProblem<dim> &node,
                                 const std::vector<double> &beta)
   {
-    has_map_ = any_held_ = false;
+    has_map_ = any_held_ = is_loose_ = false;
     points_.clear();
+    loose_.clear();
     if (node.points.size() > most_points ||
         node.inverse_mass.size() > most_points)
       return false;
@@ -94,6 +74,16 @@ namespace nsfd
       for (unsigned int s = 0; s < 2; ++s)
         point.groups[s] = merged_.of(node.points[k].groups[s]);
       point.is_inside = point.held < 0 && point.groups[0] == point.groups[1];
+    }
+    is_loose_ = std::all_of(points_.begin(), points_.end(), [](const auto &x) {
+      return x.own.law.holds || x.own.law.broken;
+    });
+    for (std::size_t k = 0; is_loose_ && k < points_.size(); ++k) {
+      const std::size_t i = node.points[k].point;
+      if (points_[k].held >= 0)
+        loose_.add_held(i, points_[k].own.law);
+      else
+        is_loose_ = loose_.add_broken(problem, i, points_[k].groups);
     }
     return true;
   }

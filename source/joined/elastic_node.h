@@ -1,7 +1,6 @@
 #pragma once
 
-#include "elastic_point.h"
-#include "merged_groups.h"
+#include "loose_node.h"
 
 #include <cstdint>
 
@@ -24,6 +23,8 @@ namespace nsfd
        of points and groups. */
     static constexpr unsigned int most = 48,
                                   most_points = MergedGroups<dim>::most;
+    /** Of velocities, over the size of those that they are differences of. */
+    static constexpr double round_off = 4e-15;
 
     /**
      * Of the points as they are, with @p beta by point of the problem; until
@@ -51,6 +52,11 @@ namespace nsfd
                const std::vector<double> &frames,
                const std::vector<std::uint8_t> &closed, NodeProblem<dim> &node,
                std::vector<double> &impulses, std::vector<double> &velocities);
+
+    /** LooseNode may solve it. */
+    bool is_loose() const { return is_loose_; }
+    const LooseNode<dim> &loose() const { return loose_; }
+    const MergedGroups<dim> &merged() const { return merged_; }
 
   private:
     using Vector = std::array<double, dim>;
@@ -110,7 +116,8 @@ namespace nsfd
 
     MergedGroups<dim> merged_;
     std::vector<Placed> points_;
-    bool has_map_ = false, any_held_ = false;
+    LooseNode<dim> loose_;
+    bool has_map_ = false, any_held_ = false, is_loose_ = false;
     std::vector<double> inverse_;       ///< of the map, symmetric
     std::size_t size_ = 0, stride_ = 0; ///< of it and of a row
   };

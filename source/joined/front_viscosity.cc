@@ -1,5 +1,6 @@
 #include "front_viscosity.h"
 
+#include "core/instruction_sets.h"
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
@@ -33,6 +34,37 @@ namespace nsfd
                        result[points.face_of[point]] = 1;
                      });
       return result;
+    }
+
+    /** Sums over the neighbours of a cell, and psi eta of cells from them. */
+    NSFD_CLONES
+    void set_viscosities(const std::size_t n, const std::size_t *first_neighbor,
+                         const unsigned int *neighbor, const double *rate,
+                         const double *eta, double *viscosity)
+    {
+      constexpr std::size_t width = 64;
+      double jump[width], size[width];
+      for (std::size_t first = 0; first < n; first += width) {
+        const std::size_t count = std::min(width, n - first);
+        for (std::size_t l = 0; l < count; ++l) {
+          const double mine = rate[first + l], my_size = std::abs(mine);
+          double of_jump = 0., of_size = 0.;
+          for (std::size_t k = first_neighbor[first + l];
+               k < first_neighbor[first + l + 1]; ++k) {
+            const double other = rate[neighbor[k]];
+            of_jump += other - mine;
+            of_size += std::abs(other) + my_size;
+          }
+          jump[l] = of_jump;
+          size[l] = of_size;
+        }
+        for (std::size_t l = 0; l < count; ++l) {
+          const double ratio = jump[l] / (size[l] > 0. ? size[l] : 1.),
+                       of_sharp = std::abs(size[l] > 0. ? ratio : 0.) / sharp,
+                       share = of_sharp < 1. ? of_sharp : 1.;
+          viscosity[first + l] = eta[first + l] * share * share * share;
+        }
+      }
     }
   } // namespace
 
@@ -98,17 +130,13 @@ namespace nsfd
         ends_.push_back(unsigned(b));
   }
 
+  /** Beside cells of other sizes. */
   void FrontViscosity::set_viscosity(const std::size_t cell)
   {
     double jump = 0., size = 0.;
     for (std::size_t k = first_neighbor_[cell]; k < first_neighbor_[cell + 1];
          ++k) {
       const double other = rate[neighbor_[k]];
-      if (weight_.empty()) {
-        jump += other - rate[cell];
-        size += std::abs(other) + std::abs(rate[cell]);
-        continue;
-      }
       jump += weight_[k] * (other - rate[cell]);
       size += weight_[k] * (std::abs(other) + std::abs(rate[cell]));
     }
@@ -121,8 +149,12 @@ namespace nsfd
   FrontViscosity::finish(const Communicator &communicator)
   {
     const std::size_t n = eta_.size();
-    for (std::size_t b = 0; b < n; ++b)
-      set_viscosity(b);
+    if (weight_.empty() && n > 0)
+      set_viscosities(n, first_neighbor_.data(), neighbor_.data(), rate.data(),
+                      eta_.data(), viscosity.data());
+    else
+      for (std::size_t b = 0; b < n; ++b)
+        set_viscosity(b);
     if (ghosts_ && acts_) {
       ghosts_->fetch(viscosity);
       for (std::size_t b = 0; b < n; ++b)

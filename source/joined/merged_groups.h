@@ -71,4 +71,23 @@ namespace nsfd
     void set_carried(const NodeProblem<dim> &node,
                      const std::vector<std::uint8_t> &holds);
   };
+
+  /** H v of a point between merged @p groups, with @p velocity by group. */
+  template <int dim>
+  std::array<double, dim> jump_velocity(const double *frame,
+                                        const std::array<int, 2> &groups,
+                                        const std::array<double, dim> *velocity)
+  {
+    double v[dim];
+    for (unsigned int c = 0; c < dim; ++c)
+      v[c] = (groups[1] >= 0 ? velocity[groups[1]][c] : 0.) -
+             (groups[0] >= 0 ? velocity[groups[0]][c] : 0.);
+    std::array<double, dim> U;
+    for (unsigned int r = 0; r < dim; ++r) {
+      U[r] = frame[r * dim] * v[0];
+      for (unsigned int c = 1; c < dim; ++c)
+        U[r] += frame[r * dim + c] * v[c];
+    }
+    return U;
+  }
 } // namespace nsfd

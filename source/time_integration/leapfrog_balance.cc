@@ -296,11 +296,18 @@ namespace nsfd
         continue;
       // kind, history or overlap may change, and what opens starts the other
       // chain
-      const std::size_t node = mesh_.node_of_point(chains_.point[a]);
-      for (auto &elastic : nodes_[std::size_t(node_index_[node])].elastic)
+      Node &node = nodes_.of(mesh_.node_of_point(chains_.point[a]));
+      for (auto &elastic : node.elastic)
         elastic.is_new = true;
       keep(a, energies_[k]);
     }
+    OneStepProblem<dim> &p = chains_.problem;
+    const double h = p.time_step * p.theta;
+    for (const std::size_t a : parted_)
+      for (std::size_t k = a * dim; k < (a + 1) * dim; ++k) {
+        p.jump_old[k] = p.jump_free[k] + h * chains_.velocity[k];
+        chains_.old_velocity[k] = chains_.velocity[k];
+      }
     chains_.swap();
     chain_ = 1 - chain_;
     return separates_;

@@ -95,6 +95,30 @@ namespace nsfd
     beta[a] = other.beta[a] = 1.;
   }
 
+  template <int dim>
+  void LeapfrogChains<dim>::reorder(const std::vector<unsigned int> &order)
+  {
+    OneStepProblem<dim> &p = problem;
+    const auto move = [&order](const auto width, auto &...lists) {
+      const auto move_one = [&](auto &list) {
+        const auto old = list;
+        for (std::size_t k = 0; k < order.size() && !old.empty(); ++k)
+          std::copy_n(old.begin() + long(order[k] * width), width,
+                      list.begin() + long(k * width));
+      };
+      (move_one(lists), ...);
+    };
+    move(1u, point, p.kind, p.mask, p.contact, p.interaction, p.weight,
+         p.strength_factor, p.opening_factor, p.opening_max, p.slip_max,
+         p.compression_stiffness, p.viscosity, p.target, p.majorant_normal,
+         p.majorant_tangential, other.kind, other.opening_max, other.slip_max,
+         other.compression, other.beta, beta, slip, released, closed, turned,
+         solution);
+    move(unsigned(dim), p.free_velocity, p.given_velocity, p.jump_old,
+         p.jump_free, p.sliding_offset, velocity, old_velocity, impulse);
+    move(unsigned(dim * dim), frame);
+  }
+
   /** The next step goes from u_k, over u_{k+1}. */
   template <int dim>
   void LeapfrogChains<dim>::swap()

@@ -42,6 +42,9 @@ namespace nsfd
     void release(unsigned int mesh_point, const double *axes,
                  const Factors &factors);
 
+    /** Point k is what @p order[k] has been. */
+    void reorder(const std::vector<unsigned int> &order);
+
     /** The next step goes from u_k, over u_{k+1}. */
     void swap();
 

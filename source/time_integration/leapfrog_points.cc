@@ -33,6 +33,16 @@ namespace nsfd
     }
 
     template <int dim>
+    void fetch_velocities(const std::vector<unsigned int> &of,
+                          const CornerGroups<dim> &groups,
+                          NodeProblem<dim> &problem)
+    {
+      for (std::size_t k = 0; k < of.size(); ++k)
+        std::copy_n(&groups.velocity[of[k] * dim], dim,
+                    problem.velocity[k].begin());
+    }
+
+    template <int dim>
     void take_held(const HeldNodes<dim> &held, LeapfrogChains<dim> &chains,
                    typename LeapfrogPoints<dim>::Outcome &outcome)
     {
@@ -46,7 +56,7 @@ namespace nsfd
                                       const JoinedMesh<dim> &mesh,
                                       const OneStepProblem<dim> &all)
       : discretization_(discretization), mesh_(mesh), all_(all), chains_(all),
-        node_index_(mesh.n_nodes(), -1)
+        nodes_(mesh)
   {
     count_holds();
   }
@@ -75,28 +85,6 @@ namespace nsfd
           --hold_of_face_[points.face_of[chains_.point[a]]];
   }
 
-  /** The last point is one of its node, in the order of the mesh. */
-  template <int dim>
-  void LeapfrogPoints<dim>::put_into_node()
-  {
-    const auto a = unsigned(chains_.size() - 1);
-    const unsigned int point = chains_.point[a];
-    const std::size_t node = mesh_.node_of_point(point);
-    if (node_index_[node] < 0) {
-      node_index_[node] = int(nodes_.size());
-      nodes_.emplace_back().node = node;
-    }
-    auto &here = nodes_[std::size_t(node_index_[node])];
-    here.is_new = true;
-    auto &points = here.points;
-    points.insert(std::lower_bound(
-                      points.begin(), points.end(), a,
-                      [this](const unsigned int one, const unsigned int two) {
-                        return chains_.point[one] < chains_.point[two];
-                      }),
-                  a);
-  }
-
   template <int dim>
   void LeapfrogPoints<dim>::add(const unsigned int point,
                                 const Factors &factors, const State &state)
@@ -106,7 +94,7 @@ namespace nsfd
                 state);
     if (state.beta[point] < 1e-3)
       hold_of_face_[points.face_of[point]] -= 2;
-    put_into_node();
+    nodes_.put(chains_.point);
   }
 
   template <int dim>
@@ -115,8 +103,10 @@ namespace nsfd
   {
     const double *frame =
         &discretization_.points().frame[std::size_t(point) * dim * dim];
+    // each sort costs some steps: a few in all
+    nodes_.sort(1.25, chains_);
     chains_.release(point, frame, factors);
-    put_into_node();
+    nodes_.put(chains_.point);
   }
 
   /** U of the points of the step from @p first on. */
@@ -163,55 +153,6 @@ namespace nsfd
       p.viscosity[a] = drags ? all_.viscosity[chains_.point[a]] : 0.;
   }
 
-  /** The problem of a node: its points between two groups. */
-  template <int dim>
-  void LeapfrogPoints<dim>::collect(Node &node,
-                                    const std::vector<std::uint8_t> &prescribed,
-                                    const CornerGroups<dim> &groups)
-  {
-    NodeProblem<dim> &problem = node.problem;
-    problem.clear();
-    node.groups.clear();
-    node.is_new = node.is_rigid = false;
-    for (auto &elastic : node.elastic)
-      elastic.is_new = true;
-    const auto local = [&](const unsigned int corner) {
-      if (corner == JoinedMesh<dim>::none)
-        return -1;
-      const unsigned int group = groups.of(corner);
-      const auto found =
-          std::find(node.groups.begin(), node.groups.end(), group);
-      const auto at = int(found - node.groups.begin());
-      if (found == node.groups.end()) {
-        node.groups.push_back(group);
-        std::array<double, dim> inverse;
-        for (unsigned int c = 0; c < dim; ++c)
-          inverse[c] =
-              prescribed[group] & (1u << c) ? 0. : 1. / groups.mass[group];
-        problem.inverse_mass.push_back(inverse);
-        node.is_rigid |= (prescribed[group] & (1u << dim)) != 0;
-      }
-      return at;
-    };
-    for (const unsigned int a : node.points) {
-      const auto &corners = mesh_.corners(chains_.point[a]);
-      if (corners[0] != JoinedMesh<dim>::none &&
-          corners[1] != JoinedMesh<dim>::none &&
-          groups.of(corners[0]) == groups.of(corners[1]))
-        continue;
-      const int one = local(corners[0]), two = local(corners[1]);
-      problem.points.push_back({a, {{one, two}}});
-      double flexibility = 0.;
-      for (const int group : {one, two})
-        if (group >= 0) {
-          const auto &inverse = problem.inverse_mass[std::size_t(group)];
-          flexibility += *std::max_element(inverse.begin(), inverse.end());
-        }
-      chains_.problem.majorant_normal[a] = flexibility;
-    }
-    problem.velocity.resize(node.groups.size());
-  }
-
   /**
    * Friction that opposes the velocity of the end of a step gives energy where
    * sliding turns round in it: such points oppose the mean from then on, which
@@ -246,10 +187,34 @@ namespace nsfd
     return turned;
   }
 
+  /** False if there is something to solve in the step of @p node. */
+  template <int dim>
+  bool LeapfrogPoints<dim>::solve_loose(Node &node)
+  {
+    const auto &elastic = node.elastic[chain_];
+    if (node.settled < 2 || elastic.is_new || !elastic.exists ||
+        !elastic.node.is_loose())
+      return false;
+    const LooseNode<dim> &loose = elastic.node.loose();
+    if (!loose.solve(chains_.problem, chains_.frame, chains_.released,
+                     elastic.node.merged(), node.problem, chains_.impulse,
+                     chains_.velocity))
+      return false;
+    for (const auto &point : loose.broken()) {
+      parted_.push_back(point.index);
+      if (node.settled < 3)
+        std::fill_n(&chains_.impulse[point.index * dim], dim, 0.);
+    }
+    node.settled = 3;
+    return true;
+  }
+
   /** False if something else than springs is in the step of @p node. */
   template <int dim>
   bool LeapfrogPoints<dim>::solve_elastic(Node &node)
   {
+    const unsigned int settled = std::min(node.settled + 1u, 2u);
+    node.settled = 0;
     if (!may_be_elastic(chains_, node.problem))
       return false;
     auto &elastic = node.elastic[chain_];
@@ -258,24 +223,28 @@ namespace nsfd
       elastic.exists =
           elastic.node.reinit(chains_.problem, node.problem, chains_.beta);
     }
-    return elastic.exists &&
-           elastic.node.solve(chains_.problem, chains_.frame, chains_.closed,
-                              node.problem, chains_.impulse, chains_.velocity);
+    if (!elastic.exists ||
+        !elastic.node.solve(chains_.problem, chains_.frame, chains_.closed,
+                            node.problem, chains_.impulse, chains_.velocity))
+      return false;
+    bool closed = false;
+    for (std::size_t k = 0; k < node.problem.points.size(); ++k) {
+      springs_.push_back(&elastic.node.point(k));
+      closed = closed || springs_.back()->closed;
+    }
+    node.settled = closed ? std::uint8_t(0) : std::uint8_t(settled);
+    return true;
   }
 
   /** The points of @p node are in the step that comes. */
   template <int dim>
-  void LeapfrogPoints<dim>::begin(Node &node, const CornerGroups<dim> &groups)
+  void LeapfrogPoints<dim>::begin(const Node &node)
   {
     for (const auto &x : node.problem.points) {
       set_point(unsigned(x.point));
       moved_.push_back(unsigned(x.point));
     }
     counts_.resize(moved_.size(), mesh_.counts(node.node));
-    auto &velocity = node.problem.velocity;
-    for (std::size_t k = 0; k < node.groups.size(); ++k)
-      std::copy_n(&groups.velocity[node.groups[k] * dim], dim,
-                  velocity[k].begin());
   }
 
   template <int dim>
@@ -284,16 +253,19 @@ namespace nsfd
                                        Outcome &outcome)
   {
     const std::size_t first = moved_.size();
-    begin(node, groups);
+    fetch_velocities(node.groups, groups, node.problem);
     const auto take_velocities = [&] {
       for (std::size_t k = 0; k < node.groups.size(); ++k)
         std::copy_n(node.problem.velocity[k].begin(), dim,
                     &groups.velocity[node.groups[k] * dim]);
     };
-    if (solve_elastic(node)) {
+    bool is_linear = solve_loose(node);
+    if (!is_linear) {
+      begin(node);
+      is_linear = solve_elastic(node);
+    }
+    if (is_linear) {
       outcome.problems += mesh_.counts(node.node);
-      for (std::size_t k = 0; k < node.problem.points.size(); ++k)
-        springs_.push_back(&node.elastic[chain_].node.point(k));
       take_velocities();
       return;
     }
@@ -355,10 +327,11 @@ namespace nsfd
     moved_.clear();
     counts_.clear();
     springs_.clear();
+    parted_.clear();
     for (Node &node : nodes_) {
       node.elastic[chain_].is_new |= is_new;
       if (node.is_new)
-        collect(node, prescribed, groups);
+        nodes_.collect(node, prescribed, groups, chains_);
       if (!node.problem.points.empty() && !node.is_rigid)
         solve_node(node, tolerance, groups, outcome);
     }
@@ -382,7 +355,8 @@ namespace nsfd
       else if (rigid.n_free() == 0)
         solve_node(node, tolerance, groups, outcome);
       else {
-        begin(node, groups);
+        begin(node);
+        fetch_velocities(node.groups, groups, node.problem);
         nodes.push_back({&node.problem, &node.groups, mesh_.counts(node.node)});
         outcome.problems += nodes.back().counts;
         for (const auto &x : node.problem.points)
@@ -445,10 +419,7 @@ namespace nsfd
                                          std::vector<double> &rows) const
   {
     for (const Node &node : nodes_) {
-      const auto has_row = [&](const unsigned int group) {
-        return row_of_group[group] >= 0;
-      };
-      if (std::none_of(node.groups.begin(), node.groups.end(), has_row))
+      if (!node.is_driven)
         continue;
       for (const auto &[a, sides] : node.problem.points)
         for (unsigned int side = 0; side < 2; ++side) {

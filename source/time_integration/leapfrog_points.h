@@ -1,10 +1,8 @@
 #pragma once
 
+#include "active_nodes.h"
 #include "common_balance.h"
-#include "leapfrog_chains.h"
 
-#include "joined/corner_groups.h"
-#include "joined/elastic_node.h"
 #include "joined/node_solver.h"
 #include "nonsmooth/one_step_problem.h"
 
@@ -45,6 +43,8 @@ namespace nsfd
     /** See LeapfrogChains. */
     void add(unsigned int point, const Factors &factors, const State &state);
     void release(unsigned int point, const Factors &factors);
+    /** After all that are add()ed: see ActiveNodes. */
+    void sort() { nodes_.sort(1., chains_); }
 
     /** Stored in them at the start, J. Collective. */
     double initial_energy(const Communicator &communicator) const;
@@ -108,26 +108,11 @@ namespace nsfd
     }
 
   private:
-    struct Node {
-      std::size_t node;
-      std::vector<unsigned int> points; ///< all active ones here
-      bool is_new = true;               ///< points or groups have changed
-      bool is_rigid = false;            ///< there is a group of a rigid body
-      NodeProblem<dim> problem;
-      std::vector<unsigned int> groups; ///< of the problem
-      /// of either chain
-      struct Elastic {
-        bool is_new = true, exists = false;
-        ElasticNode<dim> node;
-      };
-      std::array<Elastic, 2> elastic;
-    };
+    using Node = ActiveNode<dim>;
 
-    void put_into_node();
     void count_holds();
     void set_point(unsigned int a);
-    void collect(Node &node, const std::vector<std::uint8_t> &prescribed,
-                 const CornerGroups<dim> &groups);
+    bool solve_loose(Node &node);
     bool solve_elastic(Node &node);
     bool turn_friction(std::size_t first, bool all);
     void account_point(unsigned int a, std::size_t row, Balance &balance);
@@ -135,7 +120,7 @@ namespace nsfd
     void keep_jump(unsigned int a, bool held);
     void keep(unsigned int a, const PointEnergies<dim> &energies);
     void set_velocities(std::size_t first, const CornerGroups<dim> &groups);
-    void begin(Node &node, const CornerGroups<dim> &groups);
+    void begin(const Node &node);
     void solve_node(Node &node, double tolerance, CornerGroups<dim> &groups,
                     Outcome &outcome);
 
@@ -148,10 +133,10 @@ namespace nsfd
     std::vector<unsigned int> hold_of_face_;
     bool separates_ = false; ///< in accept()
 
-    std::vector<Node> nodes_;
-    std::vector<int> node_index_;      ///< by node of the mesh, -1: none here
+    ActiveNodes<dim> nodes_;
     std::vector<unsigned int> moved_;  ///< points of the step, nodes in order
     std::vector<std::uint8_t> counts_; ///< of these, see JoinedMesh
+    std::vector<unsigned int> parted_; ///< others: broken and apart
     NodeSolver<dim> solver_;
     unsigned int chain_ = 0;                       ///< which one is in the step
     std::array<std::array<double, 2>, 2> steps_{}; ///< H and theta, by chain

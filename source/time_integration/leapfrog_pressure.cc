@@ -27,7 +27,7 @@ namespace nsfd
                                   const CornerGroups<dim> &groups)
   {
     of_groups_.assign(groups.size() * dim, 0.);
-    of_points_.assign(chains.size(), 0.);
+    of_points_.clear();
     if (order_.size() != chains.size()) {
       order_.resize(chains.size());
       std::iota(order_.begin(), order_.end(), 0u);
@@ -48,10 +48,12 @@ namespace nsfd
                             (chains.other.beta[a] <= block.pressure_threshold);
       if (n_open == 0.)
         continue;
-      of_points_[a] = n_open / 2. *
-                      block.crack_pressure->at(
-                          position_of(discretization_.points(), i), time);
-      const double force = 2. * chains.problem.weight[a] * of_points_[a];
+      const double pressure =
+          n_open / 2. *
+          block.crack_pressure->at(position_of(discretization_.points(), i),
+                                   time);
+      of_points_.emplace_back(unsigned(i), pressure);
+      const double force = 2. * chains.problem.weight[a] * pressure;
       const auto &corners = mesh_.corners(i);
       for (unsigned int side = 0; side < 2; ++side)
         if (corners[side] != JoinedMesh<dim>::none)
@@ -62,15 +64,14 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogPressure<dim>::show(const LeapfrogChains<dim> &chains,
-                                   const std::vector<unsigned int> &place,
+  void LeapfrogPressure<dim>::show(const std::vector<unsigned int> &place,
                                    State &state) const
   {
     state.pressure.assign(state.beta.size(), 0.);
-    for (std::size_t a = 0; a < of_points_.size(); ++a) {
-      const unsigned int i = chains.point[a], at = place.empty() ? i : place[i];
+    for (const auto &[i, pressure] : of_points_) {
+      const unsigned int at = place.empty() ? i : place[i];
       if (at != unsigned(-1))
-        state.pressure[at] = of_points_[a];
+        state.pressure[at] = pressure;
     }
   }
 

@@ -36,8 +36,7 @@ namespace nsfd
     void set(double time, const LeapfrogChains<dim> &chains,
              const CornerGroups<dim> &groups);
     /** The last one at points, Pa. @p place: see LeapfrogChains. */
-    void show(const LeapfrogChains<dim> &chains,
-              const std::vector<unsigned int> &place, State &state) const;
+    void show(const std::vector<unsigned int> &place, State &state) const;
     /** dim values per group, N. */
     const std::vector<double> &of_groups() const { return of_groups_; }
 
@@ -46,6 +45,7 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     std::vector<unsigned int> order_; ///< of the points, as in the mesh
-    std::vector<double> of_groups_, of_points_;
+    std::vector<double> of_groups_;
+    std::vector<std::pair<unsigned int, double>> of_points_; ///< of the mesh
   };
 } // namespace nsfd

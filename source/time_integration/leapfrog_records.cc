@@ -109,7 +109,7 @@ namespace nsfd
       return; // it could not start
     show_at(state, ghosts_.own_points());
     if (loads_.cracks())
-      loads_.cracks()->show(points_.chains(), ghosts_.own_points(), state);
+      loads_.cracks()->show(ghosts_.own_points(), state);
     const auto *layer = ghosts_.layer();
     if (!layer)
       return;

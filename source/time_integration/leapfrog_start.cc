@@ -64,6 +64,7 @@ namespace nsfd
     for (const unsigned int i :
          points_between_groups(discretization_, mesh_, hanging_, intact))
       points_.add(i, faces_.factors(i), state);
+    points_.sort();
     groups_ = std::make_unique<CornerGroups<dim>>(mesh_, intact);
     rigid_.reset();
     if (has_rigid_cells(input_))
