@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <ostream>
 
@@ -75,6 +76,59 @@ namespace end_to_end::test_cost
       ASSERT_TRUE(named.completed());
       EXPECT_EQ(plain.history_text, named.history_text);
       EXPECT_EQ(plain.summary["counters"], named.summary["counters"]);
+    }
+  }
+
+  // Short steps of many unknowns take conjugate gradients, no factor. A bar
+  // without transverse strain, pushed by p from t = 0, moves with p / (rho c)
+  // behind its front: the work of the load is A p^2 t / (rho c).
+  TEST(ShortSteps, ManyCellsNeedNoFactor)
+  {
+    const Workspace workspace;
+    const auto file = workspace.path() / "block.prm";
+    write_text(file, R"(
+set dimension = 3
+subsection Mesh
+  set type         = brick
+  set upper corner = 50 mm, 50 mm, 50 mm
+  set cells        = 20, 16, 16
+end
+subsection Material: concrete
+  set Young modulus = 30 GPa
+  set Poisson ratio = 0
+  set density       = 2400 kg/m^3
+end
+subsection Interface: all
+  set law       = camacho-ortiz
+  set strength  = 5 MPa
+  set toughness = 80 J/m^2
+  set friction  = 0.5
+end
+subsection Boundary: left
+  set traction x = 1 MPa
+end
+subsection Boundary: right
+  set velocity x = 0
+end
+subsection Time
+  set end  = 11 us
+  set step = 1 courant
+end
+subsection Output
+  set fields = false
+end
+)");
+    const double c = std::sqrt(30e9 / 2400.),
+                 work = 2.5e-3 * 1e12 * 11e-6 / (2400. * c);
+    for (const unsigned int ranks : {1u, 2u}) {
+      SCOPED_TRACE(ranks);
+      const Result result =
+          good_run(workspace, std::to_string(ranks), {file, {}, ranks});
+      ASSERT_TRUE(result.completed());
+      EXPECT_EQ(result.counter("global_factorisations"), 0.);
+      EXPECT_GT(result.counter("inner_iterations"), 0.);
+      EXPECT_NEAR(result.number("work"), work, 0.02 * work);
+      EXPECT_LT(result.number("ledger_defect_max"), 1e-11);
     }
   }
 
