@@ -443,8 +443,10 @@ namespace nsfd
       n_solves_ = CondensedDelassus::largest; // enough for any
       condense();
     }
-    if (!tangent_.springs().empty())
+    if (!tangent_.springs().empty() && !iterates())
       factor_tangent(std::vector<double>(tangent_.springs()), false);
+    else
+      tangent_.clear(); // made anew from the springs alone
     n_solves_ = n_solves;
   }
 

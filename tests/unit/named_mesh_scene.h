@@ -8,10 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 namespace nsfd
 {
@@ -127,7 +130,10 @@ namespace nsfd
       TemporaryFile(const std::string &name, const std::string &content)
           : path_(testing::TempDir() + "nsfd_" + name)
       {
-        std::ofstream(path_, std::ios::binary) << content;
+        // each rank its own, and whole at once: others may read it already
+        const std::string own = path_ + "." + std::to_string(getpid());
+        std::ofstream(own, std::ios::binary) << content;
+        std::filesystem::rename(own, path_);
       }
       ~TemporaryFile() { std::remove(path_.c_str()); }
       TemporaryFile(const TemporaryFile &) = delete;
