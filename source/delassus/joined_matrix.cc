@@ -398,31 +398,16 @@ namespace nsfd
   void JoinedMatrix<dim>::add_springs(const double *springs,
                                       std::vector<double> &values) const
   {
-    for (std::size_t i = 0; i < points_.n_points; ++i) {
-      const double *T = springs + i * dim * dim;
-      if (sights_.first[i] == sights_.first[i + 1] ||
-          std::all_of(T, T + dim * dim, [](const double t) { return t == 0.; }))
-        continue;
-      for (std::size_t c = sights_.first[i]; c < sights_.first[i + 1]; ++c) {
-        const Entry &column = sights_.entries[c];
-        double product[dim * dim] = {}; // T a
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int e = 0; e < dim; ++e) {
-            for (unsigned int l = 0; l < size_; ++l)
-              product[d * size_ + l] +=
-                  T[d * dim + e] * column.all[e * size_ + l];
-          }
-        for (std::size_t r = sights_.first[i]; r < sights_.first[i + 1]; ++r) {
-          const Entry &row = sights_.entries[r];
+    sights_.for_springs(
+        springs, size_,
+        [&](const Entry &row, const Entry &column, const double *product) {
           double *out = &values[place(row.block, column.block)];
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int k = 0; k < size_; ++k)
               for (unsigned int l = 0; l < size_; ++l)
                 out[k * width(row.block) + l] +=
                     row.own[d * size_ + k] * product[d * size_ + l];
-        }
-      }
-    }
+        });
   }
 
   template <int dim>
@@ -460,14 +445,14 @@ namespace nsfd
       set_pattern(bonded_.shares_nodes);
     const bool alone = delassus_.communicator().size() == 1;
     auto &values = alone ? matrix_.value : joint_.values;
-    values = operators_.step;
     if (by_bodies_.is_used()) {
       values.assign(pattern_.column.size() * size_ * size_, 0.);
       const auto block = [&](const std::size_t k) -> const nsfd::Block & {
         return by_bodies_.step(k);
       };
       add_bodies(block, values);
-    }
+    } else
+      values = operators_.step;
     if (springs)
       add_springs(springs, values);
     return alone ? matrix_ : joint_.rows.sum(values);

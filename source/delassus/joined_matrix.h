@@ -8,6 +8,7 @@
 #include "linear_algebra/row_sums.h"
 #include "linear_algebra/spd_solver.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -129,9 +130,37 @@ namespace nsfd
     struct {
       std::vector<Block> own, remote;
     } block_; ///< by unknown
-    struct {
+    struct Sights {
       std::vector<std::size_t> first; ///< by point, and the end
       std::vector<Entry> entries;
+
+      /**
+       * For all pairs (row, column) of what a point with a spring sees:
+       * @p work (row, column, T a), a of the column, dim x @p size.
+       */
+      template <typename Work>
+      void for_springs(const double *springs, unsigned int size,
+                       const Work &work) const
+      {
+        for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+          const double *T = springs + i * dim * dim;
+          if (first[i] == first[i + 1] ||
+              std::all_of(T, T + dim * dim,
+                          [](const double t) { return t == 0.; }))
+            continue;
+          for (std::size_t c = first[i]; c < first[i + 1]; ++c) {
+            const Entry &column = entries[c];
+            double product[dim * dim] = {};
+            for (unsigned int d = 0; d < dim; ++d)
+              for (unsigned int e = 0; e < dim; ++e)
+                for (unsigned int l = 0; l < size; ++l)
+                  product[d * size + l] +=
+                      T[d * dim + e] * column.all[e * size + l];
+            for (std::size_t r = first[i]; r < first[i + 1]; ++r)
+              work(entries[r], column, product);
+          }
+        }
+      }
     } sights_; ///< what points see of the blocks
     struct {
       std::vector<std::size_t> first;

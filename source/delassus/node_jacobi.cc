@@ -56,18 +56,12 @@ namespace nsfd
                                     const double *springs, CoarseSpace &space)
   {
     const auto &communicator = matrix.delassus_.communicator();
-    const auto has_spring = [&](const std::size_t i) {
-      const double *T = springs + i * dim * dim;
-      return matrix.parts(i) &&
-             std::any_of(T, T + dim * dim,
-                         [](const double t) { return t != 0.; });
-    };
-    std::fill(matrix.shared_.values.begin(), matrix.shared_.values.end(), 0.);
-    for (std::size_t i = 0; i < matrix.points_.n_points; ++i)
-      for (std::size_t k = matrix.sights_.first[i];
-           k < matrix.sights_.first[i + 1] && has_spring(i); ++k)
-        matrix.shared_
-            .values[std::size_t(matrix.sights_.entries[k].block) * size_] = 1.;
+    auto &at_nodes = matrix.shared_.values;
+    std::fill(at_nodes.begin(), at_nodes.end(), 0.);
+    matrix.sights_.for_springs(
+        springs, size_, [&](const auto &row, const auto &, const double *) {
+          at_nodes[std::size_t(row.block) * size_] = 1.;
+        });
     std::vector<double> own;
     matrix.return_ghosts(own);
 
@@ -91,9 +85,7 @@ namespace nsfd
       own[r * size_] = double(space.first + place[r]);
     matrix.fetch_ghosts(own);
     const auto number = [&](const int block, const unsigned int c) {
-      return static_cast<long long>(
-                 matrix.shared_.values[std::size_t(block) * size_]) +
-             c;
+      return static_cast<long long>(at_nodes[std::size_t(block) * size_]) + c;
     };
     std::vector<SparseEntry> entries;
     for (std::size_t r = 0; r < place.size(); ++r)
@@ -101,22 +93,9 @@ namespace nsfd
         for (unsigned int l = 0; l < size_; ++l)
           entries.push_back({number(int(r), k), number(int(r), l),
                              inverse_[(r * size_ + k) * size_ + l]});
-    for (std::size_t i = 0; i < matrix.points_.n_points; ++i) {
-      if (!has_spring(i))
-        continue;
-      const double *T = springs + i * dim * dim;
-      for (std::size_t c = matrix.sights_.first[i];
-           c < matrix.sights_.first[i + 1]; ++c) {
-        const auto &column = matrix.sights_.entries[c];
-        double product[dim * dim] = {}; // T a
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int e = 0; e < dim; ++e)
-            for (unsigned int l = 0; l < size_; ++l)
-              product[d * size_ + l] +=
-                  T[d * dim + e] * column.all[e * size_ + l];
-        for (std::size_t r = matrix.sights_.first[i];
-             r < matrix.sights_.first[i + 1]; ++r) {
-          const auto &row = matrix.sights_.entries[r];
+    matrix.sights_.for_springs(
+        springs, size_,
+        [&](const auto &row, const auto &column, const double *product) {
           for (unsigned int k = 0; k < size_; ++k)
             for (unsigned int l = 0; l < size_; ++l) {
               double value = 0.;
@@ -125,9 +104,7 @@ namespace nsfd
               entries.push_back(
                   {number(row.block, k), number(column.block, l), value});
             }
-        }
-      }
-    }
+        });
     rows_ = sum_at_owners(communicator, space, std::move(entries));
     return place;
   }

@@ -85,45 +85,20 @@ namespace end_to_end::test_cost
   TEST(ShortSteps, ManyCellsNeedNoFactor)
   {
     const Workspace workspace;
-    const auto file = workspace.path() / "block.prm";
-    write_text(file, R"(
-set dimension = 3
-subsection Mesh
-  set type         = brick
-  set upper corner = 50 mm, 50 mm, 50 mm
-  set cells        = 20, 16, 16
-end
-subsection Material: concrete
-  set Young modulus = 30 GPa
-  set Poisson ratio = 0
-  set density       = 2400 kg/m^3
-end
-subsection Interface: all
-  set law       = camacho-ortiz
-  set strength  = 5 MPa
-  set toughness = 80 J/m^2
-  set friction  = 0.5
-end
-subsection Boundary: left
-  set traction x = 1 MPa
-end
-subsection Boundary: right
-  set velocity x = 0
-end
-subsection Time
-  set end  = 11 us
-  set step = 1 courant
-end
-subsection Output
-  set fields = false
-end
-)");
+    const std::vector<std::string> block = {
+        "Mesh/upper corner=50 mm, 50 mm, 50 mm",
+        "Mesh/cells=20, 16, 16",
+        "Material: concrete/Poisson ratio=0",
+        "Boundary: left/traction x=1 MPa",
+        "Boundary: right/velocity x=0",
+        "Time/end=11 us",
+        "Output/fields=false"};
     const double c = std::sqrt(30e9 / 2400.),
                  work = 2.5e-3 * 1e12 * 11e-6 / (2400. * c);
     for (const unsigned int ranks : {1u, 2u}) {
       SCOPED_TRACE(ranks);
-      const Result result =
-          good_run(workspace, std::to_string(ranks), {file, {}, ranks});
+      const Result result = good_run(workspace, std::to_string(ranks),
+                                     {benchmark("spall_bar"), block, ranks});
       ASSERT_TRUE(result.completed());
       EXPECT_EQ(result.counter("global_factorisations"), 0.);
       EXPECT_GT(result.counter("inner_iterations"), 0.);
