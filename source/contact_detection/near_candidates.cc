@@ -3,9 +3,12 @@
 #include "edge_pairs.h"
 #include "touching_rules.h"
 
+// boost/geometry includes a header that Boost itself calls deprecated.
+#define BOOST_ALLOW_DEPRECATED_HEADERS
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#undef BOOST_ALLOW_DEPRECATED_HEADERS
 #include <boost/iterator/function_output_iterator.hpp>
 
 #include <algorithm>

@@ -21,7 +21,7 @@ namespace nsfd
         {"contact", "unilateral contact and Coulomb friction only"},
     };
 
-    bool all_rigid(const SceneInput &scene)
+    bool no_body_deforms(const SceneInput &scene)
     {
       return !scene.materials.empty() &&
              std::all_of(scene.materials.begin(), scene.materials.end(),
@@ -35,7 +35,7 @@ namespace nsfd
      */
     std::string joint(const InterfaceInput &input, const SceneInput &scene)
     {
-      const bool bonds = !scene.iterates() && !all_rigid(scene) &&
+      const bool bonds = !scene.iterates() && !no_body_deforms(scene) &&
                          input.where.kind == Where::Kind::all;
       return bonds ? "bonded" : "rigid";
     }
@@ -128,12 +128,13 @@ namespace nsfd
       reader.error(
           name,
           fmt::format("{} = bonded joins bodies {}, and the scene has {}", name,
-                      scene.large_motion ? "that turn and strain little"
-                      : all_rigid(scene) ? "that deform"
-                                         : "without history",
+                      scene.large_motion       ? "that turn and strain little"
+                      : no_body_deforms(scene) ? "that deform"
+                                               : "without history",
                       scene.large_motion ? "motion = large"
-                      : all_rigid(scene) ? "rigid ones only"
-                                         : history_dependent_model(scene)),
+                      : no_body_deforms(scene)
+                          ? "rigid ones only"
+                          : history_dependent_model(scene)),
           "write rigid");
     }
 
@@ -151,9 +152,9 @@ namespace nsfd
                          ? "write rigid, or take an intrinsic law"
                          : "write rigid or bonded, or take an intrinsic law");
       else if (extrinsic && name == "bonded" &&
-               (scene.iterates() || all_rigid(scene)))
+               (scene.iterates() || no_body_deforms(scene)))
         refuse_bonds(reader, scene, "intact faces");
-      else if (extrinsic && !scene.iterates() && !all_rigid(scene) &&
+      else if (extrinsic && !scene.iterates() && !no_body_deforms(scene) &&
                name == "rigid" && input.where.kind == Where::Kind::all)
         reader.error("intact faces",
                      fmt::format("intact faces = rigid with where = all and "
@@ -301,7 +302,7 @@ namespace nsfd
         input.intact = input.law_name == "rigid" ? IntactFaces::rigid
                                                  : IntactFaces::bonded;
         if (input.law_name == "bonded" &&
-            (scene.iterates() || all_rigid(scene)))
+            (scene.iterates() || no_body_deforms(scene)))
           refuse_bonds(reader, scene, "law");
         const std::string reason =
             fmt::format("faces of the law `{}` never open", input.law_name);

@@ -59,7 +59,7 @@ namespace nsfd
     {
       const unsigned int stride = d == 0 ? 1 : grid.stride(d);
       Vector8 x[Grid<dim, N>::most], y[Grid<dim, N>::most];
-      for_lines<d>(grid, [&](const unsigned int k) {
+      for_lines<d>(grid, [&](const unsigned int k) NSFD_INLINED {
         load(grid, from + k, stride, x);
         multiply(grid, A, x, y);
         store(grid, y, stride, to + k);
@@ -106,7 +106,7 @@ namespace nsfd
         if constexpr (dim == 3)
           multiply_along<1>(grid, values, mine, mine);
         const unsigned int last = grid.stride(dim - 1);
-        for_lines<dim - 1>(grid, [&](const unsigned int k) {
+        for_lines<dim - 1>(grid, [&](const unsigned int k) NSFD_INLINED {
           load(grid, mine + k, last, x);
           multiply(grid, values, x, y);
           store(grid, y, last, mine + k);
@@ -142,7 +142,8 @@ namespace nsfd
       for (unsigned int a = 0; a < dim; ++a) {
         Vector8 *mine = u + a * size;
         // fluxes and those of the tension, along a line in direction d
-        const auto load_flux = [&](const unsigned int d, const unsigned int k) {
+        const auto load_flux = [&](const unsigned int d,
+                                   const unsigned int k) NSFD_INLINED {
           const unsigned int stride = grid.stride(d);
           const Vector8 *flux = fluxes + (a * dim + d) * size + k;
           load(grid, flux, stride, x);
@@ -163,14 +164,14 @@ namespace nsfd
               x[i] += pull * shares[std::size_t(i) * stride];
           }
         };
-        for_lines<0>(grid, [&](const unsigned int k) {
+        for_lines<0>(grid, [&](const unsigned int k) NSFD_INLINED {
           load_flux(0, k);
           multiply(grid, slopes, x, y);
           store(grid, y, 1, mine + k);
         });
         if constexpr (dim == 3) {
           const unsigned int stride = grid.stride(1);
-          for_lines<1>(grid, [&](const unsigned int k) {
+          for_lines<1>(grid, [&](const unsigned int k) NSFD_INLINED {
             load_flux(1, k);
             multiply(grid, slopes, x, y);
 #pragma GCC unroll 9
@@ -179,7 +180,7 @@ namespace nsfd
           });
         }
         const unsigned int last = grid.stride(dim - 1);
-        for_lines<dim - 1>(grid, [&](const unsigned int k) {
+        for_lines<dim - 1>(grid, [&](const unsigned int k) NSFD_INLINED {
           load_flux(dim - 1, k);
           multiply(grid, slopes, x, y);
 #pragma GCC unroll 9
@@ -274,9 +275,13 @@ namespace nsfd
   } // namespace
 } // namespace nsfd
 
-/** The kernels of @p N nodes per direction, 0: of any number up to 9. */
-#define NSFD_TENSOR_KERNELS(dim, N)                                            \
-  NSFD_CLONES void evaluate_##N(                                               \
+/**
+ * The kernels of @p N nodes per direction; 0: of any number up to 9, which is
+ * what processors without AVX2 take for all, as half of the code and of the
+ * time to compile it would otherwise be for them.
+ */
+#define NSFD_TENSOR_KERNELS(attribute, dim, N, name)                           \
+  attribute void evaluate_##name(                                              \
       const TensorLine &line, const TensorBlock &block, const double *q,       \
       double *scratch, double *dilatation, double *reference, double *bound)   \
   {                                                                            \
@@ -287,7 +292,7 @@ namespace nsfd
       evaluate<dim, N, false>(line, block, q, scratch, dilatation, reference,  \
                               bound);                                          \
   }                                                                            \
-  NSFD_CLONES void integrate_##N(                                              \
+  attribute void integrate_##name(                                             \
       const TensorLine &line, const TensorBlock &block, const double *tension, \
       double *scratch, double *corner_forces, double *forces)                  \
   {                                                                            \
@@ -298,41 +303,56 @@ namespace nsfd
       integrate<dim, N, false>(line, block, tension, scratch, corner_forces,   \
                                forces);                                        \
   }                                                                            \
-  NSFD_CLONES void set_tractions_##N(                                          \
+  attribute void set_tractions_##name(                                         \
       const TensorLine &line, const TensorBlock &block, const double *q,       \
       double *scratch, double *tractions)                                      \
   {                                                                            \
     set_tractions<dim, N>(line, block, q, scratch, tractions);                 \
   }
 
-#define NSFD_TENSOR_CASE(N)                                                    \
+#define NSFD_TENSOR_LEVELS(dim, N)                                             \
+  NSFD_TENSOR_KERNELS(NSFD_LEVEL_4, dim, N, v4_##N)                            \
+  NSFD_TENSOR_KERNELS(NSFD_LEVEL_3, dim, N, v3_##N)
+
+#define NSFD_TENSOR_CASE(level, N)                                             \
   case N:                                                                      \
-    return { evaluate_##N, integrate_##N, set_tractions_##N }
+    return                                                                     \
+    {                                                                          \
+      evaluate_##level##_##N, integrate_##level##_##N,                         \
+          set_tractions_##level##_##N                                          \
+    }
+
+#define NSFD_TENSOR_CASES(level)                                               \
+  switch (degree + 1) {                                                        \
+    NSFD_TENSOR_CASE(level, 2);                                                \
+    NSFD_TENSOR_CASE(level, 3);                                                \
+    NSFD_TENSOR_CASE(level, 4);                                                \
+    NSFD_TENSOR_CASE(level, 5);                                                \
+    NSFD_TENSOR_CASE(level, 6);                                                \
+    NSFD_TENSOR_CASE(level, 7);                                                \
+  default:                                                                     \
+    break;                                                                     \
+  }
 
 /** All of a dimension, and the function that chooses. */
 #define NSFD_TENSOR_DIMENSION(dim)                                             \
   namespace                                                                    \
   {                                                                            \
-    NSFD_TENSOR_KERNELS(dim, 0)                                                \
-    NSFD_TENSOR_KERNELS(dim, 2)                                                \
-    NSFD_TENSOR_KERNELS(dim, 3)                                                \
-    NSFD_TENSOR_KERNELS(dim, 4)                                                \
-    NSFD_TENSOR_KERNELS(dim, 5)                                                \
-    NSFD_TENSOR_KERNELS(dim, 6)                                                \
-    NSFD_TENSOR_KERNELS(dim, 7)                                                \
+    NSFD_TENSOR_KERNELS(NSFD_CLONES, dim, 0, any)                              \
+    NSFD_TENSOR_LEVELS(dim, 2)                                                 \
+    NSFD_TENSOR_LEVELS(dim, 3)                                                 \
+    NSFD_TENSOR_LEVELS(dim, 4)                                                 \
+    NSFD_TENSOR_LEVELS(dim, 5)                                                 \
+    NSFD_TENSOR_LEVELS(dim, 6)                                                 \
+    NSFD_TENSOR_LEVELS(dim, 7)                                                 \
   }                                                                            \
                                                                                \
   template <>                                                                  \
   TensorKernels tensor_kernels<dim>(const unsigned int degree)                 \
   {                                                                            \
-    switch (degree + 1) {                                                      \
-      NSFD_TENSOR_CASE(2);                                                     \
-      NSFD_TENSOR_CASE(3);                                                     \
-      NSFD_TENSOR_CASE(4);                                                     \
-      NSFD_TENSOR_CASE(5);                                                     \
-      NSFD_TENSOR_CASE(6);                                                     \
-      NSFD_TENSOR_CASE(7);                                                     \
-    default:                                                                   \
-      return {evaluate_0, integrate_0, set_tractions_0};                       \
-    }                                                                          \
+    if (NSFD_HAS_LEVEL_4)                                                      \
+      NSFD_TENSOR_CASES(v4)                                                    \
+    else if (NSFD_HAS_LEVEL_3)                                                 \
+      NSFD_TENSOR_CASES(v3)                                                    \
+    return {evaluate_any, integrate_any, set_tractions_any};                   \
   }

@@ -66,9 +66,8 @@ namespace nsfd
     {
 #pragma GCC unroll 3
       for (unsigned int c = 0; c < dim; ++c) {
-        const auto a = [&](const unsigned int subset) {
-          return map[(subset - 1) * dim + c];
-        };
+        const auto a = [&](const unsigned int subset)
+                           NSFD_INLINED { return map[(subset - 1) * dim + c]; };
 #pragma GCC unroll 3
         for (unsigned int d = 0; d < dim; ++d) {
           J[c][d] = a(1u << d);
@@ -160,7 +159,7 @@ namespace nsfd
       Vector8 stress_around[n_stresses];
       set_stress<dim>(around, lambda, mu, stress_around);
       Vector8 J[dim][dim], C[dim][dim], K[dim][dim], det;
-      const auto set_map = [&](const double *xi) {
+      const auto set_map = [&](const double *xi) NSFD_INLINED {
         set_jacobian<dim, affine>(map, xi, J);
         det = cofactors<dim>(J, C);
         const Vector8 inverse = 1. / det;

@@ -16,7 +16,7 @@ namespace nsfd
       std::array<Vector3, 2> ends; ///< deformed
     };
 
-    using Place = std::array<long long, 3>;
+    using GridPlace = std::array<long long, 3>;
 
     /** Undeformed places on a grid much finer than the cells. */
     class Grid
@@ -32,10 +32,10 @@ namespace nsfd
         spacing_ = box.empty() || box.size() == 0. ? 1. : 1e-6 * box.size();
       }
 
-      Place place(const Vector3 &x) const
+      GridPlace place(const Vector3 &x) const
       {
         // shifted, so that corners of a regular mesh are not on the border
-        Place result;
+        GridPlace result;
         for (unsigned int d = 0; d < 3; ++d)
           result[d] = std::llround(x[d] / spacing_ + 0.1234567);
         return result;
@@ -97,9 +97,9 @@ namespace nsfd
   std::vector<char> crack_flanks(const Snapshot &snapshot)
   {
     const Grid grid(snapshot);
-    std::vector<std::pair<std::vector<Place>, std::size_t>> polygons;
+    std::vector<std::pair<std::vector<GridPlace>, std::size_t>> polygons;
     for (std::size_t p = 0; p < snapshot.polygons.size(); ++p) {
-      std::vector<Place> corners;
+      std::vector<GridPlace> corners;
       for (const Vector3 &x : snapshot.polygons[p].reference)
         if (is_finite(x))
           corners.push_back(grid.place(x));
