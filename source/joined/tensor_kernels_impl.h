@@ -24,32 +24,31 @@ namespace nsfd
                               const Vector8 *x, Vector8 *y)
     {
       const unsigned int n = grid.n;
-#pragma GCC unroll 9
-      for (unsigned int i = 0; i < n; ++i) {
+      for_nodes(grid, [&](const unsigned int i) NSFD_INLINED {
         Vector8 sum = A[i * n] * x[0];
-#pragma GCC unroll 9
-        for (unsigned int j = 1; j < n; ++j)
-          sum += A[i * n + j] * x[j];
+        for_nodes(grid, [&](const unsigned int j) NSFD_INLINED {
+          if (j > 0)
+            sum += A[i * n + j] * x[j];
+        });
         y[i] = sum;
-      }
+      });
     }
 
     template <int dim, int N>
     NSFD_INLINE void load(const Grid<dim, N> &grid, const Vector8 *from,
                           const unsigned int stride, Vector8 *x)
     {
-#pragma GCC unroll 9
-      for (unsigned int i = 0; i < grid.n; ++i)
+      for_nodes(grid, [&](const unsigned int i) NSFD_INLINED {
         x[i] = from[std::size_t(i) * stride];
+      });
     }
 
     template <int dim, int N>
     NSFD_INLINE void store(const Grid<dim, N> &grid, const Vector8 *x,
                            const unsigned int stride, Vector8 *to)
     {
-#pragma GCC unroll 9
-      for (unsigned int i = 0; i < grid.n; ++i)
-        to[std::size_t(i) * stride] = x[i];
+      for_nodes(grid, [&](const unsigned int i)
+                          NSFD_INLINED { to[std::size_t(i) * stride] = x[i]; });
     }
 
     /** A times every line of @p from in direction @p d; may be @p to. */
@@ -128,7 +127,7 @@ namespace nsfd
                                double *corner_forces, double *forces)
     {
       const Grid<dim, N> grid(line);
-      const unsigned int size = grid.size(), n = grid.n;
+      const unsigned int size = grid.size();
       auto *u = reinterpret_cast<Vector8 *>(scratch);
       const Vector8 *fluxes = u + dim * size,
                     *weighted = fluxes + dim * dim * size;
@@ -154,14 +153,13 @@ namespace nsfd
               if (e != d)
                 across *= weights[grid.place(k, e)];
             const Vector8 share = pull * weighted[d * dim + a] * across;
-#pragma GCC unroll 9
-            for (unsigned int i = 0; i < n; ++i)
-              x[i] += share * weights[i];
+            for_nodes(grid, [&](const unsigned int i)
+                                NSFD_INLINED { x[i] += share * weights[i]; });
           } else {
             const Vector8 *shares = weighted + (d * dim + a) * size + k;
-#pragma GCC unroll 9
-            for (unsigned int i = 0; i < n; ++i)
+            for_nodes(grid, [&](const unsigned int i) NSFD_INLINED {
               x[i] += pull * shares[std::size_t(i) * stride];
+            });
           }
         };
         for_lines<0>(grid, [&](const unsigned int k) NSFD_INLINED {
@@ -174,18 +172,18 @@ namespace nsfd
           for_lines<1>(grid, [&](const unsigned int k) NSFD_INLINED {
             load_flux(1, k);
             multiply(grid, slopes, x, y);
-#pragma GCC unroll 9
-            for (unsigned int i = 0; i < n; ++i)
+            for_nodes(grid, [&](const unsigned int i) NSFD_INLINED {
               mine[k + std::size_t(i) * stride] += y[i];
+            });
           });
         }
         const unsigned int last = grid.stride(dim - 1);
         for_lines<dim - 1>(grid, [&](const unsigned int k) NSFD_INLINED {
           load_flux(dim - 1, k);
           multiply(grid, slopes, x, y);
-#pragma GCC unroll 9
-          for (unsigned int i = 0; i < n; ++i)
+          for_nodes(grid, [&](const unsigned int i) NSFD_INLINED {
             y[i] += mine[k + std::size_t(i) * last];
+          });
           multiply(grid, values, y, x);
           store(grid, x, last, mine + k);
         });

@@ -32,6 +32,19 @@ namespace nsfd
       }
     };
 
+    /** @p act on 0 to n - 1: no loop where n is known. */
+    template <int dim, int N, typename Act>
+    NSFD_INLINE void for_nodes(const Grid<dim, N> &grid, const Act &act)
+    {
+      if constexpr (N > 0) {
+#pragma GCC unroll 9
+        for (unsigned int i = 0; i < N; ++i)
+          act(i);
+      } else
+        for (unsigned int i = 0; i < grid.n; ++i)
+          act(i);
+    }
+
     /** det J and its product with the inverse: C[d][c] = det dxi_d/dx_c. */
     template <int dim>
     NSFD_INLINE Vector8 cofactors(const Vector8 (&J)[dim][dim],
