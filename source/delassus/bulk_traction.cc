@@ -9,48 +9,36 @@ namespace nsfd
 {
   template <int dim>
   BulkTraction<dim>::BulkTraction(const DelassusOperator<dim> &delassus)
-      : delassus_(delassus), bonds_(delassus.points().n_points)
+      : delassus_(delassus), share_(delassus.points().n_points)
   {
-    set_bonds();
-    side_1_.resize((bonds_.size() + 1) * dim);
-    side_2_.resize((bonds_.size() + 1) * dim);
+    set_shares();
+    side_1_.resize((share_.size() + 1) * dim);
+    side_2_.resize((share_.size() + 1) * dim);
   }
 
   template <int dim>
-  void BulkTraction<dim>::set_bonds()
+  void BulkTraction<dim>::set_shares()
   {
     const auto &points = delassus_.points();
     const auto &bodies = delassus_.bodies();
-    std::array<std::vector<double>, 2> bounds; // elastic and viscous
+    std::array<std::vector<double>, 2> bounds;
     for (auto &side : bounds)
-      side.assign(2 * (points.n_points + 1), -1.); // no body
+      side.assign(points.n_points + 1, -1.); // no body
     for (const auto &face : points.faces)
       for (unsigned int s = 0; s < 2; ++s)
         for (unsigned int p = face.first;
-             face.bodies[s] >= 0 && p < face.first + face.count; ++p) {
-          const auto &body = bodies.classes[bodies.class_of[face.bodies[s]]];
-          bounds[s][2 * std::size_t(p)] = body.traction_bound;
-          bounds[s][2 * std::size_t(p) + 1] = body.viscous_bound;
-        }
-    delassus_.exchange({{bounds[0].data(), bounds[1].data()}}, 2);
-    for (std::size_t i = 0; i < bonds_.size(); ++i) {
-      const double a = bounds[0][2 * i], b = bounds[1][2 * i];
+             face.bodies[s] >= 0 && p < face.first + face.count; ++p)
+          bounds[s][p] =
+              bodies.classes[bodies.class_of[face.bodies[s]]].traction_bound;
+    delassus_.exchange({{bounds[0].data(), bounds[1].data()}}, 1);
+    for (std::size_t i = 0; i < share_.size(); ++i) {
+      const double a = bounds[0][i], b = bounds[1][i];
       if (a < 0. || b < 0.)
-        continue; // at the boundary
-      Bond &bond = bonds_[i];
-      if (a == 0. || b == 0.) {
-        bond.weight_1 = a > 0. ? 1. : 0.;
-        bond.weight_2 = b > 0. ? 1. : 0.;
-        bond.penalty = penalty_factor * (a + b);
-      } else {
-        bond.weight_1 = b / (a + b);
-        bond.weight_2 = a / (a + b);
-        bond.penalty = penalty_factor * a * b / (a + b);
-      }
-      bond.viscous_penalty =
-          penalty_factor *
-          (bond.weight_1 * bond.weight_1 * bounds[0][2 * i + 1] +
-           bond.weight_2 * bond.weight_2 * bounds[1][2 * i + 1]);
+        share_[i] = {}; // at the boundary
+      else if (a == 0. || b == 0.)
+        share_[i] = {a > 0. ? 1. : 0., b > 0. ? 1. : 0.};
+      else
+        share_[i] = {b / (a + b), a / (a + b)};
     }
   }
 
@@ -89,8 +77,8 @@ namespace nsfd
       // on the outward normals: n of body 1, -n of body 2, whose values are
       // scattered with the sign of the jump
       for (unsigned int c = 0; c < dim; ++c)
-        t[c] = -(bonds_[i].weight_1 * side_1_[i * dim + c] +
-                 bonds_[i].weight_2 * side_2_[i * dim + c]);
+        t[c] = -(share_[i][0] * side_1_[i * dim + c] +
+                 share_[i][1] * side_2_[i * dim + c]);
       for (unsigned int k = 0; k < dim; ++k) {
         double value = 0.;
         for (unsigned int c = 0; c < dim; ++c)

@@ -2,6 +2,7 @@
 
 #include "delassus_operator.h"
 
+#include <array>
 #include <vector>
 
 namespace nsfd
@@ -22,24 +23,6 @@ namespace nsfd
     /** Collective. */
     explicit BulkTraction(const DelassusOperator<dim> &delassus);
 
-    /**
-     * Of the penalty over Lambda_1 Lambda_2 / (Lambda_1 + Lambda_2). Above 1
-     * the interior penalty stiffness is at least 1 - 1/factor of that of the
-     * bodies alone. What a bond holds when it breaks falls like 1/factor: 12,
-     * 6, 1 % of the dissipated energy at 2, 8, 32, on coarse linear quads.
-     */
-    static constexpr double penalty_factor = 32.;
-
-    struct Bond {
-      double weight_1 = 0., weight_2 = 0.; ///< omega
-      /// eta = factor Lambda_1 Lambda_2 / (Lambda_1 + Lambda_2) in Pa/m; 0 at
-      /// the boundary and between rigid bodies
-      double penalty = 0.;
-      /// of rates, with the same weights: factor times the sum of omega^2
-      /// Lambda of the viscous tractions, in Pa s/m
-      double viscous_penalty = 0.;
-    };
-    const std::vector<Bond> &bonds() const { return bonds_; }
     const DelassusOperator<dim> &delassus() const { return delassus_; }
 
     /**
@@ -51,25 +34,13 @@ namespace nsfd
     /** Viscous stress in the same mean, from velocities. Collective. */
     void evaluate_viscous(const double *velocity, double *traction) const;
 
-    /** w (t.u + eta u.u / 2): share of an interior penalty bond in the energy.
-     */
-    double bond_energy(const std::size_t point, const double *jump,
-                       const double *traction) const
-    {
-      double energy = 0.;
-      for (unsigned int c = 0; c < dim; ++c)
-        energy +=
-            jump[c] * (traction[c] + bonds_[point].penalty / 2. * jump[c]);
-      return delassus_.points().weight[point] * energy;
-    }
-
   private:
-    void set_bonds();
+    void set_shares();
     void mean(const Block BodyClass::*traction, const double *motion,
               double *result) const;
 
     const DelassusOperator<dim> &delassus_;
-    std::vector<Bond> bonds_; ///< per point
+    std::vector<std::array<double, 2>> share_; ///< omega, per point
     mutable std::vector<double> side_1_, side_2_;
   };
 } // namespace nsfd

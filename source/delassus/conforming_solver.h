@@ -57,6 +57,13 @@ namespace nsfd
     /** P^T b, own values of the space. Collective. */
     void restrict_to_space(const std::vector<double> &b,
                            std::vector<double> &own);
+    /** C^T of own values: what follows gives its share to what it follows.
+        Collective. */
+    void fold(std::vector<double> &own) const
+    {
+      if (ties_.any())
+        ties_.fold(own.data());
+    }
     /** @p x += P of own values. Collective. */
     void add(const std::vector<double> &own, double *x);
     /** @p n columns of @p rows values each. */

@@ -11,18 +11,20 @@ namespace nsfd
         pairs_(std::move(pairs)), ties_(std::move(ties))
   {
     const long long n = static_cast<long long>(unknowns_.component.size());
-    const auto note = [&](const long long node) {
-      if (node < unknowns_.first || node >= unknowns_.first + n)
-        for (unsigned int c = 0; c < dim; ++c)
-          ghosts_.push_back(node + c);
+    const auto note = [&](const long long unknown) {
+      if (unknown < unknowns_.first || unknown >= unknowns_.first + n)
+        ghosts_.push_back(unknown);
     };
     for (const long long other : pairs_.other)
-      note(other);
+      for (unsigned int c = 0; c < dim; ++c)
+        note(other + c);
     bool tied = false;
     for (const auto &face : ties_.of_face)
       for (const auto &tie : face) {
         tied = true;
-        note(tie.node);
+        note(tie.unknown);
+        note(tie.body);
+        note(tie.other);
         for (const auto &master : tie.masters)
           note(master.first);
       }
@@ -111,8 +113,9 @@ namespace nsfd
     for (std::size_t i = 0; i < n; ++i)
       space_.number[i] = static_cast<long long>(value[i]);
     joined_ = DisjointSets();
+    std::vector<char> contradicting; // none, see without_contradiction()
     space_.ties = ties_of(faces, {space_.number.begin(), space_.number.end()},
-                          contradicting_);
+                          contradicting);
     set_modes();
   }
 

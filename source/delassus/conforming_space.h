@@ -24,18 +24,26 @@ namespace nsfd
   };
 
   /**
-   * Nodes of a smaller cell at its face with a larger one where that one has no
-   * node: they follow its trace there. Named by the first of their unknowns,
-   * which may be on any rank; weights are those of its nodes, which follow. A
-   * face between two ranks is listed on both.
+   * Nodes of a cell at its face with a larger one where that one has no node,
+   * or with a rigid one: they follow its trace there; and the motions of two
+   * rigid ones, each of the other. By unknown, which may be on any rank;
+   * weights are those of the unknowns that it follows. A face between two ranks
+   * is listed on both.
    */
   struct NodeTies {
-    struct Node {
-      long long node;
+    enum class Kind : std::uint8_t {
+      of_sizes,  ///< a smaller cell follows a larger one
+      on_rigid,  ///< a cell follows a rigid one
+      both_rigid ///< either follows the other one
+    };
+    struct Follower {
+      long long unknown;
+      long long body, other; ///< first unknowns: of its body, of the other one
       std::vector<std::pair<long long, double>> masters;
     };
-    std::vector<std::vector<Node>> of_face; ///< per face; most are empty
-    std::vector<std::uint64_t> key;         ///< of faces, alike on all ranks
+    std::vector<std::vector<Follower>> of_face; ///< per face; most are empty
+    std::vector<Kind> kind;                     ///< per face
+    std::vector<std::uint64_t> key; ///< of faces, alike on all ranks
   };
 
   /** Where an unknown of a deformable body sits. */
@@ -69,10 +77,11 @@ namespace nsfd
     }
 
     /**
-     * By face: joined between cells of two sizes, but what its nodes are to
-     * follow follows others itself, or they follow another cell already.
+     * @p faces as they can be joined at once: not those with ties where what
+     * the nodes are to follow follows others itself, or where they follow
+     * another cell already. Collective.
      */
-    const std::vector<char> &contradicting() const { return contradicting_; }
+    std::vector<char> without_contradiction(std::vector<char> faces);
 
     /** Faces across which functions could jump if these ones were joined, alike
         on both ranks of a shared face; conform() is to be called then. */
@@ -88,6 +97,7 @@ namespace nsfd
 
   private:
     void join(const std::vector<char> &faces);
+    std::vector<double> names(const std::vector<char> &joined);
     void agree(std::vector<double> &value, bool smallest);
     void set_modes();
     bool is_tied(const std::size_t face) const
@@ -106,7 +116,7 @@ namespace nsfd
     const NodePairs pairs_;
     const NodeTies ties_;
     bool has_ties_ = false; ///< on any rank
-    std::vector<char> conforming_, contradicting_;
+    std::vector<char> conforming_;
     DisjointSets joined_; ///< unknowns, in between alone
     /// own roots and the ghosts they are joined to
     std::vector<std::pair<int, int>> across_;

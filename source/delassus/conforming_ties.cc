@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 // What follows the nodes of larger cells in a space of common nodes.
@@ -21,6 +22,8 @@ namespace nsfd
       std::uint64_t face;
       long long master;
       double weight;
+      NodeTies::Kind kind;
+      long long body, other; ///< as NodeTies::Follower
 
       auto key() const { return std::tie(node, face, master); }
       bool operator<(const Row &other) const { return key() < other.key(); }
@@ -48,6 +51,90 @@ namespace nsfd
         result.emplace_back(node, 1.);
       return result;
     }
+
+    /** @p masters by what follows nothing itself, @p of those that do. */
+    template <typename MastersOf>
+    Masters resolved(const Masters &masters, const MastersOf &of)
+    {
+      std::map<long long, double> sum;
+      for (const auto &[master, weight] : masters)
+        for (const auto &[root, share] : of(master))
+          sum[root] += weight * share;
+      Masters result;
+      for (const auto &[root, weight] : sum)
+        if (std::abs(weight) > 1e-12)
+          result.emplace_back(root, weight);
+      return result;
+    }
+
+    /**
+     * Rigid bodies that hang together: all follow the first of them. From face
+     * to face; a face that closes a loop must ask for the same as the others.
+     */
+    class RigidClusters
+    {
+    public:
+      /** @p rows are of rigid bodies and sorted in their order. */
+      RigidClusters(std::vector<Row> rows, std::vector<std::uint64_t> &bad)
+      {
+        const auto key = [](const Row &row) {
+          return std::tie(row.other, row.body, row.face, row.node, row.master);
+        };
+        std::sort(rows.begin(), rows.end(),
+                  [&](const Row &a, const Row &b) { return key(a) < key(b); });
+        std::map<long long, bool> is_placed;
+        for (const Row &first : rows) {
+          if (is_placed[first.other])
+            continue;
+          is_placed[first.other] = true;
+          std::vector<long long> reached{first.other};
+          for (std::size_t k = 0; k < reached.size(); ++k) {
+            auto row = std::lower_bound(
+                rows.begin(), rows.end(), reached[k],
+                [](const Row &r, const long long b) { return r.other < b; });
+            while (row != rows.end() && row->other == reached[k]) {
+              const Row link = *row;
+              std::map<long long, Masters> asked;
+              for (; row != rows.end() && row->other == link.other &&
+                     row->body == link.body && row->face == link.face;
+                   ++row)
+                asked[row->node].emplace_back(row->master, row->weight);
+              bool alike = true;
+              for (auto &[node, masters] : asked) {
+                masters = resolved(masters,
+                                   [this](const long long m) { return of(m); });
+                alike = alike && are_alike(masters, of(node));
+              }
+              if (!is_placed[link.body]) {
+                is_placed[link.body] = true;
+                reached.push_back(link.body);
+                masters_.insert(asked.begin(), asked.end());
+              } else if (!alike)
+                bad.push_back(link.face);
+            }
+          }
+        }
+      }
+
+      Masters of(const long long unknown) const
+      {
+        const auto found = masters_.find(unknown);
+        return found == masters_.end() ? Masters{{unknown, 1.}} : found->second;
+      }
+
+      void add_to(std::vector<Tie> &ties) const
+      {
+        for (const auto &[unknown, masters] : masters_)
+          for (const auto &[master, weight] : masters)
+            ties.push_back({unknown, master, weight});
+        std::stable_sort(
+            ties.begin(), ties.end(),
+            [](const Tie &a, const Tie &b) { return a.number < b.number; });
+      }
+
+    private:
+      std::map<long long, Masters> masters_; ///< of unknowns that follow
+    };
   } // namespace
 
   double ConformingSpace::value_at(const long long unknown,
@@ -81,13 +168,12 @@ namespace nsfd
     };
     std::vector<Row> rows;
     for (std::size_t f = 0; f < faces.size(); ++f)
-      for (std::size_t k = 0; faces[f] && k < ties_.of_face[f].size(); ++k)
-        for (unsigned int c = 0; c < dim_; ++c) {
-          const NodeTies::Node &tie = ties_.of_face[f][k];
-          for (const auto &[master, weight] : tie.masters)
-            rows.push_back(
-                {name(tie.node + c), ties_.key[f], name(master + c), weight});
-        }
+      for (std::size_t k = 0; faces[f] && k < ties_.of_face[f].size(); ++k) {
+        const NodeTies::Follower &tie = ties_.of_face[f][k];
+        for (const auto &[master, weight] : tie.masters)
+          rows.push_back({name(tie.unknown), ties_.key[f], name(master), weight,
+                          ties_.kind[f], name(tie.body), name(tie.other)});
+      }
     rows = gather_all(communicator_, rows);
     std::sort(rows.begin(), rows.end());
     rows.erase(std::unique(rows.begin(), rows.end(),
@@ -95,6 +181,13 @@ namespace nsfd
                              return a.key() == b.key();
                            }),
                rows.end());
+    std::vector<std::uint64_t> bad; // keys of faces
+    const auto of_nodes =
+        std::stable_partition(rows.begin(), rows.end(), [](const Row &row) {
+          return row.kind != NodeTies::Kind::both_rigid;
+        });
+    const RigidClusters clusters({of_nodes, rows.end()}, bad);
+    rows.erase(of_nodes, rows.end());
     const auto follows = [&rows](const long long node) {
       const auto row = std::lower_bound(
           rows.begin(), rows.end(), node,
@@ -102,12 +195,12 @@ namespace nsfd
       return row != rows.end() && row->node == node;
     };
     std::vector<Tie> result;
-    std::vector<std::uint64_t> bad; // keys of faces
     Masters taken;
     for (auto row = rows.begin(); row != rows.end();) {
       const long long node = row->node;
       const std::uint64_t face = row->face;
-      const bool is_new = result.empty() || result.back().number != node;
+      const bool is_new = result.empty() || result.back().number != node,
+                 on_rigid = row->kind == NodeTies::Kind::on_rigid;
       Masters asked;
       bool valid = true;
       for (; row != rows.end() && row->node == node && row->face == face;
@@ -115,6 +208,9 @@ namespace nsfd
         asked.emplace_back(row->master, row->weight);
         valid = valid && !follows(row->master);
       }
+      if (on_rigid)
+        asked =
+            resolved(asked, [&](const long long m) { return clusters.of(m); });
       if (!valid || (!is_new && !are_alike(asked, taken)))
         bad.push_back(face);
       else if (is_new) {
@@ -123,6 +219,7 @@ namespace nsfd
           result.push_back({node, master, weight});
       }
     }
+    clusters.add_to(result);
     std::sort(bad.begin(), bad.end());
     for (std::size_t f = 0; f < faces.size(); ++f)
       contradicting[f] =
@@ -130,16 +227,39 @@ namespace nsfd
     return result;
   }
 
-  std::vector<char> ConformingSpace::jumping(const std::vector<char> &joined)
+  /** By unknown the first one that is the same if @p joined are joined. */
+  std::vector<double> ConformingSpace::names(const std::vector<char> &joined)
   {
     join(joined);
-    const std::size_t n = unknowns_.component.size();
-    std::vector<double> first(n), ghosts(ghosts_.size()); // below 2^53
-    for (std::size_t i = 0; i < n; ++i)
+    std::vector<double> first(unknowns_.component.size()); // below 2^53
+    for (std::size_t i = 0; i < first.size(); ++i)
       first[i] = double(unknowns_.first) + double(i);
     agree(first, true);
-    exchange_.fetch(first.data(), ghosts.data());
     joined_ = DisjointSets();
+    return first;
+  }
+
+  std::vector<char>
+  ConformingSpace::without_contradiction(std::vector<char> faces)
+  {
+    for (bool changed = has_ties_; communicator_.any(changed);) {
+      changed = false;
+      std::vector<char> contradicting;
+      ties_of(faces, names(faces), contradicting);
+      for (std::size_t f = 0; f < faces.size(); ++f)
+        if (contradicting[f]) {
+          changed = true;
+          faces[f] = 0;
+        }
+    }
+    return faces;
+  }
+
+  std::vector<char> ConformingSpace::jumping(const std::vector<char> &joined)
+  {
+    const std::vector<double> first = names(joined);
+    std::vector<double> ghosts(ghosts_.size());
+    exchange_.fetch(first.data(), ghosts.data());
     std::vector<char> contradicting;
     const auto ties = ties_of(joined, first, contradicting);
     const auto name = [&](const long long unknown) {
@@ -157,12 +277,13 @@ namespace nsfd
       }
       if (!is_tied(f))
         continue;
-      for (const NodeTies::Node &tie : ties_.of_face[f]) {
+      for (const NodeTies::Follower &tie : ties_.of_face[f]) {
         Masters asked;
         for (const auto &[master, weight] : tie.masters)
           asked.emplace_back(name(master), weight);
-        std::sort(asked.begin(), asked.end());
-        if (!are_alike(asked, masters_of(ties, name(tie.node))))
+        asked = resolved(
+            asked, [&](const long long m) { return masters_of(ties, m); });
+        if (!are_alike(asked, masters_of(ties, name(tie.unknown))))
           result[f] = 1;
       }
     }

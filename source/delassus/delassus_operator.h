@@ -70,8 +70,8 @@ namespace nsfd
 
     /**
      * Diagonal blocks of W per face in the local frames, row-major of size
-     * (count dim)^2, at face_block(f); at least these where bonded faces make
-     * the bodies stiffer.
+     * (count dim)^2, at face_block(f); at least these where bodies share
+     * nodes.
      */
     const double *face_block(const std::size_t face) const
     {

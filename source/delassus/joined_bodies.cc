@@ -20,23 +20,20 @@ namespace nsfd
                                   const Bodies &bodies,
                                   const InterfacePoints<dim> &points,
                                   const std::vector<double> &coordinates,
-                                  const long long largest_factor,
-                                  const bool share_nodes)
-      : BondedDelassus<dim>(communicator, bodies, points),
-        may_share_(share_nodes), factor_(communicator, largest_factor),
-        jacobi_(communicator), tangent_(*this, communicator, largest_factor)
+                                  const long long largest_factor)
+      : JoinedDelassus<dim>(communicator, bodies, points),
+        factor_(communicator, largest_factor), jacobi_(communicator),
+        tangent_(*this, communicator, largest_factor)
   {
-    // K >= so much of the bodies' own: their blocks bound W from above
-    this->stiffness_share_ = 1. - 1. / BulkTraction<dim>::penalty_factor;
+    this->stiffness_share_ = 31. / 32.;
     const long long mine = static_cast<long long>(bodies.n_dofs());
     long long sum = 0;
     MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
-    matrix_ = std::make_unique<JoinedMatrix<dim>>(*this, this->bulk_.bonds(),
-                                                  sum - mine);
+    matrix_ = std::make_unique<JoinedMatrix<dim>>(*this, sum - mine);
     const SparseAssembly<dim> nodes(communicator, bodies, points, coordinates);
     conforming_ = std::make_unique<ConformingSpace>(
         communicator, dim, nodes.unknowns(), nodes.node_pairs(),
-        share_nodes ? nodes.node_ties() : NodeTies());
+        nodes.node_ties());
     this->from_rest_ = std::make_unique<JoinedFromRest<dim>>(*this);
     JoinedBodies::bonds_changed();
   }
@@ -80,20 +77,39 @@ namespace nsfd
     return result;
   }
 
-  /** Faces that are bonded all over, node to node. */
+  namespace
+  {
+    /** Faces that are bonded all over, node to node. */
+    template <int dim>
+    std::vector<char> joined_by(const std::vector<std::uint8_t> &bonded,
+                                const InterfacePoints<dim> &points,
+                                const ConformingSpace &space)
+    {
+      std::vector<char> joined(points.faces.size(), 0);
+      for (std::size_t f = 0; f < joined.size(); ++f) {
+        const auto &face = points.faces[f];
+        const auto first = bonded.begin() + face.first;
+        joined[f] = space.is_complete(f) &&
+                    std::all_of(first, first + face.count,
+                                [](const std::uint8_t b) { return b; });
+      }
+      return joined;
+    }
+  } // namespace
+
   template <int dim>
   std::vector<char>
-  JoinedBodies<dim>::joined_by(const std::vector<std::uint8_t> &bonded) const
+  JoinedBodies<dim>::sharing(const std::vector<std::uint8_t> &bonded)
   {
-    std::vector<char> joined(this->points_.faces.size(), 0);
-    for (std::size_t f = 0; f < joined.size(); ++f) {
-      const auto &face = this->points_.faces[f];
-      const auto first = bonded.begin() + face.first, last = first + face.count;
-      joined[f] =
-          may_share_ && conforming_->is_complete(f) &&
-          std::all_of(first, last, [](const std::uint8_t b) { return b; });
-    }
-    return joined;
+    return conforming_->without_contradiction(
+        joined_by(bonded, this->points_, *conforming_));
+  }
+
+  template <int dim>
+  std::vector<char>
+  JoinedBodies<dim>::opens_with(const std::vector<std::uint8_t> &bonded)
+  {
+    return conforming_->jumping(joined_by(bonded, this->points_, *conforming_));
   }
 
   template <int dim>
@@ -101,22 +117,8 @@ namespace nsfd
   {
     valid_ = false;
     means_ = Means::unknown;
-    this->shares_nodes_ = joined_by(this->bonded_);
-    bool changed = true;
-    while (this->communicator_.any(changed)) {
-      changed = false;
-      conforming_->conform(this->shares_nodes_);
-      const auto &contradicting = conforming_->contradicting();
-      for (std::size_t f = 0; f < contradicting.size(); ++f)
-        if (contradicting[f]) {
-          changed = true;
-          this->shares_nodes_[f] = 0;
-        }
-    }
-    for (std::size_t f = 0; f < this->shares_nodes_.size(); ++f)
-      if (this->shares_nodes_[f])
-        std::fill_n(this->penalised_.begin() + this->points_.faces[f].first,
-                    this->points_.faces[f].count, 0);
+    this->shares_nodes_ = sharing(this->bonded_);
+    conforming_->conform(this->shares_nodes_);
     placed_ = false;
     factor_.set_space(conforming_->space());
     tangent_.set_space(conforming_->space());
@@ -139,8 +141,7 @@ namespace nsfd
   JoinedMatrix<dim> &JoinedBodies<dim>::matrix() const
   {
     if (!placed_)
-      matrix_->set_space(conforming_->space(), this->shares_nodes_,
-                         this->penalised_);
+      matrix_->set_space(conforming_->space(), this->shares_nodes_);
     placed_ = true;
     return *matrix_;
   }
@@ -207,7 +208,7 @@ namespace nsfd
     matrix().set_step({0., 0.});
     mass.prepare(matrix().assemble(nullptr));
     std::vector<double> momentum(x.size()), joined(x.size());
-    BondedDelassus<dim>::apply(Operator::mass, x.data(), momentum.data());
+    DelassusOperator<dim>::apply(Operator::mass, x.data(), momentum.data());
     mass.solve(momentum.data(), joined.data(), tight);
     double size = 0., change = 0.;
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -428,7 +429,7 @@ namespace nsfd
   template <int dim>
   void JoinedBodies<dim>::serialize(Archive &archive)
   {
-    BondedDelassus<dim>::serialize(archive);
+    JoinedDelassus<dim>::serialize(archive);
     bool factored = valid_, condensed = !condensed_.empty();
     std::size_t n_solves = n_solves_;
     archive.numbers("bodies", factored, condensed, n_solves);

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "bonded.h"
 #include "condensed.h"
 #include "conforming_solver.h"
 #include "conforming_space.h"
+#include "joined_delassus.h"
 #include "joined_matrix.h"
 #include "node_jacobi.h"
 #include "tangent_factor.h"
@@ -21,16 +21,16 @@ namespace nsfd
    * motions of the bodies that the space of the nodes allows.
    */
   template <int dim>
-  class JoinedBodies : public BondedDelassus<dim>, public VelocitySolver
+  class JoinedBodies : public JoinedDelassus<dim>, public VelocitySolver
   {
   public:
-    using typename BondedDelassus<dim>::Operator;
+    using typename JoinedDelassus<dim>::Operator;
 
-    /** As make_bonded_delassus(). */
+    /** As make_joined_delassus(). */
     JoinedBodies(const Communicator &communicator, const Bodies &bodies,
                  const InterfacePoints<dim> &points,
                  const std::vector<double> &coordinates,
-                 long long largest_factor, bool share_nodes);
+                 long long largest_factor);
 
     void reinit(double time_step, double theta) override;
     bool bodies_are_apart() const override { return false; }
@@ -48,11 +48,9 @@ namespace nsfd
     bool join_motion(std::vector<double> &x) override;
     std::vector<std::uint8_t>
     once_per_node(const std::vector<std::uint8_t> &masks) override;
+    std::vector<char> sharing(const std::vector<std::uint8_t> &bonded) override;
     std::vector<char>
-    opens_with(const std::vector<std::uint8_t> &bonded) override
-    {
-      return conforming_->jumping(joined_by(bonded));
-    }
+    opens_with(const std::vector<std::uint8_t> &bonded) override;
     void serialize(Archive &archive) override;
 
   protected:
@@ -74,7 +72,6 @@ namespace nsfd
     bool factor_tangent(const std::vector<double> &springs, bool general);
     bool solve_tangent(const std::vector<double> &T, bool symmetric,
                        double tolerance);
-    std::vector<char> joined_by(const std::vector<std::uint8_t> &bonded) const;
     bool solve(ConformingSolver &solver, double tolerance = tight) const;
     void answer() const;
     void update() const;
@@ -83,7 +80,6 @@ namespace nsfd
 
     mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
     mutable bool placed_ = false;     ///< matrix_ is that of the present space
-    const bool may_share_;            ///< nodes
     mutable ConformingSolver factor_; ///< of M_hat
     mutable NodeJacobi<dim> jacobi_;  ///< the same, in short steps
     /// of the present step: factors, or conjugate gradients

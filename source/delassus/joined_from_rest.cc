@@ -82,6 +82,7 @@ namespace nsfd
     bodies_.matrix().apply(Operator::mass, v_, inertia);
     for (std::size_t k = 0; k < v_.size(); ++k)
       inertia[k] += bodies_.rows_[k];
+    bodies_.factor_.fold(inertia);
     spread(bodies_.representative_, inertia, left.size(), left.data());
     is_on_ = false;
   }

@@ -15,10 +15,9 @@ namespace nsfd
 
   template <int dim>
   JoinedMatrix<dim>::JoinedMatrix(const DelassusOperator<dim> &delassus,
-                                  const std::vector<Bond> &bonds,
                                   const long long first_dof)
       : delassus_(delassus), bodies_(delassus.bodies()),
-        points_(delassus.points()), bonds_(bonds), first_dof_(first_dof)
+        points_(delassus.points()), first_dof_(first_dof)
   {
   }
 
@@ -42,11 +41,7 @@ namespace nsfd
     std::vector<char> wanted(points_.n_points);
     for (std::size_t i = 0; i < wanted.size(); ++i)
       wanted[i] = !shares_nodes[points_.face_of[i]];
-    const bool penalty =
-        std::any_of(bonded_.penalised.begin(), bonded_.penalised.end(),
-                    [](const std::uint8_t p) { return p != 0; });
-    traces_ = PointTraces(delassus_, first_dof_, wanted,
-                          delassus_.communicator().any(penalty));
+    traces_ = PointTraces(delassus_, first_dof_, wanted);
     const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
     remote_.numbers.clear();
     for (const unsigned int side : {0u, 1u})
@@ -187,14 +182,6 @@ namespace nsfd
       const auto &face = points_.faces[f];
       if (shares_nodes[f])
         continue;
-      const auto first = bonded_.penalised.begin() + face.first;
-      if (std::any_of(first, first + face.count,
-                      [](const std::uint8_t b) { return b; }))
-        for (unsigned int s = 0; s < 2; ++s)
-          for (unsigned int t = 0; t < 2; ++t)
-            for (const Block r : blocks_of_side(face.first, s))
-              for (const Block c : blocks_of_side(face.first, t))
-                pairs.emplace_back(r, c);
       for (std::size_t i = face.first; i < face.first + face.count; ++i)
         for (std::size_t r = sights_.first[i]; r < sights_.first[i + 1]; ++r)
           for (std::size_t c = sights_.first[i]; c < sights_.first[i + 1]; ++c)
@@ -251,19 +238,15 @@ namespace nsfd
 
   template <int dim>
   void JoinedMatrix<dim>::set_space(const CoarseSpace &space,
-                                    const std::vector<char> &shares_nodes,
-                                    const std::vector<std::uint8_t> &penalised)
+                                    const std::vector<char> &shares_nodes)
   {
-    bonded_.shares_nodes = shares_nodes;
-    bonded_.penalised = penalised;
+    shares_nodes_ = shares_nodes;
     number_blocks(space, shares_nodes);
     set_entries(shares_nodes);
     operators_ = {};
     pattern_ = {};
     by_bodies_.set(bodies_, block_.own, size_,
-                   space.n_global > smallest_by_bodies &&
-                       std::none_of(penalised.begin(), penalised.end(),
-                                    [](const std::uint8_t p) { return p; }));
+                   space.n_global > smallest_by_bodies);
     if (by_bodies_.is_used())
       return;
     set_pattern(shares_nodes);
@@ -338,60 +321,8 @@ namespace nsfd
     };
     add(&BodyClass::mass, operators_.mass);
     add(&BodyClass::stiffness, operators_.stiffness);
-    add_bonds(false, operators_.stiffness);
-    if (!damped)
-      return;
-    add(&BodyClass::damping, operators_.damping);
-    add_bonds(true, operators_.damping);
-  }
-
-  /** a' (alpha a + beta t) + t' (beta a) with the rows of either side. */
-  template <int dim>
-  void JoinedMatrix<dim>::add_bonds(const bool viscous,
-                                    std::vector<double> &values) const
-  {
-    const auto end = first_dof_ + static_cast<long long>(bodies_.n_dofs());
-    for (std::size_t i = 0; i < points_.n_points; ++i) {
-      if (!bonded_.penalised[i])
-        continue;
-      const double f = points_.weight[i];
-      const Bond &bond = bonds_[i];
-      const double alpha = f * (viscous ? bond.viscous_penalty : bond.penalty);
-      const auto traction = [&](const PointTrace &trace, const unsigned int k) {
-        const auto &rows = viscous ? trace.viscous_traction : trace.traction;
-        return rows.empty() ? 0. : rows[k];
-      };
-      for (unsigned int s = 0; s < 2; ++s) {
-        const PointTrace &row = traces_(s, i);
-        if (row.first < first_dof_ || row.first >= end)
-          continue;
-        const auto rows = blocks_of_side(i, s);
-        const double row_beta = f * (s == 0 ? bond.weight_1 : bond.weight_2);
-        for (unsigned int t = 0; t < 2; ++t) {
-          const PointTrace &column = traces_(t, i);
-          const auto columns = blocks_of_side(i, t);
-          const double beta = f * (t == 0 ? bond.weight_1 : bond.weight_2);
-          const unsigned int n = row.n_dofs, m = column.n_dofs;
-          for (std::size_t r = 0; r < rows.size(); ++r)
-            for (std::size_t c = 0; c < columns.size(); ++c) {
-              double *out = &values[place(rows[r], columns[c])];
-              for (unsigned int k = 0; k < size_; ++k)
-                for (unsigned int l = 0; l < size_; ++l) {
-                  double sum = 0.;
-                  for (unsigned int d = 0; d < dim; ++d) {
-                    const std::size_t p = d * n + r * size_ + k,
-                                      q = d * m + c * size_ + l;
-                    sum +=
-                        row.jump[p] * (alpha * column.jump[q] +
-                                       beta * traction(column, unsigned(q))) +
-                        row_beta * traction(row, unsigned(p)) * column.jump[q];
-                  }
-                  out[k * width(rows[r]) + l] += sum;
-                }
-            }
-        }
-      }
-    }
+    if (damped)
+      add(&BodyClass::damping, operators_.damping);
   }
 
   template <int dim>
@@ -413,11 +344,19 @@ namespace nsfd
   template <int dim>
   long long JoinedMatrix<dim>::node_of_point(const std::size_t point) const
   {
-    if (sights_.first[point + 1] != sights_.first[point] + 1)
+    // one block, or the consecutive unknowns of one node
+    const std::size_t n = dim / size_, first = sights_.first[point];
+    if (sights_.first[point + 1] != first + n)
       return -1;
-    const Block block = sights_.entries[sights_.first[point]].block;
-    return block < n_own_ ? space_->first / size_ + block
-                          : ghosts_[std::size_t(block - n_own_)];
+    const auto number = [&](const std::size_t k) {
+      const Block block = sights_.entries[k].block;
+      return block < n_own_ ? space_->first / size_ + block
+                            : ghosts_[std::size_t(block - n_own_)];
+    };
+    for (std::size_t k = 1; k < n; ++k)
+      if (number(first + k) != number(first) + static_cast<long long>(k))
+        return -1;
+    return number(first);
   }
 
   template <int dim>
@@ -442,7 +381,7 @@ namespace nsfd
   const SparseRows &JoinedMatrix<dim>::assemble(const double *springs)
   {
     if (pattern_.first.empty())
-      set_pattern(bonded_.shares_nodes);
+      set_pattern(shares_nodes_);
     const bool alone = delassus_.communicator().size() == 1;
     auto &values = alone ? matrix_.value : joint_.values;
     if (by_bodies_.is_used()) {

@@ -3,7 +3,6 @@
 #include "point_traces.h"
 
 #include "body_products.h"
-#include "bulk_traction.h"
 #include "linear_algebra/ghost_values.h"
 #include "linear_algebra/row_sums.h"
 #include "linear_algebra/spd_solver.h"
@@ -22,28 +21,21 @@ namespace nsfd
    *
    *     P^T ( M + f K + g C + H^T T H ) P
    *
-   * in the space of bodies that share nodes: K and C with the bonds of the
-   * interior penalty method, T a dim x dim block per point.
+   * in the space of bodies that share nodes, T a dim x dim block per point.
    */
   template <int dim>
   class JoinedMatrix
   {
   public:
-    using Bond = typename BulkTraction<dim>::Bond;
     using Operator = typename DelassusOperator<dim>::Operator;
 
-    /** @p bonds outlive this; @p first_dof of this rank among the unknowns of
-        all. */
-    JoinedMatrix(const DelassusOperator<dim> &delassus,
-                 const std::vector<Bond> &bonds, long long first_dof);
+    /** @p first_dof of this rank among the unknowns of all. */
+    JoinedMatrix(const DelassusOperator<dim> &delassus, long long first_dof);
 
-    /**
-     * From now on bodies share the nodes of the faces that are marked, and the
-     * points that are @p penalised have bonds. Collective.
-     */
+    /** From now on bodies share the nodes of the faces that are marked.
+        Collective. */
     void set_space(const CoarseSpace &space,
-                   const std::vector<char> &shares_nodes,
-                   const std::vector<std::uint8_t> &penalised);
+                   const std::vector<char> &shares_nodes);
 
     /** M + f K + g C of a step, M_hat, from now on. */
     void set_step(const StepShares &shares);
@@ -101,7 +93,6 @@ namespace nsfd
     void set_operators();
     template <typename Select>
     void add_bodies(const Select &select, std::vector<double> &values) const;
-    void add_bonds(bool viscous, std::vector<double> &values) const;
     void add_springs(const double *springs, std::vector<double> &values) const;
     void multiply(const std::vector<double> &values, const double *x) const;
     void fetch_ghosts(const std::vector<double> &own) const;
@@ -110,7 +101,6 @@ namespace nsfd
     const DelassusOperator<dim> &delassus_;
     const Bodies &bodies_; ///< of it
     const InterfacePoints<dim> &points_;
-    const std::vector<Bond> &bonds_;
     const long long first_dof_;
     PointTraces traces_; ///< of points whose sides are not one node
     struct {
@@ -119,14 +109,11 @@ namespace nsfd
     } remote_;            ///< unknowns of bodies of other ranks
 
     const CoarseSpace *space_ = nullptr;
-    struct {
-      std::vector<char> shares_nodes;      ///< by face
-      std::vector<std::uint8_t> penalised; ///< by point
-    } bonded_;
-    BodyProducts by_bodies_;        ///< if it is in use, no entries are kept
-    unsigned int size_ = 1;         ///< of a block
-    int n_own_ = 0;                 ///< blocks
-    std::vector<long long> ghosts_; ///< blocks of other ranks
+    std::vector<char> shares_nodes_; ///< by face
+    BodyProducts by_bodies_;         ///< if it is in use, no entries are kept
+    unsigned int size_ = 1;          ///< of a block
+    int n_own_ = 0;                  ///< blocks
+    std::vector<long long> ghosts_;  ///< blocks of other ranks
     struct {
       std::vector<Block> own, remote;
     } block_; ///< by unknown

@@ -1,5 +1,4 @@
-#include "bonded.h"
-
+#include "delassus_operator.h"
 #include "simd_system.h"
 
 #include "core/cost.h"
@@ -7,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <type_traits>
 
 namespace nsfd
 {
@@ -16,14 +13,13 @@ namespace nsfd
   {
     /**
      * Block Jacobi by face: the inverses of W_ff + D_f on the components that
-     * take part, zero on the others. @p Base is DelassusOperator, or
-     * BondedDelassus with explicit bodies.
+     * take part, zero on the others.
      */
-    template <int dim, typename Base>
-    class FaceBlocks : public Base
+    template <int dim>
+    class FaceBlocks : public DelassusOperator<dim>
     {
     public:
-      using Base::Base;
+      using DelassusOperator<dim>::DelassusOperator;
 
       void prepare_preconditioner(const std::vector<double> &D) override
       {
@@ -140,11 +136,11 @@ namespace nsfd
     };
 
     /** With Newton systems in single precision, in batches of bodies. */
-    template <int dim, typename Base>
-    class BatchedDelassus : public FaceBlocks<dim, Base>, public InnerSolver
+    template <int dim>
+    class BatchedDelassus : public FaceBlocks<dim>, public InnerSolver
     {
     public:
-      using FaceBlocks<dim, Base>::FaceBlocks;
+      using FaceBlocks<dim>::FaceBlocks;
 
       unsigned int solve_inner(const InnerSystem &system,
                                const std::vector<double> &r,
@@ -172,11 +168,11 @@ namespace nsfd
       std::unique_ptr<SimdSystem<dim>> batched_;
     };
 
-    template <int dim, typename Base>
-    class LocalDelassus final : public BatchedDelassus<dim, Base>
+    template <int dim>
+    class LocalDelassus final : public BatchedDelassus<dim>
     {
     public:
-      using BatchedDelassus<dim, Base>::BatchedDelassus;
+      using BatchedDelassus<dim>::BatchedDelassus;
 
       void reinit(const double time_step, const double theta) override
       {
@@ -185,8 +181,6 @@ namespace nsfd
         DelassusOperator<dim>::reinit(time_step, theta);
         if (!changes)
           return;
-        if (theta != 0. && std::is_base_of_v<BondedDelassus<dim>, Base>)
-          throw std::logic_error("bodies with explicit bonds are explicit");
         const Charge charge(Cost::blocks);
         this->set_batched();
       }
@@ -194,11 +188,10 @@ namespace nsfd
 
     /** Every step has bodies and points of its own. */
     template <int dim>
-    class MovingDelassus final
-        : public BatchedDelassus<dim, DelassusOperator<dim>>
+    class MovingDelassus final : public BatchedDelassus<dim>
     {
     public:
-      using BatchedDelassus<dim, DelassusOperator<dim>>::BatchedDelassus;
+      using BatchedDelassus<dim>::BatchedDelassus;
 
       void reinit(const double time_step, const double theta) override
       {
@@ -221,18 +214,7 @@ namespace nsfd
   make_local_delassus(const Communicator &communicator, const Bodies &bodies,
                       const InterfacePoints<dim> &points)
   {
-    return std::make_unique<LocalDelassus<dim, DelassusOperator<dim>>>(
-        communicator, bodies, points);
-  }
-
-  template <int dim>
-  std::unique_ptr<BondedDelassus<dim>>
-  make_explicit_bonded_delassus(const Communicator &communicator,
-                                const Bodies &bodies,
-                                const InterfacePoints<dim> &points)
-  {
-    return std::make_unique<LocalDelassus<dim, BondedDelassus<dim>>>(
-        communicator, bodies, points);
+    return std::make_unique<LocalDelassus<dim>>(communicator, bodies, points);
   }
 
   template std::unique_ptr<DelassusOperator<2>>
@@ -247,10 +229,4 @@ namespace nsfd
   template std::unique_ptr<DelassusOperator<3>>
   make_local_delassus<3>(const Communicator &, const Bodies &,
                          const InterfacePoints<3> &);
-  template std::unique_ptr<BondedDelassus<2>>
-  make_explicit_bonded_delassus<2>(const Communicator &, const Bodies &,
-                                   const InterfacePoints<2> &);
-  template std::unique_ptr<BondedDelassus<3>>
-  make_explicit_bonded_delassus<3>(const Communicator &, const Bodies &,
-                                   const InterfacePoints<3> &);
 } // namespace nsfd

@@ -75,77 +75,145 @@ namespace nsfd
   }
 
   /**
-   * Where the smaller cell has nodes and the larger one none. With the traces
-   * of both at the points, S x_s = L x_l, which is one condition per node of
-   * the face: x_s = (S^T S)^-1 S^T L x_l.
+   * Of the smaller cell where it has nodes and the larger one none, or of that
+   * beside a rigid one. With the traces of both at the points, S x_s = L x_l,
+   * which is one condition per node of the face: x_s = (S^T S)^-1 S^T L x_l.
    */
   template <int dim>
-  std::vector<NodeTies::Node>
+  std::vector<NodeTies::Follower>
   SparseAssembly<dim>::ties(const std::size_t face) const
   {
-    std::vector<NodeTies::Node> result;
+    std::vector<NodeTies::Follower> result;
     const auto &points = points_.faces[face];
     const unsigned int first = points.first;
     if (points.count == 0 || !places_[0][first].exists() ||
         !places_[1][first].exists())
       return result;
     const std::array<Side, 2> sides{side(face, 0), side(face, 1)};
-    const unsigned int n = unsigned(sides[0].support.size() / dim);
-    if (sides[0].rigid || sides[1].rigid || points.count < n ||
-        sides[1].support.size() != sides[0].support.size())
-      return result;
-    std::array<double, 2> size{};
+    if (sides[0].rigid && sides[1].rigid)
+      return rigid_ties(face, sides);
     const auto node = [&](const unsigned int s, const unsigned int k) {
       return (unsigned int)(sides[s].support[k * dim]);
     };
+    std::array<double, 2> size{};
     for (unsigned int s = 0; s < 2; ++s)
-      for (unsigned int k = 0; k < n; ++k)
+      for (unsigned int k = 0;
+           !sides[s].rigid && k * dim < sides[s].support.size(); ++k)
         size[s] = std::max(size[s], distance(places_[s][first], node(s, 0),
                                              places_[s][first], node(s, k)));
-    const unsigned int small = size[0] < size[1] ? 0 : 1, large = 1 - small;
-    if (!(size[small] < 0.75 * size[large]))
+    const bool rigid = sides[0].rigid || sides[1].rigid;
+    const unsigned int small = rigid ? (sides[0].rigid ? 1 : 0)
+                                     : (size[0] < size[1] ? 0 : 1),
+                       large = 1 - small;
+    const unsigned int n = unsigned(sides[small].support.size() / dim);
+    if (points.count < n ||
+        (!rigid && (sides[1].support.size() != sides[0].support.size() ||
+                    !(size[small] < 0.75 * size[large]))))
       return result;
     const auto at = [&](const unsigned int s, const unsigned int p,
-                        const unsigned int k) {
-      return trace(places_[s][first + p], 0, node(s, k));
+                        const unsigned int c, const unsigned int unknown) {
+      return trace(places_[s][first + p], c, unknown);
     };
     DenseLU normal;
     normal.reinit(int(n));
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
         for (unsigned int p = 0; p < points.count; ++p)
-          normal.row(int(i))[j] += at(small, p, i) * at(small, p, j);
+          normal.row(int(i))[j] +=
+              at(small, p, 0, node(small, i)) * at(small, p, 0, node(small, j));
     if (!normal.factorise())
       return result;
-    std::vector<double> C(std::size_t(n) * n); // by node of the larger cell
-    for (unsigned int j = 0; j < n; ++j) {
-      double *column = &C[std::size_t(j) * n];
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int p = 0; p < points.count; ++p)
-          column[i] += at(small, p, i) * at(large, p, j);
-      normal.solve(column);
-      for (unsigned int p = 0; p < points.count; ++p) {
-        double left = at(large, p, j);
+    // what moves component c of the other side, and by how much
+    const unsigned int n_masters =
+        unsigned(sides[large].support.size()) / (rigid ? 1 : dim);
+    const auto master = [&](const unsigned int c, const unsigned int j) {
+      return sides[large].support[rigid ? j : j * dim + c];
+    };
+    for (unsigned int c = 0; c < dim; ++c) {
+      std::vector<double> C(std::size_t(n_masters) * n, 0.); // by master
+      for (unsigned int j = 0; j < n_masters; ++j) {
+        double *column = &C[std::size_t(j) * n];
         for (unsigned int i = 0; i < n; ++i)
-          left -= at(small, p, i) * column[i];
-        if (!(std::abs(left) < 1e-9))
-          return {}; // not the trace of the smaller one
+          for (unsigned int p = 0; p < points.count; ++p)
+            column[i] +=
+                at(small, p, 0, node(small, i)) * at(large, p, c, master(c, j));
+        normal.solve(column);
+        for (unsigned int p = 0; p < points.count; ++p) {
+          double left = at(large, p, c, master(c, j));
+          for (unsigned int i = 0; i < n; ++i)
+            left -= at(small, p, 0, node(small, i)) * column[i];
+          if (!(std::abs(left) < 1e-9))
+            return {}; // not the trace of the smaller one
+        }
+      }
+      for (unsigned int i = 0; i < n; ++i) {
+        bool common = false;
+        for (unsigned int j = 0; j < n_masters && !rigid; ++j)
+          common = common || distance(places_[small][first], node(small, i),
+                                      places_[large][first],
+                                      node(large, j)) < 1e-6 * size[small];
+        if (common)
+          continue;
+        NodeTies::Follower tie{sides[small].first + node(small, i) + c,
+                               sides[small].first,
+                               sides[large].first,
+                               {}};
+        for (unsigned int j = 0; j < n_masters; ++j)
+          if (std::abs(C[std::size_t(j) * n + i]) > 1e-12)
+            tie.masters.emplace_back(sides[large].first + master(c, j),
+                                     C[std::size_t(j) * n + i]);
+        result.push_back(tie);
       }
     }
-    for (unsigned int i = 0; i < n; ++i) {
-      bool common = false;
-      for (unsigned int j = 0; j < n; ++j)
-        common = common || distance(places_[small][first], node(small, i),
-                                    places_[large][first],
-                                    node(large, j)) < 1e-6 * size[small];
-      if (common)
-        continue;
-      NodeTies::Node tie{sides[small].first + node(small, i), {}};
-      for (unsigned int j = 0; j < n; ++j)
-        if (std::abs(C[std::size_t(j) * n + i]) > 1e-12)
-          tie.masters.emplace_back(sides[large].first + node(large, j),
-                                   C[std::size_t(j) * n + i]);
-      result.push_back(tie);
+    return result;
+  }
+
+  /** Of the motions of two rigid cells, each by the other: x_s as above. */
+  template <int dim>
+  std::vector<NodeTies::Follower>
+  SparseAssembly<dim>::rigid_ties(const std::size_t face,
+                                  const std::array<Side, 2> &sides) const
+  {
+    std::vector<NodeTies::Follower> result;
+    const auto &points = points_.faces[face];
+    const unsigned int n = unsigned(sides[0].support.size());
+    if (points.count < dim || sides[1].support.size() != n)
+      return result;
+    for (unsigned int s = 0; s < 2; ++s) {
+      const auto at = [&](const unsigned int side, const unsigned int k,
+                          const unsigned int j) {
+        return trace(places_[side][points.first + k / dim], k % dim, j);
+      };
+      DenseLU normal;
+      normal.reinit(int(n));
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          for (unsigned int k = 0; k < points.count * dim; ++k)
+            normal.row(int(i))[j] += at(s, k, i) * at(s, k, j);
+      if (!normal.factorise())
+        return {};
+      for (unsigned int i = 0; i < n; ++i)
+        result.push_back(
+            {sides[s].first + i, sides[s].first, sides[1 - s].first, {}});
+      NodeTies::Follower *const mine = &result[std::size_t(s) * n];
+      std::vector<double> column(n);
+      for (unsigned int j = 0; j < n; ++j) {
+        std::fill(column.begin(), column.end(), 0.);
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int k = 0; k < points.count * dim; ++k)
+            column[i] += at(s, k, i) * at(1 - s, k, j);
+        normal.solve(column.data());
+        for (unsigned int k = 0; k < points.count * dim; ++k) {
+          double left = at(1 - s, k, j);
+          for (unsigned int i = 0; i < n; ++i)
+            left -= at(s, k, i) * column[i];
+          if (!(std::abs(left) < 1e-9))
+            return {};
+        }
+        for (unsigned int i = 0; i < n; ++i)
+          if (std::abs(column[i]) > 1e-12)
+            mine[i].masters.emplace_back(sides[1 - s].first + j, column[i]);
+      }
     }
     return result;
   }
@@ -156,8 +224,15 @@ namespace nsfd
     NodeTies result;
     for (std::size_t f = 0; f < points_.faces.size(); ++f) {
       result.of_face.push_back(
-          coordinates_.empty() ? std::vector<NodeTies::Node>() : ties(f));
+          coordinates_.empty() ? std::vector<NodeTies::Follower>() : ties(f));
       result.key.push_back(points_.faces[f].key);
+      const unsigned int first = points_.faces[f].first;
+      unsigned int rigid = 0;
+      for (unsigned int s = 0; s < 2 && points_.faces[f].count > 0; ++s)
+        rigid += places_[s][first].exists() && side(f, s).rigid;
+      result.kind.push_back(rigid == 0   ? NodeTies::Kind::of_sizes
+                            : rigid == 1 ? NodeTies::Kind::on_rigid
+                                         : NodeTies::Kind::both_rigid);
     }
     return result;
   }

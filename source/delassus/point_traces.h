@@ -9,16 +9,12 @@ namespace nsfd
 {
   /**
    * What a point sees of the unknowns of its bodies, in its frame and known on
-   * every rank that has the point: rows of the jump, and of the traction where
-   * the bodies have one.
+   * every rank that has the point: rows of the jump.
    */
   struct PointTrace {
     long long first = -1; ///< first unknown among those of all ranks, or none
     unsigned int n_dofs = 0;
-    std::vector<double> jump;     ///< dim x n_dofs, with the sign of the side
-    std::vector<double> traction; ///< the same: sigma n, n from body 1 to 2
-    std::vector<double>
-        viscous_traction; ///< of velocities; empty: none viscous
+    std::vector<double> jump; ///< dim x n_dofs, with the sign of the side
   };
 
   /** Those of some of the points. */
@@ -30,7 +26,7 @@ namespace nsfd
     /** Of the points that are @p wanted, none of the others. Collective. */
     template <int dim>
     PointTraces(const DelassusOperator<dim> &delassus, long long first_dof,
-                const std::vector<char> &wanted, bool with_traction);
+                const std::vector<char> &wanted);
 
     const PointTrace &operator()(const unsigned int side,
                                  const std::size_t point) const

@@ -60,8 +60,8 @@ namespace nsfd
 
     /** Nodes at the same place on both sides of a face. */
     NodePairs node_pairs() const;
-    /** Of faces between cells of two sizes whose points tell the trace of the
-        smaller one. */
+    /** Of faces with a rigid cell and between cells of two sizes, whose points
+        tell the trace of the other or smaller one. */
     NodeTies node_ties() const;
     Unknowns unknowns() const;
     /** Nothing but node_pairs(), node_ties() and unknowns() looks at them. */
@@ -95,7 +95,9 @@ namespace nsfd
     double coordinate(const Place &place, unsigned int j) const;
     double distance(const Place &x, unsigned int i, const Place &y,
                     unsigned int j) const;
-    std::vector<NodeTies::Node> ties(std::size_t face) const;
+    std::vector<NodeTies::Follower> ties(std::size_t face) const;
+    std::vector<NodeTies::Follower>
+    rigid_ties(std::size_t face, const std::array<Side, 2> &sides) const;
     void build_pattern();
     void add_springs(std::size_t face, const std::vector<double> &k);
     int local_column(long long global) const;

@@ -58,9 +58,7 @@ namespace nsfd
     Block traction;
     /// the largest ratio of sum over slots w |traction|^2 to u.K u, in Pa/m
     double traction_bound = 0.;
-    /// the same of the viscous stress of velocities: Pa s/m, against v.C v
-    Block viscous_traction;
-    double viscous_bound = 0.;
+    Block viscous_traction;           ///< the same of velocities, Pa s/m
     std::vector<unsigned int> bodies; ///< members on this rank
   };
 

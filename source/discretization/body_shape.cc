@@ -98,6 +98,52 @@ namespace nsfd
           product(gram(forward_solve(cholesky(body.mass), identity)),
                   product(RT, nodal_mass));
     }
+
+    /**
+     * The largest eigenvalue of B u = Lambda K u for B = G^T G, both blind to
+     * rigid motions @p modes: K is made definite on them.
+     */
+    double largest_ratio(const Block &G, const Block &K, const Block &modes)
+    {
+      const unsigned int n = K.rows;
+      double trace = 0., size = 0.;
+      for (unsigned int i = 0; i < n; ++i) {
+        trace += K(i, i) / n;
+        for (unsigned int k = 0; k < modes.cols; ++k)
+          size += modes(i, k) * modes(i, k) / modes.cols;
+      }
+      Block definite = K;
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          for (unsigned int k = 0; k < modes.cols; ++k)
+            definite(i, j) += trace / size * modes(i, k) * modes(j, k);
+      // B and K in the coordinates of L^T u: eigenvalues of the Gram matrix
+      const Block scaled =
+          gram(forward_solve(cholesky(definite), G.transposed()).transposed());
+      LAPACKFullMatrix<double> matrix(n);
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          matrix(i, j) = scaled(i, j);
+      double bound = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        bound += scaled(i, i);
+      Vector<double> eigenvalues;
+      FullMatrix<double> eigenvectors;
+      matrix.compute_eigenvalues_symmetric(0., 1.1 * bound, 0., eigenvalues,
+                                           eigenvectors);
+      return *std::max_element(eigenvalues.begin(), eigenvalues.end());
+    }
+
+    /** The largest ratio of sum over slots w |traction|^2 to u.K u, in Pa/m. */
+    template <int dim>
+    double traction_bound(const BodyShape<dim> &shape, const BodyClass &body)
+    {
+      Block weighted = body.traction;
+      for (unsigned int k = 0; k < weighted.rows; ++k)
+        for (unsigned int j = 0; j < weighted.cols; ++j)
+          weighted(k, j) *= std::sqrt(shape.slot_normals[k / dim].norm());
+      return largest_ratio(weighted, body.stiffness, body.rigid_motions);
+    }
   } // namespace
 
   template <int dim>
@@ -163,26 +209,17 @@ namespace nsfd
     } else {
       body.stiffness = stiffness(shape, shape.elasticity);
       body.rigid_motions = of_unit_mass(rigid_modes(shape, size), body.mass);
-      if (input_.has_bonded_faces())
-        body.traction_bound = set_traction(shape, body, shape.elasticity,
-                                           body.stiffness, body.traction);
+      if (input_.has_bonded_faces()) {
+        body.traction = traction(shape, body, shape.elasticity);
+        body.traction_bound = traction_bound(shape, body);
+      }
     }
     if (input.is_viscous()) {
       const std::vector<LinearElasticity<dim>> viscosity = {
           LinearElasticity<dim>::viscous(input)};
       body.damping = stiffness(shape, viscosity);
-      if (input_.has_bonded_faces()) {
-        // the bound needs a definite block: a little of what is not there
-        MaterialInput definite = input;
-        definite.shear_viscosity =
-            std::max(input.shear_viscosity, 0x1p-20 * input.bulk_viscosity);
-        definite.bulk_viscosity =
-            std::max(input.bulk_viscosity, 0x1p-20 * input.shear_viscosity);
-        body.viscous_bound = set_traction(
-            shape, body, viscosity,
-            stiffness(shape, {LinearElasticity<dim>::viscous(definite)}),
-            body.viscous_traction);
-      }
+      if (input_.has_bonded_faces())
+        body.viscous_traction = traction(shape, body, viscosity);
     }
   }
 
@@ -350,60 +387,20 @@ namespace nsfd
     return trace;
   }
 
-  namespace
-  {
-    /**
-     * The largest eigenvalue of B u = Lambda K u for B = G^T G, both blind to
-     * rigid motions @p modes: K is made definite on them.
-     */
-    double largest_ratio(const Block &G, const Block &K, const Block &modes)
-    {
-      const unsigned int n = K.rows;
-      double trace = 0., size = 0.;
-      for (unsigned int i = 0; i < n; ++i) {
-        trace += K(i, i) / n;
-        for (unsigned int k = 0; k < modes.cols; ++k)
-          size += modes(i, k) * modes(i, k) / modes.cols;
-      }
-      Block definite = K;
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int j = 0; j < n; ++j)
-          for (unsigned int k = 0; k < modes.cols; ++k)
-            definite(i, j) += trace / size * modes(i, k) * modes(j, k);
-      // B and K in the coordinates of L^T u: eigenvalues of the Gram matrix
-      const Block scaled =
-          gram(forward_solve(cholesky(definite), G.transposed()).transposed());
-      LAPACKFullMatrix<double> matrix(n);
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int j = 0; j < n; ++j)
-          matrix(i, j) = scaled(i, j);
-      double bound = 0.;
-      for (unsigned int i = 0; i < n; ++i)
-        bound += scaled(i, i);
-      Vector<double> eigenvalues;
-      FullMatrix<double> eigenvectors;
-      matrix.compute_eigenvalues_symmetric(0., 1.1 * bound, 0., eigenvalues,
-                                           eigenvectors);
-      return *std::max_element(eigenvalues.begin(), eigenvalues.end());
-    }
-  } // namespace
-
   template <int dim>
-  double ClassBuilder<dim>::set_traction(
+  Block ClassBuilder<dim>::traction(
       const BodyShape<dim> &shape, const BodyClass &body,
-      const std::vector<LinearElasticity<dim>> &local, const Block &K,
-      Block &traction) const
+      const std::vector<LinearElasticity<dim>> &local) const
   {
     const unsigned int n = shape.n_nodes;
-    traction = Block(body.n_slots * dim, n * dim);
-    Block weighted(body.n_slots * dim, n * dim); // sqrt(w) times the traction
+    Block traction(body.n_slots * dim, n * dim);
     for (unsigned int s = 0; s < body.n_slots; ++s) {
       const auto &place = shape.slot_places[s];
       const auto &law = at_place(local, shape.JxW.size() + s);
       const auto inverse =
           invert(jacobian(shape.reference, shape.corners, place));
-      const double w = shape.slot_normals[s].norm();
-      const Tensor<1, dim> normal = shape.slot_normals[s] / w;
+      const Tensor<1, dim> normal =
+          shape.slot_normals[s] / shape.slot_normals[s].norm();
       for (unsigned int i = 0; i < n; ++i) {
         const auto reference_gradient = element_.shape_grad(i, place);
         Tensor<1, dim> g;
@@ -412,14 +409,11 @@ namespace nsfd
             g[a] += inverse[b][a] * reference_gradient[b];
         // sigma n of a displacement N_i e_d
         for (unsigned int c = 0; c < dim; ++c)
-          for (unsigned int d = 0; d < dim; ++d) {
-            const double value = law.coupling(c, d, normal, g);
-            traction(s * dim + c, i * dim + d) = value;
-            weighted(s * dim + c, i * dim + d) = std::sqrt(w) * value;
-          }
+          for (unsigned int d = 0; d < dim; ++d)
+            traction(s * dim + c, i * dim + d) = law.coupling(c, d, normal, g);
       }
     }
-    return largest_ratio(weighted, K, body.rigid_motions);
+    return traction;
   }
 
   template class ClassBuilder<2>;

@@ -156,13 +156,9 @@ namespace nsfd
                     const std::vector<LinearElasticity<dim>> &local) const;
     /** Of shapes with slots. */
     Block trace(const BodyShape<dim> &shape) const;
-    /**
-     * The traction of @p local at the slots, and its bound against @p K; needs
-     * motions and slots.
-     */
-    double set_traction(const BodyShape<dim> &shape, const BodyClass &body,
-                        const std::vector<LinearElasticity<dim>> &local,
-                        const Block &K, Block &traction) const;
+    /** The traction of @p local at the slots. */
+    Block traction(const BodyShape<dim> &shape, const BodyClass &body,
+                   const std::vector<LinearElasticity<dim>> &local) const;
 
     const dealii::FiniteElement<dim, dim> &element_;
     const SceneInput &input_;

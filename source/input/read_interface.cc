@@ -15,8 +15,7 @@ namespace nsfd
          "common nodes in explicit steps; elsewhere bonded if where = "
          "all or other faces are, else rigid"},
         {"rigid", "faces stay closed, without any compliance"},
-        {"bonded", "the same: by common nodes in implicit steps, through the "
-                   "bulk (interior penalty) where there are none"},
+        {"bonded", "the same by common nodes, and rigid where there are none"},
         {"elastic", "springs C_N, C_T that never break"},
         {"contact", "unilateral contact and Coulomb friction only"},
     };
@@ -29,8 +28,8 @@ namespace nsfd
     }
 
     /**
-     * What joins cells that do not share their nodes: rigid rows on all faces
-     * make W singular, and tractions ambiguous, but there are no bonds where
+     * What joins cells of implicit steps: rigid rows on all faces make W
+     * singular, and tractions ambiguous, but there are no common nodes where
      * steps are iterations.
      */
     std::string joint(const InterfaceInput &input, const SceneInput &scene)
@@ -121,20 +120,17 @@ namespace nsfd
       input.has_broken = !input.broken.is_zero();
     }
 
-    /** Bonds act on the bulk of cells as Hooke's law of small strain has it. */
+    /** Common nodes are for bodies of Hooke's law and small strain. */
     void refuse_bonds(SectionReader &reader, const SceneInput &scene,
                       const std::string &name)
     {
       reader.error(
           name,
           fmt::format("{} = bonded joins bodies {}, and the scene has {}", name,
-                      scene.large_motion       ? "that turn and strain little"
-                      : no_body_deforms(scene) ? "that deform"
-                                               : "without history",
+                      scene.large_motion ? "that turn and strain little"
+                                         : "without history",
                       scene.large_motion ? "motion = large"
-                      : no_body_deforms(scene)
-                          ? "rigid ones only"
-                          : history_dependent_model(scene)),
+                                         : history_dependent_model(scene)),
           "write rigid");
     }
 
@@ -151,8 +147,7 @@ namespace nsfd
                      scene.iterates()
                          ? "write rigid, or take an intrinsic law"
                          : "write rigid or bonded, or take an intrinsic law");
-      else if (extrinsic && name == "bonded" &&
-               (scene.iterates() || no_body_deforms(scene)))
+      else if (extrinsic && name == "bonded" && scene.iterates())
         refuse_bonds(reader, scene, "intact faces");
       else if (extrinsic && !scene.iterates() && !no_body_deforms(scene) &&
                name == "rigid" && input.where.kind == Where::Kind::all)
@@ -187,6 +182,8 @@ namespace nsfd
                 "else rigid)");
       if (name == "joined")
         name = joint(input, scene);
+      else if (name == "bonded" && no_body_deforms(scene))
+        name = "rigid"; // without nodes
       check_intact_faces(reader, input, name, scene);
       if (name == "bonded")
         return IntactFaces::bonded;
@@ -298,11 +295,12 @@ namespace nsfd
         return input;
       if (input.law_name == "joined")
         input.law_name = joint(input, scene);
+      else if (input.law_name == "bonded" && no_body_deforms(scene))
+        input.law_name = "rigid"; // without nodes
       if (input.law_name == "rigid" || input.law_name == "bonded") {
         input.intact = input.law_name == "rigid" ? IntactFaces::rigid
                                                  : IntactFaces::bonded;
-        if (input.law_name == "bonded" &&
-            (scene.iterates() || no_body_deforms(scene)))
+        if (input.law_name == "bonded" && scene.iterates())
           refuse_bonds(reader, scene, "law");
         const std::string reason =
             fmt::format("faces of the law `{}` never open", input.law_name);
@@ -437,8 +435,8 @@ namespace nsfd
     /**
      * In a scene with equilibria an intact body is one body of finite elements
      * with common nodes, whatever word joins its cells, or else of rigid
-     * joints: rigid cells and cells of two sizes have no such nodes, interior
-     * points need the matrices of cells, and path = local asks for them.
+     * joints: interior points need the matrices of cells, path = local asks for
+     * them.
      */
     bool may_share_nodes(const SceneInput &scene, const ParameterFile &file)
     {
@@ -449,10 +447,7 @@ namespace nsfd
       };
       return !file.find("Adaptivity") &&
              !asks_for("method", "interior point") &&
-             !asks_for("path", "local") &&
-             std::none_of(
-                 scene.materials.begin(), scene.materials.end(),
-                 [](const MaterialInput &material) { return material.rigid; });
+             !asks_for("path", "local");
     }
   } // namespace
 
@@ -464,16 +459,17 @@ namespace nsfd
       SectionReader reader(*block, errors);
       scene.interfaces.push_back(read_interface(reader, scene));
     }
-    if (scene.has_bonded_faces() && scene.time.scheme.theta_scheme)
+    const auto &scheme = scene.time.scheme;
+    if (scene.has_bonded_faces() && !scheme.at_nodes)
       for (std::size_t b = 0; b < blocks.size(); ++b)
         share_nodes(*blocks[b], scene.interfaces[b]);
     if (scene.statics && !scene.iterates()) {
       const bool shares = may_share_nodes(scene, file);
       scene.equilibria_at_nodes = shares;
       for (InterfaceInput &interface : scene.interfaces)
-        if (scene.time.scheme.theta_scheme &&
-            interface.intact ==
-                (shares ? IntactFaces::rigid : IntactFaces::bonded)) {
+        if (shares
+                ? scheme.theta_scheme && interface.intact == IntactFaces::rigid
+                : !scheme.at_nodes && interface.intact == IntactFaces::bonded) {
           interface.intact = shares ? IntactFaces::bonded : IntactFaces::rigid;
           if (!interface.law)
             interface.law_name = shares ? "bonded" : "rigid";

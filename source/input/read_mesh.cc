@@ -313,9 +313,8 @@ namespace nsfd
                       return bool(interface.law);
                     });
     const bool joined =
-        scene.has_bonded_faces() && scene.time.scheme.theta_scheme &&
-        !cracks_slowly && !reader.has("interface points") &&
-        !file.find("Adaptivity") &&
+        scene.has_bonded_faces() && !at_nodes && !cracks_slowly &&
+        !reader.has("interface points") && !file.find("Adaptivity") &&
         !(scene.dimension == 3 && has_simplices(scene) && input.degree > 1);
     input.lumped_mass =
         reader.choice("mass", at_nodes ? "lumped" : "consistent",

@@ -10,8 +10,7 @@ namespace nsfd
   namespace
   {
     /** Laws with rates, and contacts that sliding moves. */
-    void refuse_rates(SectionReader &reader, const SceneInput &scene,
-                      const bool has_common_nodes)
+    void refuse_rates(SectionReader &reader, const SceneInput &scene)
     {
       const auto refuse_lift = [&reader](const auto &block) {
         if (block.sliding.lifts())
@@ -22,14 +21,6 @@ namespace nsfd
                        "remove them, or start as given");
       };
       for (const InterfaceInput &interface : scene.interfaces) {
-        if (interface.intact == IntactFaces::bonded && !has_common_nodes)
-          reader.error("start",
-                       fmt::format("equilibria with bonded faces (`{}`) need "
-                                   "implicit steps, or explicit ones of "
-                                   "joined cells",
-                                   interface.name),
-                       "write scheme = moreau-jean or explicit, or start as "
-                       "given");
         if (interface.law && interface.law->rate_dependent())
           reader.error("start",
                        fmt::format("an equilibrium has no rates, and the law "
@@ -79,8 +70,7 @@ namespace nsfd
                      "write given, and let the scene come to rest");
         return true;
       }
-      refuse_rates(reader, scene,
-                   scheme.traits().at_nodes || scheme.traits().theta_scheme);
+      refuse_rates(reader, scene);
       for (const MaterialInput &material : scene.materials)
         for (unsigned int c = 0; c < scene.dimension; ++c)
           if (!material.initial_velocity[c].is_zero()) {

@@ -49,7 +49,6 @@ namespace nsfd
     build_mesh_parts(input, communicator, problems);
     if (problems.empty()) {
       find_unused_blocks(input, *this, communicator, problems);
-      find_impossible_bonds(input, *this, communicator, problems);
       check_point_factors(input, *discretization, communicator, problems);
       build_control(input, communicator, problems);
       const auto bad = check_formulas(input, *discretization, communicator);
@@ -87,10 +86,9 @@ namespace nsfd
     if (input.equilibria_at_nodes)
       equilibria = std::make_unique<QuasiStatic<dim>>(
           input, *discretization,
-          make_bonded_delassus<dim>(communicator, discretization->bodies(),
-                                    discretization->points(),
-                                    input.solver.linear_solver,
-                                    node_coordinates(*discretization), true),
+          make_joined_delassus<dim>(
+              communicator, discretization->bodies(), discretization->points(),
+              input.solver.linear_solver, node_coordinates(*discretization)),
           any_solver ? make_solver<dim>(input, "cascade")
                      : SolverRegistry<dim>::instance().create("cascade"));
     else
@@ -193,8 +191,7 @@ namespace nsfd
     build_delassus(input, communicator);
     delassus->continue_counters(delassus_counters);
     if (input.time.scheme.explicit_forces) {
-      const double limit = stable_limit(input, communicator,
-                                        step_of_smallest_cells(communicator));
+      const double limit = stable_limit(input, communicator);
       control->limit(limit);
       control->set_ceiling(limit);
     }
@@ -239,7 +236,7 @@ namespace nsfd
     else if (input.time.scheme.at_nodes)
       path = "nodes";
     else if (input.has_bonded_faces())
-      path = input.time.scheme.explicit_forces ? "local" : "assembled";
+      path = "assembled";
     else if (input.solver.path != "auto")
       path = input.solver.path;
     else
@@ -266,17 +263,10 @@ namespace nsfd
           make_moving_delassus<dim>(communicator, inelastic->bodies(), points);
       return;
     }
-    if (input.has_bonded_faces() && input.time.scheme.explicit_forces) {
-      auto joined =
-          make_explicit_bonded_delassus<dim>(communicator, bodies, points);
-      bonded = joined.get();
-      delassus = std::move(joined);
-      return;
-    }
     if (input.has_bonded_faces()) {
-      auto joined = make_bonded_delassus<dim>(
+      auto joined = make_joined_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
-          node_coordinates(*discretization), input.time.scheme.theta_scheme);
+          node_coordinates(*discretization));
       bonded = joined.get();
       delassus = std::move(joined);
       return;

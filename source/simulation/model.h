@@ -2,7 +2,7 @@
 
 #include "bodies/inelastic_bodies.h"
 #include "bodies/moving_bodies.h"
-#include "delassus/bonded.h"
+#include "delassus/joined_delassus.h"
 #include "mesh/mesh_builder.h"
 #include "nsfd/scene/scene_input.h"
 #include "time_integration/leapfrog.h"
@@ -30,7 +30,7 @@ namespace nsfd
     double explicit_limit = 0.; ///< of steps on joined cells, s
     std::string path;           ///< of the linear algebra: local or assembled
     std::unique_ptr<DelassusOperator<dim>> delassus;
-    BondedDelassus<dim> *bonded = nullptr; ///< the same, if faces are bonded
+    JoinedDelassus<dim> *bonded = nullptr; ///< the same, if faces are bonded
     std::unique_ptr<MovingBodies<dim>> moving; ///< of large motions, or null
     /// of small motions with history-dependent materials, or null
     std::unique_ptr<InelasticBodies<dim>> inelastic;
@@ -87,12 +87,10 @@ namespace nsfd
                        const Communicator &communicator,
                        std::vector<std::string> &problems);
     double stable_limit(const SceneInput &input,
-                        const Communicator &communicator, double enough);
-    double step_of_smallest_cells(const Communicator &communicator) const;
+                        const Communicator &communicator) const;
     void check_stability(const SceneInput &input,
                          const Communicator &communicator,
                          std::vector<std::string> &problems);
-    void join_all(const SceneInput &input);
     void choose_path(const SceneInput &input);
     void build_delassus(const SceneInput &input,
                         const Communicator &communicator);

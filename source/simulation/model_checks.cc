@@ -85,52 +85,10 @@ namespace nsfd
       warn_of_unused_interfaces(input, model, communicator);
   }
 
-  /** Bonds act through the bulk of cells, and rigid ones have none. */
-  template <int dim>
-  void find_impossible_bonds(const SceneInput &input, const Model<dim> &model,
-                             const Communicator &communicator,
-                             std::vector<std::string> &problems)
-  {
-    if (input.time.scheme.at_nodes)
-      return; // rigid cells that are joined are one body
-    const auto &points = model.discretization->points();
-    const auto is_rigid = [&](const int body) {
-      return body >= 0 && input
-                              .materials[model.discretization->cells()
-                                             .body_class(unsigned(body))
-                                             .material]
-                              .rigid;
-    };
-    std::vector<char> found(input.interfaces.size(), 0);
-    for (const auto &face : points.faces) {
-      const PointOrigin origin = model.discretization->origins()[face.first];
-      if (face.count > 0 && origin.kind == PointOrigin::Kind::interface &&
-          input.interfaces[origin.block].intact == IntactFaces::bonded &&
-          is_rigid(face.bodies[0]) && is_rigid(face.bodies[1]))
-        found[origin.block] = 1;
-    }
-    for (std::size_t b = 0; b < input.interfaces.size(); ++b)
-      if (communicator.any(found[b])) {
-        const InterfaceInput &block = input.interfaces[b];
-        problems.push_back(fmt::format(
-            "Interface: {}/{}: bonded faces join cells through what they are "
-            "made of, and two rigid cells meet here: write before it an "
-            "Interface block for the faces between rigid cells, with {}",
-            block.name, block.law ? "intact faces" : "law",
-            block.law ? "intact faces = rigid" : "law = rigid"));
-      }
-  }
-
   template void find_unused_blocks(const SceneInput &, const Model<2> &,
                                    const Communicator &,
                                    std::vector<std::string> &);
   template void find_unused_blocks(const SceneInput &, const Model<3> &,
                                    const Communicator &,
                                    std::vector<std::string> &);
-  template void find_impossible_bonds(const SceneInput &, const Model<2> &,
-                                      const Communicator &,
-                                      std::vector<std::string> &);
-  template void find_impossible_bonds(const SceneInput &, const Model<3> &,
-                                      const Communicator &,
-                                      std::vector<std::string> &);
 } // namespace nsfd

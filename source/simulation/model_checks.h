@@ -12,10 +12,4 @@ namespace nsfd
   void find_unused_blocks(const SceneInput &input, const Model<dim> &model,
                           const Communicator &communicator,
                           std::vector<std::string> &problems);
-
-  /** Bonds act through the bulk of cells, and rigid ones have none. */
-  template <int dim>
-  void find_impossible_bonds(const SceneInput &input, const Model<dim> &model,
-                             const Communicator &communicator,
-                             std::vector<std::string> &problems);
 } // namespace nsfd

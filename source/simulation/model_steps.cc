@@ -68,45 +68,13 @@ namespace nsfd
         quasi_static ? load_control(input, 0.) : dynamic_control(input, 0.);
   }
 
-  /** All bonds that the scene may have. */
-  template <int dim>
-  void Model<dim>::join_all(const SceneInput &input)
-  {
-    const auto &origins = discretization->origins();
-    std::vector<std::uint8_t> joined(origins.size(), 0);
-    for (std::size_t i = 0; i < origins.size(); ++i)
-      joined[i] =
-          origins[i].kind == PointOrigin::Kind::interface &&
-          input.interfaces[origins[i].block].intact == IntactFaces::bonded;
-    bonded->set_bonds(joined);
-  }
-
-  /** Bodies, and bonds between them, act by explicit forces in the explicit
-   * scheme. */
   template <int dim>
   double Model<dim>::stable_limit(const SceneInput &input,
-                                  const Communicator &communicator,
-                                  const double enough)
+                                  const Communicator &communicator) const
   {
-    if (input.time.scheme.at_nodes)
-      return explicit_limit;
-    if (!bonded)
-      return communicator.min(stable_step(discretization->bodies()));
-    join_all(input);
-    delassus->reinit(control->step(), 0.);
-    return stable_step(*delassus, enough);
-  }
-
-  /** The base step, bisected as often as the smallest cells. */
-  template <int dim>
-  double
-  Model<dim>::step_of_smallest_cells(const Communicator &communicator) const
-  {
-    int level = 0;
-    for (const auto &cell : triangulation->active_cell_iterators())
-      if (cell->is_locally_owned())
-        level = std::max(level, cell->level());
-    return std::ldexp(control->base_step(), -int(communicator.max(level)));
+    return input.time.scheme.at_nodes
+               ? explicit_limit
+               : communicator.min(stable_step(discretization->bodies()));
   }
 
   template <int dim>
@@ -114,8 +82,7 @@ namespace nsfd
                                    const Communicator &communicator,
                                    std::vector<std::string> &problems)
   {
-    const double limit = stable_limit(input, communicator,
-                                      std::numeric_limits<double>::infinity());
+    const double limit = stable_limit(input, communicator);
     if (dynamic_step(input) > limit)
       problems.push_back(fmt::format(
           "Time/step is {:.4g} s, and the explicit scheme is stable up to "
@@ -159,11 +126,9 @@ namespace nsfd
                                         const Communicator &,
                                         std::vector<std::string> &);
   template double Model<2>::stable_limit(const SceneInput &,
-                                         const Communicator &, double);
+                                         const Communicator &) const;
   template double Model<3>::stable_limit(const SceneInput &,
-                                         const Communicator &, double);
-  template double Model<2>::step_of_smallest_cells(const Communicator &) const;
-  template double Model<3>::step_of_smallest_cells(const Communicator &) const;
+                                         const Communicator &) const;
   template void Model<2>::check_stability(const SceneInput &,
                                           const Communicator &,
                                           std::vector<std::string> &);

@@ -67,10 +67,11 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::vector<double> strength_shares(const DelassusOperator<dim> &delassus,
-                                      const std::vector<PointOrigin> &origins,
-                                      const std::vector<double> &impulse,
-                                      const OneStepProblem<dim> &problem)
+  std::optional<std::vector<double>>
+  strength_shares(const DelassusOperator<dim> &delassus,
+                  const std::vector<PointOrigin> &origins,
+                  const std::vector<double> &impulse,
+                  const OneStepProblem<dim> &problem)
   {
     std::vector<double> joined(problem.n_points * dim, 0.);
     for (std::size_t k = 0; k < joined.size(); ++k)
@@ -81,7 +82,7 @@ namespace nsfd
       if (may_let_go(problem, origins, i))
         candidates.push_back(i);
     if (!delassus.communicator().any(!candidates.empty()))
-      return {};
+      return std::nullopt;
 
     const auto least = least_impulse(delassus, problem, joined);
     std::vector<double> shares(problem.n_points, 0.);
@@ -101,9 +102,11 @@ namespace nsfd
                 OneStepProblem<dim> &problem)
   {
     const auto shares = strength_shares(delassus, origins, impulse, problem);
+    if (!shares)
+      return false;
     bool any = false;
-    for (std::size_t i = 0; i < shares.size(); ++i)
-      if (shares[i] > 1.) {
+    for (std::size_t i = 0; i < shares->size(); ++i)
+      if ((*shares)[i] > 1.) {
         problem.kind[i] = PointKind::rigid;
         problem.mask[i] = 0;
         any = true;
@@ -111,14 +114,12 @@ namespace nsfd
     return delassus.communicator().any(any);
   }
 
-  template std::vector<double> strength_shares(const DelassusOperator<2> &,
-                                               const std::vector<PointOrigin> &,
-                                               const std::vector<double> &,
-                                               const OneStepProblem<2> &);
-  template std::vector<double> strength_shares(const DelassusOperator<3> &,
-                                               const std::vector<PointOrigin> &,
-                                               const std::vector<double> &,
-                                               const OneStepProblem<3> &);
+  template std::optional<std::vector<double>>
+  strength_shares(const DelassusOperator<2> &, const std::vector<PointOrigin> &,
+                  const std::vector<double> &, const OneStepProblem<2> &);
+  template std::optional<std::vector<double>>
+  strength_shares(const DelassusOperator<3> &, const std::vector<PointOrigin> &,
+                  const std::vector<double> &, const OneStepProblem<3> &);
   template bool activate(const DelassusOperator<2> &,
                          const std::vector<PointOrigin> &,
                          const std::vector<double> &, OneStepProblem<2> &);

@@ -43,7 +43,7 @@ namespace nsfd
           parts.input, parts.discretization, *parts.delassus, *parts.solver,
           parts.bonded);
       integrators.other = std::make_unique<SmoothMotion<dim>>(
-          parts.input, parts.discretization, *parts.delassus);
+          parts.input, parts.discretization, *parts.delassus, parts.bonded);
     }
   } // namespace
 

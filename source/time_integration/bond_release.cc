@@ -3,6 +3,7 @@
 #include "nonsmooth/point_law.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -69,6 +70,50 @@ namespace nsfd
     return bonded;
   }
 
+  namespace
+  {
+    /** By point: both of its bodies are rigid. Collective. */
+    template <int dim>
+    std::vector<char> between_rigid(const DelassusOperator<dim> &delassus)
+    {
+      const auto &points = delassus.points();
+      const auto &bodies = delassus.bodies();
+      std::array<std::vector<double>, 2> rigid;
+      for (auto &side : rigid)
+        side.assign(points.n_points + 1, 0.);
+      for (const auto &face : points.faces)
+        for (unsigned int s = 0; s < 2; ++s)
+          for (unsigned int i = face.first;
+               face.bodies[s] >= 0 && i < face.first + face.count; ++i)
+            rigid[s][i] = bodies.classes[bodies.class_of[face.bodies[s]]].rigid;
+      delassus.exchange({{rigid[0].data(), rigid[1].data()}}, 1);
+      std::vector<char> result(points.n_points);
+      for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = rigid[0][i] != 0. && rigid[1][i] != 0.;
+      return result;
+    }
+  } // namespace
+
+  template <int dim>
+  void hold_by_rows(const OneStepProblem<dim> &problem,
+                    JoinedDelassus<dim> &joined, State &state)
+  {
+    const auto &points = joined.points();
+    const auto has_law = [&](const std::size_t i) {
+      return bool(problem.interactions[problem.interaction[i]].law);
+    };
+    // what would tell when a law between rigid bodies opens are impulses
+    const auto rigid = between_rigid(joined);
+    for (std::size_t i = 0; i < rigid.size(); ++i)
+      if (state.kind[i] == PointKind::bonded && rigid[i] && has_law(i))
+        state.kind[i] = PointKind::rigid;
+    const auto shares_nodes = joined.sharing(bonded_points(state));
+    for (std::size_t i = 0; i < points.n_points; ++i)
+      if (state.kind[i] == PointKind::bonded &&
+          !shares_nodes[points.face_of[i]])
+        state.kind[i] = has_law(i) ? PointKind::rigid : PointKind::prescribed;
+  }
+
   template <int dim>
   void set_bond_tractions(const BulkTraction<dim> &bulk, State &state)
   {
@@ -130,7 +175,7 @@ namespace nsfd
   template <int dim>
   std::vector<std::pair<std::size_t, BondWay>>
   points_at_share(const OneStepProblem<dim> &problem,
-                  BondedDelassus<dim> &bonded, const bool mean,
+                  JoinedDelassus<dim> &bonded, const bool mean,
                   const double share, const State &old, const State &next)
   {
     const auto &faces = bonded.points().faces;
@@ -140,24 +185,14 @@ namespace nsfd
     auto left = bonded_points(next);
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const unsigned int first = faces[f].first;
-      if (!problem.interactions[problem.interaction[first]].law)
+      if (!shares_nodes[f] ||
+          !problem.interactions[problem.interaction[first]].law)
         continue;
-      if (shares_nodes[f]) {
-        const BondWay way =
-            way_of_face<dim>(problem, faces[f], mean, old, next);
-        if (way.now < share)
-          continue;
-        reached.emplace_back(f, way);
-        std::fill_n(left.begin() + first, faces[f].count, 0);
+      const BondWay way = way_of_face<dim>(problem, faces[f], mean, old, next);
+      if (way.now < share)
         continue;
-      }
-      for (unsigned int i = first; i < first + faces[f].count; ++i) {
-        if (next.kind[i] != PointKind::bonded)
-          continue;
-        const BondWay way = way_of_point(problem, i, old, next);
-        if (way.now >= share)
-          result.emplace_back(i, way);
-      }
+      reached.emplace_back(f, way);
+      std::fill_n(left.begin() + first, faces[f].count, 0);
     }
     if (!bonded.communicator().any(!reached.empty()))
       return result;
@@ -173,7 +208,7 @@ namespace nsfd
 
   template <int dim>
   std::vector<double> bond_shares(const OneStepProblem<dim> &problem,
-                                  const BondedDelassus<dim> &bonded,
+                                  const JoinedDelassus<dim> &bonded,
                                   const bool mean, const State &state)
   {
     std::vector<double> shares(problem.n_points, 0.);
@@ -182,14 +217,9 @@ namespace nsfd
       const unsigned int first = faces[f].first, end = first + faces[f].count;
       if (first == end || !problem.interactions[problem.interaction[first]].law)
         continue;
-      const bool whole = bonded.shares_nodes()[f];
-      for (unsigned int i = first; i < end; ++i)
-        if (state.kind[i] == PointKind::bonded)
-          shares[i] =
-              whole && i > first ? shares[first]
-              : whole
-                  ? way_of_face<dim>(problem, faces[f], mean, state, state).now
-                  : way_of_point<dim>(problem, i, state, state).now;
+      if (state.kind[first] == PointKind::bonded)
+        std::fill(shares.begin() + first, shares.begin() + end,
+                  way_of_face<dim>(problem, faces[f], mean, state, state).now);
     }
     return shares;
   }
@@ -197,17 +227,13 @@ namespace nsfd
   template <int dim>
   BondReport release_bonds(const OneStepProblem<dim> &problem,
                            const BulkTraction<dim> &bulk,
-                           BondedDelassus<dim> &bonded, const bool mean,
+                           JoinedDelassus<dim> &bonded, const bool mean,
                            const State &old, State &next)
   {
     const auto &communicator = bulk.delassus().communicator();
     set_bond_tractions(bulk, next);
-    // what bonds store is the work of the elastic part
-    std::vector<double> elastic = next.bond_traction;
-    if (bulk.delassus().viscous_theta() > 0.)
-      bulk.evaluate(next.displacement.data(), elastic.data());
     BondReport report;
-    std::vector<double> in_bonds(problem.n_owned, 0.), in_laws(in_bonds);
+    std::vector<double> in_laws(problem.n_owned, 0.);
     unsigned int released = 0;
     for (const auto &[i, way] :
          points_at_share(problem, bonded, mean, 1., old, next)) {
@@ -219,49 +245,47 @@ namespace nsfd
                                   (1. - way.before) / (way.now - way.before));
       }
       const double *traction = &next.bond_traction[i * dim];
-      if (i < problem.n_owned) {
-        in_bonds[i] =
-            bulk.bond_energy(i, &next.jump[i * dim], &elastic[i * dim]);
-        ++released;
-      }
       const double stored = start_law(
           problem, i, utilisation(problem, i, traction), traction, next);
-      if (i < problem.n_owned)
+      if (i < problem.n_owned) {
         in_laws[i] = stored;
+        ++released;
+      }
     }
     report.released = unsigned(communicator.sum_integer(released));
     if (report.released == 0)
       return report;
     report.overshoot = communicator.max(report.overshoot);
     report.share = communicator.min(report.share);
-    const double lost = communicator.sum(in_bonds),
-                 gained = communicator.sum(in_laws);
-    next.energy.elastic -= lost;
+    const double gained = communicator.sum(in_laws);
     next.energy.cohesive += gained;
-    next.energy.numerical += lost - gained;
+    next.energy.numerical -= gained;
+    hold_by_rows(problem, bonded, next);
     set_bond_tractions(bulk, next);
     return report;
   }
 
 #define INSTANTIATE(dim)                                                       \
+  template void hold_by_rows(const OneStepProblem<dim> &,                      \
+                             JoinedDelassus<dim> &, State &);                  \
   template void set_bond_tractions(const BulkTraction<dim> &, State &);        \
   template double opening_at_release(const OneStepProblem<dim> &,              \
                                      std::size_t);                             \
   template std::vector<std::pair<std::size_t, BondWay>> points_at_share(       \
-      const OneStepProblem<dim> &, BondedDelassus<dim> &, bool, double,        \
+      const OneStepProblem<dim> &, JoinedDelassus<dim> &, bool, double,        \
       const State &, const State &);                                           \
   template std::vector<double> bond_shares(const OneStepProblem<dim> &,        \
-                                           const BondedDelassus<dim> &, bool,  \
+                                           const JoinedDelassus<dim> &, bool,  \
                                            const State &)
   INSTANTIATE(2);
   INSTANTIATE(3);
 #undef INSTANTIATE
   template BondReport release_bonds(const OneStepProblem<2> &,
                                     const BulkTraction<2> &,
-                                    BondedDelassus<2> &, bool, const State &,
+                                    JoinedDelassus<2> &, bool, const State &,
                                     State &);
   template BondReport release_bonds(const OneStepProblem<3> &,
                                     const BulkTraction<3> &,
-                                    BondedDelassus<3> &, bool, const State &,
+                                    JoinedDelassus<3> &, bool, const State &,
                                     State &);
 } // namespace nsfd

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "delassus/bonded.h"
+#include "delassus/bulk_traction.h"
+#include "delassus/joined_delassus.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 #include "state/state.h"
@@ -17,8 +18,16 @@ namespace nsfd
     double share = 1.; ///< of the step in which the first one reached it
   };
 
-  /** Points of @p state that are bonded, for BondedDelassus::set_bonds(). */
+  /** Points of @p state that are bonded, for JoinedDelassus::set_bonds(). */
   std::vector<std::uint8_t> bonded_points(const State &state);
+
+  /**
+   * Points of @p state that are bonded where bodies cannot share the nodes of
+   * the face have rows from now on, JoinedDelassus::sharing(). Collective.
+   */
+  template <int dim>
+  void hold_by_rows(const OneStepProblem<dim> &problem,
+                    JoinedDelassus<dim> &joined, State &state);
 
   /**
    * {sigma n} at the bonded points of @p state, with the viscous stress, zero
@@ -39,13 +48,13 @@ namespace nsfd
   template <int dim>
   std::vector<std::pair<std::size_t, BondWay>>
   points_at_share(const OneStepProblem<dim> &problem,
-                  BondedDelassus<dim> &bonded, bool mean, double share,
+                  JoinedDelassus<dim> &bonded, bool mean, double share,
                   const State &old, const State &next);
 
   /** Of the strength that every bonded point carries, by the same rule. */
   template <int dim>
   std::vector<double> bond_shares(const OneStepProblem<dim> &problem,
-                                  const BondedDelassus<dim> &bonded, bool mean,
+                                  const JoinedDelassus<dim> &bonded, bool mean,
                                   const State &state);
 
   /** At which a released point enters its law: a thousand millionth of the
@@ -55,18 +64,17 @@ namespace nsfd
                             std::size_t point);
 
   /**
-   * After a step: bonded points whose mean bulk traction has reached the
-   * strength of their law are left to it. What the bond had stored, w (t.u +
-   * eta u^2 / 2), goes from the elastic energy to the numerical line; the
-   * impulse of the next step starts from the traction, so that it is
-   * continuous. A face whose bodies share its nodes lets go as a whole: where
-   * the traction of a point reaches the strength, or with @p mean the mean of
-   * the face (linear cells have parasitic shear); and not before its sides can
-   * part, with those of other faces that have reached theirs. Collective.
+   * After a step: faces whose mean bulk traction has reached the strength of
+   * their law are left to it, as a whole: where the traction of a point reaches
+   * the strength, or with @p mean the mean of the face (linear cells have
+   * parasitic shear); and not before its sides can part, with those of other
+   * faces that have reached theirs. The impulse of the next step starts from
+   * the traction, so that it is continuous; what the laws store with that is
+   * numerical. Collective.
    */
   template <int dim>
   BondReport release_bonds(const OneStepProblem<dim> &problem,
                            const BulkTraction<dim> &bulk,
-                           BondedDelassus<dim> &bonded, bool mean,
+                           JoinedDelassus<dim> &bonded, bool mean,
                            const State &old, State &next);
 } // namespace nsfd

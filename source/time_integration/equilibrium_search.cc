@@ -65,7 +65,7 @@ namespace nsfd
     delassus_->reinit(h_, 1.);
     relaxation_ = std::make_unique<Relaxation<dim>>(
         *scene_, discretization, *delassus_, *solver_,
-        dynamic_cast<BondedDelassus<dim> *>(delassus_.get()));
+        dynamic_cast<JoinedDelassus<dim> *>(delassus_.get()));
     balance_ = std::make_unique<StaticBalance<dim>>(*scene_, discretization,
                                                     *delassus_);
   }

@@ -11,7 +11,7 @@
 namespace nsfd
 {
   template <int dim>
-  class BondedDelassus;
+  class JoinedDelassus;
   template <int dim>
   class Relaxation;
   template <int dim>
@@ -64,7 +64,7 @@ namespace nsfd
   public:
     /**
      * The scene must ask for equilibria: SceneInput::statics. @p delassus is
-     * one of small motions, of its own; a BondedDelassus if faces are bonded.
+     * one of small motions, of its own; a JoinedDelassus if faces are bonded.
      */
     EquilibriumSearch(const SceneInput &input,
                       const Discretization<dim> &discretization,

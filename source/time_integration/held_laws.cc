@@ -83,7 +83,8 @@ namespace nsfd
       for (double &P : impulse)
         P *= iterate_.h;
       shares = strength_shares(delassus_, discretization_.origins(), impulse,
-                               problem_);
+                               problem_)
+                   .value_or(shares);
     }
     if (!bonds_)
       return shares;

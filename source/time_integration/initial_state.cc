@@ -134,7 +134,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void join_motion(BondedDelassus<dim> &bonded, State &state)
+  void join_motion(JoinedDelassus<dim> &bonded, State &state)
   {
     const auto join = [&](std::vector<double> &motion,
                           std::vector<double> &jumps) {
@@ -157,7 +157,7 @@ namespace nsfd
                       const Discretization<dim> &discretization,
                       const DelassusOperator<dim> &delassus,
                       const OneStepProblem<dim> &problem,
-                      BondedDelassus<dim> *bonded)
+                      JoinedDelassus<dim> *bonded)
   {
     State state = initial_motion(input, discretization);
     const std::size_t n = discretization.points().n_points;
@@ -168,6 +168,7 @@ namespace nsfd
                                state.relative_velocity.data());
     set_points(input, discretization, problem, state);
     if (bonded) {
+      hold_by_rows(problem, *bonded, state);
       bonded->set_bonds(bonded_points(state));
       join_motion(*bonded, state);
     }
@@ -239,7 +240,7 @@ namespace nsfd
                               std::size_t);                                    \
   template void set_energies(const DelassusOperator<dim> &,                    \
                              const OneStepProblem<dim> &, State &);            \
-  template void join_motion(BondedDelassus<dim> &, State &);                   \
+  template void join_motion(JoinedDelassus<dim> &, State &);                   \
   template State initial_motion(const SceneInput &,                            \
                                 const Discretization<dim> &);                  \
   template double stored_in_points(                                            \
@@ -249,7 +250,7 @@ namespace nsfd
   template State initial_state(                                                \
       const SceneInput &, const Discretization<dim> &,                         \
       const DelassusOperator<dim> &, const OneStepProblem<dim> &,              \
-      BondedDelassus<dim> *)
+      JoinedDelassus<dim> *)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/bonded.h"
+#include "delassus/joined_delassus.h"
 #include "discretization/discretization.h"
 #include "nonsmooth/one_step_problem.h"
 #include "state/state.h"
@@ -12,15 +12,15 @@ namespace nsfd
   /**
    * State at t = 0: fields of the materials, gaps to obstacles, intact and
    * broken points, stored energies. @p problem is the constant data of the
-   * points. Jumps of bonded faces are in the elastic energy: their bonds are
-   * set in @p bonded (null: there are none). Collective.
+   * points. Its bonds are set in @p bonded (null: there are none).
+   * Collective.
    */
   template <int dim>
   State initial_state(const SceneInput &input,
                       const Discretization<dim> &discretization,
                       const DelassusOperator<dim> &delassus,
                       const OneStepProblem<dim> &problem,
-                      BondedDelassus<dim> *bonded);
+                      JoinedDelassus<dim> *bonded);
 
   /**
    * Distance of a boundary point from the half space it may touch, m; 0 for
@@ -43,7 +43,7 @@ namespace nsfd
    * follow. Collective.
    */
   template <int dim>
-  void join_motion(BondedDelassus<dim> &bonded, State &state);
+  void join_motion(JoinedDelassus<dim> &bonded, State &state);
 
   /** Displacements and velocities of the bodies alone. */
   template <int dim>

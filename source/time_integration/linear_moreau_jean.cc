@@ -20,7 +20,7 @@ namespace nsfd
   LinearMoreauJean<dim>::LinearMoreauJean(
       const SceneInput &input, const Discretization<dim> &discretization,
       DelassusOperator<dim> &delassus, NonsmoothSolver<dim> &solver,
-      BondedDelassus<dim> *bonded)
+      JoinedDelassus<dim> *bonded)
       : MoreauJean<dim>(input, discretization, delassus), solver_(solver),
         bonded_(bonded)
   {
@@ -47,6 +47,7 @@ namespace nsfd
   void LinearMoreauJean<dim>::complete(State &state) const
   {
     if (bonded_) {
+      hold_by_rows(this->problem_, *bonded_, state);
       bonded_->set_bonds(bonded_points(state));
       join_motion(*bonded_, state);
     }

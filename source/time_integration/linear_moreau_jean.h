@@ -6,7 +6,7 @@
 namespace nsfd
 {
   template <int dim>
-  class BondedDelassus;
+  class JoinedDelassus;
   template <int dim>
   class BulkTraction;
   template <int dim>
@@ -25,7 +25,7 @@ namespace nsfd
                      const Discretization<dim> &discretization,
                      DelassusOperator<dim> &delassus,
                      NonsmoothSolver<dim> &solver,
-                     BondedDelassus<dim> *bonded = nullptr);
+                     JoinedDelassus<dim> *bonded = nullptr);
     ~LinearMoreauJean() override;
 
     State initial_state() const override;
@@ -44,7 +44,7 @@ namespace nsfd
                 State &next) const;
 
     NonsmoothSolver<dim> &solver_;
-    BondedDelassus<dim> *bonded_;             ///< or null
+    JoinedDelassus<dim> *bonded_;             ///< or null
     NodeSupports<dim> supports_;              ///< of bodies that share nodes
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
     std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps

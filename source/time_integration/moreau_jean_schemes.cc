@@ -190,17 +190,6 @@ namespace nsfd
       return entries;
     }
 
-    /** Rates enter implicit steps and blocks of single cells. */
-    void demand(SectionReader &reader, const SceneInput &scene) const override
-    {
-      if (scene.has_viscous_bodies() && scene.has_bonded_faces())
-        reader.error("scheme",
-                     "scheme = symplectic takes bonded faces by explicit "
-                     "forces, and viscous materials need implicit ones",
-                     "write scheme = moreau-jean, or join the faces by the law "
-                     "`rigid`");
-    }
-
     void read(SectionReader &reader, SceneInput &scene) const override
     {
       scene.time.theta = 1.;

@@ -6,7 +6,7 @@ namespace nsfd
 {
   template <int dim>
   void NodeSupports<dim>::prescribe_once(
-      BondedDelassus<dim> &bonded, const std::vector<PointOrigin> &origins,
+      JoinedDelassus<dim> &bonded, const std::vector<PointOrigin> &origins,
       const bool others, OneStepProblem<dim> &problem)
   {
     auto &masks = problem.mask;

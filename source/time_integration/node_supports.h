@@ -1,6 +1,6 @@
 #pragma once
 
-#include "delassus/bonded.h"
+#include "delassus/joined_delassus.h"
 #include "nonsmooth/one_step_problem.h"
 
 #include <vector>
@@ -21,7 +21,7 @@ namespace nsfd
      * The masks of prescribed motion in @p problem, each component of a node
      * once. @p others: the bonds have changed since the last call. Collective.
      */
-    void prescribe_once(BondedDelassus<dim> &bonded,
+    void prescribe_once(JoinedDelassus<dim> &bonded,
                         const std::vector<PointOrigin> &origins, bool others,
                         OneStepProblem<dim> &problem);
 

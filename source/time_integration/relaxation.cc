@@ -32,7 +32,7 @@ namespace nsfd
                               const Discretization<dim> &discretization,
                               DelassusOperator<dim> &delassus,
                               NonsmoothSolver<dim> &solver,
-                              BondedDelassus<dim> *const bonded)
+                              JoinedDelassus<dim> *const bonded)
       : input_(input), discretization_(discretization), delassus_(delassus),
         solver_(solver), problem_(constant_data(input, discretization)),
         free_motion_(input, discretization, delassus),

@@ -47,7 +47,7 @@ namespace nsfd
     Relaxation(const SceneInput &input,
                const Discretization<dim> &discretization,
                DelassusOperator<dim> &delassus, NonsmoothSolver<dim> &solver,
-               BondedDelassus<dim> *bonded);
+               JoinedDelassus<dim> *bonded);
 
     /**
      * From the equilibrium @p old, which outlives the rounds, to loads and

@@ -1,9 +1,11 @@
 #include "smooth_equations.h"
 
+#include "bond_release.h"
 #include "step_data.h"
 
 #include "discretization/cells.h"
 #include "discretization/loads.h"
+#include "discretization/node_coordinates.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
 
@@ -12,15 +14,38 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** With the mass alone, and common nodes as @p bonded has them. */
+    template <int dim>
+    std::unique_ptr<DelassusOperator<dim>>
+    free_bodies(const SceneInput &input,
+                const Discretization<dim> &discretization,
+                const Communicator &communicator,
+                JoinedDelassus<dim> *const bonded, const State &start)
+    {
+      if (!bonded)
+        return make_local_delassus<dim>(communicator, discretization.bodies(),
+                                        discretization.points());
+      auto free = make_joined_delassus<dim>(
+          communicator, discretization.bodies(), discretization.points(),
+          input.solver.linear_solver, node_coordinates(discretization));
+      const auto points = bonded_points(start);
+      bonded->set_bonds(points);
+      free->set_bonds(points);
+      return free;
+    }
+  } // namespace
+
   template <int dim>
   SmoothEquations<dim>::SmoothEquations(
       const SceneInput &input, const Discretization<dim> &discretization,
-      DelassusOperator<dim> &delassus, const State &start)
+      DelassusOperator<dim> &delassus, JoinedDelassus<dim> *const bonded,
+      const State &start)
       : input_(input), discretization_(discretization), delassus_(delassus),
         communicator_(delassus.communicator()), motion_(input, discretization),
-        free_(make_local_delassus<dim>(delassus.communicator(),
-                                       discretization.bodies(),
-                                       discretization.points())),
+        free_(free_bodies(input, discretization, delassus.communicator(),
+                          bonded, start)),
         problem_(constant_data(input, discretization)), kind_(start.kind),
         n_(discretization.bodies().n_dofs()),
         n_rows_(discretization.points().n_points * dim),
@@ -35,22 +60,32 @@ namespace nsfd
     for (auto *vector :
          {&loads_.force, &work_.force, &work_.rate, &work_.v, &work_.body})
       vector->assign(n_, 0.);
-    set_rows();
+    set_rows(bonded);
     find_scales(start);
   }
 
   /** Joints all over, driven boundaries in the components that they drive. */
   template <int dim>
-  void SmoothEquations<dim>::set_rows()
+  void SmoothEquations<dim>::set_rows(JoinedDelassus<dim> *const bonded)
   {
+    const auto is_driven = [this](const std::size_t i) {
+      return kind_[i] == PointKind::prescribed &&
+             discretization_.origins()[i].kind == PointOrigin::Kind::motion;
+    };
+    std::vector<std::uint8_t> driven(kind_.size(), 0); // components
+    for (std::size_t i = 0; i < kind_.size(); ++i)
+      for (unsigned int c = 0; c < dim && is_driven(i); ++c)
+        if (motion_.drives(i, c))
+          driven[i] |= std::uint8_t(1u << c);
+    if (bonded)
+      driven = bonded->once_per_node(driven);
     D_joined_.assign(n_rows_, -1.);
     for (std::size_t i = 0; i < n_rows_ / dim; ++i) {
       if (kind_[i] != PointKind::prescribed)
         continue;
-      const PointOrigin origin = discretization_.origins()[i];
       for (unsigned int c = 0; c < dim; ++c) {
-        if (origin.kind == PointOrigin::Kind::motion) {
-          if (!motion_.drives(i, c))
+        if (is_driven(i)) {
+          if (!(driven[i] & (1u << c)))
             continue;
           const Expression *velocity = motion_.velocity(i, c);
           moves_ |= !(velocity && velocity->is_zero());

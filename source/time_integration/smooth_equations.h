@@ -4,6 +4,7 @@
 #include "row_system.h"
 
 #include "delassus/bulk_traction.h"
+#include "delassus/joined_delassus.h"
 #include "smooth_motion.h"
 
 #include <deal.II/lac/la_parallel_vector.h>
@@ -28,7 +29,8 @@ namespace nsfd
 
     SmoothEquations(const SceneInput &input,
                     const Discretization<dim> &discretization,
-                    DelassusOperator<dim> &delassus, const State &start);
+                    DelassusOperator<dim> &delassus,
+                    JoinedDelassus<dim> *bonded, const State &start);
 
     /** y' at time @p t. */
     void evaluate(double t, const Vector &y, Vector &rate);
@@ -43,7 +45,7 @@ namespace nsfd
 
   protected:
     void find_scales(const State &start);
-    void set_rows();
+    void set_rows(JoinedDelassus<dim> *bonded);
     double *displacement(Vector &y) const { return y.begin(); }
     const double *displacement(const Vector &y) const { return y.begin(); }
     double *velocity(Vector &y) const { return y.begin() + n_; }

@@ -31,8 +31,9 @@ namespace nsfd
 
     Equations(const SceneInput &input,
               const Discretization<dim> &discretization,
-              DelassusOperator<dim> &delassus, const State &start)
-        : SmoothEquations<dim>(input, discretization, delassus, start)
+              DelassusOperator<dim> &delassus, JoinedDelassus<dim> *bonded,
+              const State &start)
+        : SmoothEquations<dim>(input, discretization, delassus, bonded, start)
     {
       reactions.assign(discretization.driven_boundaries().size() * dim, 0.);
     }
@@ -238,8 +239,10 @@ namespace nsfd
   template <int dim>
   SmoothMotion<dim>::SmoothMotion(const SceneInput &input,
                                   const Discretization<dim> &discretization,
-                                  DelassusOperator<dim> &delassus)
-      : input_(input), discretization_(discretization), delassus_(delassus)
+                                  DelassusOperator<dim> &delassus,
+                                  JoinedDelassus<dim> *const bonded)
+      : input_(input), discretization_(discretization), delassus_(delassus),
+        bonded_(bonded)
   {
   }
 
@@ -256,8 +259,8 @@ namespace nsfd
   template <int dim>
   void SmoothMotion<dim>::resume_from(const State &state)
   {
-    equations_ =
-        std::make_unique<Equations>(input_, discretization_, delassus_, state);
+    equations_ = std::make_unique<Equations>(input_, discretization_, delassus_,
+                                             bonded_, state);
   }
 
   template <int dim>

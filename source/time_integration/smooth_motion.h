@@ -9,6 +9,9 @@
 
 namespace nsfd
 {
+  template <int dim>
+  class JoinedDelassus;
+
   /**
    * Motion without events, `scheme = arkode`: bodies, springs, bonds, joints
    * and prescribed motion as ordinary differential equations, integrated by
@@ -27,10 +30,12 @@ namespace nsfd
   class SmoothMotion final : public TimeIntegrator<dim>
   {
   public:
-    /** @p delassus holds the stiffness of the bodies and bonds. */
+    /** @p delassus holds the stiffness of the bodies; @p bonded is the same if
+        the scene has bonded faces, else null. */
     SmoothMotion(const SceneInput &input,
                  const Discretization<dim> &discretization,
-                 DelassusOperator<dim> &delassus);
+                 DelassusOperator<dim> &delassus,
+                 JoinedDelassus<dim> *bonded = nullptr);
     ~SmoothMotion() override;
 
     /**
@@ -66,6 +71,7 @@ namespace nsfd
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     DelassusOperator<dim> &delassus_;
+    JoinedDelassus<dim> *const bonded_; ///< or null
     class Equations;
     std::unique_ptr<Equations> equations_; ///< since the start
   };

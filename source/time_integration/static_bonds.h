@@ -3,7 +3,8 @@
 #include "load_step_iterate.h"
 #include "node_supports.h"
 
-#include "delassus/bonded.h"
+#include "delassus/bulk_traction.h"
+#include "delassus/joined_delassus.h"
 #include "delassus/velocity_solver.h"
 #include "discretization/discretization.h"
 
@@ -13,12 +14,11 @@
 namespace nsfd
 {
   /**
-   * Faces of a load step whose bodies share nodes, or that the interior penalty
-   * holds: they have no rows. A face that carries a third of its strength gets
-   * its law where its sides can part, as one that has taken a thousand
-   * millionth of the toughness: then the forces of its nodes decide when it
-   * opens, and not the stress of the cells beside it, which falls short of them
-   * at a notch.
+   * Faces of a load step whose bodies share nodes: they have no rows. A face
+   * that carries a third of its strength gets its law where its sides can part,
+   * as one that has taken a thousand millionth of the toughness: then the
+   * forces of its nodes decide when it opens, and not the stress of the cells
+   * beside it, which falls short of them at a notch.
    */
   template <int dim>
   class StaticBonds
@@ -29,7 +29,7 @@ namespace nsfd
      * release_bonds().
      */
     StaticBonds(const Discretization<dim> &discretization,
-                BondedDelassus<dim> &bonded, bool mean,
+                JoinedDelassus<dim> &bonded, bool mean,
                 OneStepProblem<dim> &problem, LoadStepIterate<dim> &iterate)
         : discretization_(discretization), bonded_(bonded), bulk_(bonded),
           mean_(mean), problem_(problem), iterate_(iterate),
@@ -78,9 +78,8 @@ namespace nsfd
     /**
      * What bonds of the start of the step that are no more give the bodies on
      * the way to @p next, in J: the work f . dq / 2 of their forces, which fall
-     * to zero, f = K q - F - H^T r at the start, less what they had stored.
-     * (Common nodes that are left give nothing with such an f.) @p forces are
-     * the loads F. Collective.
+     * to zero, f = K q - F - H^T r at the start. (Common nodes that are left
+     * give nothing with such an f.) @p forces are the loads F. Collective.
      */
     double work_of_released(const std::vector<double> &forces,
                             const State &next) const;
@@ -93,7 +92,7 @@ namespace nsfd
     }
 
     const Discretization<dim> &discretization_;
-    BondedDelassus<dim> &bonded_;
+    JoinedDelassus<dim> &bonded_;
     const BulkTraction<dim> bulk_;
     const bool mean_;
     OneStepProblem<dim> &problem_;

@@ -24,7 +24,8 @@ namespace nsfd
         sliding_(input)
   {
     for (const auto &block : input.interfaces)
-      has_extrinsic_ |= block.intact == IntactFaces::rigid && block.law;
+      has_extrinsic_ |= block.law && (block.intact == IntactFaces::rigid ||
+                                      block.intact == IntactFaces::bonded);
   }
 
   template <int dim>

@@ -16,7 +16,7 @@ namespace nsfd
 {
   class SectionReader;
   template <int dim>
-  class BondedDelassus;
+  class JoinedDelassus;
   template <int dim>
   class InelasticBodies;
   template <int dim>
@@ -29,7 +29,7 @@ namespace nsfd
     const Communicator &communicator;
     const Discretization<dim> &discretization;
     DelassusOperator<dim> *delassus = nullptr; ///< not of points at nodes
-    BondedDelassus<dim> *bonded = nullptr;     ///< the same, if faces are
+    JoinedDelassus<dim> *bonded = nullptr;     ///< the same, if faces are
     MovingBodies<dim> *moving = nullptr;       ///< of large motions
     InelasticBodies<dim> *inelastic = nullptr; ///< of materials with history
     NonsmoothSolver<dim> *solver = nullptr;    ///< of linear bodies

@@ -178,8 +178,8 @@ namespace end_to_end::test_ranks
       EXPECT_NEAR(two.error(name) / one.error(name), 1., 1e-12) << name;
   }
 
-  // Explicit bonds are sums over one body, as all of the local path.
-  TEST(Ranks, ExplicitBondsAreTheSameBitForBit)
+  // Explicit steps of common nodes: their mass is shared by the ranks.
+  TEST(Ranks, ExplicitBondsAgree)
   {
     const Workspace workspace;
     const std::vector<std::string> set = {
@@ -191,7 +191,8 @@ namespace end_to_end::test_ranks
     for (const unsigned int ranks : {2u, 3u}) {
       const Result other = good_run(workspace, std::to_string(ranks) + " ranks",
                                     {file, set, ranks});
-      EXPECT_EQ(energy_difference(one.history, other.history), 0.);
+      expect_below(std::to_string(ranks) + " ranks: energies",
+                   energy_difference(one.history, other.history), 1e-9);
       EXPECT_EQ(other.counter("released_bonds"), one.counter("released_bonds"));
     }
   }

@@ -74,31 +74,21 @@ end
            0, "a.prm:20: warning: Interface: i/broken: no point");
   }
 
-  TEST(Reader, RigidCellsAreNotBonded)
+  TEST(Reader, RigidCellsAreJoinedByRows)
   {
-    // two rigid cells in a scene that has others as well
-    expect(check(bodies + joined + end), 1,
-           "a.prm:15: error: Interface: all/intact faces: bonded faces");
-    // what the message says to write
-    expect(check(bodies +
-                 "subsection Interface: hard\n  set where = x > 2.5\n"
-                 "  set law = camacho-ortiz\n  set strength = 1\n"
-                 "  set toughness = 1\n  set intact faces = rigid\nend\n" +
-                 joined + end),
-           0, "");
+    // two rigid cells in a scene that has others as well, and rigid ones alone
     std::string rigid_only = bodies;
     const std::size_t begin = rigid_only.find("subsection Material: soft");
     rigid_only.erase(begin,
                      rigid_only.find("subsection Material: hard") - begin);
-    expect(check(rigid_only + joined + end), 0, "");
-    expect(check(rigid_only +
-                 "subsection Interface: all\n  set law = bonded\n"
-                 "end\n" +
-                 end),
-           1, "a.prm:10: error: law = bonded joins bodies that deform");
-    const Workspace workspace;
-    write_text(workspace.path() / "a.prm", rigid_only + joined + end);
-    EXPECT_EQ(nsfd(workspace, {"a.prm", "--quiet"}).exit_code, 0);
+    const std::string bonded = "subsection Interface: all\n"
+                               "  set law = bonded\nend\n";
+    for (const std::string &cells : {bodies, rigid_only})
+      for (const std::string &faces : {joined, bonded}) {
+        const Workspace workspace;
+        write_text(workspace.path() / "a.prm", cells + faces + end);
+        EXPECT_EQ(nsfd(workspace, {"a.prm", "--quiet"}).exit_code, 0);
+      }
   }
 
   TEST(Reader, FormulasWithoutValueNameThemselves)

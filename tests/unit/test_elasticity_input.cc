@@ -150,9 +150,6 @@ end
                  {"plane = stress", "write plane = strain"});
     expect_words(complaints(scene_of(viscous), {"Time/scheme=arkode"}),
                  {"arkode knows no viscosity", "moreau-jean"});
-    expect_words(complaints(scene_of(viscous), {"Time/scheme=symplectic",
-                                                "Interface: all/law=bonded"}),
-                 {"explicit forces", "moreau-jean"});
     expect_words(
         complaints(scene_of(viscous), {"Material: m/shear viscosity=-1"}),
         {"must not be negative"});

@@ -230,8 +230,7 @@ end
       }
   }
 
-  // Rigid motions are not damped, M_hat is what the step says, and bonds take
-  // no more of the damping than 1/32.
+  // Rigid motions are not damped, and M_hat is what the step says.
   TEST(ViscousMaterial, Blocks)
   {
     for (const std::string law : {"rigid", "bonded"}) {
@@ -243,38 +242,27 @@ end
             v[1] = 0.5 + 0.3 * x[0];
           });
       Vector C(rigid_motion.size()), work(C.size());
-      const auto damp = [&](const Vector &motion) { // no nodes are shared
-        if (scene.bonded)
-          scene.bonded->BondedDelassus<2>::apply(Operator::damping,
-                                                 motion.data(), C.data());
-        else
-          scene.delassus->apply(Operator::damping, motion.data(), C.data());
+      const auto damp = [&](const Vector &motion) {
+        scene.delassus->apply(Operator::damping, motion.data(), C.data());
       };
       damp(rigid_motion);
       const double of_rigid_motion = largest(C);
       Vector v(C.size()), sum(C.size());
       for (std::size_t i = 0; i < v.size(); ++i)
         v[i] = std::sin(1. + 12.9898 * double(i));
+      if (scene.bonded)
+        scene.bonded->join_motion(v);
       const double h = scene.time_step, theta = 0.5;
       scene.delassus->apply(Operator::mass, v.data(), sum.data());
       scene.delassus->apply(Operator::stiffness, v.data(), work.data());
       damp(v);
       EXPECT_LT(of_rigid_motion, 1e-13 * largest(C)); // of a motion of size 1
-      double power = 0., own = 0.;
+      double power = 0.;
       for (std::size_t i = 0; i < v.size(); ++i) {
         sum[i] += h * h * theta * theta * work[i] + h * theta * C[i];
         power += v[i] * C[i];
       }
-      if (scene.bonded)
-        scene.bonded->set_bonds(
-            std::vector<std::uint8_t>(scene.state.kind.size(), 0));
-      damp(v);
-      for (std::size_t i = 0; i < v.size(); ++i)
-        own += v[i] * C[i];
-      EXPECT_GE(power, 31. / 32. * own);
-      EXPECT_GT(own, 0.);
-      if (scene.bonded)
-        continue; // its matrix is another one now
+      EXPECT_GT(power, 0.);
       scene.delassus->apply(Operator::inverse, sum.data(), work.data());
       EXPECT_LT(difference(work, v), 1e-11);
     }
@@ -348,6 +336,21 @@ end
       EXPECT_LT(worst, 1e-9);
       EXPECT_GT(viscous_energy, 0.);
       EXPECT_GT(scene.state.energy.damage, 0.);
+    }
+  }
+
+  TEST(ViscousMaterial, SymplecticStepsOnCommonNodesCloseTheBalance)
+  {
+    for (const std::string mass : {"consistent", "lumped"}) {
+      Scene<2> scene(
+          text(plain + viscous, "  set law = bonded"),
+          {"Time/scheme=symplectic", "Time/step=0.1 courant",
+           "Discretization/mass=" + mass});
+      for (unsigned int k = 0; k < 40; ++k) {
+        scene.advance();
+        EXPECT_LT(defect(scene), 1e-9);
+      }
+      EXPECT_GT(scene.state.energy.viscous, 0.);
     }
   }
 

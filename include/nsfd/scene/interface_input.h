@@ -18,7 +18,7 @@ namespace nsfd
     spring,
     unilateral,
     rigid,
-    bonded ///< through the bulk, see delassus/bonded.h
+    bonded ///< by common nodes, see delassus/joined_delassus.h
   };
 
   struct InterfaceInput {

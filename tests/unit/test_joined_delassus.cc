@@ -1,5 +1,7 @@
 #include "make_scene.h"
 
+#include "delassus/bulk_traction.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,14 +10,14 @@
 #include <string>
 #include <vector>
 
-// Faces joined through the bulk: the stiffness is symmetric, exact on linear
-// fields, hardly less than that of the bodies alone; W is what its definition
-// says; a bond that breaks gives its energy to the energy balance.
+// Bodies that share the nodes of their faces: the stiffness is symmetric and
+// exact on linear fields; W is what its definition says; where there are no
+// common nodes there are rows; the energy balance closes when faces let go.
 
 using namespace nsfd;
 using nsfd::test::Scene;
 
-namespace test_bonded
+namespace test_joined_delassus
 {
   using Vector = std::vector<double>;
 
@@ -127,75 +129,6 @@ end
     return sum;
   }
 
-  /**
-   * The smallest u.K u / u.K_bodies u that the descent u <- u - a (K u -
-   * ratio K_bodies u) finds from a random start, 300 steps with the length of
-   * an exact line search.
-   */
-  template <int dim>
-  double smallest_ratio(const Scene<dim> &scene, std::mt19937 &random)
-  {
-    using Operator = typename DelassusOperator<dim>::Operator;
-    const std::size_t n = scene.state.displacement.size();
-    const auto &bodies = scene.discretization->bodies();
-    const auto apply = [&](const Vector &x, Vector &K, Vector &alone) {
-      K.assign(n, 0.);
-      alone.assign(n, 0.);
-      scene.bonded->BondedDelassus<dim>::apply(Operator::stiffness, x.data(),
-                                               K.data());
-      for (std::size_t b = 0; b < bodies.size(); ++b) {
-        const auto &block = bodies.classes[bodies.class_of[b]].stiffness;
-        for (unsigned int i = 0; i < block.rows; ++i)
-          for (unsigned int j = 0; j < block.cols; ++j)
-            alone[bodies.first_dof[b] + i] +=
-                block(i, j) * x[bodies.first_dof[b] + j];
-      }
-    };
-    Vector x = random_vector(n, random), Kx, Bx, g(n), Kg, Bg;
-    double best = 0.;
-    for (unsigned int k = 0; k < 300; ++k) {
-      apply(x, Kx, Bx);
-      const double a = dot(x, Kx), b = dot(x, Bx), ratio = a / b;
-      best = ratio;
-      for (std::size_t i = 0; i < n; ++i)
-        g[i] = Kx[i] - ratio * Bx[i];
-      apply(g, Kg, Bg);
-      // minimise (a + 2 s c + s^2 d) / (b + 2 s e + s^2 f) over s
-      const double c = dot(x, Kg), d = dot(g, Kg), e = dot(x, Bg),
-                   f = dot(g, Bg);
-      const double A = d * e - c * f, B = d * b - a * f, C = c * b - a * e;
-      const double root = std::sqrt(std::max(0., B * B - 4. * A * C));
-      double s = 0., value = ratio;
-      for (const double sign : {-1., 1.}) {
-        const double trial =
-            A != 0. ? (-B + sign * root) / (2. * A) : (B != 0. ? -C / B : 0.);
-        const double at = (a + 2. * trial * c + trial * trial * d) /
-                          (b + 2. * trial * e + trial * trial * f);
-        if (std::isfinite(at) && at < value) {
-          value = at;
-          s = trial;
-        }
-      }
-      for (std::size_t i = 0; i < n; ++i)
-        x[i] += s * g[i];
-    }
-    return best;
-  }
-
-  template <int dim>
-  void expect_coercive(const Case &one)
-  {
-    SCOPED_TRACE(one.name);
-    Scene<dim> scene(one.text);
-    bond(scene);
-    std::mt19937 random(7);
-    double least = 1e300;
-    for (unsigned int trial = 0; trial < 5; ++trial)
-      least = std::min(least, smallest_ratio(scene, random));
-    EXPECT_GE(least, (1. - 1. / 32.) * (1. - 1e-10));
-    EXPECT_LE(least, 1.); // conforming fields have 1: the search is one
-  }
-
   template <int dim>
   void expect_symmetric(const Case &one)
   {
@@ -205,17 +138,18 @@ end
     bond(scene);
     std::mt19937 random(3);
     const std::size_t n = scene.state.displacement.size();
-    const Vector x = random_vector(n, random), y = random_vector(n, random);
+    Vector joined = random_vector(n, random), y = random_vector(n, random);
+    for (Vector *motion : {&joined, &y}) {
+      EXPECT_TRUE(scene.bonded->join_motion(*motion));
+      EXPECT_FALSE(scene.bonded->join_motion(*motion));
+    }
     Vector Kx(n), Ky(n);
-    const BondedDelassus<dim> &bonded = *scene.bonded;
-    bonded.BondedDelassus<dim>::apply(Operator::stiffness, x.data(), Kx.data());
-    bonded.BondedDelassus<dim>::apply(Operator::stiffness, y.data(), Ky.data());
-    EXPECT_NEAR(dot(y, Kx), dot(x, Ky),
+    scene.delassus->apply(Operator::stiffness, joined.data(), Kx.data());
+    scene.delassus->apply(Operator::stiffness, y.data(), Ky.data());
+    EXPECT_NEAR(dot(y, Kx), dot(joined, Ky),
                 1e-13 * std::sqrt(dot(Kx, Kx) * dot(y, y)));
     // M_hat^{-1} undoes M + h^2 theta^2 K of motions with common nodes
-    Vector Mx(n), back(n), joined = x;
-    EXPECT_TRUE(scene.bonded->join_motion(joined));
-    EXPECT_FALSE(scene.bonded->join_motion(joined));
+    Vector Mx(n), back(n);
     scene.delassus->apply(Operator::stiffness, joined.data(), Kx.data());
     scene.delassus->apply(Operator::mass, joined.data(), Mx.data());
     const double f = std::pow(scene.time_step * scene.input->time.theta, 2);
@@ -271,7 +205,7 @@ end
     }
   }
 
-  TEST(Bonded, StiffnessIsSymmetricAndMHatItsInverse)
+  TEST(JoinedDelassus, StiffnessIsSymmetricAndMHatItsInverse)
   {
     for (const auto &one : plane_cases)
       expect_symmetric<2>(one);
@@ -279,15 +213,7 @@ end
       expect_symmetric<3>(one);
   }
 
-  TEST(Bonded, HardlyLessThanTheBodiesAlone)
-  {
-    for (const auto &one : plane_cases)
-      expect_coercive<2>(one);
-    for (const auto &one : space_cases)
-      expect_coercive<3>(one);
-  }
-
-  TEST(Bonded, ExactOnLinearFields)
+  TEST(JoinedDelassus, ExactOnLinearFields)
   {
     for (const auto &one : plane_cases)
       if (one.name != "contrast")
@@ -316,7 +242,7 @@ end
 )";
 
   /** Of the line and the driven sides: from its definition, and bounded. */
-  TEST(Bonded, DelassusIsWhatItsDefinitionSays)
+  TEST(JoinedDelassus, DelassusIsWhatItsDefinitionSays)
   {
     const std::string plain = "set dimension = 2\nsubsection Mesh\n"
                               "  set type = rectangle\n"
@@ -361,7 +287,12 @@ end
     }
   }
 
-  TEST(Bonded, RigidBodyLeavesTheTractionToItsNeighbour)
+  unsigned int count(const State &state, const PointKind kind)
+  {
+    return unsigned(std::count(state.kind.begin(), state.kind.end(), kind));
+  }
+
+  TEST(JoinedDelassus, RigidBodyLeavesTheTractionToItsNeighbour)
   {
     Scene<2> scene(mesh("rectangle", "2, 1", "2, 1", 1) + rigid_half + solid);
     bond(scene);
@@ -380,18 +311,64 @@ end
         EXPECT_NEAR(traction[i * 2], expected, 1e-12);
       }
     EXPECT_TRUE(any);
-    EXPECT_THROW(
-        bond(*std::make_unique<Scene<2>>(
-            mesh("rectangle", "3, 1", "3, 1", 1) +
-            "subsection Material: stone\n  set model = rigid\n  set "
-            "density = 1\nend\nsubsection Interface: all\n  set law = "
-            "bonded\nend\nsubsection Time\n  set end = 1\n  set step = "
-            "0.1\nend\n")),
-        std::invalid_argument); // by the reader
   }
 
-  /** Halves that are apart at the start: the bond stores it, and knows it. */
-  TEST(Bonded, JumpsAtTheStartAreInTheBalance)
+  /** Nodes follow a rigid cell; rows hold two of them together. */
+  TEST(JoinedDelassus, RigidBodiesMoveWithTheOthers)
+  {
+    std::string rigid = rigid_half;
+    rigid.replace(rigid.find("x < 1"), 5, "x < 2");
+    Scene<2> scene(mesh("rectangle", "4, 1", "4, 1", 1) + rigid + solid +
+                   driven);
+    EXPECT_EQ(count(scene.state, PointKind::bonded), 2u * 2u);
+    EXPECT_EQ(count(scene.state, PointKind::prescribed), 2u + 4u); // driven
+    for (unsigned int k = 0; k < 20; ++k)
+      EXPECT_LE(scene.advance().balance_residual, 1e-12);
+    double largest = 0.;
+    for (const double u :
+         scene.discretization->to_nodal(scene.state.displacement))
+      largest = std::max(largest, std::abs(u));
+    EXPECT_GT(largest, 0.);
+    std::vector<double> jump(scene.state.jump.size());
+    scene.delassus->relative_velocity(scene.state.displacement.data(),
+                                      jump.data());
+    for (const auto &face : scene.discretization->points().faces)
+      for (unsigned int k = face.first * 2;
+           !face.boundary && k < (face.first + face.count) * 2; ++k)
+        EXPECT_LE(std::abs(jump[k]), 1e-9 * largest);
+  }
+
+  /** What is left of a face of which a part is open: rows, until it breaks. */
+  TEST(JoinedDelassus, RowsHoldFacesWithAnOpenPart)
+  {
+    const std::string notched = R"(
+subsection Interface: line
+  set where        = abs(x - 1) < 0.01
+  set law          = camacho-ortiz
+  set strength     = 1e-3
+  set toughness    = 1e-7
+  set intact faces = bonded
+  set broken       = y < 0.25
+end
+)";
+    Scene<2> scene("set dimension = 2\nsubsection Mesh\n"
+                   "  set type = rectangle\n  set upper corner = 2, 1\n"
+                   "  set cells = 4, 2\nend\n" +
+                   notched + solid + driven);
+    EXPECT_EQ(count(scene.state, PointKind::free), 1u);
+    EXPECT_EQ(count(scene.state, PointKind::rigid), 1u);
+    while (scene.state.time < 20. && scene.state.energy.damage == 0.)
+      EXPECT_GT(scene.advance_bisecting(), 0.);
+    EXPECT_GT(scene.state.energy.damage, 0.);
+    EXPECT_EQ(count(scene.state, PointKind::rigid), 0u);
+    const auto &e = scene.state.energy;
+    const double defect = e.kinetic + e.elastic + e.cohesive + e.damage +
+                          e.friction + e.impact + e.numerical - e.work;
+    EXPECT_LE(std::abs(defect), 1e-10 * scene.state.largest_energy);
+  }
+
+  /** Halves that are apart at the start are joined in the nearest motion. */
+  TEST(JoinedDelassus, ClosesJumpsOfTheStart)
   {
     const std::string right = R"(
 subsection Material: right
@@ -414,7 +391,7 @@ end
 
   /** Pulled until all bonds are gone: the energy balance closes at every step.
    */
-  TEST(Bonded, BreaksWithClosedBalance)
+  TEST(JoinedDelassus, BreaksWithClosedBalance)
   {
     const std::string brick = "set dimension = 2\nsubsection Mesh\n"
                               "  set type = rectangle\n"
@@ -453,7 +430,6 @@ end
                           e.friction + e.impact + e.numerical - e.work;
     EXPECT_LE(std::abs(defect), 1e-10 * scene.state.largest_energy);
     EXPECT_GT(e.damage, 0.);
-    // what bonds had stored is little against what breaking takes
     EXPECT_LE(std::abs(e.numerical), 0.05 * e.damage);
   }
-} // namespace test_bonded
+} // namespace test_joined_delassus

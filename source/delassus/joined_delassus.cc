@@ -1,4 +1,4 @@
-#include "bonded.h"
+#include "joined_delassus.h"
 
 #include "joined_bodies.h"
 #include "linear_algebra/factor_limits.h"
@@ -22,9 +22,9 @@ namespace nsfd
       Bonded(const Communicator &communicator, const Bodies &bodies,
              const InterfacePoints<dim> &points,
              const std::vector<double> &coordinates,
-             const long long largest_factor, const bool share_nodes)
+             const long long largest_factor)
           : JoinedBodies<dim>(communicator, bodies, points, coordinates,
-                              largest_factor, share_nodes),
+                              largest_factor),
             joined_(communicator, largest_factor)
       {
         joined_.set_space(this->conforming_->space());
@@ -174,26 +174,57 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::unique_ptr<BondedDelassus<dim>> make_bonded_delassus(
-      const Communicator &communicator, const Bodies &bodies,
-      const InterfacePoints<dim> &points, const std::string &solver,
-      const std::vector<double> &coordinates, const bool share_nodes)
+  JoinedDelassus<dim>::JoinedDelassus(const Communicator &communicator,
+                                      const Bodies &bodies,
+                                      const InterfacePoints<dim> &points)
+      : DelassusOperator<dim>(communicator, bodies, points),
+        bonded_(points.n_points, 0), shares_nodes_(points.faces.size(), 0)
+  {
+  }
+
+  template <int dim>
+  bool JoinedDelassus<dim>::set_bonds(const std::vector<std::uint8_t> &bonded)
+  {
+    if (!this->communicator_.any(bonded != bonded_))
+      return false;
+    bonded_ = bonded;
+    bonds_changed();
+    return true;
+  }
+
+  template <int dim>
+  void JoinedDelassus<dim>::serialize(Archive &archive)
+  {
+    DelassusOperator<dim>::serialize(archive);
+    std::vector<std::uint8_t> bonded(bonded_);
+    archive.points("bonded", bonded);
+    if (archive.reads())
+      set_bonds(bonded);
+  }
+
+  template <int dim>
+  std::unique_ptr<JoinedDelassus<dim>>
+  make_joined_delassus(const Communicator &communicator, const Bodies &bodies,
+                       const InterfacePoints<dim> &points,
+                       const std::string &solver,
+                       const std::vector<double> &coordinates)
   {
     constexpr long long any = std::numeric_limits<long long>::max();
     return std::make_unique<Bonded<dim>>(
         communicator, bodies, points, coordinates,
         solver == "direct" ? any
         : solver == "cg"   ? 0
-                           : largest_joined_factor<dim>,
-        share_nodes);
+                           : largest_joined_factor<dim>);
   }
 
-  template std::unique_ptr<BondedDelassus<2>>
-  make_bonded_delassus<2>(const Communicator &, const Bodies &,
+  template class JoinedDelassus<2>;
+  template class JoinedDelassus<3>;
+  template std::unique_ptr<JoinedDelassus<2>>
+  make_joined_delassus<2>(const Communicator &, const Bodies &,
                           const InterfacePoints<2> &, const std::string &,
-                          const std::vector<double> &, bool);
-  template std::unique_ptr<BondedDelassus<3>>
-  make_bonded_delassus<3>(const Communicator &, const Bodies &,
+                          const std::vector<double> &);
+  template std::unique_ptr<JoinedDelassus<3>>
+  make_joined_delassus<3>(const Communicator &, const Bodies &,
                           const InterfacePoints<3> &, const std::string &,
-                          const std::vector<double> &, bool);
+                          const std::vector<double> &);
 } // namespace nsfd
