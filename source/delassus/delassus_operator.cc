@@ -38,9 +38,7 @@ namespace nsfd
     blocks_.resize(bodies_.classes.size());
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const BodyClass &body = bodies_.classes[k];
-      const BlockInverse inverse(
-          body, {stiffness_share_ * time_step * time_step * theta * theta,
-                 stiffness_share_ * time_step * viscous_theta_});
+      const BlockInverse inverse(body, shares(time_step, theta));
       ++counters_.factorisations;
       Block identity(body.n_dofs, body.n_dofs);
       for (unsigned int i = 0; i < body.n_dofs; ++i)

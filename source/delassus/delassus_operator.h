@@ -201,9 +201,6 @@ namespace nsfd
     using FaceTraces<dim>::side_1_;
     using FaceTraces<dim>::side_2_;
     double time_step_ = 0., theta_ = 0.;
-    /// of stiffness and damping of the bodies that the blocks below are built
-    /// with
-    double stiffness_share_ = 1.;
     std::vector<ClassBlocks> blocks_;
     std::vector<double> face_blocks_;
     std::vector<std::size_t> face_offset_;

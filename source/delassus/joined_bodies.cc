@@ -25,7 +25,6 @@ namespace nsfd
         factor_(communicator, largest_factor), jacobi_(communicator),
         tangent_(*this, communicator, largest_factor)
   {
-    this->stiffness_share_ = 31. / 32.;
     const long long mine = static_cast<long long>(bodies.n_dofs());
     long long sum = 0;
     MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());

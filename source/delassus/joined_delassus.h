@@ -30,9 +30,8 @@ namespace nsfd
 
     /**
      * By face: bodies share its nodes once @p bonded are all bonds. They do not
-     * where a part of the face is open, where both are rigid, and where nodes
-     * would follow two motions that differ: what joins them there has rows.
-     * Collective.
+     * where a part of the face is open, and where nodes would follow two
+     * motions that differ: what joins them there has rows. Collective.
      */
     virtual std::vector<char>
     sharing(const std::vector<std::uint8_t> &bonded) = 0;

@@ -342,10 +342,9 @@ end
   TEST(ViscousMaterial, SymplecticStepsOnCommonNodesCloseTheBalance)
   {
     for (const std::string mass : {"consistent", "lumped"}) {
-      Scene<2> scene(
-          text(plain + viscous, "  set law = bonded"),
-          {"Time/scheme=symplectic", "Time/step=0.1 courant",
-           "Discretization/mass=" + mass});
+      Scene<2> scene(text(plain + viscous, "  set law = bonded"),
+                     {"Time/scheme=symplectic", "Time/step=0.1 courant",
+                      "Discretization/mass=" + mass});
       for (unsigned int k = 0; k < 40; ++k) {
         scene.advance();
         EXPECT_LT(defect(scene), 1e-9);
