@@ -47,6 +47,14 @@ namespace nsfd
   void LinearMoreauJean<dim>::complete(State &state) const
   {
     if (bonded_) {
+      // other cells, other common nodes
+      const auto &origins = this->discretization_.origins();
+      for (std::size_t i = 0; i < origins.size(); ++i)
+        if (origins[i].kind == PointOrigin::Kind::interface &&
+            this->input_.interfaces[origins[i].block].intact ==
+                IntactFaces::bonded &&
+            is_joined(state.kind[i]))
+          state.kind[i] = PointKind::bonded;
       hold_by_rows(this->problem_, *bonded_, state);
       bonded_->set_bonds(bonded_points(state));
       join_motion(*bonded_, state);

@@ -42,16 +42,17 @@ end
       return "subsection Interface: all\n  set law = " + word + "\nend\n";
     }
 
-    std::string bar(const std::string &rest)
-    {
-      return R"(set dimension = 2
+    const std::string bar_mesh = R"(set dimension = 2
 subsection Mesh
   set type         = rectangle
   set upper corner = 1 m, 0.1 m
   set cells        = 10, 2
 end
-)" + material(0.) +
-             rest;
+)";
+
+    std::string bar(const std::string &rest)
+    {
+      return bar_mesh + material(0.) + rest;
     }
 
     const std::string pulled = R"(
@@ -88,6 +89,36 @@ end
           if (state.kind[i] == PointKind::bonded) {
             EXPECT_LT(std::abs(state.jump[2 * i]), 1e-12 * u) << word;
           }
+      }
+    }
+
+    // The same behind a rigid end of four cells, which are one body and have no
+    // rows: u(L) = sigma (L - l) / E.
+    TEST(JoinedStatics, BarWithARigidEnd)
+    {
+      const std::string stone = R"(
+subsection Material: stone
+  set where   = x < 0.2
+  set model   = rigid
+  set density = 1000
+end
+)";
+      test::Scene<2> scene(bar_mesh + stone + material(0.) + joined("joined") +
+                           pulled + time);
+      auto &statics = scene.equilibria->search();
+      State state = statics.start(scene.state), next = state;
+      EXPECT_LT(statics.advance(state, 1., next).step.balance_residual, 1e-12);
+      const double sigma = 3e6, area = 0.1, u = sigma * 0.8 / E;
+      EXPECT_NEAR(*std::max_element(next.displacement.begin(),
+                                    next.displacement.end()) /
+                      u,
+                  1., 1e-10);
+      EXPECT_NEAR(next.energy.elastic / (sigma * area * u / 2.), 1., 1e-10);
+      EXPECT_NEAR(statics.reactions()[0] / (-sigma * area), 1., 1e-10);
+      const auto &faces = scene.discretization->points().faces;
+      for (const auto &face : faces) {
+        EXPECT_TRUE(face.boundary ||
+                    next.kind[face.first] == PointKind::bonded);
       }
     }
 
