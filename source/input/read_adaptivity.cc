@@ -44,14 +44,13 @@ namespace nsfd
       refuse(scene.time.scheme.smooth,
              "the mesh does not change with scheme = arkode",
              "write scheme = moreau-jean or symplectic");
-      // one per level, and two for the penalty of bonds at non-conforming faces
       refuse(scene.time.scheme.explicit_forces &&
-                 scene.adaptivity->levels + 2 > scene.time.maximum_bisections,
+                 scene.adaptivity->levels > scene.time.maximum_bisections,
              fmt::format("the stable step of the explicit scheme halves with "
                          "every level, and {} bisections are allowed",
                          scene.time.maximum_bisections),
              fmt::format("write in section Time: set maximum bisections = {}",
-                         scene.adaptivity->levels + 2));
+                         scene.adaptivity->levels));
     }
 
     /** Laws whose springs cannot become stiffer. */

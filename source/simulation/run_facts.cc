@@ -120,7 +120,7 @@ namespace nsfd
                                           const EnergyWatch &watch,
                                           const State &state)
     {
-      // what the rules of explicit steps, end points, interior penalty and
+      // what the rules of explicit steps, end points, released faces and
       // frames of large motions make comes and goes: as well as curves can be
       // read
       constexpr double of_pure_rules = 1e-2;

@@ -31,8 +31,9 @@ namespace nsfd
   /**
    * The rules that the scene has chosen cannot give energy by this line: a step
    * that does is not accepted. Pure rules (`sliding = velocity`, theta above
-   * 1 / (1 + e), cohesion at the end point, explicit steps, interior penalty)
-   * and the frames of large motions can; then the certificate says how much.
+   * 1 / (1 + e), cohesion at the end point, explicit steps, laws of released
+   * faces) and the frames of large motions can; then the certificate says how
+   * much.
    */
   bool never_gives(WatchedLine line, const SceneInput &scene);
 

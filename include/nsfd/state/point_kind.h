@@ -12,7 +12,7 @@ namespace nsfd
     cohesive,   ///< intrinsic, or extrinsic after activation
     rigid,      ///< extrinsic before activation: U = 0 up to the strength
     free,       ///< contact and friction only, beta = 0
-    bonded,     ///< carries through the bulk, not by an impulse
+    bonded,     ///< its sides have common nodes and no impulse
     separated   ///< broken, its crack faces are left to the search for contacts
   };
 
@@ -23,7 +23,7 @@ namespace nsfd
            kind == PointKind::prescribed;
   }
 
-  /** Not what carries through the bulk or through other points. */
+  /** Not what common nodes join, nor what other points carry. */
   inline bool has_impulse(const PointKind kind)
   {
     return kind != PointKind::bonded && kind != PointKind::separated;
