@@ -438,7 +438,7 @@ namespace nsfd
      * joints: interior points need the matrices of cells, path = local asks for
      * them.
      */
-    bool may_share_nodes(const SceneInput &scene, const ParameterFile &file)
+    bool may_share_nodes(const ParameterFile &file)
     {
       const ParameterSection *solver = file.find("Solver");
       const auto asks_for = [solver](const char *entry, const char *value) {
@@ -464,7 +464,7 @@ namespace nsfd
       for (std::size_t b = 0; b < blocks.size(); ++b)
         share_nodes(*blocks[b], scene.interfaces[b]);
     if (scene.statics && !scene.iterates()) {
-      const bool shares = may_share_nodes(scene, file);
+      const bool shares = may_share_nodes(file);
       scene.equilibria_at_nodes = shares;
       for (InterfaceInput &interface : scene.interfaces)
         if (shares
