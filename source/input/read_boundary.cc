@@ -40,6 +40,35 @@ namespace nsfd
       return load || is_driven;
     }
 
+    /**
+     * Equations in time meet a motion exactly at every point: where cells share
+     * nodes, one that is not uniform needs its points at the nodes.
+     */
+    void check_points(SectionReader &reader, const SceneInput &scene,
+                      const BoundaryInput &boundary)
+    {
+      const DiscretizationInput &space = scene.discretization;
+      const bool at_nodes = space.interface_quadrature == "gauss lobatto" &&
+                            space.interface_points == space.degree + 1;
+      bool varies = boundary.exact_motion;
+      for (unsigned int c = 0; c < scene.dimension; ++c)
+        for (const auto *given :
+             {&boundary.velocity[c], &boundary.displacement[c]})
+          varies = varies || (*given && (*given)->depends_on_position());
+      if (scene.time.scheme.smooth && scene.has_bonded_faces() && varies &&
+          !at_nodes)
+        reader.error("motion",
+                     fmt::format("cells that share nodes cannot follow this "
+                                 "motion at {} points of the rule `{}` on a "
+                                 "face with scheme = arkode",
+                                 space.interface_points,
+                                 space.interface_quadrature),
+                     fmt::format("write in section Discretization: set "
+                                 "interface quadrature = gauss lobatto and set "
+                                 "interface points = {}",
+                                 space.degree + 1));
+    }
+
     BoundaryInput read_boundary(SectionReader &reader, const SceneInput &scene)
     {
       BoundaryInput boundary;
@@ -62,6 +91,7 @@ namespace nsfd
                        "keep one of the two");
         has_effect = here || has_effect;
       }
+      check_points(reader, scene, boundary);
       refuse_third_component(reader, {"velocity", "displacement", "traction"},
                              scene);
       if (const auto pressure = read_optional_expression(

@@ -36,7 +36,7 @@ namespace end_to_end::test_orders
   {
     const Workspace workspace;
     for (const unsigned int degree : {1u, 2u, 3u}) {
-      const unsigned int coarse = degree == 3 ? 4 : 8;
+      const unsigned int coarse = 8;
       const std::string name = "p" + std::to_string(degree) + "_";
       const std::vector<std::string> exact_time = {
           "Time/scheme=arkode", "Time/end=0.1 ms", "Time/step=0.1 ms",
@@ -53,7 +53,9 @@ namespace end_to_end::test_orders
                   u, b.error("displacement_L2"), stress, jump);
       EXPECT_NEAR(u, degree + 1., 0.15);
       EXPECT_NEAR(stress, degree, 0.15);
-      EXPECT_GT(jump, degree + 0.7); // p + 1 in the mean, it scatters
+      // on a line, where |e|^2 <= C |e| |grad e| of the square: p + 1/2 at
+      // least
+      EXPECT_GT(jump, degree + 0.5 - 0.15);
     }
   }
 

@@ -85,11 +85,13 @@ namespace node_test::test_held_nodes
   }
 
   // A pillar that falls on a floor, in cells far longer than its cohesive
-  // zones: some problem has no solution that is found, and all steps keep their
-  // length.
+  // zones: at some speed some problem has no solution that is found, and all
+  // steps keep their length.
   TEST(HeldNodes, GiveNoEnergyInARun)
   {
-    test::Steps<3> run(R"(
+    double held = 0.;
+    for (const char *speed : {"3", "3.5", "4", "4.5"}) {
+      test::Steps<3> run(std::string(R"(
 set dimension = 3
 subsection Mesh
   set type         = tetrahedra
@@ -100,7 +102,8 @@ subsection Material: granite
   set Young modulus = 50 GPa
   set Poisson ratio = 0.22
   set density       = 2650 kg/m^3
-  set initial velocity z = -3 m/s
+  set initial velocity z = -)") +
+                         speed + R"( m/s
 end
 subsection Interface: all
   set law       = camacho-ortiz
@@ -119,18 +122,20 @@ subsection Time
   set scheme = explicit
 end
 )");
-    double given = 0.;
-    while (run.state.time < run.input->time.end) {
-      const double before = run.state.energy.numerical;
-      const StepReport report = run.step();
-      given = std::max(given, before - run.state.energy.numerical);
-      ASSERT_LT(report.solver.residual, 1e-12) << run.state.time;
-      ASSERT_LT(report.balance_residual, 1e-13);
+      double given = 0.;
+      while (run.state.time < run.input->time.end) {
+        const double before = run.state.energy.numerical;
+        const StepReport report = run.step();
+        given = std::max(given, before - run.state.energy.numerical);
+        ASSERT_LT(report.solver.residual, 1e-12) << run.state.time;
+        ASSERT_LT(report.balance_residual, 1e-13);
+      }
+      std::map<std::string, double> counters;
+      run.leapfrog->fill_counters(counters);
+      held += counters["held_node_problems"];
+      EXPECT_LT(given, 1e-14 * run.state.largest_energy);
+      EXPECT_LT(run.state.penetration, 1e-14 * 30.);
     }
-    std::map<std::string, double> counters;
-    run.leapfrog->fill_counters(counters);
-    EXPECT_GT(counters["held_node_problems"], 0.);
-    EXPECT_LT(given, 1e-14 * run.state.largest_energy);
-    EXPECT_LT(run.state.penetration, 1e-14 * 30.);
+    EXPECT_GT(held, 0.);
   }
 } // namespace node_test::test_held_nodes
