@@ -244,7 +244,8 @@ namespace nsfd
    * In every step the solver leaves R (P - P*) of the velocity that the law
    * asks for. A point that was forecast to stay open may have come in during
    * the last step, with the speed of its end: then the longer of the two
-   * steps counts.
+   * steps counts. One that was parting from an overlap and is pushed back comes
+   * on top of it.
    */
   template <int dim>
   void PointBalance<dim>::add_penetration(const std::size_t i)
@@ -263,7 +264,8 @@ namespace nsfd
       const double way = came_in ? std::max(h, old_.last_step) : h;
       approach = std::max(approach, -way * old_.relative_velocity[i * dim]);
     } else if (depth > 0.) // the forecast did not see it come
-      approach = std::max(approach, -h * next_.relative_velocity[i * dim]);
+      approach = std::max(approach, std::max(0., -old_.jump[i * dim]) -
+                                        h * next_.relative_velocity[i * dim]);
     approach +=
         h * problem_.majorant_normal[i] * std::abs(evaluation_.defect[i * dim]);
     penetration = std::max(penetration, depth);
