@@ -1,5 +1,5 @@
 #include "joined_bodies.h"
-#include "joined_from_rest.h"
+#include "joined_motion.h"
 #include "node_values.h"
 
 #include "linear_algebra/factor_limits.h"
@@ -33,7 +33,7 @@ namespace nsfd
     conforming_ = std::make_unique<ConformingSpace>(
         communicator, dim, nodes.unknowns(), nodes.node_pairs(),
         nodes.node_ties());
-    this->from_rest_ = std::make_unique<JoinedFromRest<dim>>(*this);
+    this->motion_ = std::make_unique<JoinedMotion<dim>>(*this);
     JoinedBodies::bonds_changed();
   }
 
@@ -233,7 +233,7 @@ namespace nsfd
     // a step that was resumed has none of the step before: what is counted,
     // and with that when W is condensed, would differ
     last_.rows.clear();
-    this->from_rest_->cancel();
+    this->motion_->cancel();
     DelassusOperator<dim>::reinit(time_step, theta);
   }
 
@@ -283,7 +283,7 @@ namespace nsfd
 
   /** M_hat^{-1} of rows_; a step asks twice for that of its impulses. */
   template <int dim>
-  void JoinedBodies<dim>::answer() const
+  void JoinedBodies<dim>::answer(const double tolerance) const
   {
     update();
     if (!this->communicator_.any(rows_ != last_.rows)) {
@@ -291,13 +291,15 @@ namespace nsfd
       return;
     }
     ++n_solves_;
-    if (!solve(factor_) && iterates()) {
+    if (!solve(factor_, tolerance) && iterates()) {
       means_ = Means::factors; // for the rest of the step
       valid_ = false;
-      return answer();
+      return answer(tolerance);
     }
-    last_.rows = rows_;
-    last_.columns = columns_;
+    if (tolerance > tight)
+      last_.rows.clear();
+    else
+      last_ = {rows_, columns_};
   }
 
   template <int dim>

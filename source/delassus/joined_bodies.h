@@ -14,7 +14,7 @@
 namespace nsfd
 {
   template <int dim>
-  class JoinedFromRest;
+  class JoinedMotion;
 
   /**
    * Implicit bodies that share nodes: W = H P (P^T M_hat P)^-1 P^T H^T, P the
@@ -40,11 +40,10 @@ namespace nsfd
     void apply(Operator op, const double *x, double *y) const override;
     void jumps(const double *velocity, double *result) const override;
     std::vector<char> parting() const override;
-    bool solve_linearised(const std::vector<double> &T, bool symmetric,
-                          const std::vector<double> &c, std::vector<double> &dP,
-                          std::vector<double> &dU,
-                          const std::vector<double> *defect,
-                          double share) override;
+    bool solve_linearised(const std::vector<double> &T,
+                          const std::vector<double> &c, double tolerance,
+                          std::vector<double> &dP,
+                          std::vector<double> &dU) override;
     bool join_motion(std::vector<double> &x) override;
     std::vector<std::uint8_t>
     once_per_node(const std::vector<std::uint8_t> &masks) override;
@@ -67,13 +66,13 @@ namespace nsfd
     std::unique_ptr<ConformingSpace> conforming_;
 
   private:
-    friend JoinedFromRest<dim>;
+    friend JoinedMotion<dim>;
     bool iterates() const;
     bool factor_tangent(const std::vector<double> &springs, bool general);
     bool solve_tangent(const std::vector<double> &T, bool symmetric,
                        double tolerance);
     bool solve(ConformingSolver &solver, double tolerance = tight) const;
-    void answer() const;
+    void answer(double tolerance = tight) const;
     void update() const;
 
     JoinedMatrix<dim> &matrix() const;

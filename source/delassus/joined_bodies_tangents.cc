@@ -49,9 +49,13 @@ namespace nsfd
             });
       return solve(tangent_.solver(), tolerance);
     };
-    const Fit fit = tangent_.fit(springs);
-    const bool fits = fit == Fit::exact || (fit == Fit::close && !iterates);
-    if ((fits && solved(symmetric && fit == Fit::exact)) ||
+    // a point that changes costs about an iteration, a factor some five of
+    // them, blocks on the diagonal some two
+    const Fit fit = tangent_.fit(springs, iterates ? 2 : 5);
+    if (iterates && symmetric && fit != Fit::none)
+      tangent_.iterate_on(springs);
+    if ((fit != Fit::none &&
+         solved(symmetric && (iterates || fit == Fit::exact))) ||
         (factor_tangent(springs, general) && solved(symmetric)))
       return true;
     if (!iterates)
@@ -64,31 +68,14 @@ namespace nsfd
 
   template <int dim>
   bool JoinedBodies<dim>::solve_linearised(const std::vector<double> &T,
-                                           const bool symmetric,
                                            const std::vector<double> &c,
+                                           const double tolerance,
                                            std::vector<double> &dP,
-                                           std::vector<double> &dU,
-                                           const std::vector<double> *defect,
-                                           const double share)
+                                           std::vector<double> &dU)
   {
     dU.resize(c.size());
-    double tolerance = tight;
     matrix().impulse(c.data(), rows_);
-    if (defect == &c)
-      tolerance = std::max(tight, share);
-    else if (defect) {
-      matrix().impulse(defect->data(), columns_);
-      const std::size_t n = rows_.size();
-      std::vector<double> squares(2 * n);
-      for (std::size_t k = 0; k < n; ++k) {
-        squares[k] = rows_[k] * rows_[k];
-        squares[n + k] = columns_[k] * columns_[k];
-      }
-      const auto sums = this->communicator_.sums(squares.data(), 2, n);
-      if (sums[0] > 0.)
-        tolerance = std::max(tight, share * std::sqrt(sums[1] / sums[0]));
-    }
-    if (!solve_tangent(T, symmetric, tolerance))
+    if (!solve_tangent(T, true, std::max(tight, tolerance)))
       return false;
     matrix().velocity(columns_, dU.data());
     answer_of_points<dim>(T, c, dU, dP);
@@ -101,9 +88,8 @@ namespace nsfd
   template bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &,  \
                                                  bool, double);                \
   template bool JoinedBodies<dim>::solve_linearised(                           \
-      const std::vector<double> &, bool, const std::vector<double> &,          \
-      std::vector<double> &, std::vector<double> &,                            \
-      const std::vector<double> *, double)
+      const std::vector<double> &, const std::vector<double> &, double,        \
+      std::vector<double> &, std::vector<double> &)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

@@ -10,7 +10,7 @@ namespace nsfd
   namespace
   {
     /// unknowns beyond which matrices of bodies are worth being spared
-    constexpr long long smallest_by_bodies = 15000;
+    constexpr long long smallest_by_bodies = 1000;
   } // namespace
 
   template <int dim>

@@ -13,11 +13,10 @@ namespace nsfd
   }
 
   template <int dim>
-  auto TangentFactor<dim>::fit(const std::vector<double> &springs) const -> Fit
+  auto TangentFactor<dim>::fit(const std::vector<double> &springs,
+                               const unsigned int few) const -> Fit
   {
-    // Measured on a bar of hexes and a plate of grains that break: a point
-    // that changes costs about an iteration, a factor some five of them.
-    constexpr unsigned int few = 5;
+    // measured on a bar of hexes and a plate of grains that break
     constexpr double same = 0.8, soft = 0.3;
     // in one sum: how many points have changed, ranks have others, or no factor
     constexpr unsigned int bits = 16;
@@ -67,9 +66,10 @@ namespace nsfd
     if (!jacobi_.prepare(matrix, springs.data(), general))
       return false;
     springs_ = springs;
+    present_ = springs;
     solver_.iterate_with(
         [this, &matrix](const std::vector<double> &x, std::vector<double> &y) {
-          matrix.apply_step(springs_.data(), x, y);
+          matrix.apply_step(present_.data(), x, y);
         },
         [this](const std::vector<double> &r, std::vector<double> &z) {
           jacobi_.apply(r, z);

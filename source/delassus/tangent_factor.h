@@ -32,14 +32,19 @@ namespace nsfd
       close, ///< good enough as a preconditioner
       none
     };
-    /** Of @p springs, T, positive semidefinite. Collective. */
-    Fit fit(const std::vector<double> &springs) const;
+    /** Of @p springs, T, positive semidefinite; close if at most @p few points
+        have changed much. Collective. */
+    Fit fit(const std::vector<double> &springs, unsigned int few) const;
     /** False: not positive definite. Collective. */
     bool factor(const SparseRows &matrix, const std::vector<double> &springs);
     /** The same for iterations on @p matrix, of short steps; @p general: the
         springs are not symmetric, on one rank. */
     bool precondition(const JoinedMatrix<dim> &matrix,
                       const std::vector<double> &springs, bool general);
+
+    /** Iterations are on the matrix of these springs, symmetric ones, with the
+        preconditioner that there is. */
+    void iterate_on(const std::vector<double> &springs) { present_ = springs; }
 
     ConformingSolver &solver() { return solver_; }
     /** Those that were factored; empty: none. */
@@ -50,6 +55,6 @@ namespace nsfd
     const Communicator &communicator_;
     ConformingSolver solver_;
     NodeJacobi<dim> jacobi_;
-    std::vector<double> springs_;
+    std::vector<double> springs_, present_;
   };
 } // namespace nsfd

@@ -6,51 +6,76 @@
 namespace nsfd
 {
   /**
-   * A step from rest, which is known by the motion v of the nodes and not by
-   * v_free + M_hat^-1 H^T P: what nothing but impulses holds floats by
-   * (h/transit time)^2 times what it does in the end, and the digits of that
-   * would be lost in the difference.
+   * A step that is known by the motion of the nodes,
+   *
+   *     U = U_0 + H w,   M_hat w = p + H^T P,
+   *
+   * and not by v_free + M_hat^-1 H^T P: each Newton step solves one system and
+   * not two, what iterations have left is made good by the next one, and in
+   * statics no digits are lost in the difference of the two terms, of which
+   * each floats by (h/transit time)^2 times what it does in the end.
    */
-  class StepFromRest
+  class NodeMotion
   {
   public:
-    virtual ~StepFromRest() = default;
+    virtual ~NodeMotion() = default;
+
+    /** What iterations may leave of the momenta: the larger one. */
+    struct Accuracy {
+      double tolerance;                  ///< of |p| + |H^T P|
+      double share;                      ///< of |p - M_hat w + H^T (P + r)|
+      const std::vector<double> &defect; ///< r, by which P is wrong; not c,
+                                         ///< which is far more where T is stiff
+    };
 
     /**
-     * A step of h, until finish() or the next reinit() of the bodies.
-     * @p momentum is h F by unknown of the bodies, @p impulse what acts besides
-     * (of pressure in cracks) or empty, and @p displacement is q at the start.
-     * Collective.
+     * At w = 0, until cancel() or the next reinit() of the bodies. @p momentum
+     * is M_hat (v_free - v_0) by unknown of the bodies or empty, @p impulse
+     * what acts besides (of pressure in cracks) or empty, @p start is U_0 by
+     * point. Collective.
      */
-    virtual void start(double h, const std::vector<double> &momentum,
+    virtual void start(const std::vector<double> &momentum,
                        const std::vector<double> &impulse,
-                       const std::vector<double> &displacement) = 0;
-    /** The present step is such a one. */
+                       const std::vector<double> &start) = 0;
     virtual bool is_on() const = 0;
     virtual void cancel() = 0;
     /**
-     * The Newton step from v under @p P, which need not balance yet:
+     * w without any compliance of points, M_hat w = p + H^T P, to @p tolerance
+     * of |p| + |H^T P|. Collective.
+     */
+    virtual void balance(const std::vector<double> &P, double tolerance) = 0;
+    /**
+     * The Newton step from w under the impulses P of the last move:
      *
-     *     (M_hat + H^T T H) dv = p - M_hat v + H^T (P + c),
+     *     (M_hat + H^T T H) dw = p - M_hat w + H^T (P + c),   dU = H dw,
+     *     dP = c - T dU,
      *
-     * p the momentum of F - K q; the rest as for
-     * VelocitySolver::solve_linearised(). Iterations leave @p tolerance of the
-     * right-hand side. Collective.
+     * T a block of dim x dim per point, row by row, @p symmetric or not. False
+     * where the matrix is known not to be positive definite, or iterations do
+     * not solve it. Collective.
      */
     virtual bool solve(const std::vector<double> &T, bool symmetric,
-                       const std::vector<double> &P,
-                       const std::vector<double> &c, double tolerance,
+                       const std::vector<double> &c, const Accuracy &accuracy,
                        std::vector<double> &dP, std::vector<double> &dU) = 0;
-    /** v += @p length dv, of the last Newton step; U = H v. Collective. */
-    virtual void move(double length, std::vector<double> &U) = 0;
-    /** v by own node, to come back to. */
+    /** w += @p length dw, of the last Newton step, under @p P from now on; U.
+        Collective. */
+    virtual void move(double length, const std::vector<double> &P,
+                      std::vector<double> &U) = 0;
+    /** w by own node, to come back to. */
     virtual const std::vector<double> &motion() const = 0;
-    virtual void set_motion(const std::vector<double> &v) = 0;
-    /** v by unknown of the bodies, and p + H^T P - (M_hat - M) v with all of a
-        node at one of its unknowns. Collective. */
-    virtual void finish(const std::vector<double> &P,
-                        std::vector<double> &velocity,
-                        std::vector<double> &left) = 0;
+    virtual void set_motion(const std::vector<double> &w,
+                            const std::vector<double> &P,
+                            std::vector<double> &U) = 0;
+    /** |p - M_hat w + H^T P| over |p| + |H^T P|. */
+    virtual double imbalance() const = 0;
+    /** It is at most @p tolerance, or all that a full step can do for that has
+        been done. */
+    virtual bool balances(double tolerance) const = 0;
+    /** @p velocity += w by unknown of the bodies. Collective. */
+    virtual void add_to(std::vector<double> &velocity) const = 0;
+    /** p + H^T P - (M_hat - M) w by unknown of the bodies, with all of a node
+        at one of its unknowns. Collective. */
+    virtual std::vector<double> left_over() const = 0;
   };
 
   /** What a DelassusOperator of bodies that share nodes can do as well. */
@@ -60,26 +85,22 @@ namespace nsfd
     virtual ~VelocitySolver() = default;
 
     /**
-     * A Newton step in the velocities of the bodies:
+     * dU = H dv and dP = c - T dU of
      *
-     *     (M_hat + H^T T H) dv = H^T c,   dU = H dv,   dP = c - T dU,
+     *     (M_hat + H^T T H) dv = H^T c,
      *
-     * T a block of dim x dim per point, row by row, @p symmetric or not. What
-     * is left of the momentum is at most @p share of |H^T r|, r the @p defect
-     * of the impulses; without one, round-off or what iterations leave. False
-     * where the matrix is known not to be positive definite, or iterations do
-     * not solve it. Collective.
+     * T a block of dim x dim per point, row by row, symmetric. Iterations leave
+     * @p tolerance of the right-hand side. False where the matrix is known not
+     * to be positive definite, or iterations do not solve it. Collective.
      */
-    virtual bool solve_linearised(const std::vector<double> &T, bool symmetric,
+    virtual bool solve_linearised(const std::vector<double> &T,
                                   const std::vector<double> &c,
-                                  std::vector<double> &dP,
-                                  std::vector<double> &dU,
-                                  const std::vector<double> *defect = nullptr,
-                                  double share = 0.) = 0;
+                                  double tolerance, std::vector<double> &dP,
+                                  std::vector<double> &dU) = 0;
 
-    StepFromRest &from_rest() { return *from_rest_; }
+    NodeMotion &motion() { return *motion_; }
 
   protected:
-    std::unique_ptr<StepFromRest> from_rest_;
+    std::unique_ptr<NodeMotion> motion_;
   };
 } // namespace nsfd

@@ -31,6 +31,13 @@ namespace nsfd
     double wear = 0.; ///< k of d(gap)/dt = k p_N |U_T|, 1/Pa
   };
 
+  /** What is known of U_free, of bodies that know their own NodeMotion. */
+  enum class FreeVelocity : std::uint8_t {
+    known,
+    estimated, ///< to the digits of a scale
+    unknown    ///< a step from rest
+  };
+
   /**
    * The nonsmooth problem of one step as plain data, without bodies: find
    * impulses P (integrated, P = w p) and relative velocities U with
@@ -79,6 +86,7 @@ namespace nsfd
     std::vector<double> target;    ///< U_N >= target where in contact
 
     // per point and component
+    FreeVelocity free_motion = FreeVelocity::known;
     std::vector<double> free_velocity;  ///< U_free
     std::vector<double> given_velocity; ///< prescribed
     std::vector<double> jump_old;       ///< u_k

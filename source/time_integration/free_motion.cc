@@ -2,6 +2,7 @@
 
 #include "crack_pressure.h"
 
+#include "delassus/velocity_solver.h"
 #include "discretization/loads.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
@@ -59,6 +60,7 @@ namespace nsfd
   void FreeMotion<dim>::move(const State &old,
                              const std::vector<double> &pressure,
                              OneStepProblem<dim> &problem,
+                             const std::vector<double> &impulse,
                              const std::vector<double> *const elastic)
   {
     const double h = problem.time_step, theta = input_.time.bulk_theta(),
@@ -82,6 +84,8 @@ namespace nsfd
       for (std::size_t i = 0; i < n_dofs; ++i)
         work_[i] -= h * velocity_[i];
     }
+    if (auto *const bodies = dynamic_cast<VelocitySolver *>(&delassus_))
+      return move_nodes(old, pressure, impulse, bodies->motion(), problem);
     delassus_.apply(DelassusOperator<dim>::Operator::inverse, work_.data(),
                     velocity_.data());
     for (std::size_t i = 0; i < n_dofs; ++i)
@@ -91,6 +95,57 @@ namespace nsfd
           crack_pressure_->impulse(pressure, h).data(), velocity_.data());
     delassus_.jumps(velocity_.data(), problem.free_velocity.data());
     delassus_.set_free_velocity(&velocity_);
+  }
+
+  /**
+   * Of bodies that share nodes the start of their motion under @p impulse: what
+   * iterations leave is made good by those of the step, and U_free is not
+   * needed.
+   */
+  template <int dim>
+  void FreeMotion<dim>::move_nodes(const State &old,
+                                   const std::vector<double> &pressure,
+                                   const std::vector<double> &impulse,
+                                   NodeMotion &motion,
+                                   OneStepProblem<dim> &problem)
+  {
+    constexpr double rough = 1e-3;
+    std::vector<double> start(problem.free_velocity.size());
+    delassus_.jumps(old.velocity.data(), start.data());
+    motion.start(work_, pressure_impulse(pressure, problem.time_step), start);
+    motion.balance(impulse, rough);
+    velocity_ = old.velocity;
+    motion.add_to(velocity_);
+    problem.free_motion = FreeVelocity::estimated;
+  }
+
+  template <int dim>
+  bool FreeMotion<dim>::find(const State &old, OneStepProblem<dim> &problem)
+  {
+    if (problem.free_motion == FreeVelocity::known)
+      return false;
+    auto &motion = dynamic_cast<VelocitySolver &>(delassus_).motion();
+    motion.balance(std::vector<double>(problem.free_velocity.size(), 0.), 0.);
+    velocity_ = old.velocity;
+    motion.add_to(velocity_);
+    delassus_.jumps(velocity_.data(), problem.free_velocity.data());
+    motion.cancel();
+    problem.free_motion = FreeVelocity::known;
+    return true;
+  }
+
+  template <int dim>
+  void FreeMotion<dim>::finish(const std::vector<double> &impulse,
+                               const State &old, State &next) const
+  {
+    auto *const bodies = dynamic_cast<VelocitySolver *>(&delassus_);
+    if (bodies && bodies->motion().is_on()) {
+      next.velocity = old.velocity;
+      bodies->motion().add_to(next.velocity);
+    } else {
+      next.velocity = velocity_;
+      delassus_.add_velocity_change(impulse.data(), next.velocity.data());
+    }
   }
 
   template <int dim>

@@ -11,6 +11,7 @@ namespace nsfd
 {
   struct SceneInput;
   struct State;
+  class NodeMotion;
   template <int dim>
   class CrackPressure;
 
@@ -51,17 +52,29 @@ namespace nsfd
 
     /**
      * v_free of the step from @p old, and U_free in @p problem, whose time step
-     * it is. @p elastic is K q_k of the explicit scheme, else null. Collective.
+     * it is. Bodies that share nodes know neither: v_free is their motion under
+     * the @p impulse of the points, to the digits of a scale. @p elastic is K
+     * q_k of the explicit scheme, else null. Collective.
      */
     void move(const State &old, const std::vector<double> &pressure,
-              OneStepProblem<dim> &problem,
+              OneStepProblem<dim> &problem, const std::vector<double> &impulse,
               const std::vector<double> *elastic = nullptr);
+    /** U_free of bodies that share nodes; false: it is known. Collective. */
+    bool find(const State &old, OneStepProblem<dim> &problem);
     /** v_free by unknown, m/s. */
     const std::vector<double> &velocity() const { return velocity_; }
+    /** v of @p next under the @p impulse of the points, after the solution of
+        the step from @p old. Collective. */
+    void finish(const std::vector<double> &impulse, const State &old,
+                State &next) const;
     /** v_free.M v_free, J. Collective. */
     double kinetic_product();
 
   private:
+    void move_nodes(const State &old, const std::vector<double> &pressure,
+                    const std::vector<double> &impulse, NodeMotion &motion,
+                    OneStepProblem<dim> &problem);
+
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     DelassusOperator<dim> &delassus_;

@@ -54,7 +54,7 @@ namespace nsfd
       std::fill(impulse.begin(), impulse.end(), 0.);
     v_ = old_->velocity;
     linearise();
-    parts_.free_motion.move(*old_, pressure_, parts_.problem);
+    parts_.free_motion.move(*old_, pressure_, parts_.problem, {});
     v_ = parts_.free_motion.velocity();
     parts_.delassus.add_velocity_change(impulse.data(), v_.data());
     bodies_.put_old_velocities(v_);

@@ -93,7 +93,10 @@ namespace nsfd
       ++this->counters_.load_assemblies;
     this->free_motion_.set_pressure(old, old.time + time.theta * h,
                                     next.pressure);
-    this->free_motion_.move(old, next.pressure, this->problem_,
+    next.impulse = old.impulse;
+    if (this->check_.starts_cold())
+      std::fill(next.impulse.begin(), next.impulse.end(), 0.);
+    this->free_motion_.move(old, next.pressure, this->problem_, next.impulse,
                             elastic_forces_ ? &elastic_forces_->at_start()
                                             : nullptr);
   }
@@ -111,16 +114,20 @@ namespace nsfd
     LawEvaluation<dim> evaluation(this->problem_, this->delassus_, energy_scale,
                                   this->input_.solver.tolerance);
     StepReport report;
-    next.impulse = old.impulse;
-    if (this->check_.starts_cold())
-      std::fill(next.impulse.begin(), next.impulse.end(), 0.);
     {
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
-      report.solver = this->step_problem_.solve(
-          solver_, this->problem_, origins,
-          this->step_problem_.control(idle_rounds), energy_scale, old,
-          next.impulse, evaluation);
+      const auto solve = [&] {
+        report.solver = this->step_problem_.solve(
+            solver_, this->problem_, origins,
+            this->step_problem_.control(idle_rounds), energy_scale, old,
+            next.impulse, evaluation);
+      };
+      solve();
+      // others of the cascade ask for U_free
+      if (!report.solver.converged &&
+          this->free_motion_.find(old, this->problem_))
+        solve();
     }
     save_problem<dim>(this->input_, this->problem_, this->delassus_, evaluation,
                       report.solver, old.step + 1, old.time);
@@ -166,9 +173,7 @@ namespace nsfd
     next.step = old.step + 1;
     next.time = old.time + h;
     next.last_step = h;
-    next.velocity = this->free_motion_.velocity();
-    this->delassus_.add_velocity_change(next.impulse.data(),
-                                        next.velocity.data());
+    this->free_motion_.finish(next.impulse, old, next);
     const std::size_t n = next.velocity.size();
     next.displacement.resize(n);
     for (std::size_t i = 0; i < n; ++i)

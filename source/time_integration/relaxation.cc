@@ -248,7 +248,7 @@ namespace nsfd
         bonds_->start_from_rest(h, free_motion_.loads(),
                                 free_motion_.pressure_impulse(pressure_, h), q);
       else
-        free_motion_.move(iterate_.at, pressure_, problem_);
+        free_motion_.move(iterate_.at, pressure_, problem_, {});
     }
     // the floor of the natural map: the largest forces so far
     const double share = std::max(1e-6, 1e-14 / tolerance);
@@ -278,7 +278,7 @@ namespace nsfd
       return report;
     std::vector<double> velocity, left;
     if (bonds_)
-      bonds_->finish_from_rest(h, impulse, velocity, left);
+      bonds_->finish_from_rest(h, velocity, left);
     else {
       velocity = free_motion_.velocity();
       delassus.add_velocity_change(impulse.data(), velocity.data());

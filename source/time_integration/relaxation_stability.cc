@@ -153,7 +153,7 @@ namespace nsfd
                              std::vector<double> &u) {
       if (nodes) { // to some more digits than the eigenvalue is known to
         std::vector<double> dP;
-        return nodes->solve_linearised(springs, true, f, dP, u, &f, 1e-6);
+        return nodes->solve_linearised(springs, f, 1e-6, dP, u);
       }
       std::vector<double> r(n), z(n, 0.);
       for (std::size_t k = 0; k < n; ++k)

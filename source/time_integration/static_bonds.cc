@@ -52,21 +52,28 @@ namespace nsfd
                                     const std::vector<double> &impulse,
                                     const std::vector<double> &displacement)
   {
-    std::vector<double> momentum = loads;
-    for (double &p : momentum)
-      p *= h;
-    nodes_.from_rest().start(h, momentum, impulse, displacement);
+    std::vector<double> momentum(loads.size());
+    bonded_.apply(DelassusOperator<dim>::Operator::stiffness,
+                  displacement.data(), momentum.data());
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      momentum[k] = h * (loads[k] - momentum[k]);
+    problem_.free_motion = FreeVelocity::unknown;
+    nodes_.motion().start(momentum, impulse,
+                          std::vector<double>(problem_.n_points * dim, 0.));
   }
 
   template <int dim>
   void StaticBonds<dim>::finish_from_rest(const double h,
-                                          const std::vector<double> &impulse,
                                           std::vector<double> &velocity,
                                           std::vector<double> &left)
   {
-    nodes_.from_rest().finish(impulse, velocity, left);
+    NodeMotion &motion = nodes_.motion();
+    velocity.assign(bonded_.bodies().n_dofs(), 0.);
+    motion.add_to(velocity);
+    left = motion.left_over();
     for (double &p : left)
       p /= h;
+    motion.cancel();
   }
 
   template <int dim>

@@ -44,15 +44,14 @@ namespace nsfd
     /** Supports once per node, after the data of a round. Collective. */
     void constrain();
 
-    /** A round of h from rest at @p displacement, see VelocitySolver; @p
+    /** A round of h from rest at @p displacement, see NodeMotion; @p
        impulse is that of the pressure in cracks, or empty. Collective. */
     void start_from_rest(double h, const std::vector<double> &loads,
                          const std::vector<double> &impulse,
                          const std::vector<double> &displacement);
     /** v, and the forces that are left over: F + H^T r - K q of its end.
         Collective. */
-    void finish_from_rest(double h, const std::vector<double> &impulse,
-                          std::vector<double> &velocity,
+    void finish_from_rest(double h, std::vector<double> &velocity,
                           std::vector<double> &left);
 
     /** Mean bulk tractions of bonded points. Collective. */

@@ -32,9 +32,20 @@ namespace nsfd
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
+    /// balance of the momenta at the start
+    constexpr double rough = 1e-3;
+    /// of the tolerance, what the momenta of the nodes may lack
+    constexpr double of_momenta = 1e-2;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
   } // namespace
+
+  /** See NodeMotion::solve(). */
+  template <int dim>
+  double AugmentedLagrangian<dim>::enough(const Work &work)
+  {
+    return of_momenta * work.tolerance;
+  }
 
   template <int dim>
   void AugmentedLagrangian<dim>::begin(const Work &work, const Vector &impulse)
@@ -49,23 +60,25 @@ namespace nsfd
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
     dU_.assign(n, 0.);
+    if (!work.motion.is_on())
+      work.motion.start({}, {}, problem.free_velocity);
     if (!from_rest_)
-      set_velocity(work);
+      work.motion.balance(impulse_, rough);
+    return_to(work, iterate(work));
   }
 
+  /** Momenta to round-off, with the present impulses. */
   template <int dim>
-  void AugmentedLagrangian<dim>::set_velocity(const Work &work)
+  void AugmentedLagrangian<dim>::polish(const Work &work)
   {
-    work.delassus.apply_delassus(impulse_.data(), velocity_.data());
-    for (std::size_t k = 0; k < velocity_.size(); ++k)
-      velocity_[k] += work.problem.free_velocity[k];
+    work.motion.balance(impulse_, 1e-16);
+    return_to(work, iterate(work));
   }
 
   template <int dim>
   auto AugmentedLagrangian<dim>::iterate(const Work &work) const -> Iterate
   {
-    return {impulse_, velocity_,
-            from_rest_ ? work.bodies.from_rest().motion() : Vector()};
+    return {impulse_, work.motion.motion()};
   }
 
   template <int dim>
@@ -73,9 +86,7 @@ namespace nsfd
                                            const Iterate &iterate)
   {
     impulse_ = iterate.impulse;
-    velocity_ = iterate.velocity;
-    if (from_rest_)
-      work.bodies.from_rest().set_motion(iterate.motion);
+    work.motion.set_motion(iterate.motion, impulse_, velocity_);
   }
 
   /** A from now on, with springs that are slack at the present impulses. */
@@ -253,14 +264,15 @@ namespace nsfd
     for (;;) {
       soften(work, 1.);
       answer(work, velocity_);
-      const double error = errors(work).defect;
-      // a start from rest balances from its first step on
-      const bool balances = !from_rest_ || work.report.newton > 0;
+      const bool balances = work.motion.balances(enough(work));
+      const double defect = errors(work).defect,
+                   error = balances ? defect
+                                    : std::max(defect, work.motion.imbalance());
       if (balances &&
           error <= (work.report.newton == 0 ? untouched : 1.) * work.tolerance)
         return true;
       idle = error < 0.5 * least ? 0 : idle + 1;
-      if (balances && error < least) {
+      if (error < least && (balances || !from_rest_)) {
         least = error;
         best = iterate(work);
       }
@@ -275,17 +287,14 @@ namespace nsfd
       remove_springs(work);
       if (symmetric)
         symmetrise(work, false);
-      // as far as a step of Newton's method is right; what is left at its end
-      // would go on into later steps
-      const double share = std::min(1e-2, 0.1 * error);
-      if (!solve_system(work, symmetric, share))
+      // as far as a step of Newton's method is right; the next one makes good
+      // what is left
+      const double share = from_rest_ ? 0. : std::min(1e-2, 0.1 * defect);
+      if (!solve_system(work, symmetric, enough(work), share))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k)
         impulse_[k] += dP_[k];
-      if (from_rest_)
-        work.bodies.from_rest().move(1., velocity_);
-      else
-        set_velocity(work);
+      work.motion.move(1., impulse_, velocity_);
     }
     if (least == none)
       return false;
@@ -293,19 +302,15 @@ namespace nsfd
     return false;
   }
 
-  /** dP and dU of the tangents, see VelocitySolver. Collective. */
+  /** dP and dU of the tangents, see NodeMotion. Collective. */
   template <int dim>
   bool AugmentedLagrangian<dim>::solve_system(const Work &work,
                                               const bool symmetric,
+                                              const double tolerance,
                                               const double share)
   {
-    return from_rest_
-               ? work.bodies.from_rest().solve(tangents_, symmetric, impulse_,
-                                               right_side_,
-                                               0.01 * work.tolerance, dP_, dU_)
-               : work.bodies.solve_linearised(
-                     tangents_, symmetric, right_side_, dP_, dU_,
-                     share > 0. ? &defect_ : nullptr, share);
+    return work.motion.solve(tangents_, symmetric, right_side_,
+                             {tolerance, share, defect_}, dP_, dU_);
   }
 
   /** Downhill; false where there is no such system. Collective. */
@@ -314,8 +319,9 @@ namespace nsfd
   {
     ++work.report.newton;
     set_right_side(work);
+    defect_ = right_side_;
     const auto solved = [&](const bool symmetric) {
-      return solve_system(work, symmetric, 0.) && slope(work, 0.) <= 0.;
+      return solve_system(work, symmetric, 0., 0.) && slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);
     if (symmetric)
@@ -357,12 +363,9 @@ namespace nsfd
       (value < 0. ? low : high) = length;
       (value < 0. ? at_low : at_high) = value;
     }
-    if (from_rest_)
-      work.bodies.from_rest().move(length, velocity_);
-    else
-      velocity_.swap(moved_);
     for (std::size_t k = 0; k < impulse_.size(); ++k)
       impulse_[k] += length * dP_[k];
+    work.motion.move(length, impulse_, velocity_);
   }
 
   template <int dim>
@@ -374,29 +377,29 @@ namespace nsfd
   {
     SolverReport report;
     const double tolerance = control.tolerance;
-    const Work work{
-        problem,    delassus,  dynamic_cast<VelocitySolver &>(delassus),
-        evaluation, tolerance, report};
-    from_rest_ = work.bodies.from_rest().is_on();
+    NodeMotion &motion = dynamic_cast<VelocitySolver &>(delassus).motion();
+    const Work work{problem, delassus, motion, evaluation, tolerance, report};
+    from_rest_ = problem.free_motion == FreeVelocity::unknown;
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
     double share = first_share;
     const auto judge = [&] {
       for (const std::size_t i : work.problem.acting)
         evaluation.solutions[i].reach = solutions_[i].reach;
-      if (from_rest_) {
-        evaluation.velocity = velocity_;
-        evaluation.update_laws(impulse_);
-      } else
-        evaluation.update(impulse_);
-      velocity_ = evaluation.velocity; // without the round-off of all changes
-      return evaluation.error <= tolerance;
+      if (!from_rest_)
+        polish(work); // momenta that are lost add up over steps
+      evaluation.velocity = velocity_;
+      evaluation.update_laws(impulse_);
+      return evaluation.error <= tolerance &&
+             (!from_rest_ || motion.balances(enough(work)));
     };
     bool solved = false;
     for (unsigned int k = 0; k < 2 && !solved && jump(work); ++k)
       solved = judge(); // anew where round-off was left
     Iterate start;      // of a stage
     if (!solved) {
+      if (!from_rest_)
+        polish(work);
       start = iterate(work);
       report.switches.push_back("multipliers");
       soften(work, share);
@@ -432,10 +435,8 @@ namespace nsfd
       answer(work, velocity_);
     }
     impulse = impulse_;
-    if (!solved)
-      judge();
+    report.converged = solved || judge();
     report.residual = evaluation.error;
-    report.converged = evaluation.error <= tolerance;
     return report;
   }
 

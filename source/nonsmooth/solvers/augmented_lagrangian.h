@@ -44,22 +44,23 @@ namespace nsfd
     struct Work {
       const OneStepProblem<dim> &problem;
       const DelassusOperator<dim> &delassus;
-      VelocitySolver &bodies; ///< the same
+      NodeMotion &motion; ///< of its bodies
       LawEvaluation<dim> &evaluation;
       double tolerance;
       SolverReport &report;
     };
 
-    /** What is sought: P, U, and the motion of nodes of a step from rest. */
+    /** What is sought: P, and the motion of the nodes. */
     struct Iterate {
-      Vector impulse, velocity, motion;
+      Vector impulse, motion;
     };
     struct Errors {
       double defect, shift;
     };
 
+    static double enough(const Work &work);
     void begin(const Work &work, const Vector &impulse);
-    void set_velocity(const Work &work);
+    void polish(const Work &work);
     Iterate iterate(const Work &work) const;
     void return_to(const Work &work, const Iterate &iterate);
     void soften(const Work &work, double share);
@@ -71,14 +72,15 @@ namespace nsfd
     void set_right_side(const Work &work);
     void remove_springs(const Work &work);
     bool jump(const Work &work);
-    bool solve_system(const Work &work, bool symmetric, double share);
+    bool solve_system(const Work &work, bool symmetric, double tolerance,
+                      double share);
     bool find_direction(const Work &work);
     void try_length(const Work &work, double length);
     void advance(const Work &work);
 
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
-    bool from_rest_ = false;           ///< U is that of the motion of the nodes
+    bool from_rest_ = false;           ///< a round of statics
     std::vector<LocalSolution<dim>> solutions_;
     Vector tangents_; ///< T, dim x dim per point
     Vector right_side_, defect_, dP_, dU_;

@@ -1,0 +1,168 @@
+#include "joined_motion.h"
+
+#include "node_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  template <int dim>
+  void JoinedMotion<dim>::start(const std::vector<double> &momentum,
+                                const std::vector<double> &impulse,
+                                const std::vector<double> &start)
+  {
+    is_on_ = true;
+    start_ = start;
+    const std::size_t n = bodies_.representative_.size();
+    momentum_.assign(n, 0.);
+    if (!momentum.empty())
+      bodies_.factor_.restrict_to_space(momentum, momentum_);
+    if (!impulse.empty()) {
+      std::vector<double> more;
+      bodies_.matrix().impulse(impulse.data(), more);
+      for (std::size_t k = 0; k < n; ++k)
+        momentum_[k] += more[k];
+    }
+    w_.assign(n, 0.);
+    dw_ = w_;
+    residual_ = momentum_;
+    bodies_.factor_.fold(residual_);
+    left_ = std::numeric_limits<double>::infinity();
+    scale_ = 1.;
+    is_done_ = false;
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::set_residual(const std::vector<double> &P)
+  {
+    const auto &matrix = bodies_.matrix();
+    std::vector<double> of_points, of_bodies;
+    matrix.impulse(P.data(), of_points);
+    bodies_.matrix().set_step(
+        bodies_.shares(bodies_.time_step_, bodies_.theta_));
+    matrix.apply_step(nullptr, w_, of_bodies);
+    const std::size_t n = w_.size();
+    for (std::size_t k = 0; k < n; ++k)
+      residual_[k] = momentum_[k] + of_points[k] - of_bodies[k];
+    bodies_.factor_.fold(residual_);
+    std::vector<double> squares(3 * n);
+    for (std::size_t k = 0; k < n; ++k) {
+      squares[k] = residual_[k] * residual_[k];
+      squares[n + k] = momentum_[k] * momentum_[k];
+      squares[2 * n + k] = of_points[k] * of_points[k];
+    }
+    const auto sums = bodies_.communicator_.sums(squares.data(), 3, n);
+    left_ = std::sqrt(sums[0]);
+    const double size = std::sqrt(sums[1]) + std::sqrt(sums[2]);
+    scale_ = size > 0. ? size : 1.;
+    is_done_ = false;
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::set_velocity(std::vector<double> &U) const
+  {
+    bodies_.matrix().velocity(w_, U.data());
+    for (std::size_t k = 0; k < U.size(); ++k)
+      U[k] += start_[k];
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::balance(const std::vector<double> &P,
+                                  const double tolerance)
+  {
+    set_residual(P);
+    is_done_ = true;
+    if (left_ <= tolerance * scale_)
+      return;
+    bodies_.rows_ = residual_;
+    bodies_.answer(std::clamp(tolerance * scale_ / left_, bodies_.tight, 0.1));
+    for (std::size_t k = 0; k < w_.size(); ++k)
+      w_[k] += bodies_.columns_[k];
+    set_residual(P);
+    is_done_ = true;
+  }
+
+  template <int dim>
+  bool
+  JoinedMotion<dim>::solve(const std::vector<double> &T, const bool symmetric,
+                           const std::vector<double> &c,
+                           const Accuracy &accuracy, std::vector<double> &dP,
+                           std::vector<double> &dU)
+  {
+    const std::size_t n = residual_.size();
+    std::vector<double> rows, of_defect;
+    bodies_.matrix().impulse(c.data(), rows);
+    bodies_.factor_.fold(rows);
+    bodies_.matrix().impulse(accuracy.defect.data(), of_defect);
+    bodies_.factor_.fold(of_defect);
+    std::vector<double> squares(2 * n);
+    for (std::size_t k = 0; k < n; ++k) {
+      rows[k] += residual_[k];
+      of_defect[k] += residual_[k];
+      squares[k] = rows[k] * rows[k];
+      squares[n + k] = of_defect[k] * of_defect[k];
+    }
+    const auto sums = bodies_.communicator_.sums(squares.data(), 2, n);
+    const double enough = accuracy.tolerance * scale_,
+                 first = accuracy.share * std::sqrt(sums[1]);
+    asks_all_ = first <= enough;
+    bodies_.rows_ = std::move(rows);
+    const double size = std::sqrt(sums[0]);
+    if (!bodies_.solve_tangent(
+            T, symmetric,
+            size > 0.
+                ? std::clamp(std::max(enough, first) / size, bodies_.tight, 0.1)
+                : 1.))
+      return false;
+    dw_ = bodies_.columns_;
+    dU.resize(c.size());
+    bodies_.matrix().velocity(dw_, dU.data());
+    answer_of_points<dim>(T, c, dU, dP);
+    return true;
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::move(const double length,
+                               const std::vector<double> &P,
+                               std::vector<double> &U)
+  {
+    for (std::size_t k = 0; k < w_.size(); ++k)
+      w_[k] += length * dw_[k];
+    set_residual(P);
+    is_done_ = asks_all_ && length == 1.;
+    set_velocity(U);
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::set_motion(const std::vector<double> &w,
+                                     const std::vector<double> &P,
+                                     std::vector<double> &U)
+  {
+    w_ = w;
+    set_residual(P);
+    set_velocity(U);
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::add_to(std::vector<double> &velocity) const
+  {
+    bodies_.factor_.add(w_, velocity.data());
+  }
+
+  template <int dim>
+  std::vector<double> JoinedMotion<dim>::left_over() const
+  {
+    std::vector<double> result(bodies_.bodies().n_dofs()), inertia;
+    bodies_.matrix().apply(Operator::mass, w_, inertia);
+    for (std::size_t k = 0; k < w_.size(); ++k)
+      inertia[k] += residual_[k];
+    bodies_.factor_.fold(inertia);
+    spread(bodies_.representative_, inertia, result.size(), result.data());
+    return result;
+  }
+
+  template class JoinedMotion<2>;
+  template class JoinedMotion<3>;
+} // namespace nsfd

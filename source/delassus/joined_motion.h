@@ -1,0 +1,51 @@
+#pragma once
+
+#include "joined_bodies.h"
+
+namespace nsfd
+{
+  /** Of bodies that share nodes. */
+  template <int dim>
+  class JoinedMotion final : public NodeMotion
+  {
+  public:
+    explicit JoinedMotion(JoinedBodies<dim> &bodies) : bodies_(bodies) {}
+
+    void start(const std::vector<double> &momentum,
+               const std::vector<double> &impulse,
+               const std::vector<double> &start) override;
+    bool is_on() const override { return is_on_; }
+    void cancel() override { is_on_ = false; }
+    void balance(const std::vector<double> &P, double tolerance) override;
+    bool solve(const std::vector<double> &T, bool symmetric,
+               const std::vector<double> &c, const Accuracy &accuracy,
+               std::vector<double> &dP, std::vector<double> &dU) override;
+    void move(double length, const std::vector<double> &P,
+              std::vector<double> &U) override;
+    const std::vector<double> &motion() const override { return w_; }
+    void set_motion(const std::vector<double> &w, const std::vector<double> &P,
+                    std::vector<double> &U) override;
+    double imbalance() const override { return left_ / scale_; }
+    bool balances(const double tolerance) const override
+    {
+      return is_done_ || imbalance() <= tolerance;
+    }
+    void add_to(std::vector<double> &velocity) const override;
+    std::vector<double> left_over() const override;
+
+  private:
+    using Operator = typename DelassusOperator<dim>::Operator;
+
+    void set_residual(const std::vector<double> &P);
+    void set_velocity(std::vector<double> &U) const;
+
+    JoinedBodies<dim> &bodies_;
+    bool is_on_ = false;
+    bool asks_all_ = false;     ///< the last solution left no more than it may
+    bool is_done_ = false;      ///< it has been taken in full
+    std::vector<double> start_; ///< U_0
+    /// own values of the space: p, w, dw and p - M_hat w + H^T P
+    std::vector<double> momentum_, w_, dw_, residual_;
+    double left_ = 0., scale_ = 1.; ///< sizes of the residual, and of its terms
+  };
+} // namespace nsfd
