@@ -127,7 +127,8 @@ end
         const double before = run.state.energy.numerical;
         const StepReport report = run.step();
         given = std::max(given, before - run.state.energy.numerical);
-        ASSERT_LT(report.solver.residual, 1e-12) << speed << " m/s at " << run.state.time;
+        ASSERT_LT(report.solver.residual, 1e-12)
+            << speed << " m/s at " << run.state.time;
         ASSERT_LT(report.balance_residual, 1e-13);
       }
       std::map<std::string, double> counters;
