@@ -264,10 +264,13 @@ namespace nsfd
     for (;;) {
       soften(work, 1.);
       answer(work, velocity_);
-      const bool balances = work.motion.balances(enough(work));
+      // a step from rest balances from its first iteration on
+      const bool balances = from_rest_ ? work.report.newton > 0
+                                       : work.motion.balances(enough(work));
       const double defect = errors(work).defect,
-                   error = balances ? defect
-                                    : std::max(defect, work.motion.imbalance());
+                   error = balances || from_rest_
+                               ? defect
+                               : std::max(defect, work.motion.imbalance());
       if (balances &&
           error <= (work.report.newton == 0 ? untouched : 1.) * work.tolerance)
         return true;
@@ -390,8 +393,7 @@ namespace nsfd
         polish(work); // momenta that are lost add up over steps
       evaluation.velocity = velocity_;
       evaluation.update_laws(impulse_);
-      return evaluation.error <= tolerance &&
-             (!from_rest_ || motion.balances(enough(work)));
+      return evaluation.error <= tolerance;
     };
     bool solved = false;
     for (unsigned int k = 0; k < 2 && !solved && jump(work); ++k)
