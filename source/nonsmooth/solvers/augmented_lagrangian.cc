@@ -34,6 +34,8 @@ namespace nsfd
     constexpr unsigned int patience = 4;
     /// balance of the momenta at the start
     constexpr double rough = 1e-3;
+    /// of the momenta, what a step may lose of them
+    constexpr double lost = 1e-15;
     /// of the tolerance, what the momenta of the nodes may lack
     constexpr double of_momenta = 1e-2;
     /// of springs that are stiffer than the first: then softer ones are taken
@@ -71,7 +73,7 @@ namespace nsfd
   template <int dim>
   void AugmentedLagrangian<dim>::polish(const Work &work)
   {
-    work.motion.balance(impulse_, 1e-16);
+    work.motion.balance(impulse_, lost);
     return_to(work, iterate(work));
   }
 
@@ -264,11 +266,16 @@ namespace nsfd
     for (;;) {
       soften(work, 1.);
       answer(work, velocity_);
+      const double defect = errors(work).defect;
+      if (!from_rest_ && work.report.newton == 0 &&
+          defect <= untouched * work.tolerance && !work.motion.balances(lost)) {
+        polish(work); // the impulses are right
+        continue;
+      }
       // a step from rest balances from its first iteration on
       const bool balances = from_rest_ ? work.report.newton > 0
                                        : work.motion.balances(enough(work));
-      const double defect = errors(work).defect,
-                   error = balances || from_rest_
+      const double error = balances || from_rest_
                                ? defect
                                : std::max(defect, work.motion.imbalance());
       if (balances &&
