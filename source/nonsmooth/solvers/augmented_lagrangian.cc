@@ -263,13 +263,15 @@ namespace nsfd
     double least = none;
     std::array<double, 2> before{least, least};
     unsigned int idle = 0;
+    bool polished = work.motion.balances(lost);
     for (;;) {
       soften(work, 1.);
       answer(work, velocity_);
       const double defect = errors(work).defect;
       if (!from_rest_ && work.report.newton == 0 &&
-          defect <= untouched * work.tolerance && !work.motion.balances(lost)) {
+          defect <= untouched * work.tolerance && !polished) {
         polish(work); // the impulses are right
+        polished = true;
         continue;
       }
       // a step from rest balances from its first iteration on
