@@ -431,13 +431,16 @@ namespace nsfd
   void JoinedBodies<dim>::serialize(Archive &archive)
   {
     JoinedDelassus<dim>::serialize(archive);
-    bool factored = valid_, condensed = !condensed_.empty();
+    bool factored = valid_, condensed = !condensed_.empty(),
+         general = tangent_.is_general();
+    auto means = unsigned(means_);
     std::size_t n_solves = n_solves_;
-    archive.numbers("bodies", factored, condensed, n_solves);
+    archive.numbers("bodies", factored, condensed, general, means, n_solves);
     archive.points("tangents", tangent_.springs());
     if (!archive.reads())
       return;
     valid_ = false;
+    means_ = Means(means);
     condensed_.clear();
     if (factored)
       update();
@@ -445,10 +448,8 @@ namespace nsfd
       n_solves_ = CondensedDelassus::largest; // enough for any
       condense();
     }
-    if (!tangent_.springs().empty() && !iterates())
-      factor_tangent(std::vector<double>(tangent_.springs()), false);
-    else
-      tangent_.clear(); // made anew from the springs alone
+    if (!tangent_.springs().empty())
+      factor_tangent(std::vector<double>(tangent_.springs()), general);
     n_solves_ = n_solves;
   }
 

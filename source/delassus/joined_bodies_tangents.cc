@@ -51,7 +51,9 @@ namespace nsfd
     };
     // a point that changes costs about an iteration, a factor some five of
     // them, blocks on the diagonal some two
-    const Fit fit = tangent_.fit(springs, iterates ? 2 : 5);
+    Fit fit = tangent_.fit(springs, iterates ? 2 : 5);
+    if (symmetric && tangent_.is_general())
+      fit = Fit::none; // conjugate gradients need a symmetric one
     if (iterates && symmetric && fit != Fit::none)
       tangent_.iterate_on(springs);
     if ((fit != Fit::none &&

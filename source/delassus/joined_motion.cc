@@ -37,11 +37,10 @@ namespace nsfd
   template <int dim>
   void JoinedMotion<dim>::set_residual(const std::vector<double> &P)
   {
-    const auto &matrix = bodies_.matrix();
+    auto &matrix = bodies_.matrix();
     std::vector<double> of_points, of_bodies;
     matrix.impulse(P.data(), of_points);
-    bodies_.matrix().set_step(
-        bodies_.shares(bodies_.time_step_, bodies_.theta_));
+    matrix.set_step(bodies_.shares(bodies_.time_step_, bodies_.theta_));
     matrix.apply_step(nullptr, w_, of_bodies);
     const std::size_t n = w_.size();
     for (std::size_t k = 0; k < n; ++k)
@@ -73,7 +72,6 @@ namespace nsfd
                                   const double tolerance)
   {
     set_residual(P);
-    is_done_ = true;
     if (left_ <= tolerance * scale_)
       return;
     bodies_.rows_ = residual_;
@@ -81,7 +79,6 @@ namespace nsfd
     for (std::size_t k = 0; k < w_.size(); ++k)
       w_[k] += bodies_.columns_[k];
     set_residual(P);
-    is_done_ = true;
   }
 
   template <int dim>

@@ -67,6 +67,7 @@ namespace nsfd
       return false;
     springs_ = springs;
     present_ = springs;
+    is_general_ = general;
     solver_.iterate_with(
         [this, &matrix](const std::vector<double> &x, std::vector<double> &y) {
           matrix.apply_step(present_.data(), x, y);

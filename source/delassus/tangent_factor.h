@@ -25,7 +25,11 @@ namespace nsfd
     /** Of this space from now on, without a factor. Collective. */
     void set_space(const CoarseSpace &space);
     /** The bodies are others: there is no factor. */
-    void clear() { springs_.clear(); }
+    void clear()
+    {
+      springs_.clear();
+      is_general_ = false;
+    }
 
     enum class Fit {
       exact, ///< the factor is that of these springs
@@ -49,6 +53,8 @@ namespace nsfd
     ConformingSolver &solver() { return solver_; }
     /** Those that were factored; empty: none. */
     std::vector<double> &springs() { return springs_; }
+    /** These need not be symmetric, and the preconditioner is not. */
+    bool is_general() const { return is_general_; }
 
   private:
     const DelassusOperator<dim> &delassus_;
@@ -56,5 +62,6 @@ namespace nsfd
     ConformingSolver solver_;
     NodeJacobi<dim> jacobi_;
     std::vector<double> springs_, present_;
+    bool is_general_ = false;
   };
 } // namespace nsfd

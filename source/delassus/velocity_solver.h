@@ -20,6 +20,10 @@ namespace nsfd
   public:
     virtual ~NodeMotion() = default;
 
+    /// what is enough of balance() at the start of a step, whose Newton steps
+    /// make good what is left
+    static constexpr double rough = 1e-3;
+
     /** What iterations may leave of the momenta: the larger one. */
     struct Accuracy {
       double tolerance;                  ///< of |p| + |H^T P|

@@ -109,11 +109,10 @@ namespace nsfd
                                    NodeMotion &motion,
                                    OneStepProblem<dim> &problem)
   {
-    constexpr double rough = 1e-3;
     std::vector<double> start(problem.free_velocity.size());
     delassus_.jumps(old.velocity.data(), start.data());
     motion.start(work_, pressure_impulse(pressure, problem.time_step), start);
-    motion.balance(impulse, rough);
+    motion.balance(impulse, NodeMotion::rough);
     velocity_ = old.velocity;
     motion.add_to(velocity_);
     problem.free_motion = FreeVelocity::estimated;
@@ -132,6 +131,18 @@ namespace nsfd
     motion.cancel();
     problem.free_motion = FreeVelocity::known;
     return true;
+  }
+
+  template <int dim>
+  void FreeMotion<dim>::estimate(const std::vector<double> &U,
+                                 const std::vector<double> &P,
+                                 OneStepProblem<dim> &problem) const
+  {
+    if (problem.free_motion != FreeVelocity::estimated)
+      return;
+    delassus_.apply_delassus(P.data(), problem.free_velocity.data());
+    for (std::size_t k = 0; k < U.size(); ++k)
+      problem.free_velocity[k] = U[k] - problem.free_velocity[k];
   }
 
   template <int dim>

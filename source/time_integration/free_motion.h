@@ -61,6 +61,10 @@ namespace nsfd
               const std::vector<double> *elastic = nullptr);
     /** U_free of bodies that share nodes; false: it is known. Collective. */
     bool find(const State &old, OneStepProblem<dim> &problem);
+    /** U_free of bodies that share nodes for those who ask for it after the
+        solution, U - W P; the step stays what it is. Collective. */
+    void estimate(const std::vector<double> &U, const std::vector<double> &P,
+                  OneStepProblem<dim> &problem) const;
     /** v_free by unknown, m/s. */
     const std::vector<double> &velocity() const { return velocity_; }
     /** v of @p next under the @p impulse of the points, after the solution of

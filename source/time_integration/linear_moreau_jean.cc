@@ -118,10 +118,10 @@ namespace nsfd
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
       const auto solve = [&] {
-        report.solver = this->step_problem_.solve(
+        report.solver.go_on_with(this->step_problem_.solve(
             solver_, this->problem_, origins,
             this->step_problem_.control(idle_rounds), energy_scale, old,
-            next.impulse, evaluation);
+            next.impulse, evaluation));
       };
       solve();
       // others of the cascade ask for U_free
@@ -129,6 +129,9 @@ namespace nsfd
           this->free_motion_.find(old, this->problem_))
         solve();
     }
+    if (this->input_.solver.save_problems != "none")
+      this->free_motion_.estimate(evaluation.velocity, next.impulse,
+                                  this->problem_);
     save_problem<dim>(this->input_, this->problem_, this->delassus_, evaluation,
                       report.solver, old.step + 1, old.time);
     this->check_.check_solution(h, old.time, report.solver,

@@ -21,13 +21,16 @@ namespace test_joined_delassus
 {
   using Vector = std::vector<double>;
 
-  const std::string solid = R"(
+  const std::string material = R"(
 subsection Material: solid
   set model         = linear elastic
   set Young modulus = 1
   set Poisson ratio = 0.3
   set density       = 1
 end
+)";
+
+  const std::string solid = material + R"(
 subsection Interface: all
   set law = bonded
 end
@@ -397,13 +400,7 @@ end
                               "  set type = rectangle\n"
                               "  set upper corner = 2, 1\n"
                               "  set cells = 4, 2\nend\n";
-    const std::string breakable = R"(
-subsection Material: solid
-  set model         = linear elastic
-  set Young modulus = 1
-  set Poisson ratio = 0.3
-  set density       = 1
-end
+    const std::string breakable = material + R"(
 subsection Interface: all
   set law       = camacho-ortiz
   set strength  = 1e-3

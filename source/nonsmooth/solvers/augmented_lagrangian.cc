@@ -32,8 +32,6 @@ namespace nsfd
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
-    /// balance of the momenta at the start
-    constexpr double rough = 1e-3;
     /// of the momenta, what a step may lose of them
     constexpr double lost = 1e-15;
     /// of the tolerance, what the momenta of the nodes may lack
@@ -62,10 +60,8 @@ namespace nsfd
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
     dU_.assign(n, 0.);
-    if (!work.motion.is_on())
-      work.motion.start({}, {}, problem.free_velocity);
     if (!from_rest_)
-      work.motion.balance(impulse_, rough);
+      work.motion.balance(impulse_, NodeMotion::rough);
     return_to(work, iterate(work));
   }
 
@@ -392,6 +388,9 @@ namespace nsfd
     NodeMotion &motion = dynamic_cast<VelocitySolver &>(delassus).motion();
     const Work work{problem, delassus, motion, evaluation, tolerance, report};
     from_rest_ = problem.free_motion == FreeVelocity::unknown;
+    const bool own = !motion.is_on(); // U_free is known, and w the rest
+    if (own)
+      motion.start({}, {}, problem.free_velocity);
     begin(work, impulse);
     const unsigned int most = control.iterations_or(80);
     double share = first_share;
@@ -448,6 +447,8 @@ namespace nsfd
     impulse = impulse_;
     report.converged = solved || judge();
     report.residual = evaluation.error;
+    if (own)
+      motion.cancel();
     return report;
   }
 

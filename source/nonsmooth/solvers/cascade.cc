@@ -112,11 +112,9 @@ namespace nsfd
         const std::vector<double> start(impulse);
         SolverReport report = joined_.solve(problem, delassus, energy_scale,
                                             control, impulse, evaluation);
-        NodeMotion &motion = dynamic_cast<VelocitySolver &>(delassus).motion();
         // others know no motion of nodes
         if (report.converged || problem.free_motion != FreeVelocity::known)
           return report;
-        motion.cancel();
         const std::vector<double> best(impulse);
         const double error = evaluation.error;
         impulse = start;
