@@ -79,7 +79,7 @@ namespace nsfd
                     : ""));
     }
 
-    struct Table {
+    struct ProblemTable {
       std::ostream &out;
       int width;
 
@@ -131,7 +131,7 @@ namespace nsfd
     if (bad)
       return exit_code::bad_input;
 
-    Table table{out, 7};
+    ProblemTable table{out, 7};
     for (const std::string &file : command.files)
       table.width = std::max(table.width, int(stem_of(file).size()));
     const bool several = problems.size() > 1, quiet = command.quiet;

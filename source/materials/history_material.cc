@@ -304,7 +304,7 @@ namespace nsfd
             Spectrum(forward(matrix(root), wanted))
                 .function([](const double c) { return std::sqrt(c); });
         const Mat3 result = G * matrix(forward(matrix(inverse), middle));
-        const double det = dot(result[0], cross(result[1], result[2]));
+        const double det = dot(result[0], space::cross(result[1], result[2]));
         return (1. / std::cbrt(det)) * result; // it is one to round-off
       }
     };

@@ -64,9 +64,9 @@ namespace nsfd
           if ((line.verdict == Of::bad) == is_bad)
             table.add_judged(line.name, line.value, line.bound,
                              text_of(line.verdict),
-                             line.verdict == Of::ok    ? Verdict::good
-                             : line.verdict == Of::bad ? Verdict::bad
-                                                       : Verdict::none,
+                             line.verdict == Of::ok    ? CardVerdict::good
+                             : line.verdict == Of::bad ? CardVerdict::bad
+                                                       : CardVerdict::none,
                              line.remark);
       return table.card("Certificate: " + certificate.verdict());
     }

@@ -107,11 +107,11 @@ pre{white-space:pre-wrap}}
   }
 
   void Table::add(const std::string &name, const std::string &value,
-                  const std::string &remark, const Verdict verdict)
+                  const std::string &remark, const CardVerdict verdict)
   {
-    const char *mark = verdict == Verdict::good  ? "<b class=\"good\">✓</b> "
-                       : verdict == Verdict::bad ? "<b class=\"bad\">⚠</b> "
-                                                 : "";
+    const char *mark = verdict == CardVerdict::good ? "<b class=\"good\">✓</b> "
+                       : verdict == CardVerdict::bad ? "<b class=\"bad\">⚠</b> "
+                                                     : "";
     rows_ += fmt::format("<tr><th>{}</th><td class=\"number\">{}</td>"
                          "<td class=\"remark\">{}{}</td></tr>\n",
                          escape_markup(name), escape_markup(value), mark,
@@ -120,11 +120,11 @@ pre{white-space:pre-wrap}}
 
   void Table::add_judged(const std::string &name, const std::string &value,
                          const std::string &bound, const std::string &verdict,
-                         const Verdict kind, const std::string &remark)
+                         const CardVerdict kind, const std::string &remark)
   {
-    const char *mark = kind == Verdict::good  ? "<b class=\"good\">✓</b> "
-                       : kind == Verdict::bad ? "<b class=\"bad\">⚠</b> "
-                                              : "– ";
+    const char *mark = kind == CardVerdict::good  ? "<b class=\"good\">✓</b> "
+                       : kind == CardVerdict::bad ? "<b class=\"bad\">⚠</b> "
+                                                  : "– ";
     rows_ += fmt::format("<tr><th>{}</th><td class=\"number\">{}</td>"
                          "<td class=\"number\">{}</td>"
                          "<td class=\"verdict\">{}{}</td>"

@@ -18,18 +18,19 @@ namespace nsfd
 
   std::string percent(double share);
 
-  enum class Verdict { none, good, bad };
+  enum class CardVerdict { none, good, bad };
 
   /** A table of one line per quantity: name, value, remark. */
   class Table
   {
   public:
     void add(const std::string &name, const std::string &value,
-             const std::string &remark = "", Verdict verdict = Verdict::none);
+             const std::string &remark = "",
+             CardVerdict verdict = CardVerdict::none);
     /** A row of five: name, value, bound, verdict in words, remark. */
     void add_judged(const std::string &name, const std::string &value,
                     const std::string &bound, const std::string &verdict,
-                    Verdict kind, const std::string &remark);
+                    CardVerdict kind, const std::string &remark);
     void add_sum(const std::string &name, const std::string &value);
     void add_group(const std::string &name);
     /** A bar of @p share of the width next to the value. */
