@@ -131,16 +131,17 @@ namespace nsfd
   }
 
   /**
-   * Values at the points of all bodies, complete at those that are shared with
-   * other ranks; bodies that share none work while the others' are on their
-   * way.
+   * Values at the points of the bodies of @p order, complete at those that are
+   * shared with other ranks; bodies that share none work while the others' are
+   * on their way.
    */
   template <int dim, typename Select, typename Gather>
-  void values_of_both_sides(const FaceTraces<dim> &traces, const Select &select,
+  void values_of_both_sides(const FaceTraces<dim> &traces,
+                            const BodyOrder &order, const Select &select,
                             const Gather &gather, std::vector<double> &side_1,
                             std::vector<double> &side_2)
   {
-    const auto &classes = traces.order().classes;
+    const auto &classes = order.classes;
     const auto scatter = slot_scatter<dim>(traces.bodies(), side_1, side_2);
     for (std::size_t k = 0; k < classes.size(); ++k)
       for_bodies(select(k), classes[k].bodies.data(), 0, classes[k].n_shared,

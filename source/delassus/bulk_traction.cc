@@ -14,6 +14,35 @@ namespace nsfd
     set_shares();
     side_1_.resize((share_.size() + 1) * dim);
     side_2_.resize((share_.size() + 1) * dim);
+    mark(std::vector<char>(delassus.points().faces.size(), 1));
+  }
+
+  template <int dim>
+  void BulkTraction<dim>::mark(const std::vector<char> &faces)
+  {
+    const auto &points = delassus_.points();
+    std::vector<char> is_at(delassus_.bodies().size(), 0);
+    marked_points_.clear();
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto &face = points.faces[f];
+      for (const int body : face.bodies)
+        if (faces[f] && body >= 0)
+          is_at[std::size_t(body)] = 1;
+      for (unsigned int i = face.first; faces[f] && i < face.first + face.count;
+           ++i)
+        marked_points_.push_back(i);
+    }
+    marked_ = delassus_.order();
+    for (auto &members : marked_.classes) {
+      std::size_t n_shared = 0, n = 0;
+      for (std::size_t k = 0; k < members.bodies.size(); ++k)
+        if (is_at[members.bodies[k]]) {
+          n_shared += k < members.n_shared;
+          members.bodies[n++] = members.bodies[k];
+        }
+      members.bodies.resize(n);
+      members.n_shared = n_shared;
+    }
   }
 
   template <int dim>
@@ -44,34 +73,28 @@ namespace nsfd
 
   template <int dim>
   void BulkTraction<dim>::evaluate(const double *displacement,
-                                   double *traction) const
+                                   const Where where, double *traction) const
   {
-    mean(&BodyClass::traction, displacement, traction);
+    mean(&BodyClass::traction, displacement, where, traction);
   }
 
   template <int dim>
   void BulkTraction<dim>::evaluate_viscous(const double *velocity,
+                                           const Where where,
                                            double *traction) const
   {
-    mean(&BodyClass::viscous_traction, velocity, traction);
+    mean(&BodyClass::viscous_traction, velocity, where, traction);
   }
 
   /** Blocks times the motion of the bodies, weighted, in the local frames. */
   template <int dim>
   void BulkTraction<dim>::mean(const Block BodyClass::*block,
-                               const double *motion, double *traction) const
+                               const double *motion, const Where where,
+                               double *traction) const
   {
     const auto &points = delassus_.points();
     const auto &bodies = delassus_.bodies();
-    std::fill(side_1_.begin(), side_1_.end(), 0.);
-    std::fill(side_2_.begin(), side_2_.end(), 0.);
-    values_of_both_sides(
-        delassus_,
-        [&](const std::size_t k) -> const Block & {
-          return bodies.classes[k].*block;
-        },
-        dof_gather(bodies, motion), side_1_, side_2_);
-    for (std::size_t i = 0; i < points.n_points; ++i) {
+    const auto add = [&](const std::size_t i) {
       const double *Q = points.frame.data() + i * dim * dim;
       double t[dim];
       // on the outward normals: n of body 1, -n of body 2, whose values are
@@ -85,7 +108,27 @@ namespace nsfd
           value += Q[k * dim + c] * t[c];
         traction[i * dim + k] = value;
       }
-    }
+    };
+    const bool all = where == Where::everywhere;
+    if (all) { // points without a body have nothing
+      std::fill(side_1_.begin(), side_1_.end(), 0.);
+      std::fill(side_2_.begin(), side_2_.end(), 0.);
+    } else
+      for (const unsigned int i : marked_points_)
+        for (unsigned int c = 0; c < dim; ++c)
+          side_1_[i * dim + c] = side_2_[i * dim + c] = 0.;
+    values_of_both_sides(
+        delassus_, all ? delassus_.order() : marked_,
+        [&](const std::size_t k) -> const Block & {
+          return bodies.classes[k].*block;
+        },
+        dof_gather(bodies, motion), side_1_, side_2_);
+    if (all)
+      for (std::size_t i = 0; i < points.n_points; ++i)
+        add(i);
+    else
+      for (const unsigned int i : marked_points_)
+        add(i);
   }
 
   template class BulkTraction<2>;

@@ -20,27 +20,39 @@ namespace nsfd
   class BulkTraction
   {
   public:
-    /** Collective. */
+    enum class Where {
+      everywhere,
+      marked ///< at the faces of mark()
+    };
+
+    /** All faces are marked. Collective. */
     explicit BulkTraction(const DelassusOperator<dim> &delassus);
+
+    /** By face: what a step asks for. A face of two ranks is marked on both. */
+    void mark(const std::vector<char> &faces);
 
     const DelassusOperator<dim> &delassus() const { return delassus_; }
 
     /**
-     * t at every point, in the local frames, in Pa, from the displacement of
-     * the bodies. Collective.
+     * t at the points, in the local frames, in Pa, from the displacement of the
+     * bodies; other points keep what they have. Collective.
      */
-    void evaluate(const double *displacement, double *traction) const;
+    void evaluate(const double *displacement, Where where,
+                  double *traction) const;
 
     /** Viscous stress in the same mean, from velocities. Collective. */
-    void evaluate_viscous(const double *velocity, double *traction) const;
+    void evaluate_viscous(const double *velocity, Where where,
+                          double *traction) const;
 
   private:
     void set_shares();
     void mean(const Block BodyClass::*traction, const double *motion,
-              double *result) const;
+              Where where, double *result) const;
 
     const DelassusOperator<dim> &delassus_;
     std::vector<std::array<double, 2>> share_; ///< omega, per point
+    BodyOrder marked_;                         ///< bodies at marked faces
+    std::vector<unsigned int> marked_points_;
     mutable std::vector<double> side_1_, side_2_;
   };
 } // namespace nsfd

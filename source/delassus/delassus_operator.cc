@@ -68,7 +68,7 @@ namespace nsfd
     ++counters_.delassus;
     this->to_cartesian(impulse);
     values_of_both_sides(
-        *this,
+        *this, this->order(),
         [this](const std::size_t k) -> const Block & {
           return blocks_[k].delassus;
         },

@@ -62,7 +62,7 @@ namespace nsfd
                                           double *result) const
   {
     values_of_both_sides(
-        *this,
+        *this, this->order(),
         [this](const std::size_t k) -> const Block & {
           return bodies_.classes[k].trace;
         },

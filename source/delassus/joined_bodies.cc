@@ -245,6 +245,7 @@ namespace nsfd
       return;
     const Charge charge(Cost::preconditioner);
     if (iterates()) {
+      jacobi_.clear();
       jacobi_.prepare(matrix(), nullptr);
       factor_.iterate_with(
           [this](const std::vector<double> &x, std::vector<double> &y) {

@@ -50,8 +50,10 @@ namespace nsfd
       return solve(tangent_.solver(), tolerance);
     };
     // a point that changes costs about an iteration, a factor some five of
-    // them, blocks on the diagonal some two
-    Fit fit = tangent_.fit(springs, iterates ? 2 : 5);
+    // them, blocks on the diagonal some two or, vertex by vertex, none
+    Fit fit = tangent_.fit(springs, !iterates             ? 5
+                                    : tangent_.is_cheap() ? 0
+                                                          : 2);
     if (symmetric && tangent_.is_general())
       fit = Fit::none; // conjugate gradients need a symmetric one
     if (iterates && symmetric && fit != Fit::none)

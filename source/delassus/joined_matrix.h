@@ -122,31 +122,36 @@ namespace nsfd
       std::vector<Entry> entries;
 
       /**
-       * For all pairs (row, column) of what a point with a spring sees:
+       * For all pairs (row, column) of what a point with the spring @p T sees:
        * @p work (row, column, T a), a of the column, dim x @p size.
        */
       template <typename Work>
-      void for_springs(const double *springs, unsigned int size,
+      void for_spring(const std::size_t i, const double *T,
+                      const unsigned int size, const Work &work) const
+      {
+        if (first[i] == first[i + 1] ||
+            std::all_of(T, T + dim * dim,
+                        [](const double t) { return t == 0.; }))
+          return;
+        for (std::size_t c = first[i]; c < first[i + 1]; ++c) {
+          const Entry &column = entries[c];
+          double product[dim * dim] = {};
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int e = 0; e < dim; ++e)
+              for (unsigned int l = 0; l < size; ++l)
+                product[d * size + l] +=
+                    T[d * dim + e] * column.all[e * size + l];
+          for (std::size_t r = first[i]; r < first[i + 1]; ++r)
+            work(entries[r], column, product);
+        }
+      }
+      /** The same of all points. */
+      template <typename Work>
+      void for_springs(const double *springs, const unsigned int size,
                        const Work &work) const
       {
-        for (std::size_t i = 0; i + 1 < first.size(); ++i) {
-          const double *T = springs + i * dim * dim;
-          if (first[i] == first[i + 1] ||
-              std::all_of(T, T + dim * dim,
-                          [](const double t) { return t == 0.; }))
-            continue;
-          for (std::size_t c = first[i]; c < first[i + 1]; ++c) {
-            const Entry &column = entries[c];
-            double product[dim * dim] = {};
-            for (unsigned int d = 0; d < dim; ++d)
-              for (unsigned int e = 0; e < dim; ++e)
-                for (unsigned int l = 0; l < size; ++l)
-                  product[d * size + l] +=
-                      T[d * dim + e] * column.all[e * size + l];
-            for (std::size_t r = first[i]; r < first[i + 1]; ++r)
-              work(entries[r], column, product);
-          }
-        }
+        for (std::size_t i = 0; i + 1 < first.size(); ++i)
+          for_spring(i, springs + i * dim * dim, size, work);
       }
     } sights_; ///< what points see of the blocks
     struct {

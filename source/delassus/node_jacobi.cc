@@ -1,5 +1,6 @@
 #include "node_jacobi.h"
 
+#include "linear_algebra/dense_lu.h"
 #include "linear_algebra/small_inverse.h"
 #include "linear_algebra/sparse_rows.h"
 
@@ -35,14 +36,115 @@ namespace nsfd
                 matrix.operators_.step[first + k * matrix.width(int(r)) + l];
       }
     std::vector<double> own;
-    inverse_.resize(n_own * width);
+    diagonal_.resize(n_own * width);
     for (unsigned int l = 0; l < size_; ++l) {
       for (std::size_t k = 0; k < matrix.shared_.values.size(); ++k)
         matrix.shared_.values[k] = all[k * size_ + l];
       matrix.return_ghosts(own);
       for (std::size_t k = 0; k < own.size(); ++k)
-        inverse_[k * size_ + l] = own[k];
+        diagonal_[k * size_ + l] = own[k];
     }
+    inverse_ = diagonal_;
+    for (std::size_t first = 0; first < inverse_.size(); first += width)
+      invert_in_place<dim>(&inverse_[first], size_, size_, 0.,
+                           [](const std::size_t) {});
+  }
+
+  /** Of what points here see, without nodes that other ranks see too.
+      Collective. */
+  template <int dim>
+  NodeClusters NodeJacobi<dim>::clusters_of(const JoinedMatrix<dim> &matrix)
+  {
+    const auto &sights = matrix.sights_;
+    auto &at_nodes = matrix.shared_.values;
+    const std::size_t n_own = std::size_t(matrix.n_own_);
+    std::fill(at_nodes.begin(), at_nodes.end(), 0.);
+    for (const auto &entry : sights.entries)
+      if (std::size_t(entry.block) >= n_own)
+        at_nodes[std::size_t(entry.block) * size_] = 1.;
+    std::vector<double> own;
+    matrix.return_ghosts(own);
+    std::vector<char> excluded(n_own + matrix.ghosts_.size(), 1);
+    for (std::size_t r = 0; r < n_own; ++r)
+      excluded[r] = own[r * size_] > 0.;
+    std::vector<int> nodes;
+    return NodeClusters(
+        excluded.size(), size_, sights.first.size() - 1,
+        [&](const std::size_t i) -> const std::vector<int> & {
+          nodes.clear();
+          for (std::size_t k = sights.first[i]; k < sights.first[i + 1]; ++k)
+            nodes.push_back(sights.entries[k].block);
+          return nodes;
+        },
+        excluded);
+  }
+
+  /** Those whose springs have changed. False: one has no inverse. */
+  template <int dim>
+  bool NodeJacobi<dim>::invert_clusters(const JoinedMatrix<dim> &matrix,
+                                        const std::vector<double> &springs,
+                                        const bool general)
+  {
+    const bool known =
+        springs_.size() == springs.size() && of_general_ == general;
+    const auto differs = [&](const std::size_t i) {
+      const auto first = springs.begin() + long(i * dim * dim);
+      return !std::equal(first, first + dim * dim,
+                         springs_.begin() + long(i * dim * dim));
+    };
+    bool positive = true;
+    std::vector<double> unit;
+    for (auto &cluster : clusters_.clusters) {
+      if (known &&
+          std::none_of(cluster.points.begin(), cluster.points.end(), differs))
+        continue;
+      const std::size_t n = cluster.nodes.size() * size_;
+      auto &a = cluster.inverse;
+      a.clear();
+      for (const std::size_t i : cluster.points)
+        matrix.sights_.for_spring(
+            i, &springs[i * dim * dim], size_,
+            [&](const auto &row, const auto &column, const double *product) {
+              a.resize(n * n, 0.);
+              const std::size_t first =
+                                    std::size_t(clusters_.place[row.block]) *
+                                    size_,
+                                other =
+                                    std::size_t(clusters_.place[column.block]) *
+                                    size_;
+              for (unsigned int k = 0; k < size_; ++k)
+                for (unsigned int l = 0; l < size_; ++l)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    a[(first + k) * n + other + l] +=
+                        row.own[d * size_ + k] * product[d * size_ + l];
+            });
+      if (a.empty())
+        continue; // no springs
+      for (std::size_t b = 0; b < cluster.nodes.size(); ++b)
+        for (unsigned int k = 0; k < size_; ++k)
+          for (unsigned int l = 0; l < size_; ++l)
+            a[(b * size_ + k) * n + b * size_ + l] +=
+                diagonal_[(std::size_t(cluster.nodes[b]) * size_ + k) * size_ +
+                          l];
+      if (!general) {
+        invert_in_place<NodeClusters::largest>(
+            a.data(), n, n, 0., [&](const std::size_t) { positive = false; });
+        continue;
+      }
+      DenseLU lu;
+      lu.reinit(int(n));
+      for (std::size_t k = 0; k < n; ++k)
+        std::copy_n(&a[k * n], n, lu.row(int(k)));
+      positive = positive && lu.factorise();
+      for (std::size_t l = 0; positive && l < n; ++l) {
+        unit.assign(n, 0.);
+        unit[l] = 1.;
+        lu.solve(unit.data());
+        for (std::size_t k = 0; k < n; ++k)
+          a[k * n + l] = unit[k];
+      }
+    }
+    return positive;
   }
 
   /**
@@ -92,7 +194,7 @@ namespace nsfd
       for (unsigned int k = 0; place[r] >= 0 && k < size_; ++k)
         for (unsigned int l = 0; l < size_; ++l)
           entries.push_back({number(int(r), k), number(int(r), l),
-                             inverse_[(r * size_ + k) * size_ + l]});
+                             diagonal_[(r * size_ + k) * size_ + l]});
     matrix.sights_.for_springs(
         springs, size_,
         [&](const auto &row, const auto &column, const double *product) {
@@ -113,38 +215,61 @@ namespace nsfd
   bool NodeJacobi<dim>::prepare(const JoinedMatrix<dim> &matrix,
                                 const double *springs, const bool general)
   {
-    size_ = matrix.size_;
-    set_diagonal(matrix);
+    if (!placed_) {
+      size_ = matrix.size_;
+      set_diagonal(matrix);
+      clustered_ = false;
+      placed_ = true;
+      by_vertex_ = false;
+      springs_.clear();
+    }
+    if (springs && !clustered_) {
+      clustered_ = true;
+      clusters_ = clusters_of(matrix);
+      const auto &covers = clusters_.covers;
+      by_vertex_ = !communicator_.any(
+          std::any_of(covers.begin(), covers.end(),
+                      [](const char covered) { return !covered; }));
+    }
     factor_.reset();
     general_.reset();
     stiffened_.clear();
-    if (springs && !factorise(matrix, springs, general))
-      return false;
-    for (std::size_t first = 0; first < inverse_.size(); first += size_ * size_)
-      invert_in_place<dim>(&inverse_[first], size_, size_, 0.,
-                           [](const std::size_t) {});
-    b_.resize(stiffened_.size());
-    x_.resize(stiffened_.size());
-    return true;
+    const std::vector<double> present(
+        springs,
+        springs + (springs ? clusters_.of_point.size() * dim * dim : 0));
+    bool done = !springs || invert_clusters(matrix, present, general);
+    if (springs && !by_vertex_)
+      done = factorise(matrix, present, general) && done;
+    springs_ = present;
+    of_general_ = general;
+    if (!communicator_.any(!done))
+      return true;
+    placed_ = false;
+    return false;
   }
 
-  /** B of the nodes at points with springs. */
+  /** B of the nodes at points with springs that are in no cluster. */
   template <int dim>
   bool NodeJacobi<dim>::factorise(const JoinedMatrix<dim> &matrix,
-                                  const double *springs, const bool general)
+                                  const std::vector<double> &springs,
+                                  const bool general)
   {
-    std::vector<double> transposed; // rows are the columns of SparseLU
-    for (std::size_t i = 0; general && i < matrix.points_.n_points; ++i)
-      for (unsigned int c = 0; c < dim; ++c)
+    std::vector<double> others(springs.size(), 0.);
+    for (std::size_t i = 0; i < clusters_.covers.size(); ++i)
+      for (unsigned int c = 0; c < dim && !clusters_.covers[i]; ++c)
         for (unsigned int d = 0; d < dim; ++d)
-          transposed.push_back(springs[(i * dim + d) * dim + c]);
+          // rows are the columns of SparseLU
+          others[(i * dim + c) * dim + d] =
+              springs[general ? (i * dim + d) * dim + c
+                              : (i * dim + c) * dim + d];
     CoarseSpace space;
-    const auto place =
-        number_stiffened(matrix, general ? transposed.data() : springs, space);
+    const auto place = number_stiffened(matrix, others.data(), space);
     for (std::size_t r = 0; r < place.size(); ++r)
       if (place[r] >= 0)
         for (unsigned int c = 0; c < size_; ++c)
           stiffened_.push_back(r * size_ + c);
+    b_.resize(stiffened_.size());
+    x_.resize(stiffened_.size());
     if (space.n_global == 0)
       return true;
     if (general) {
@@ -165,6 +290,21 @@ namespace nsfd
       for (unsigned int l = 0; l < size_; ++l)
         sum += block[l] * in[l];
       z[k] = sum;
+    }
+    double part[NodeClusters::largest];
+    for (const auto &cluster : clusters_.clusters) {
+      if (springs_.empty() || cluster.inverse.empty())
+        continue;
+      const std::size_t n = cluster.nodes.size() * size_;
+      for (std::size_t k = 0; k < n; ++k)
+        part[k] = r[std::size_t(cluster.nodes[k / size_]) * size_ + k % size_];
+      for (std::size_t k = 0; k < n; ++k) {
+        const double *row = &cluster.inverse[k * n];
+        double sum = 0.;
+        for (std::size_t l = 0; l < n; ++l)
+          sum += row[l] * part[l];
+        z[std::size_t(cluster.nodes[k / size_]) * size_ + k % size_] = sum;
+      }
     }
     if (!factor_ && !general_)
       return;

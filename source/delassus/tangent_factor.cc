@@ -62,7 +62,8 @@ namespace nsfd
                                         const std::vector<double> &springs,
                                         const bool general)
   {
-    clear();
+    springs_.clear();
+    is_general_ = false;
     if (!jacobi_.prepare(matrix, springs.data(), general))
       return false;
     springs_ = springs;

@@ -29,6 +29,7 @@ namespace nsfd
     {
       springs_.clear();
       is_general_ = false;
+      jacobi_.clear();
     }
 
     enum class Fit {
@@ -53,6 +54,8 @@ namespace nsfd
     ConformingSolver &solver() { return solver_; }
     /** Those that were factored; empty: none. */
     std::vector<double> &springs() { return springs_; }
+    /** The preconditioner is made anew at little cost. */
+    bool is_cheap() const { return jacobi_.is_by_vertex(); }
     /** These need not be symmetric, and the preconditioner is not. */
     bool is_general() const { return is_general_; }
 

@@ -132,9 +132,10 @@ namespace nsfd
                                 const double time_step)
   {
     last_step_ = time_step;
-    const bool is_shown =
-        !steps_.integrator().keeps_motion() || looks_at(state, report);
-    if (is_shown)
+    const bool is_due = looks_at(state),
+               keeps = steps_.integrator().keeps_motion(),
+               is_shown = is_due || report.separates || !keeps;
+    if (is_due || (keeps && report.separates))
       steps_.integrator().show(state);
     if (is_shown && report.separates)
       fragments_->update(state);
@@ -159,14 +160,13 @@ namespace nsfd
     write_if_due(state);
   }
 
-  /** Of an integrator that keeps the motion: somebody needs it now. */
+  /** Somebody needs now what an integrator keeps by itself. */
   template <int dim>
-  bool RunRecorder<dim>::looks_at(const State &state,
-                                  const StepReport &report) const
+  bool RunRecorder<dim>::looks_at(const State &state) const
   {
     constexpr unsigned int interval = 64; // of Extremes, in short steps
-    return observers_ || observer_ || report.separates ||
-           state.step % interval == 0 || output_->is_due(state);
+    return observers_ || observer_ || state.step % interval == 0 ||
+           output_->is_due(state);
   }
 
   template <int dim>

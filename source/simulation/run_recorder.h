@@ -76,7 +76,7 @@ namespace nsfd
     void observe(const State &state, const State *previous,
                  const HistoryRow &row);
     void write_if_due(const State &state, bool last = false);
-    bool looks_at(const State &state, const StepReport &report) const;
+    bool looks_at(const State &state) const;
     void say(const std::vector<std::string> &sentences);
     void fill_summary(const State &state, const std::string &failure);
 

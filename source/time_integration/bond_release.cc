@@ -115,19 +115,34 @@ namespace nsfd
   }
 
   template <int dim>
-  void set_bond_tractions(const BulkTraction<dim> &bulk, State &state)
+  void set_bond_tractions(const BulkTraction<dim> &bulk, State &state,
+                          const typename BulkTraction<dim>::Where where)
   {
     state.bond_traction.resize(state.jump.size());
-    bulk.evaluate(state.displacement.data(), state.bond_traction.data());
+    bulk.evaluate(state.displacement.data(), where, state.bond_traction.data());
     if (bulk.delassus().viscous_theta() > 0.) {
       std::vector<double> viscous(state.jump.size());
-      bulk.evaluate_viscous(state.velocity.data(), viscous.data());
+      bulk.evaluate_viscous(state.velocity.data(), where, viscous.data());
       for (std::size_t k = 0; k < viscous.size(); ++k)
         state.bond_traction[k] += viscous[k];
     }
     for (std::size_t i = 0; i < state.kind.size(); ++i)
       if (state.kind[i] != PointKind::bonded)
         std::fill_n(&state.bond_traction[i * dim], dim, 0.);
+  }
+
+  template <int dim>
+  std::vector<char> breakable_faces(const OneStepProblem<dim> &problem,
+                                    const InterfacePoints<dim> &points)
+  {
+    std::vector<char> result(points.faces.size());
+    for (std::size_t f = 0; f < result.size(); ++f) {
+      const auto &face = points.faces[f];
+      result[f] =
+          face.count > 0 &&
+          problem.interactions[problem.interaction[face.first]].law != nullptr;
+    }
+    return result;
   }
 
   namespace
@@ -231,7 +246,7 @@ namespace nsfd
                            const State &old, State &next)
   {
     const auto &communicator = bulk.delassus().communicator();
-    set_bond_tractions(bulk, next);
+    set_bond_tractions(bulk, next, BulkTraction<dim>::Where::marked);
     BondReport report;
     std::vector<double> in_laws(problem.n_owned, 0.);
     unsigned int released = 0;
@@ -261,14 +276,17 @@ namespace nsfd
     next.energy.cohesive += gained;
     next.energy.numerical -= gained;
     hold_by_rows(problem, bonded, next);
-    set_bond_tractions(bulk, next);
+    set_bond_tractions(bulk, next, BulkTraction<dim>::Where::marked);
     return report;
   }
 
 #define INSTANTIATE(dim)                                                       \
   template void hold_by_rows(const OneStepProblem<dim> &,                      \
                              JoinedDelassus<dim> &, State &);                  \
-  template void set_bond_tractions(const BulkTraction<dim> &, State &);        \
+  template void set_bond_tractions(const BulkTraction<dim> &, State &,         \
+                                   BulkTraction<dim>::Where);                  \
+  template std::vector<char> breakable_faces(const OneStepProblem<dim> &,      \
+                                             const InterfacePoints<dim> &);    \
   template double opening_at_release(const OneStepProblem<dim> &,              \
                                      std::size_t);                             \
   template std::vector<std::pair<std::size_t, BondWay>> points_at_share(       \

@@ -31,10 +31,17 @@ namespace nsfd
 
   /**
    * {sigma n} at the bonded points of @p state, with the viscous stress, zero
-   * elsewhere. Collective.
+   * where nothing is bonded. Collective.
    */
   template <int dim>
-  void set_bond_tractions(const BulkTraction<dim> &bulk, State &state);
+  void set_bond_tractions(const BulkTraction<dim> &bulk, State &state,
+                          typename BulkTraction<dim>::Where where =
+                              BulkTraction<dim>::Where::everywhere);
+
+  /** Those with a law: for BulkTraction::mark(). */
+  template <int dim>
+  std::vector<char> breakable_faces(const OneStepProblem<dim> &problem,
+                                    const InterfacePoints<dim> &points);
 
   /** How far a bonded point is on its way to its strength; 1: there. */
   struct BondWay {

@@ -26,8 +26,10 @@ namespace nsfd
   {
     if (input.time.scheme.explicit_forces)
       elastic_forces_ = std::make_unique<ElasticForces<dim>>(delassus);
-    if (input.has_bonded_faces())
+    if (input.has_bonded_faces()) {
       bulk_ = std::make_unique<BulkTraction<dim>>(delassus);
+      bulk_->mark(breakable_faces(this->problem_, delassus.points()));
+    }
   }
 
   template <int dim>
@@ -41,6 +43,14 @@ namespace nsfd
     if (bulk_)
       set_bond_tractions(*bulk_, state);
     return state;
+  }
+
+  /** A step has the tractions of faces that can break alone. */
+  template <int dim>
+  void LinearMoreauJean<dim>::show(State &state) const
+  {
+    if (bulk_)
+      set_bond_tractions(*bulk_, state);
   }
 
   template <int dim>

@@ -30,6 +30,7 @@ namespace nsfd
 
     State initial_state() const override;
     void complete(State &state) const override;
+    void show(State &state) const override;
     /** Rejected is what was not solved to the tolerance. */
     StepReport
     advance(const State &old, double time_step, State &next,

@@ -144,7 +144,8 @@ namespace nsfd
      * to date only after show().
      */
     virtual bool keeps_motion() const { return false; }
-    /** Brings them up to date in @p state, the last one. */
+    /** Brings them up to date in @p state, the last one, and what no step needs
+        but who looks at it. */
     virtual void show(State &state) const { (void)state; }
 
     /** Force on each driven boundary in the last step, N, dim per boundary. */
