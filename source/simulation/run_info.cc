@@ -65,7 +65,10 @@ namespace nsfd
     for (const auto &[keyword, sentence] : motion_report(input))
       parts.emplace_back(keyword, sentence);
     for (const auto &block : input.interfaces) {
-      parts.emplace_back("interface " + block.name, block.law_name);
+      const bool joined =
+          block.law_name == "rigid" || block.law_name == "bonded";
+      parts.emplace_back("interface " + block.name,
+                         joined ? "joined" : block.law_name);
       if (block.strength_scatter.is_random() ||
           block.toughness_scatter.is_random())
         info.seeds.push_back(block.seed);

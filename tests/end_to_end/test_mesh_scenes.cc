@@ -99,7 +99,8 @@ namespace end_to_end::test_mesh_scenes
     const Workspace workspace;
     Launch launch;
     launch.file = benchmark("notched_plate_3d");
-    launch.set = {"Boundary: left/velocity x=0", "Time/end=1.2 us",
+    launch.set = {"Boundary: left/velocity x=0", "Time/scheme=moreau-jean",
+                  "Time/step=1 courant", "Time/end=1.2 us",
                   "Output/fields every=0.4 us"};
     const Result result = good_run(workspace, "plate", launch);
     ASSERT_TRUE(result.completed()) << result.description();

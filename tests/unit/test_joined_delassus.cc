@@ -187,7 +187,9 @@ end
     EXPECT_NEAR(dot(u, Ku), alone, 1e-9 * alone);
 
     Vector traction(scene.state.jump.size());
-    BulkTraction<dim>(*scene.delassus).evaluate(u.data(), traction.data());
+    BulkTraction<dim>(*scene.delassus)
+        .evaluate(u.data(), BulkTraction<dim>::Where::everywhere,
+                  traction.data());
     const double lambda = 0.3 / (1.3 * 0.4), mu = 1. / 2.6;
     const auto &points = scene.discretization->points();
     for (std::size_t i = 0; i < points.n_points; ++i) {
@@ -305,7 +307,22 @@ end
           value[1] = 0.;
         });
     Vector traction(scene.state.jump.size());
-    BulkTraction<2>(*scene.delassus).evaluate(u.data(), traction.data());
+    BulkTraction<2>(*scene.delassus)
+        .evaluate(u.data(), BulkTraction<2>::Where::everywhere,
+                  traction.data());
+    // at the faces that are marked it is the same, others keep what they have
+    BulkTraction<2> bulk(*scene.delassus);
+    const auto &faces = scene.discretization->points().faces;
+    std::vector<char> marked(faces.size(), 0);
+    for (std::size_t f = 0; f < faces.size(); f += 3)
+      marked[f] = 1;
+    bulk.mark(marked);
+    Vector some(traction.size(), -7.);
+    bulk.evaluate(u.data(), BulkTraction<2>::Where::marked, some.data());
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (unsigned int k = 2 * faces[f].first;
+           k < 2 * (faces[f].first + faces[f].count); ++k)
+        EXPECT_EQ(some[k], marked[f] ? traction[k] : -7.);
     const double expected = 0.3 / (1.3 * 0.4) + 2. / 2.6; // lambda + 2 mu
     bool any = false;
     for (std::size_t i = 0; i < scene.state.kind.size(); ++i)
