@@ -225,7 +225,8 @@ namespace nsfd
   template <int dim>
   void JoinedBodies<dim>::reinit(const double time_step, const double theta)
   {
-    if (time_step != this->time_step_ || theta != this->theta_) {
+    if (time_step != this->time_step_ || theta != this->theta_ ||
+        means_ == Means::factors_once) {
       valid_ = false;
       means_ = Means::unknown;
       tangent_.clear();
@@ -293,7 +294,7 @@ namespace nsfd
     }
     ++n_solves_;
     if (!solve(factor_, tolerance) && iterates()) {
-      means_ = Means::factors; // for the rest of the step
+      means_ = Means::factors_once;
       valid_ = false;
       return answer(tolerance);
     }
@@ -315,7 +316,7 @@ namespace nsfd
       ++this->counters_.global_solves;
       if (outcome.converged || !iterates())
         return;
-      means_ = Means::factors; // for the rest of the step
+      means_ = Means::factors_once;
       valid_ = false;
       return apply(op, x, y);
     }

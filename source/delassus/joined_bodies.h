@@ -81,8 +81,9 @@ namespace nsfd
     mutable bool placed_ = false;     ///< matrix_ is that of the present space
     mutable ConformingSolver factor_; ///< of M_hat
     mutable NodeJacobi<dim> jacobi_;  ///< the same, in short steps
-    /// of the present step: factors, or conjugate gradients
-    enum class Means { unknown, factors, iterations };
+    /// factors, for the rest of a step where iterations have failed, or
+    /// conjugate gradients
+    enum class Means { unknown, factors, factors_once, iterations };
     mutable Means means_ = Means::unknown;
     TangentFactor<dim> tangent_;
     mutable bool valid_ = false;       ///< factor_

@@ -64,7 +64,7 @@ namespace nsfd
       return true;
     if (!iterates)
       return false;
-    means_ = Means::factors; // for the rest of the step
+    means_ = Means::factors_once;
     valid_ = false;
     tangent_.clear();
     return solve_tangent(T, symmetric, tolerance);
