@@ -468,7 +468,7 @@ namespace nsfd
       scene.equilibria_at_nodes = shares;
       for (InterfaceInput &interface : scene.interfaces)
         if (shares
-                ? scheme.theta_scheme && interface.intact == IntactFaces::rigid
+                ? interface.intact == IntactFaces::rigid
                 : !scheme.at_nodes && interface.intact == IntactFaces::bonded) {
           interface.intact = shares ? IntactFaces::bonded : IntactFaces::rigid;
           if (!interface.law)

@@ -78,7 +78,12 @@ namespace nsfd
   std::vector<double> HeldLaws<dim>::joint_shares() const
   {
     std::vector<double> shares;
-    if (has_extrinsic_) {
+    // rows ask for a system of all of them, common nodes do not
+    const auto &kind = iterate_.old->kind;
+    const bool by_rows =
+        has_extrinsic_ &&
+        std::find(kind.begin(), kind.end(), PointKind::rigid) != kind.end();
+    if (delassus_.communicator().any(by_rows)) {
       std::vector<double> impulse = iterate_.force;
       for (double &P : impulse)
         P *= iterate_.h;
