@@ -145,7 +145,7 @@ namespace end_to_end::test_plug_ins
     write_text(folder / "CMakeLists.txt",
                "cmake_minimum_required(VERSION 3.22)\n"
                "project(headers LANGUAGES CXX)\n"
-               "find_package(nsfd 0.1 REQUIRED)\n"
+               "find_package(nsfd REQUIRED)\n"
                "file(GLOB files *.cc)\n"
                "nsfd_add_plug_in(headers ${files})\n");
     build(folder, "headers");
