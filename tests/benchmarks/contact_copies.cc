@@ -1,7 +1,8 @@
 // Stored contact problems and copies of them, by the cascade: is the answer
 // luck of an order or of a digit? Not part of the test suite.
 //
-//   contact_copies [--details] [--tolerance T] [--copies N] [PROBLEM.hdf5 ...]
+//   contact_copies [--details] [--tolerance T] [--attempts N] [--copies N]
+//                  [PROBLEM.hdf5 ...]
 //
 // Without names the problems are those of the folder that the environment
 // variable NSFD_CONTACT_PROBLEMS names; without it nothing is done. Of every
@@ -30,6 +31,7 @@ namespace
   struct Options {
     bool details = false;
     double tolerance = 1e-8;
+    unsigned int attempts = 1000; ///< as `nsfd solve`
     unsigned int relabelled = 4, perturbed = 2;
     std::vector<std::string> files;
   };
@@ -66,6 +68,7 @@ namespace
     const AssembledMethod<ContactMethod::automatic> solver;
     SolverControl control;
     control.tolerance = options.tolerance;
+    control.attempts = options.attempts;
     std::vector<double> r = problem.guess;
     const double start = cpu_seconds();
     const SolverReport report =
@@ -74,9 +77,9 @@ namespace
     count.add(report.converged, report.residual, seconds);
     if (options.details)
       fmt::print("    {:<14} {:.1e} {:>9.1f} ms {:>7} iterations, {:>4} "
-                 "hand-overs, {}\n",
+                 "attempts, best {}: {}\n",
                  name, report.residual, 1e3 * seconds, report.iterations,
-                 report.switches.size(), report.solver);
+                 report.attempts, report.best_attempt, report.solver);
   }
 
   Options read_options(const int argc, char **argv)
@@ -87,6 +90,8 @@ namespace
         options.details = true;
       else if (!std::strcmp(argv[i], "--tolerance") && i + 1 < argc)
         options.tolerance = std::atof(argv[++i]);
+      else if (!std::strcmp(argv[i], "--attempts") && i + 1 < argc)
+        options.attempts = unsigned(std::atoi(argv[++i]));
       else if (!std::strcmp(argv[i], "--copies") && i + 1 < argc)
         options.relabelled = options.perturbed = unsigned(std::atoi(argv[++i]));
       else
