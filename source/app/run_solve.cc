@@ -193,13 +193,12 @@ namespace nsfd
                                          std::ostream &err, bool &bad)
     {
       std::vector<ContactProblem> problems;
-      for (const std::string &file : command.files)
-        try {
-          problems.push_back(read_fclib(file));
-        } catch (const BadContactFile &error) {
-          err << "nsfd solve: " << error.what() << "\n";
-          bad = true;
-        }
+      for (ReadProblem &answer : read_fclib(command.files)) {
+        if (!answer.error.empty())
+          err << "nsfd solve: " << answer.error << "\n";
+        bad |= !answer.error.empty();
+        problems.push_back(std::move(answer.problem));
+      }
       return problems;
     }
   } // namespace
