@@ -68,6 +68,8 @@ namespace nsfd
         for (std::size_t j = 0; j < impulse.size(); ++j)
           s.r[j] = impulse[j] / s.problem.impulse_unit;
         s.judge();
+        if (std::isnan(s.error)) // no start at all
+          s.restore_best();
       }
       if (!s.solved()) {
         run(method, s, control);

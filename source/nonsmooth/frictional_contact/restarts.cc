@@ -81,8 +81,10 @@ namespace nsfd::stored
     // none of these solves most problems, each has solved some that others did
     // not; one that gets on goes on
     unsigned int kind = 0;
-    for (unsigned int k = 0;
-         s.attempts < attempts && s.work < budget && !s.solved(); ++k) {
+    const double round_off = 4. * std::numeric_limits<double>::epsilon();
+    for (unsigned int k = 0; s.attempts < attempts && s.work < budget &&
+                             !s.solved() && s.best_error > round_off;
+         ++k) {
       Dice dice(k);
       const bool little = k % 2;
       const double before = s.best_error;
