@@ -17,7 +17,7 @@ namespace nsfd
 
     /// of the cascade for problems whose W is assembled: the first one and
     /// restarts. In a run a step that is not solved has other cures.
-    unsigned int attempts = 10;
+    unsigned int attempts = 6;
 
     unsigned int iterations_or(const unsigned int own) const
     {
