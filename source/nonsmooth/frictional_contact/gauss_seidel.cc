@@ -12,34 +12,27 @@ namespace nsfd::stored
   }
 
   template <int d>
-  inline void Sweeps<d>::visit(const int i)
+  void Sweeps<d>::run(const unsigned int count)
   {
     const BlockProblem<d> &p = s_.problem;
     double *const r = s_.r.data();
-    double b[d];
-    std::copy(&p.q[d * i], &p.q[d * i] + d, b);
-    const double *w = &p.block[std::size_t(d * d) * p.start[i]];
-    for (int k = p.start[i]; k < p.start[i + 1]; ++k, w += d * d) {
-      if (k == p.diagonal[i])
-        continue;
-      const double *const x = r + d * p.column[k];
-      for (int c = 0; c < d; ++c)
-        for (int e = 0; e < d; ++e)
-          b[c] += w[d * c + e] * x[e];
-    }
-    contacts_[i].solve(b, r + d * i);
-  }
-
-  template <int d>
-  void Sweeps<d>::run(const unsigned int count)
-  {
+    const int *const order = order_.empty() ? nullptr : order_.data();
     for (unsigned int sweep = 0; sweep < count; ++sweep)
-      if (order_.empty())
-        for (int i = 0; i < s_.problem.n; ++i)
-          visit(i);
-      else
-        for (const int i : order_)
-          visit(i);
+      for (int place = 0; place < p.n; ++place) {
+        const int i = order ? order[place] : place;
+        double b[d];
+        std::copy(&p.q[d * i], &p.q[d * i] + d, b);
+        const double *w = &p.block[std::size_t(d * d) * p.start[i]];
+        for (int k = p.start[i]; k < p.start[i + 1]; ++k, w += d * d) {
+          if (k == p.diagonal[i])
+            continue;
+          const double *const x = r + d * p.column[k];
+          for (int c = 0; c < d; ++c)
+            for (int e = 0; e < d; ++e)
+              b[c] += w[d * c + e] * x[e];
+        }
+        contacts_[i].solve(b, r + d * i);
+      }
     s_.iterations += count;
     s_.count_products(count);
   }

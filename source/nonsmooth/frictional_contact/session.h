@@ -186,8 +186,6 @@ namespace nsfd::stored
     void run(unsigned int count);
 
   private:
-    void visit(int i);
-
     Session<d> &s_;
     std::vector<int> order_;
     std::vector<OneContact<d>> contacts_;
