@@ -128,6 +128,10 @@ namespace end_to_end::test_solve
       EXPECT_TRUE(contains(read_text(folder / file.filename()), "solution"));
     const Outcome again = nsfd(workspace, {"solve", "answers"});
     EXPECT_EQ(again.exit_code, 0) << again.err;
+    nsfd(workspace, {"solve", problems().string(), "--write", "same"});
+    for (const fs::path &file : files_of(folder))
+      EXPECT_EQ(read_text(workspace.path() / "same" / file.filename()),
+                read_text(file));
 
     // nothing is solved where one of them would meet a file, or another
     const std::string before = read_text(folder / "pile_3d.hdf5");
