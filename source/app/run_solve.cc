@@ -1,4 +1,5 @@
 #include "core/exit_code.h"
+#include "core/output_folder.h"
 #include "core/stopwatch.h"
 #include "nonsmooth/frictional_contact/fclib.h"
 #include "nonsmooth/solvers/contact_solvers.h"
@@ -8,14 +9,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <ostream>
 
 namespace nsfd
 {
   namespace
   {
+    namespace fs = std::filesystem;
+
     struct Result {
       SolverReport report;
+      std::vector<double> impulse;
       double seconds = 0.;
       unsigned int runs = 0;
     };
@@ -26,6 +31,7 @@ namespace nsfd
     {
       SolverControl control;
       control.tolerance = command.tolerance;
+      control.attempts = command.attempts;
       Result result;
       double total = 0.;
       for (unsigned int k = 0; k < 20 && (k == 0 || total < 0.1); ++k) {
@@ -37,6 +43,7 @@ namespace nsfd
         result.seconds = k == 0 ? seconds : std::min(seconds, result.seconds);
         total += seconds;
         ++result.runs;
+        result.impulse = std::move(impulse);
       }
       return result;
     }
@@ -63,6 +70,9 @@ namespace nsfd
       line("solver", report.solver);
       for (const std::string &hand_over : report.switches)
         line("hand-over", hand_over);
+      if (report.attempts > 1)
+        line("attempts", fmt::format("{}; the answer is of number {}",
+                                     report.attempts, report.best_attempt));
       line("iterations",
            fmt::format("{} ({} products with W, {} factorisations)",
                        report.iterations, report.products,
@@ -86,7 +96,7 @@ namespace nsfd
       void header() const
       {
         out << fmt::format("{:<{}}  d contacts  {:<14} iterations factors "
-                           "hand-overs  residual     CPU time\n",
+                           "hand-overs  residual     CPU time attempts\n",
                            "problem", width, "solver");
       }
       void row(const std::string &name, const ContactProblem &problem,
@@ -94,31 +104,101 @@ namespace nsfd
       {
         const SolverReport &report = result.report;
         out << fmt::format(
-            "{:<{}}  {} {:>8}  {:<14} {:>10} {:>7} {:>10}  {:.2e} {:>12}{}\n",
+            "{:<{}}  {} {:>8}  {:<14} {:>10} {:>7} {:>10}  {:.2e} {:>12} "
+            "{:>8}{}\n",
             name, width, problem.dimension, problem.n_contacts(), report.solver,
             report.iterations, report.factorisations, report.switches.size(),
-            report.residual, milliseconds(result.seconds),
+            report.residual, milliseconds(result.seconds), report.attempts,
             report.converged ? "" : "  NOT SOLVED");
       }
     };
 
     std::string stem_of(const std::string &file)
     {
-      return std::filesystem::path(file).stem().string();
+      return fs::path(file).stem().string();
     }
+
+    /** Where the answers go: files of the same names in one folder, and none of
+     * them over a file. */
+    class Answers
+    {
+    public:
+      explicit Answers(const SolveCommand &command) : folder_(command.folder) {}
+
+      /** What would be in the way of writing them, before any work; empty:
+       * nothing. The folder is there then. */
+      std::string obstacle(const std::vector<std::string> &files) const
+      {
+        if (folder_.empty())
+          return "";
+        std::map<std::string, std::string> first;
+        for (const std::string &file : files) {
+          const auto [other, is_new] =
+              first.emplace(target(file).string(), file);
+          if (!is_new)
+            return fmt::format("--write: {} and {} would be one file",
+                               other->second, file);
+          if (is_there(target(file)))
+            return already_there(file);
+        }
+        std::error_code error;
+        fs::create_directories(folder_, error);
+        if (!fs::is_directory(folder_))
+          return fmt::format("--write: {} cannot be a folder{}", folder_,
+                             error ? ": " + error.message() : "");
+        return "";
+      }
+
+      /** Sizes of vectors are those of the problem for the readers of FCLIB: it
+       * goes along. @throws OutputError */
+      void write(const std::string &file, ContactProblem problem,
+                 const std::vector<double> &impulse) const
+      {
+        if (folder_.empty())
+          return;
+        if (is_there(target(file)))
+          throw OutputError(already_there(file));
+        problem.solution = impulse;
+        try {
+          write_fclib(target(file).string(), problem);
+        } catch (const BadContactFile &error) {
+          throw OutputError(error.what());
+        }
+      }
+
+    private:
+      fs::path target(const std::string &file) const
+      {
+        return fs::path(folder_) / fs::path(file).filename();
+      }
+      /** Links that lead nowhere, too. */
+      static bool is_there(const fs::path &path)
+      {
+        std::error_code error;
+        return fs::symlink_status(path, error).type() !=
+               fs::file_type::not_found;
+      }
+      std::string already_there(const std::string &file) const
+      {
+        return fmt::format("--write: {} is there already, and no file is "
+                           "replaced",
+                           target(file).string());
+      }
+
+      std::string folder_;
+    };
 
     /** All files at once: what is wrong with them is said before any work. */
     std::vector<ContactProblem> read_all(const SolveCommand &command,
                                          std::ostream &err, bool &bad)
     {
       std::vector<ContactProblem> problems;
-      for (const std::string &file : command.files)
-        try {
-          problems.push_back(read_fclib(file));
-        } catch (const BadContactFile &error) {
-          err << "nsfd solve: " << error.what() << "\n";
-          bad = true;
-        }
+      for (ReadProblem &answer : read_fclib(command.files)) {
+        if (!answer.error.empty())
+          err << "nsfd solve: " << answer.error << "\n";
+        bad |= !answer.error.empty();
+        problems.push_back(std::move(answer.problem));
+      }
       return problems;
     }
   } // namespace
@@ -128,7 +208,11 @@ namespace nsfd
   {
     bool bad = false;
     const std::vector<ContactProblem> problems = read_all(command, err, bad);
-    if (bad)
+    const Answers answers(command);
+    const std::string obstacle = bad ? "" : answers.obstacle(command.files);
+    if (!obstacle.empty())
+      err << "nsfd solve: " << obstacle << "\n";
+    if (bad || !obstacle.empty())
       return exit_code::bad_input;
 
     ProblemTable table{out, 7};
@@ -141,6 +225,7 @@ namespace nsfd
     for (std::size_t i = 0; i < problems.size(); ++i) {
       const Result result = solve(problems[i], command);
       unsolved += !result.report.converged;
+      answers.write(command.files[i], problems[i], result.impulse);
       if (quiet)
         continue;
       if (several)

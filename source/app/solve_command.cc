@@ -24,8 +24,8 @@ namespace nsfd
       for (const auto &[name, line] : contact_solvers())
         text += wrapped(fmt::format("  {:<20}", name), line, 22);
       return text + "Exit code: 0 all solved, 3 one is not, 1 a file holds no "
-                    "problem (none is\n"
-                    "solved).\n"
+                    "problem or an\n"
+                    "answer would meet a file (none is solved).\n"
                     "Example:\n"
                     "  nsfd solve tests/problems";
     }
@@ -60,6 +60,16 @@ namespace nsfd
         app.add_option("--tolerance", command_.tolerance,
                        "of the relative natural map, default 1e-8")
             ->type_name("T");
+        app.add_option("--attempts", command_.attempts,
+                       "of auto for one problem, restarts included, default "
+                       "1000; they also end with a fixed amount of work, "
+                       "about 10 s of CPU, and the best answer of all counts")
+            ->type_name("N");
+        app.add_option("--write", command_.folder,
+                       "write a copy of every problem with its reactions and "
+                       "velocities (group `solution`: r, u) under the same "
+                       "name to this folder, never over a file")
+            ->type_name("FOLDER");
         common_options::add_general(app, line);
       }
 
@@ -81,6 +91,8 @@ namespace nsfd
         if (!(command_.tolerance > 0. && command_.tolerance < 1.))
           throw WrongUsage(fmt::format("--tolerance is {}", command_.tolerance),
                            "write a number between 0 and 1, for example 1e-8");
+        if (command_.attempts == 0)
+          throw WrongUsage("--attempts is 0", "write a number from 1");
         for (const std::string &name : names_) {
           if (!fs::is_directory(name)) {
             command_.files.push_back(name);

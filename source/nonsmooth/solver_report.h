@@ -15,6 +15,10 @@ namespace nsfd
     unsigned int idle_rounds = 2; ///< line searches that did not halve the
                                   ///< error before the solve is given up
 
+    /// of the cascade for problems whose W is assembled: the first one and
+    /// restarts. In a run a step that is not solved has other cures.
+    unsigned int attempts = 6;
+
     unsigned int iterations_or(const unsigned int own) const
     {
       return maximum_iterations > 0 ? maximum_iterations : own;
@@ -36,6 +40,8 @@ namespace nsfd
     unsigned int iterations = 0; ///< of all solvers that took part
     unsigned int products = 0;   ///< with W, sweeps included
     unsigned int factorisations = 0;
+    unsigned int attempts = 1;     ///< of the cascade, restarts included
+    unsigned int best_attempt = 1; ///< the one that gave the answer
     /// largest -u_N / max |q|. The residual is relative to |r| as well: where
     /// no r is a solution it can be made small by large r, and only this tells.
     double penetration = 0.;

@@ -81,6 +81,8 @@ namespace end_to_end::test_solve
                  {{"solve", "a.hdf5", "--tolerance", "0"}, "between 0 and 1"},
                  {{"solve", "a.hdf5", "--tolerance", "x"}, "--help"},
                  {{"solve", "a.hdf5", "--solve", "auto"}, "--solver"},
+                 {{"solve", "a.hdf5", "--attempts", "0"}, "from 1"},
+                 {{"solve", "a.hdf5", "--attempts", "-3"}, "--help"},
                  {{"solve", "."}, "must end in .hdf5"}};
     for (const auto &call : calls) {
       const Outcome outcome = nsfd(workspace, call.arguments);
@@ -89,8 +91,103 @@ namespace end_to_end::test_solve
     }
     const Outcome help = nsfd(workspace, {"solve", "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char *word : {"--solver", "--tolerance", "interior point"})
+    for (const char *word :
+         {"--solver", "--tolerance", "--attempts", "--write", "interior point"})
       EXPECT_TRUE(contains(help.out, word)) << help.out;
+  }
+
+  TEST(Solve, RestartsAreCounted)
+  {
+    const Workspace workspace;
+    const std::string one = (problems() / "pile_3d.hdf5").string();
+    // far below the round-off of the measure
+    const Outcome failed = nsfd(
+        workspace, {"solve", one, "--tolerance", "1e-40", "--attempts", "3"});
+    EXPECT_EQ(failed.exit_code, 3);
+    EXPECT_TRUE(contains(failed.out, "attempts       3; the answer is of "))
+        << failed.out;
+    const Outcome table = nsfd(workspace, {"solve", one, one});
+    std::istringstream lines(table.out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_TRUE(contains(line, "CPU time attempts")) << line;
+    std::getline(lines, line);
+    EXPECT_TRUE(contains(line, "ms        1")) << line;
+  }
+
+  // the answers are problems themselves, in files of the same names
+  TEST(Solve, WritesAnswersIntoTheFolderAndOverNoFile)
+  {
+    const Workspace workspace;
+    const fs::path folder = workspace.path() / "answers";
+    const Outcome written =
+        nsfd(workspace, {"solve", problems().string(), "--write", "answers"});
+    EXPECT_EQ(written.exit_code, 0) << written.err;
+    EXPECT_EQ(files_of(folder).size(), files_of(problems()).size());
+    for (const fs::path &file : files_of(problems()))
+      EXPECT_TRUE(contains(read_text(folder / file.filename()), "solution"));
+    const Outcome again = nsfd(workspace, {"solve", "answers"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    nsfd(workspace, {"solve", problems().string(), "--write", "same"});
+    for (const fs::path &file : files_of(folder))
+      EXPECT_EQ(read_text(workspace.path() / "same" / file.filename()),
+                read_text(file));
+
+    // nothing is solved where one of them would meet a file, or another
+    const std::string before = read_text(folder / "pile_3d.hdf5");
+    fs::remove(folder / "brick_3d.hdf5");
+    const Outcome met =
+        nsfd(workspace, {"solve", problems().string(), "--write", "answers"});
+    EXPECT_EQ(met.exit_code, 1);
+    EXPECT_EQ(met.out, "");
+    EXPECT_TRUE(contains(met.err, "is there already")) << met.err;
+    EXPECT_FALSE(fs::exists(folder / "brick_3d.hdf5"));
+    EXPECT_EQ(read_text(folder / "pile_3d.hdf5"), before);
+    const std::string one = (problems() / "brick_3d.hdf5").string();
+    const Outcome twice =
+        nsfd(workspace, {"solve", one, one, "--write", "others"});
+    EXPECT_EQ(twice.exit_code, 1);
+    EXPECT_TRUE(contains(twice.err, "would be one file")) << twice.err;
+    EXPECT_FALSE(fs::exists(workspace.path() / "others"));
+
+    // a link that leads nowhere is a file, and a file is no folder
+    fs::create_symlink("outside.hdf5", folder / "brick_3d.hdf5");
+    EXPECT_EQ(nsfd(workspace, {"solve", one, "--write", "answers"}).exit_code,
+              1);
+    EXPECT_FALSE(fs::exists(folder / "outside.hdf5"));
+    write_text(workspace.path() / "file", "");
+    const Outcome no_folder =
+        nsfd(workspace, {"solve", one, "--write", "file"});
+    EXPECT_EQ(no_folder.exit_code, 1);
+    EXPECT_TRUE(contains(no_folder.err, "cannot be a folder")) << no_folder.err;
+  }
+
+  // what is not solved is written as well, and the exit code tells
+  TEST(Solve, WritesTheBestAnswerOfWhatIsNotSolved)
+  {
+    const Workspace workspace;
+    const std::string one = (problems() / "brick_3d.hdf5").string();
+    const Outcome outcome =
+        nsfd(workspace, {"solve", one, "--tolerance", "1e-40", "--attempts",
+                         "2", "--write", "answers"});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_TRUE(fs::exists(workspace.path() / "answers/brick_3d.hdf5"));
+  }
+
+  // as a run writes them with `save problems = all`
+  TEST(Solve, AThousandProblemsInOneStart)
+  {
+    const Workspace workspace;
+    const fs::path folder = workspace.path() / "many";
+    fs::create_directory(folder);
+    for (unsigned int k = 0; k < 1000; ++k)
+      fs::copy_file(problems() / "brick_3d.hdf5",
+                    folder / ("p" + std::to_string(k) + ".hdf5"));
+    const Outcome outcome =
+        nsfd(workspace, {"solve", "many", "--write", "answers"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.out, "1000 of 1000 solved"));
+    EXPECT_EQ(files_of(workspace.path() / "answers").size(), 1000u);
   }
 
   class SolveTest : public testing::TestWithParam<const char *>
@@ -135,5 +232,9 @@ namespace end_to_end::test_solve
     EXPECT_EQ(unsolved(outcome.out), std::vector<std::string>())
         << outcome.out << outcome.err;
     EXPECT_EQ(outcome.exit_code, 0);
+    const Outcome tight =
+        nsfd(workspace, {"solve", folder, "--tolerance", "1e-10"});
+    EXPECT_EQ(unsolved(tight.out), std::vector<std::string>())
+        << tight.out << tight.err;
   }
 } // namespace end_to_end::test_solve

@@ -232,8 +232,8 @@ namespace nsfd::fuzz
                        {"scene.prm", "--output", "run", "--quiet", "--resume"});
       } else { // stored
         write_file(inner / "mutant.hdf5", mutate(false));
-        command.insert(command.end(),
-                       {"solve", "mutant.hdf5", "--tolerance", "0.1"});
+        command.insert(command.end(), {"solve", "mutant.hdf5", "--tolerance",
+                                       "0.1", "--attempts", "20"});
       }
       job.child = std::make_unique<Child>(::nsfd_main, command, inner,
                                           job.folder / "log", Limits());

@@ -1,4 +1,5 @@
 // Stored contact problems: what is read, what is refused.
+#include "app/solve_command.h"
 #include "core/output_folder.h"
 #include "nonsmooth/frictional_contact/fclib.h"
 
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <sstream>
 
 namespace nsfd::test_stored_files
 {
@@ -125,6 +127,72 @@ namespace nsfd::test_stored_files
     const ContactProblem problem = two_contacts();
     write_fclib(file_, problem);
     expect_equal(read_fclib(file_), problem);
+  }
+
+  // sound files are read together, and one that is not spoils no other
+  TEST_F(StoredFile, ManyAreReadAsEachAlone)
+  {
+    const ContactProblem problem = two_contacts();
+    write_fclib(file_, problem);
+    const std::string other = file_ + "_other.hdf5", bad = file_ + "_bad.hdf5";
+    ContactProblem untitled = problem;
+    untitled.title = "";
+    write_fclib(other, untitled);
+    std::ofstream(bad) << "no HDF5";
+    for (const std::vector<std::string> &files :
+         {std::vector<std::string>{file_, other},
+          {file_, bad, other, "absent", file_},
+          std::vector<std::string>(150, file_),
+          {}}) {
+      const std::vector<ReadProblem> all = read_fclib(files);
+      ASSERT_EQ(all.size(), files.size());
+      for (std::size_t i = 0; i < files.size(); ++i) {
+        std::string error;
+        ContactProblem alone;
+        try {
+          alone = read_fclib(files[i]);
+        } catch (const BadContactFile &reason) {
+          error = reason.what();
+        }
+        EXPECT_EQ(all[i].error, error);
+        expect_equal(all[i].problem, alone);
+      }
+    }
+    fs::remove(other);
+    fs::remove(bad);
+  }
+
+  TEST_F(StoredFile, AnswersOfSolveHaveReactionsAndVelocities)
+  {
+    ContactProblem problem = two_contacts();
+    problem.solution.clear();
+    write_fclib(file_, problem);
+    const fs::path folder = file_ + "_answers";
+    SolveCommand command;
+    command.files = {file_};
+    command.folder = folder.string();
+    command.tolerance = 1e-12;
+    std::ostringstream out, err;
+    ASSERT_EQ(run_solve(command, out, err), 0) << err.str();
+    const std::string answer = (folder / fs::path(file_).filename()).string();
+    const ContactProblem solved = read_fclib(answer);
+    EXPECT_LE(natural_map_error(problem, solved.solution), 1e-12);
+
+    std::vector<double> u, stored(problem.n_rows());
+    relative_velocity(problem, solved.solution, u);
+    const hid_t file = H5Fopen(answer.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t set = H5Dopen2(file, "/solution/u", H5P_DEFAULT);
+    EXPECT_GE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                      stored.data()),
+              0);
+    H5Dclose(set);
+    H5Fclose(file);
+    EXPECT_EQ(stored, u);
+
+    problem.solution = solved.solution; // all else is the problem
+    expect_equal(solved, problem);
+    EXPECT_EQ(run_solve(command, out, err), 1); // a file is in the way
+    fs::remove_all(folder);
   }
 
   TEST_F(StoredFile, TextsGuessAndSolutionMayBeMissing)

@@ -65,7 +65,7 @@ namespace nsfd::stored
           x[a + c] = R[i] * (z[a + c] - y[a + c]) - p.q[a + c];
         x[a] -= slip;
       }
-      s.factors().solve(x.data());
+      s.solve(x);
       ++s.products;
       ++s.iterations;
       for (int i = 0; i < p.n; ++i) {

@@ -31,7 +31,7 @@ namespace nsfd
     {
       switch (method) {
       case ContactMethod::automatic:
-        automatic(s);
+        automatic(s, control.attempts);
         return;
       case ContactMethod::gauss_seidel:
         gauss_seidel(s, control.iterations_or(10000));
@@ -68,9 +68,13 @@ namespace nsfd
         for (std::size_t j = 0; j < impulse.size(); ++j)
           s.r[j] = impulse[j] / s.problem.impulse_unit;
         s.judge();
+        if (std::isnan(s.error)) // no start at all
+          s.restore_best();
       }
-      if (!s.solved())
+      if (!s.solved()) {
         run(method, s, control);
+        s.restore_best();
+      }
       for (std::size_t j = 0; j < impulse.size(); ++j)
         impulse[j] = s.r[j] * s.problem.impulse_unit;
       SolverReport report;
@@ -81,6 +85,8 @@ namespace nsfd
       report.products = s.products;
       report.factorisations = s.factorisations;
       report.switches = s.switches;
+      report.attempts = s.attempts;
+      report.best_attempt = s.best_attempt;
       return report;
     }
   } // namespace

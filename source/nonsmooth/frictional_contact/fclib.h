@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace nsfd
 {
@@ -26,6 +27,17 @@ namespace nsfd
    * @throws BadContactFile for anything else
    */
   ContactProblem read_fclib(const std::string &file);
+
+  /** A problem, or why a file holds none. */
+  struct ReadProblem {
+    ContactProblem problem;
+    std::string error;
+  };
+
+  /** Many files at once, each with the outcome of reading it alone, but as
+   * long as they are sound at a tenth of the price: a file is read in a copy of
+   * the process, and sound ones share it. */
+  std::vector<ReadProblem> read_fclib(const std::vector<std::string> &files);
 
   /**
    * The same layout, W by rows, with guess and solution if the problem has

@@ -11,9 +11,22 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <sstream>
+
+namespace boost::serialization
+{
+  template <typename Archive>
+  void serialize(Archive &archive, nsfd::ReadProblem &answer, unsigned int)
+  {
+    nsfd::ContactProblem &p = answer.problem;
+    archive &p.dimension &p.row_start &p.column &p.value &p.q &p.friction;
+    archive &p.guess &p.solution &p.title &p.description &p.math_info;
+    archive &answer.error;
+  }
+} // namespace boost::serialization
 
 namespace nsfd
 {
@@ -302,31 +315,18 @@ namespace nsfd
       return problem;
     }
 
-    /** What the copy of the process has found. */
-    struct Answer {
-      ContactProblem problem;
-      std::string error; ///< instead of it
-
-      template <typename Archive>
-      void serialize(Archive &archive, unsigned int)
-      {
-        ContactProblem &p = problem;
-        archive &p.dimension &p.row_start &p.column &p.value &p.q &p.friction;
-        archive &p.guess &p.solution &p.title &p.description &p.math_info;
-        archive &error;
-      }
-    };
-
-    std::string answer_for(const std::string &file)
+    std::string answer_for(const std::vector<std::string> &files)
     {
-      Answer answer;
-      try {
-        answer.problem = read_here(file);
-      } catch (const BadContactFile &error) {
-        answer.error = error.what();
-      }
+      std::vector<ReadProblem> answers(files.size());
+      for (std::size_t i = 0; i < files.size(); ++i)
+        try {
+          answers[i].problem = read_here(files[i]);
+        } catch (const BadContactFile &error) {
+          answers[i].error = error.what();
+        }
       std::ostringstream out;
-      boost::archive::binary_oarchive(out, boost::archive::no_header) << answer;
+      boost::archive::binary_oarchive(out, boost::archive::no_header)
+          << answers;
       return out.str();
     }
 
@@ -350,35 +350,96 @@ namespace nsfd
                            return column >= 0 && std::size_t(column) < n;
                          });
     }
+
+    std::string damaged(const std::string &file, const std::string &reason)
+    {
+      return fmt::format("{}: the file is damaged: HDF5 cannot read it ({})",
+                         file, reason);
+    }
+
+    /** In one copy of the process: HDF5 follows the addresses in a file
+     * wherever they lead. @return nothing, with @p end, if the copy was lost */
+    std::vector<ReadProblem>
+    read_in_a_copy(const std::vector<std::string> &files, const double bytes,
+                   std::string &end)
+    {
+      constexpr double gib = 0x1p30, bytes_per_second = 1e6;
+      const CopyAnswer copy =
+          ask_a_copy([&] { return answer_for(files); },
+                     {20. + bytes / bytes_per_second, 4. * gib + 20. * bytes});
+      std::vector<ReadProblem> answers;
+      end = copy.end;
+      if (!end.empty())
+        return answers;
+      end = "its numbers are lost";
+      try {
+        std::istringstream in(copy.bytes);
+        boost::archive::binary_iarchive(in, boost::archive::no_header) >>
+            answers;
+      } catch (const std::exception &) {
+        return {};
+      }
+      for (const ReadProblem &answer : answers)
+        if (answer.error.empty() && !is_sound(answer.problem))
+          return {};
+      if (answers.size() != files.size())
+        return {};
+      end.clear();
+      return answers;
+    }
+
+    ReadProblem read_alone(const std::string &file)
+    {
+      if (!std::filesystem::is_regular_file(file))
+        return {{}, fmt::format("{}: there is no such file", file)};
+      std::string end;
+      std::vector<ReadProblem> answers =
+          read_in_a_copy({file}, double(std::filesystem::file_size(file)), end);
+      if (!end.empty())
+        return {{}, damaged(file, end)};
+      return std::move(answers.front());
+    }
   } // namespace
 
-  // HDF5 follows the addresses in a file wherever they lead
   ContactProblem read_fclib(const std::string &file)
   {
-    if (!std::filesystem::is_regular_file(file))
-      throw BadContactFile(fmt::format("{}: there is no such file", file));
-    const double bytes = double(std::filesystem::file_size(file));
-    constexpr double gib = 0x1p30, bytes_per_second = 1e6;
-    const CopyAnswer copy =
-        ask_a_copy([&] { return answer_for(file); },
-                   {20. + bytes / bytes_per_second, 4. * gib + 20. * bytes});
-    const auto refuse = [&](const std::string &reason) {
-      throw BadContactFile(fmt::format(
-          "{}: the file is damaged: HDF5 cannot read it ({})", file, reason));
-    };
-    if (!copy.end.empty())
-      refuse(copy.end);
-    Answer answer;
-    try {
-      std::istringstream in(copy.bytes);
-      boost::archive::binary_iarchive(in, boost::archive::no_header) >> answer;
-    } catch (const std::exception &) {
-      refuse("its numbers are lost");
-    }
+    ReadProblem answer = read_alone(file);
     if (!answer.error.empty())
       throw BadContactFile(answer.error);
-    if (!is_sound(answer.problem))
-      refuse("its numbers are lost");
-    return answer.problem;
+    return std::move(answer.problem);
+  }
+
+  std::vector<ReadProblem> read_fclib(const std::vector<std::string> &files)
+  {
+    constexpr std::size_t most_files = 64;
+    constexpr double most_bytes = 0x1p24;
+    std::vector<ReadProblem> answers;
+    for (std::size_t first = 0, next = 0; first < files.size(); first = next) {
+      std::vector<std::string> batch;
+      double bytes = 0.;
+      for (; next < files.size() && batch.size() < most_files; ++next) {
+        std::error_code error;
+        const auto size = std::filesystem::file_size(files[next], error);
+        if (!batch.empty() && (error || bytes + double(size) > most_bytes))
+          break;
+        bytes += error ? 0. : double(size);
+        batch.push_back(files[next]);
+      }
+      std::string end;
+      std::vector<ReadProblem> found;
+      if (batch.size() > 1)
+        found = read_in_a_copy(batch, bytes, end);
+      // a damaged one may have damaged the others in the copy
+      if (found.empty() || std::any_of(found.begin(), found.end(),
+                                       [](const ReadProblem &answer) {
+                                         return !answer.error.empty();
+                                       })) {
+        found.clear();
+        for (const std::string &file : batch)
+          found.push_back(read_alone(file));
+      }
+      std::move(found.begin(), found.end(), std::back_inserter(answers));
+    }
+    return answers;
   }
 } // namespace nsfd

@@ -74,8 +74,11 @@ namespace nsfd
       void write(const std::string &path, const Handle &space, const void *data,
                  const hid_t type) const
       {
+        // without the time: the same problem is the same file
+        const Handle untimed(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+        H5Pset_obj_track_times(untimed, false);
         const Handle set(H5Dcreate2(file_, path.c_str(), type, space,
-                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                    H5P_DEFAULT, untimed, H5P_DEFAULT),
                          H5Dclose);
         demand(set &&
                H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0);

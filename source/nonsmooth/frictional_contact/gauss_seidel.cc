@@ -16,8 +16,10 @@ namespace nsfd::stored
   {
     const BlockProblem<d> &p = s_.problem;
     double *const r = s_.r.data();
+    const int *const order = order_.empty() ? nullptr : order_.data();
     for (unsigned int sweep = 0; sweep < count; ++sweep)
-      for (int i = 0; i < p.n; ++i) {
+      for (int place = 0; place < p.n; ++place) {
+        const int i = order ? order[place] : place;
         double b[d];
         std::copy(&p.q[d * i], &p.q[d * i] + d, b);
         const double *w = &p.block[std::size_t(d * d) * p.start[i]];
@@ -32,7 +34,7 @@ namespace nsfd::stored
         contacts_[i].solve(b, r + d * i);
       }
     s_.iterations += count;
-    s_.products += count;
+    s_.count_products(count);
   }
 
   template <int d>

@@ -58,9 +58,9 @@ namespace nsfd::stored
         const double gap_now = gap();
         linearise(sigma * gap_now, gap_now / mean_);
         s_.factor(A_, B_);
-        s_.factors().solve(x_.data());
+        s_.solve(x_);
         p_.multiply(x_.data(), w_.data());
-        ++s_.products;
+        s_.count_products(1);
         ++s_.iterations;
         alpha_ = 1.;
         for (int i = 0; i < p_.n; ++i) {
@@ -101,7 +101,8 @@ namespace nsfd::stored
       void linearise(const double eps, const double delta)
       {
         p_.velocity(r_.data(), g_.data());
-        ++s_.products;
+        s_.count_products(1);
+        s_.charge(20. * p_.n);
         for (std::size_t j = 0; j < g_.size(); ++j)
           g_[j] -= u_[j];
         for (int i = 0; i < p_.n; ++i) {

@@ -24,6 +24,14 @@ namespace nsfd::stored
         }
       }
 
+      /** Other weights of the velocities in the map: by each entry of @p
+       * factors of the usual ones. Another way to the same solutions. */
+      void weigh(const std::vector<double> &factors)
+      {
+        for (std::size_t i = 0; i < factors.size(); ++i)
+          rho_[i] *= factors[i];
+      }
+
       /** The proximal term; a weight of zero takes it away. */
       void push(const double weight, const std::vector<double> &centre)
       {
@@ -44,9 +52,9 @@ namespace nsfd::stored
         s_.factor(A_, B_);
         for (std::size_t j = 0; j < n_; ++j)
           step_[j] = -F_[j];
-        s_.factors().solve(step_.data());
+        s_.solve(step_);
         p_.multiply(step_.data(), change_.data());
-        ++s_.products;
+        s_.count_products(1);
         double next = 0., length = 1.;
         for (int cut = 0; cut < 8; ++cut, length *= 0.5) {
           for (std::size_t j = 0; j < n_; ++j) {
@@ -70,6 +78,7 @@ namespace nsfd::stored
                  const bool derive)
       {
         double sum = 0.;
+        s_.charge(0.);
         for (int i = 0; i < p_.n; ++i) {
           double w[d];
           for (int c = 0; c < d; ++c)
@@ -96,6 +105,7 @@ namespace nsfd::stored
   bool newton(Session<d> &s, const NewtonSettings &settings)
   {
     Newton<d> method(s);
+    method.weigh(settings.weights);
     Best<d> best(s);
     unsigned int idle = 0;
     const double largest = settings.largest_growth * s.error;
@@ -111,9 +121,11 @@ namespace nsfd::stored
   }
 
   template <int d>
-  bool proximal(Session<d> &s, const unsigned int limit)
+  bool proximal(Session<d> &s, const unsigned int limit,
+                const std::vector<double> &weights)
   {
     Newton<d> method(s);
+    method.weigh(weights);
     Best<d> best(s);
     double weight = 1e-2;
     for (unsigned int k = 0; k < limit && !s.solved(); ++k) {
@@ -139,6 +151,8 @@ namespace nsfd::stored
 
   template bool newton<2>(Session<2> &, const NewtonSettings &);
   template bool newton<3>(Session<3> &, const NewtonSettings &);
-  template bool proximal<2>(Session<2> &, unsigned int);
-  template bool proximal<3>(Session<3> &, unsigned int);
+  template bool proximal<2>(Session<2> &, unsigned int,
+                            const std::vector<double> &);
+  template bool proximal<3>(Session<3> &, unsigned int,
+                            const std::vector<double> &);
 } // namespace nsfd::stored

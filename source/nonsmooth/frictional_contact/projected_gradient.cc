@@ -19,7 +19,7 @@ namespace nsfd::stored
     double L = 1., momentum = 1., before = s.error;
     for (unsigned int k = 0; k < limit && !s.solved(); ++k) {
       p.velocity(y.data(), u.data());
-      ++s.products;
+      s.count_products(1);
       last = r;
       for (;;) {
         for (int i = 0; i < p.n; ++i) {
@@ -33,7 +33,7 @@ namespace nsfd::stored
         for (std::size_t j = 0; j < n; ++j)
           change[j] = r[j] - y[j];
         p.multiply(change.data(), v.data());
-        ++s.products;
+        s.count_products(1);
         double curvature = 0., square = 0.;
         for (std::size_t j = 0; j < n; ++j) {
           curvature += change[j] * v[j];

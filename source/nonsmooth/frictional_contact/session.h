@@ -11,12 +11,14 @@
 namespace nsfd::stored
 {
   /** What all solvers of one problem share: the problem in blocks, the current
-   * impulses with their velocities and error, factors, and the bill. */
+   * impulses with their velocities and error, the best ones so far, factors,
+   * and the bill. */
   template <int d>
   struct Session {
     Session(const ContactProblem &stored, const double tolerance)
         : problem(stored), tolerance(tolerance), r(std::size_t(d) * problem.n),
-          u(problem.q), error(problem.error(r.data(), u.data()))
+          u(problem.q), error(problem.error(r.data(), u.data())), best_r(r),
+          best_error(error)
     {
     }
 
@@ -24,9 +26,13 @@ namespace nsfd::stored
     double tolerance;
     std::vector<double> r, u; ///< at first r = 0, u = q
     double error;
+    std::vector<double> best_r; ///< with the smallest error of all judged
+    double best_error;
     unsigned int iterations = 0, products = 0, factorisations = 0;
+    double work = 0.; ///< see charge()
     std::string finisher;
     std::vector<std::string> switches;
+    unsigned int attempts = 1, best_attempt = 1; ///< the first one and restarts
 
     bool solved() const { return error <= tolerance; }
 
@@ -34,8 +40,42 @@ namespace nsfd::stored
     void judge()
     {
       problem.velocity(r.data(), u.data());
-      ++products;
+      count_products(1);
       error = problem.error(r.data(), u.data());
+      keep();
+    }
+
+    /** The current impulses, if they are the best so far. A converging solver
+     * is not charged for it: what solves is not needed again. */
+    void keep()
+    {
+      if (error < best_error && !solved()) {
+        best_error = error;
+        best_r = r;
+      }
+    }
+
+    /** Back to the best impulses, where nothing has solved it. */
+    void restore_best()
+    {
+      if (solved())
+        return;
+      if (error > best_error || std::isnan(error)) {
+        r = best_r;
+        judge();
+      }
+      finisher = best_finisher_;
+    }
+
+    /** What @p blocks products with or of blocks cost, in such products: 3 to
+     * 4 ns each (measured), as is what every contact costs besides, times 4. */
+    void charge(const double blocks) { work += blocks + 4. * problem.n; }
+
+    void count_products(const unsigned int count)
+    {
+      products += count;
+      for (unsigned int k = 0; k < count; ++k)
+        charge(double(problem.column.size()));
     }
 
     BlockLU<d> &factors()
@@ -47,7 +87,14 @@ namespace nsfd::stored
     bool factor(const std::vector<double> &A, const std::vector<double> &B)
     {
       ++factorisations;
+      charge(factors().work());
       return factors().factor(A.data(), B.data());
+    }
+    /** @p x: right-hand side in, solution out. */
+    void solve(std::vector<double> &x)
+    {
+      charge(2. * double(factors().n_factor_blocks()));
+      factors().solve(x.data());
     }
 
     /** A solver of a chain, if it is still needed. What it leaves is never
@@ -61,15 +108,34 @@ namespace nsfd::stored
         switches.push_back(finisher + " -> " + name);
       finisher = name;
       const std::vector<double> before = r;
-      const double error_before = error;
+      const double error_before = error, best_before = best_error;
       solver();
+      if (best_error < best_before)
+        best_finisher_ = name;
       if (!(error <= error_before)) {
         r = before;
         judge();
       }
     }
 
+    /** A further attempt, from the best impulses of those before; the answer
+     * is the best of all. Not a hand-over: there may be hundreds. */
+    template <typename Solver>
+    void restart(const std::string &name, const Solver &solver)
+    {
+      finisher = name;
+      const double best_before = best_error;
+      ++attempts;
+      solver();
+      if (solved() || best_error < best_before) {
+        best_finisher_ = name;
+        best_attempt = attempts;
+      }
+      restore_best();
+    }
+
   private:
+    std::string best_finisher_;
     std::unique_ptr<BlockLU<d>> factors_;
   };
 
@@ -114,11 +180,14 @@ namespace nsfd::stored
   {
   public:
     explicit Sweeps(Session<d> &session);
+    /** The contacts in this order; empty: as they are numbered. */
+    void set_order(const std::vector<int> &order) { order_ = order; }
     /** Changes r only; u and error are those of before. */
     void run(unsigned int count);
 
   private:
     Session<d> &s_;
+    std::vector<int> order_;
     std::vector<OneContact<d>> contacts_;
   };
 
@@ -135,12 +204,16 @@ namespace nsfd::stored
     /// of the error over the first one; beyond it the method has left the
     /// neighbourhood of its start for good
     double largest_growth = std::numeric_limits<double>::infinity();
+    /// of the velocities in the map, one per contact, over the usual ones;
+    /// empty: all 1
+    std::vector<double> weights;
   };
   template <int d>
   bool newton(Session<d> &session, const NewtonSettings &settings);
 
   template <int d>
-  bool proximal(Session<d> &session, unsigned int limit);
+  bool proximal(Session<d> &session, unsigned int limit,
+                const std::vector<double> &weights = {});
 
   template <int d>
   bool interior_point(Session<d> &session, unsigned int limit);
@@ -151,6 +224,13 @@ namespace nsfd::stored
   template <int d>
   bool projected_gradient(Session<d> &session, unsigned int limit);
 
+  /** @param attempts the first one and restarts from other places; their
+   * number also ends with a budget of work, about 10 s of CPU */
   template <int d>
-  bool automatic(Session<d> &session);
+  bool automatic(Session<d> &session, unsigned int attempts);
+
+  /** Further attempts of solvers that have failed: from other starts, in other
+   * orders, with other weights, all by dice that always fall alike. */
+  template <int d>
+  bool restarts(Session<d> &session, unsigned int attempts, double budget);
 } // namespace nsfd::stored
