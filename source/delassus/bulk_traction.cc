@@ -14,7 +14,6 @@ namespace nsfd
     set_shares();
     side_1_.resize((share_.size() + 1) * dim);
     side_2_.resize((share_.size() + 1) * dim);
-    mark(std::vector<char>(delassus.points().faces.size(), 1));
   }
 
   template <int dim>

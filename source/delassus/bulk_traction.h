@@ -25,7 +25,7 @@ namespace nsfd
       marked ///< at the faces of mark()
     };
 
-    /** All faces are marked. Collective. */
+    /** No face is marked. Collective. */
     explicit BulkTraction(const DelassusOperator<dim> &delassus);
 
     /** By face: what a step asks for. A face of two ranks is marked on both. */

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <algorithm>
+#include "core/disjoint_sets.h"
+
 #include <cstddef>
 #include <vector>
 
@@ -36,18 +37,7 @@ namespace nsfd
     std::vector<int> of_point; ///< -1: none
     std::vector<int> place;    ///< of a node in its cluster
     std::vector<char> covers; ///< by point: it is in a cluster, or sees nothing
-
-  private:
-    static int root_of(std::vector<int> &parent, int node);
   };
-
-  inline int NodeClusters::root_of(std::vector<int> &parent, int node)
-  {
-    while (parent[std::size_t(node)] != node)
-      node = parent[std::size_t(node)] =
-          parent[std::size_t(parent[std::size_t(node)])];
-    return node;
-  }
 
   template <typename Seen>
   NodeClusters::NodeClusters(const std::size_t n_nodes, const unsigned int size,
@@ -55,41 +45,34 @@ namespace nsfd
                              const std::vector<char> &excluded)
       : of_point(n_points, -1), place(n_nodes, -1), covers(n_points, 1)
   {
-    std::vector<int> parent(n_nodes);
-    for (std::size_t k = 0; k < n_nodes; ++k)
-      parent[k] = int(k);
+    DisjointSets sets(n_nodes);
     std::vector<char> is_seen(n_nodes, 0);
     for (std::size_t i = 0; i < n_points; ++i) {
-      int first = -1;
-      for (const int node : seen(i)) {
+      const auto &nodes = seen(i);
+      for (const int node : nodes) {
         is_seen[std::size_t(node)] = 1;
-        // the lower number is the root: the same clusters in any order
-        const int mine = root_of(parent, node);
-        if (first < 0)
-          first = mine;
-        const int low = std::min(first, mine), high = std::max(first, mine);
-        parent[std::size_t(high)] = low;
-        first = low;
+        sets.join(unsigned(nodes.front()), unsigned(node));
       }
     }
+    // by the first node of a set
     std::vector<std::size_t> count(n_nodes, 0);
     std::vector<char> is_out(n_nodes, 0);
     for (std::size_t k = 0; k < n_nodes; ++k)
       if (is_seen[k]) {
-        const auto root = std::size_t(root_of(parent, int(k)));
-        ++count[root];
-        is_out[root] = is_out[root] || excluded[k];
+        const std::size_t first = sets.first(unsigned(k));
+        ++count[first];
+        is_out[first] = is_out[first] || excluded[k];
       }
-    std::vector<int> number(n_nodes, -1); // by root
+    std::vector<int> number(n_nodes, -1);
     for (std::size_t k = 0; k < n_nodes; ++k) {
-      const auto root = std::size_t(root_of(parent, int(k)));
-      if (!is_seen[k] || is_out[root] || count[root] * size > largest)
+      const std::size_t first = sets.first(unsigned(k));
+      if (!is_seen[k] || is_out[first] || count[first] * size > largest)
         continue;
-      if (number[root] < 0) {
-        number[root] = int(clusters.size());
+      if (first == k) {
+        number[k] = int(clusters.size());
         clusters.emplace_back();
       }
-      auto &nodes = clusters[std::size_t(number[root])].nodes;
+      auto &nodes = clusters[std::size_t(number[first])].nodes;
       place[k] = int(nodes.size());
       nodes.push_back(int(k));
     }
@@ -97,7 +80,7 @@ namespace nsfd
       const auto &nodes = seen(i);
       if (nodes.empty())
         continue;
-      of_point[i] = number[std::size_t(root_of(parent, nodes.front()))];
+      of_point[i] = number[sets.first(unsigned(nodes.front()))];
       covers[i] = of_point[i] >= 0;
       if (covers[i])
         clusters[std::size_t(of_point[i])].points.push_back(i);

@@ -11,6 +11,12 @@ namespace nsfd
 {
   namespace
   {
+    template <int dim>
+    bool has_law(const OneStepProblem<dim> &problem, const std::size_t i)
+    {
+      return bool(problem.interactions[problem.interaction[i]].law);
+    }
+
     /** Pull and shear as the strength is compared with them, over it. */
     template <int dim>
     double utilisation(const OneStepProblem<dim> &problem, const std::size_t i,
@@ -99,19 +105,17 @@ namespace nsfd
                     JoinedDelassus<dim> &joined, State &state)
   {
     const auto &points = joined.points();
-    const auto has_law = [&](const std::size_t i) {
-      return bool(problem.interactions[problem.interaction[i]].law);
-    };
     // what would tell when a law between rigid bodies opens are impulses
     const auto rigid = between_rigid(joined);
     for (std::size_t i = 0; i < rigid.size(); ++i)
-      if (state.kind[i] == PointKind::bonded && rigid[i] && has_law(i))
+      if (state.kind[i] == PointKind::bonded && rigid[i] && has_law(problem, i))
         state.kind[i] = PointKind::rigid;
     const auto shares_nodes = joined.sharing(bonded_points(state));
     for (std::size_t i = 0; i < points.n_points; ++i)
       if (state.kind[i] == PointKind::bonded &&
           !shares_nodes[points.face_of[i]])
-        state.kind[i] = has_law(i) ? PointKind::rigid : PointKind::prescribed;
+        state.kind[i] =
+            has_law(problem, i) ? PointKind::rigid : PointKind::prescribed;
   }
 
   template <int dim>
@@ -138,9 +142,7 @@ namespace nsfd
     std::vector<char> result(points.faces.size());
     for (std::size_t f = 0; f < result.size(); ++f) {
       const auto &face = points.faces[f];
-      result[f] =
-          face.count > 0 &&
-          problem.interactions[problem.interaction[face.first]].law != nullptr;
+      result[f] = face.count > 0 && has_law(problem, face.first);
     }
     return result;
   }
@@ -200,8 +202,7 @@ namespace nsfd
     auto left = bonded_points(next);
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const unsigned int first = faces[f].first;
-      if (!shares_nodes[f] ||
-          !problem.interactions[problem.interaction[first]].law)
+      if (!shares_nodes[f] || !has_law(problem, first))
         continue;
       const BondWay way = way_of_face<dim>(problem, faces[f], mean, old, next);
       if (way.now < share)
@@ -230,7 +231,7 @@ namespace nsfd
     const auto &faces = bonded.points().faces;
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const unsigned int first = faces[f].first, end = first + faces[f].count;
-      if (first == end || !problem.interactions[problem.interaction[first]].law)
+      if (first == end || !has_law(problem, first))
         continue;
       if (state.kind[first] == PointKind::bonded)
         std::fill(shares.begin() + first, shares.begin() + end,

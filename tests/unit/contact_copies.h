@@ -1,10 +1,9 @@
 #pragma once
 
+#include "core/dice.h"
 #include "nonsmooth/frictional_contact/contact_problem.h"
 
 #include <algorithm>
-#include <numeric>
-#include <random>
 #include <utility>
 
 // Copies of a stored contact problem that are the same problem, or a
@@ -13,28 +12,7 @@
 namespace contact_copies
 {
   using nsfd::ContactProblem;
-
-  /** Numbers that are the same with every compiler. */
-  class Dice
-  {
-  public:
-    explicit Dice(const unsigned int seed) : engine_(seed) {}
-    double operator()(const double low, const double high)
-    {
-      return low + (high - low) * double(engine_()) / double(engine_.max());
-    }
-    std::vector<int> order(const std::size_t n)
-    {
-      std::vector<int> result(n);
-      std::iota(result.begin(), result.end(), 0);
-      for (std::size_t i = n; i > 1; --i)
-        std::swap(result[i - 1], result[engine_() % i]);
-      return result;
-    }
-
-  private:
-    std::mt19937 engine_;
-  };
+  using nsfd::Dice;
 
   /** A vector of the contacts in another order: contact i of the result is
    * contact @p order [i] of @p x. */

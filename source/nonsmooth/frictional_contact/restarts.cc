@@ -1,43 +1,23 @@
 #include "contact_cone.h"
 #include "session.h"
 
-#include <numeric>
-#include <random>
+#include "core/dice.h"
+
+#include <cmath>
+#include <limits>
 
 namespace nsfd::stored
 {
   namespace
   {
-    /** Numbers that are the same in every run and with every compiler. */
-    class Dice
+    /** Of the velocities in the map of Newton's method, by contact. */
+    std::vector<double> weights(const int n, Dice &dice)
     {
-    public:
-      explicit Dice(const unsigned int seed) : engine_(seed) {}
-
-      double operator()(const double low, const double high)
-      {
-        return low + (high - low) * double(engine_()) / double(engine_.max());
-      }
-      std::vector<int> order(const int n)
-      {
-        std::vector<int> result(n);
-        std::iota(result.begin(), result.end(), 0);
-        for (int i = n; i > 1; --i)
-          std::swap(result[i - 1], result[engine_() % unsigned(i)]);
-        return result;
-      }
-      /** Of the velocities in the map of Newton's method, by contact. */
-      std::vector<double> weights(const int n)
-      {
-        std::vector<double> result(n);
-        for (double &weight : result)
-          weight = std::pow(10., (*this)(-1., 1.));
-        return result;
-      }
-
-    private:
-      std::mt19937 engine_;
-    };
+      std::vector<double> result(n);
+      for (double &weight : result)
+        weight = std::pow(10., dice(-1., 1.));
+      return result;
+    }
 
     /** Impulses changed by up to @p share of themselves, in the cones. */
     template <int d>
@@ -69,7 +49,7 @@ namespace nsfd::stored
       NewtonSettings settings;
       settings.limit = 60;
       settings.idle = 30;
-      settings.weights = dice.weights(s.problem.n);
+      settings.weights = weights(s.problem.n, dice);
       newton(s, settings);
     }
   } // namespace
@@ -119,7 +99,7 @@ namespace nsfd::stored
       case 5:
         s.restart("proximal", [&] {
           shake(s, 0.1, dice);
-          proximal(s, 60, dice.weights(s.problem.n));
+          proximal(s, 60, weights(s.problem.n, dice));
         });
         break;
       default:

@@ -74,8 +74,7 @@ namespace nsfd::stored
     void count_products(const unsigned int count)
     {
       products += count;
-      for (unsigned int k = 0; k < count; ++k)
-        charge(double(problem.column.size()));
+      work += count * (double(problem.column.size()) + 4. * problem.n);
     }
 
     BlockLU<d> &factors()
