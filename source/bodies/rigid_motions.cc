@@ -216,6 +216,24 @@ namespace nsfd
     return result;
   }
 
+  template <int dim>
+  std::array<double, dim>
+  RigidMotions<dim>::pin_velocity(const unsigned int k,
+                                  const State &state) const
+  {
+    const MovingBody &body =
+        layout_[std::size_t(layout_.own_body(body_of_pin(k)))];
+    const RigidState rigid = of(state, body);
+    Vec3 at{};
+    for (unsigned int d = 0; d < dim; ++d)
+      at[d] = input_.pins[k].at[d];
+    const Vec3 v = rigid.velocity + rotation(rigid.orientation) *
+                                        cross(rigid.spin, at - body.centre);
+    std::array<double, dim> result;
+    std::copy_n(v.begin(), dim, result.begin());
+    return result;
+  }
+
   template class RigidMotions<2>;
   template class RigidMotions<3>;
 } // namespace nsfd

@@ -48,6 +48,9 @@ namespace nsfd
         it is a body of this rank. */
     unsigned int body_of_pin(unsigned int k) const;
     std::array<double, dim> pin_drift(unsigned int k, const State &state) const;
+    /** Likewise, with which velocity it moves. */
+    std::array<double, dim> pin_velocity(unsigned int k,
+                                         const State &state) const;
 
   private:
     using Vector = dealii::Tensor<1, dim>;

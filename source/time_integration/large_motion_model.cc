@@ -84,7 +84,7 @@ namespace nsfd
   LargeMotionModel<dim>::LargeMotionModel(const StepParts<dim> &parts,
                                           MovingBodies<dim> &bodies)
       : parts_(parts), bodies_(bodies), lifts_(has_sliding_lift(parts.input)),
-        obstacles_(parts.input, bodies.contacts()),
+        obstacles_(parts.input, bodies.contacts()), held_rows_(parts, bodies),
         history_(parts.discretization, bodies.contacts(),
                  parts.delassus.communicator())
   {
@@ -150,6 +150,7 @@ namespace nsfd
     const double theta = parts_.input.time.theta;
     start_ = &old;
     time_step_ = h;
+    held_rows_.start(old);
     next.obstacle_shift = obstacles_.shifts(old, h);
     bodies_.start(old, h, theta, loads, old.obstacle_shift,
                   next.obstacle_shift);
@@ -263,14 +264,7 @@ namespace nsfd
                                       old_.relative_velocity.data());
     obstacles_.subtract_velocity(old_.time, old_.relative_velocity);
     parts_.step_problem.set(origins_, old_, time_step_, problem_);
-    // what is joined stays where it is: the mean velocity vanishes
-    const double theta = problem_.theta;
-    for (std::size_t i = 0; i < problem_.n_points; ++i)
-      if (problem_.kind[i] == PointKind::prescribed &&
-          origins_[i].kind != PointOrigin::Kind::motion)
-        for (unsigned int a = 0; a < dim; ++a)
-          problem_.given_velocity[i * dim + a] =
-              -(1. - theta) / theta * old_.relative_velocity[i * dim + a];
+    held_rows_.set(origins_, old_, problem_);
     if (parts_.input.time.contact_target == ContactTarget::energy_safe)
       keep_gaps(bodies_.contacts(), old_, lifts_, problem_);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "body_model.h"
+#include "held_rows.h"
 #include "obstacle_motion.h"
 #include "step_parts.h"
 #include "surface_history.h"
@@ -67,6 +68,7 @@ namespace nsfd
     MovingBodies<dim> &bodies_;
     const bool lifts_; ///< by dilatancy or wear
     const ObstacleMotion<dim> obstacles_;
+    HeldRows<dim> held_rows_;
     const SurfaceHistory<dim> history_;
     std::unique_ptr<SurfaceContacts<dim>> contacts_;
 

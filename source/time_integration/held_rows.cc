@@ -1,0 +1,123 @@
+#include "held_rows.h"
+
+#include "driven_motion.h"
+
+#include "nsfd/scene/scene_input.h"
+#include "state/state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    bool is_joined(const PointOrigin &origin, const PointKind kind)
+    {
+      return origin.kind == PointOrigin::Kind::interface &&
+             (kind == PointKind::prescribed || kind == PointKind::rigid);
+    }
+  } // namespace
+
+  template <int dim>
+  void HeldRows<dim>::start(const State &old)
+  {
+    start_ = old.time;
+    const Communicator &all = parts_.delassus.communicator();
+    is_mean_ = !parts_.input.pins.empty() || all.any(has_turning_arms(old));
+    is_impact_ = old.last_step == 0. && begins_otherwise(old);
+  }
+
+  /** A joint, on this rank, has a rigid body on one of its sides. */
+  template <int dim>
+  bool HeldRows<dim>::has_turning_arms(const State &old) const
+  {
+    const auto &table = parts_.discretization.body_table();
+    const auto &points = parts_.discretization.points();
+    if (table.n_rigid == 0)
+      return false;
+    for (std::size_t i = 0; i < points.n_points; ++i) {
+      if (!is_joined(parts_.discretization.origins()[i], old.kind[i]))
+        continue;
+      for (const auto cell : points.faces[points.face_of[i]].cells)
+        if (table.is_rigid(table.body_of_global(cell)))
+          return true;
+    }
+    return false;
+  }
+
+  /** Not with the velocities that joints, pins and supports ask for. */
+  template <int dim>
+  bool HeldRows<dim>::begins_otherwise(const State &old) const
+  {
+    const auto &origins = parts_.discretization.origins();
+    const DrivenMotion<dim> &motion = parts_.step_problem.motion();
+    double off = 0., size = 0.;
+    for (std::size_t i = 0; i < old.kind.size(); ++i)
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double U = old.relative_velocity[i * dim + c];
+        if (is_joined(origins[i], old.kind[i]))
+          off = std::max(off, std::abs(U));
+        else if (origins[i].kind == PointOrigin::Kind::motion &&
+                 motion.drives(i, c))
+          if (const Expression *velocity = motion.velocity(i, c)) {
+            const double given = motion.at(*velocity, i, old.time);
+            off = std::max(off, std::abs(U - given));
+            size = std::max(size, std::abs(given));
+          }
+      }
+    const auto &rigid = bodies_.rigid_motions();
+    for (unsigned int k = 0; k < parts_.input.pins.size(); ++k)
+      if (bodies_.layout().is_own(rigid.body_of_pin(k)))
+        for (const double v : rigid.pin_velocity(k, old))
+          off = std::max(off, std::abs(v));
+    constexpr double round_off = 1e-12;
+    const Communicator &all = parts_.delassus.communicator();
+    return all.max(off) >
+           round_off * (all.max(size) + bodies_.largest_speed(old));
+  }
+
+  template <int dim>
+  void HeldRows<dim>::set(const std::vector<PointOrigin> &origins,
+                          const State &old, OneStepProblem<dim> &problem) const
+  {
+    const double share = (1. - problem.theta) / problem.theta;
+    for (std::size_t i = 0; i < problem.n_points; ++i)
+      if (problem.kind[i] == PointKind::prescribed &&
+          origins[i].kind != PointOrigin::Kind::motion)
+        for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+          problem.given_velocity[k] =
+              is_mean_ && !is_impact_ ? -share * old.relative_velocity[k] : 0.;
+    if (!is_impact_)
+      set_supports(old, problem);
+  }
+
+  /** Those of rigid bodies, and all where joints ask for the mean velocity. */
+  template <int dim>
+  void HeldRows<dim>::set_supports(const State &old,
+                                   OneStepProblem<dim> &problem) const
+  {
+    const auto &origins = parts_.discretization.origins();
+    const auto &points = bodies_.points();
+    const DrivenMotion<dim> &motion = parts_.step_problem.motion();
+    const double share = (1. - problem.theta) / problem.theta;
+    for (std::size_t j = 0; j < origins.size(); ++j) {
+      if (origins[j].kind != PointOrigin::Kind::motion)
+        continue;
+      const std::size_t i = bodies_.contacts().mesh_point(j);
+      const int body = points.faces[points.face_of[i]].bodies[0];
+      if (!is_mean_ &&
+          (body < 0 || !bodies_.layout()[std::size_t(body)].is_rigid()))
+        continue;
+      for (unsigned int c = 0; c < dim; ++c)
+        if (motion.drives(j, c))
+          if (const Expression *velocity = motion.velocity(j, c))
+            problem.given_velocity[i * dim + c] -=
+                share * (old.relative_velocity[i * dim + c] -
+                         motion.at(*velocity, j, start_));
+    }
+  }
+
+  template class HeldRows<2>;
+  template class HeldRows<3>;
+} // namespace nsfd
