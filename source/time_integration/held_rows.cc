@@ -92,6 +92,33 @@ namespace nsfd
       set_supports(old, problem);
   }
 
+  /**
+   * What was given at the start of the step. Where that jumps there, the last
+   * step, whose end is known to round-off, had one side of it: that one which
+   * @p U is near to.
+   */
+  template <int dim>
+  double HeldRows<dim>::given_before(const Expression &velocity,
+                                     const std::size_t point, const double U,
+                                     const double time_step) const
+  {
+    constexpr double aside = 1e-6, much = 0.1, jump = 1e-3;
+    const DrivenMotion<dim> &motion = parts_.step_problem.motion();
+    const auto at = [&](const double steps) {
+      return motion.at(velocity, point, start_ + steps * time_step);
+    };
+    const double now = at(0.);
+    double given = now;
+    for (const double side : {-1., 1.}) {
+      const double other = at(aside * side);
+      // what varies smoothly hardly changes so near
+      if (std::abs(U - other) < much * std::abs(U - given) &&
+          std::abs(other - now) > jump * std::abs(at(side) - now))
+        given = other;
+    }
+    return given;
+  }
+
   /** Those of rigid bodies, and all where joints ask for the mean velocity. */
   template <int dim>
   void HeldRows<dim>::set_supports(const State &old,
@@ -111,10 +138,11 @@ namespace nsfd
         continue;
       for (unsigned int c = 0; c < dim; ++c)
         if (motion.drives(j, c))
-          if (const Expression *velocity = motion.velocity(j, c))
+          if (const Expression *velocity = motion.velocity(j, c)) {
+            const double U = old.relative_velocity[i * dim + c];
             problem.given_velocity[i * dim + c] -=
-                share * (old.relative_velocity[i * dim + c] -
-                         motion.at(*velocity, j, start_));
+                share * (U - given_before(*velocity, j, U, problem.time_step));
+          }
     }
   }
 

@@ -9,6 +9,7 @@
 
 namespace nsfd
 {
+  class Expression;
   struct State;
 
   /**
@@ -46,6 +47,8 @@ namespace nsfd
   private:
     bool has_turning_arms(const State &old) const;
     bool begins_otherwise(const State &old) const;
+    double given_before(const Expression &velocity, std::size_t point, double U,
+                        double time_step) const;
     void set_supports(const State &old, OneStepProblem<dim> &problem) const;
 
     const StepParts<dim> parts_;

@@ -5,6 +5,7 @@
 
 #include "nsfd/scene/scene_input.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nsfd
@@ -118,9 +119,12 @@ namespace nsfd
           reactions[(d * dim + c) * n_owned + place_] =
               P[c] / problem_.time_step;
     } else {
-      // the first step closes what jump of velocities the scene began with;
-      // later ones only have what the solver leaves
-      const bool closes = old_.last_step == 0.;
+      // the first step closes what jump of velocities the scene began with; all
+      // others only have what the solver leaves
+      const double *U_old = &old_.relative_velocity[i * dim];
+      const bool closes = old_.last_step == 0. &&
+                          std::any_of(U_old, U_old + dim,
+                                      [](const double U) { return U != 0.; });
       put(closes ? impact : numerical, -power);
       put(joint, closes ? 0. : -power);
       double square = 0.;
