@@ -13,7 +13,7 @@ namespace nsfd
   template <int dim>
   ActiveSurfaces<dim>::ActiveSurfaces(const SceneInput &input,
                                       const Discretization<dim> &discretization,
-                                      const MovingBodies<dim> &bodies,
+                                      const BodyLayout<dim> &bodies,
                                       const Communicator &communicator,
                                       const SurfaceCells<dim> &cells,
                                       const ContactPlaces<dim> &places,
@@ -165,8 +165,8 @@ namespace nsfd
     std::vector<double> own;
     own.reserve(own_moving_nodes_.size() * 2 * dim);
     for (const std::size_t node : own_moving_nodes_) {
-      const std::size_t k = bodies_.layout().own_node(node);
-      const Point<dim> x = bodies_.layout().place(old, k);
+      const std::size_t k = bodies_.own_node(node);
+      const Point<dim> x = bodies_.place(old, k);
       own.insert(own.end(), x.begin_raw(), x.end_raw());
       own.insert(own.end(), old.velocity.begin() + long(k * dim),
                  old.velocity.begin() + long((k + 1) * dim));

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "body_layout.h"
 #include "contact_places.h"
-#include "moving_bodies.h"
 
 #include "contact_detection/surface_search.h"
 
@@ -26,7 +26,7 @@ namespace nsfd
 
     ActiveSurfaces(const SceneInput &input,
                    const Discretization<dim> &discretization,
-                   const MovingBodies<dim> &bodies,
+                   const BodyLayout<dim> &bodies,
                    const Communicator &communicator,
                    const SurfaceCells<dim> &cells,
                    const ContactPlaces<dim> &places,
@@ -83,7 +83,7 @@ namespace nsfd
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const BodyTable &table_;
-    const MovingBodies<dim> &bodies_;
+    const BodyLayout<dim> &bodies_;
     const Communicator &all_;
     const SurfaceCells<dim> &cells_;
     const ContactPlaces<dim> &places_;

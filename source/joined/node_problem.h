@@ -6,6 +6,31 @@
 
 namespace nsfd
 {
+  /** Groups and their shares in the velocity of body 2 less that of body 1, of
+      a point that is not between two nodes: a contact of surfaces. */
+  struct PointEnds {
+    std::array<int, 6> groups{};
+    std::array<double, 6> shares{};
+    unsigned int size = 0;
+  };
+
+  /** @p visit (group, share) of a point: @p ends if there are some, else body 1
+      and body 2 (-1: none). */
+  template <typename Visit>
+  void for_ends(const std::array<int, 2> &groups, const PointEnds *ends,
+                const Visit &visit)
+  {
+    if (!ends) {
+      if (groups[0] >= 0)
+        visit(groups[0], -1.);
+      if (groups[1] >= 0)
+        visit(groups[1], 1.);
+      return;
+    }
+    for (unsigned int k = 0; k < ends->size; ++k)
+      visit(ends->groups[k], ends->shares[k]);
+  }
+
   /** The active points around one node, between groups of corners of cells. */
   template <int dim>
   struct NodeProblem {
@@ -14,6 +39,7 @@ namespace nsfd
       /// below, of body 1 and of body 2; -1: none (an obstacle or support at
       /// rest)
       std::array<int, 2> groups;
+      const PointEnds *ends = nullptr; ///< in place of these
     };
     std::vector<Point> points;
     /// of every group and axis, 1/kg; 0 where the motion is prescribed

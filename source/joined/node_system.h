@@ -100,6 +100,7 @@ namespace nsfd
       std::size_t index;
       const double *frame;
       std::array<int, 2> groups;
+      const PointEnds *ends;
       double R, speed;
       bool scalar;                ///< W of the point is R times the identity
       Vector rest;                ///< impulse at which its spring is slack
@@ -129,6 +130,8 @@ namespace nsfd
              const std::vector<double> &frames);
     void push(const Point &point, const Vector &impulse,
               std::vector<Vector> &velocity) const;
+    static Vector velocity_at(const Point &point,
+                              const std::vector<Vector> &velocity);
     void answer(Point &point, bool near_first = true) const;
     bool invert_slopes(Point &point, double soft, double &stiffest) const;
     void assemble();

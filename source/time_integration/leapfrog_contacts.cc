@@ -1,0 +1,627 @@
+#include "leapfrog_contacts.h"
+
+#include "contact_detection/facet_geometry.h"
+#include "discretization/cell_geometry.h"
+#include "nonsmooth/frictional_contact/contact_solver.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <int dim>
+    double product(const std::array<double, dim> &a,
+                   const std::array<double, dim> &b)
+    {
+      double sum = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        sum += a[c] * b[c];
+      return sum;
+    }
+
+    /** The same without the normal components. */
+    template <int dim>
+    double tangential_dot(const std::array<double, dim> &a,
+                          const std::array<double, dim> &b)
+    {
+      return product<dim>(a, b) - a[0] * b[0];
+    }
+    /**
+     * Where the two bodies meet with @p ends as they are: what slides along a
+     * facet that turns has a gap that changes with the place.
+     */
+    template <int dim>
+    void meet(const RowEnds<dim> &ends, MovingRow<dim> &row)
+    {
+      using Partner = typename MovingRow<dim>::Partner;
+      if (row.partner == Partner::edge) {
+        const Tensor<1, dim> a = ends.of_2[1] - ends.of_2[0],
+                             b = ends.of_1[1] - ends.of_1[0],
+                             apart = ends.of_1[0] - ends.of_2[0];
+        const double aa = a * a, ab = a * b, bb = b * b,
+                     det = aa * bb - ab * ab;
+        if (!(det > 1e-6 * aa * bb))
+          return;
+        const double on_2 = (bb * (a * apart) - ab * (b * apart)) / det,
+                     on_1 = (ab * (a * apart) - aa * (b * apart)) / det;
+        if (on_2 < 0. || on_2 > 1. || on_1 < 0. || on_1 > 1.)
+          return;
+        row.edge_weights = {{1. - on_2, on_2}};
+        row.weights[0] = 1. - on_1;
+        row.weights[1] = on_1;
+      } else if (row.partner == Partner::facet) {
+        typename Surfaces<dim>::Facet facet;
+        facet.n_vertices = row.n_facet;
+        std::array<double, 4 * dim> x{};
+        for (unsigned int v = 0; v < row.n_facet; ++v) {
+          facet.vertex[v] = v;
+          for (unsigned int c = 0; c < dim; ++c)
+            x[v * dim + c] = ends.of_1[v][c];
+        }
+        std::array<double, dim> y;
+        for (unsigned int c = 0; c < dim; ++c)
+          y[c] = ends.of_2[0][c];
+        row.weights = closest_place<dim>(facet, plane_of<dim>(facet, x.data()),
+                                         x.data(), y)
+                          .weights;
+      }
+    }
+  } // namespace
+
+  template <int dim>
+  LeapfrogContacts<dim>::LeapfrogContacts(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      const OneStepProblem<dim> &all, const Communicator &communicator)
+      : input_(input), discretization_(discretization), all_(all),
+        layout_(input, discretization),
+        surfaces_(input, discretization, layout_, communicator)
+  {
+  }
+
+  template <int dim>
+  LeapfrogContacts<dim>::~LeapfrogContacts() = default;
+
+  template <int dim>
+  void LeapfrogContacts<dim>::start(const State &state)
+  {
+    state_ = state;
+    state_.touches.clear();
+    const auto &obstacles = input_.obstacles;
+    if (state_.obstacle_shift.empty() &&
+        std::any_of(obstacles.begin(), obstacles.end(),
+                    [](const auto &obstacle) { return obstacle.moves(); }))
+      state_.obstacle_shift.assign(3 * obstacles.size(), 0.);
+  }
+
+  template <int dim>
+  std::vector<unsigned int> LeapfrogContacts<dim>::part(const State &state)
+  {
+    const auto before = state_.kind;
+    state_.kind = state.kind;
+    surfaces_.part(state_);
+    std::vector<unsigned int> parted;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (state_.kind[i] == PointKind::separated &&
+          before[i] != PointKind::separated)
+        parted.push_back(unsigned(i));
+    return parted;
+  }
+
+  /** Surfaces go to where the groups are. */
+  template <int dim>
+  void LeapfrogContacts<dim>::follow(const CornerGroups<dim> &groups)
+  {
+    groups.scatter(groups.displacement, state_.displacement);
+    groups.scatter(groups.velocity, state_.velocity);
+  }
+
+  // ------------------------------------------------------ contacts of a step
+
+  template <int dim>
+  auto LeapfrogContacts<dim>::relative_velocity(
+      const Contact &contact, const std::vector<double> &velocity) const
+      -> Vector
+  {
+    Vector v{}, U{};
+    for (const auto &[group, share] : contact.ends)
+      for (unsigned int c = 0; c < dim; ++c)
+        v[c] += share * velocity[group * dim + c];
+    for (unsigned int r = 0; r < dim; ++r) {
+      U[r] = -contact.obstacle[r];
+      for (unsigned int c = 0; c < dim; ++c)
+        U[r] += contact.frame[r * dim + c] * v[c];
+    }
+    return U;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::add(const Contact &contact, const Vector &impulse,
+                                  std::vector<double> &velocity) const
+  {
+    Vector P{};
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        P[c] += contact.frame[r * dim + c] * impulse[r];
+    for (const auto &[group, share] : contact.ends)
+      for (unsigned int c = 0; c < dim; ++c)
+        velocity[group * dim + c] +=
+            share * inverse_mass_[group * dim + c] * P[c];
+  }
+
+  /** False if nothing can move there. */
+  template <int dim>
+  bool LeapfrogContacts<dim>::make(const MovingRow<dim> &row,
+                                   const CornerGroups<dim> &groups,
+                                   Contact &contact) const
+  {
+    using Partner = typename MovingRow<dim>::Partner;
+    contact.row = row;
+    const auto group = [&](const std::size_t node) {
+      return groups.of(layout_.own_node(node));
+    };
+    const auto add_end = [&](const std::size_t node, const double share) {
+      const unsigned int g = group(node);
+      for (auto &end : contact.ends)
+        if (end.first == g) {
+          end.second += share;
+          return;
+        }
+      contact.ends.emplace_back(g, share);
+    };
+    // where they are in the middle of the step
+    RowEnds<dim> ends;
+    const auto place = [&](const std::size_t node) {
+      const std::size_t corner = layout_.own_node(node), g = group(node);
+      Point<dim> x = at_node<dim>(layout_.rest(), corner);
+      for (unsigned int c = 0; c < dim; ++c)
+        x[c] += groups.displacement[g * dim + c] +
+                time_step_ / 2. * groups.velocity[g * dim + c];
+      return x;
+    };
+    std::vector<unsigned int> of_2;
+    if (row.partner == Partner::edge)
+      for (unsigned int v = 0; v < 2; ++v) {
+        ends.of_2[v] = place(row.edge[v]);
+        of_2.push_back(group(row.edge[v]));
+      }
+    else {
+      ends.of_2[0] = place(row.node);
+      of_2.push_back(group(row.node));
+      add_end(row.node, 1.);
+    }
+    for (unsigned int v = 0; v < row.n_facet; ++v) {
+      ends.of_1[v] = place(row.facet[v]);
+      if (std::find(of_2.begin(), of_2.end(), group(row.facet[v])) !=
+          of_2.end())
+        return false; // neighbours on one surface
+    }
+    meet<dim>(ends, contact.row);
+    if (row.partner == Partner::edge)
+      for (unsigned int v = 0; v < 2; ++v)
+        add_end(row.edge[v], contact.row.edge_weights[v]);
+    for (unsigned int v = 0; v < row.n_facet; ++v)
+      add_end(row.facet[v], -contact.row.weights[v]);
+    contact.ends.erase(std::remove_if(contact.ends.begin(), contact.ends.end(),
+                                      [](const auto &end) {
+                                        return std::abs(end.second) < 1e-12;
+                                      }),
+                       contact.ends.end());
+    bool moves = false;
+    for (const auto &[g, share] : contact.ends)
+      for (unsigned int c = 0; c < dim; ++c)
+        moves = moves || inverse_mass_[g * dim + c] > 0.;
+    if (!moves)
+      return false;
+    const auto normal =
+        row_normal(input_, contact.row, ends, state_.obstacle_shift);
+    const auto axes = local_frame<dim>(normal);
+    const auto x = row_place(contact.row, ends, normal);
+    for (unsigned int r = 0; r < dim; ++r) {
+      contact.place[r] = x[r];
+      for (unsigned int c = 0; c < dim; ++c)
+        contact.frame[r * dim + c] = axes[r][c];
+    }
+    return true;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::find(const double time, const double h,
+                                   const std::vector<std::uint8_t> &prescribed,
+                                   const CornerGroups<dim> &groups)
+  {
+    time_step_ = h;
+    state_.time = time;
+    follow(groups);
+    inverse_mass_.resize(groups.size() * dim);
+    double speed = 0.;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      double square = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        inverse_mass_[g * dim + c] =
+            prescribed[g] & (1u << c) ? 0. : 1. / groups.mass[g];
+        const double v = groups.velocity[g * dim + c];
+        square += v * v;
+      }
+      speed = std::max(speed, square);
+    }
+    contacts_.clear();
+    chosen_.clear();
+
+    // cells around a node meet the same facet at one place
+    std::map<std::vector<unsigned int>, std::size_t> known;
+    for (const auto &row : surfaces_.rows(state_, h, std::sqrt(speed))) {
+      Contact contact;
+      if (!make(row, groups, contact))
+        continue;
+      std::vector<unsigned int> key{unsigned(row.partner), row.obstacle};
+      for (const auto &end : contact.ends)
+        key.push_back(end.first);
+      const auto [entry, is_new] =
+          known.emplace(std::move(key), contacts_.size());
+      if (!is_new) {
+        contacts_[entry->second].row.weight += row.weight;
+        continue;
+      }
+      using Partner = typename MovingRow<dim>::Partner;
+      if (row.partner == Partner::obstacle)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (const auto &v = input_.obstacles[row.obstacle].velocity[c]) {
+            const double own = v->at(Point<dim>(), time + h / 2.);
+            for (unsigned int r = 0; r < dim; ++r)
+              contact.obstacle[r] += contact.frame[r * dim + c] * own;
+          }
+      const auto &law = all_.interactions[row.interaction];
+      contact.friction = law.friction;
+      contact.before = relative_velocity(contact, groups.velocity);
+      const double before = contact.before[0];
+      contact.least = std::min(-row.gap / h, -before);
+      if (law.restitution > 0. && before < 0. && row.gap + h * before <= 0.)
+        contact.least = std::max(contact.least, -law.restitution * before);
+      // half of what friction takes if it goes on to slide
+      contact.target = std::max(
+          contact.least,
+          std::min(-row.gap / h, law.friction *
+                                         std::sqrt(tangential_dot<dim>(
+                                             contact.before, contact.before)) /
+                                         2. -
+                                     std::max(0., before)));
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          contact.impulse[r] += row.share * contact.frame[r * dim + c] *
+                                state_.surface_impulse[row.place * dim + c];
+      contact.impulse[0] = std::max(contact.impulse[0], 0.);
+      if (contact.impulse[0] == 0.)
+        contact.impulse = {};
+      else {
+        contact.pushes = true;
+        chosen_.push_back(unsigned(contacts_.size()));
+      }
+      contacts_.push_back(std::move(contact));
+    }
+  }
+
+  // ------------------------------------------------------------ their problem
+
+  /** Of U_T where friction opposes the sum. */
+  template <int dim>
+  auto LeapfrogContacts<dim>::offset(const Contact &contact) const -> Vector
+  {
+    Vector result{};
+    for (unsigned int c = 1; c < dim; ++c)
+      result[c] =
+          -contact.obstacle[c] + (contact.turned ? contact.before[c] : 0.);
+    return result;
+  }
+
+  template <int dim>
+  auto LeapfrogContacts<dim>::clusters(
+      const std::function<std::size_t(unsigned int)> &node_of)
+      -> std::vector<Cluster>
+  {
+    // contacts, then nodes and groups in the order in which they come
+    const std::size_t n = chosen_.size();
+    std::vector<std::size_t> parent;
+    const auto add_one = [&] {
+      parent.push_back(parent.size());
+      return parent.size() - 1;
+    };
+    const auto root = [&](std::size_t k) {
+      while (parent[k] != k)
+        k = parent[k] = parent[parent[k]];
+      return k;
+    };
+    const auto join = [&](const std::size_t one, const std::size_t two) {
+      const std::size_t a = root(one), b = root(two);
+      parent[std::max(a, b)] = std::min(a, b);
+    };
+    for (std::size_t i = 0; i < n; ++i)
+      add_one();
+    std::map<std::size_t, std::size_t> nodes;
+    std::map<unsigned int, std::size_t> groups;
+    for (std::size_t i = 0; i < n; ++i)
+      for (const auto &[group, share] : contacts_[chosen_[i]].ends) {
+        const std::size_t node = node_of(group);
+        if (node == no_node) {
+          const auto [entry, is_new] = groups.emplace(group, 0);
+          if (is_new)
+            entry->second = add_one();
+          join(i, entry->second);
+        } else {
+          const auto [entry, is_new] = nodes.emplace(node, 0);
+          if (is_new)
+            entry->second = add_one();
+          join(i, entry->second);
+        }
+      }
+    std::map<std::size_t, std::size_t> place; // of roots with nodes
+    std::vector<Cluster> result;
+    for (const auto &[node, k] : nodes) {
+      const auto [entry, is_new] = place.emplace(root(k), result.size());
+      if (is_new)
+        result.emplace_back();
+      result[entry->second].nodes.push_back(node);
+    }
+    cluster_of_.assign(n, -1);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto found = place.find(root(i));
+      if (found == place.end())
+        continue;
+      const Contact &one = contacts_[chosen_[i]];
+      cluster_of_[i] = int(found->second);
+      result[found->second].contacts.push_back(
+          {one.ends, one.frame, one.row.interaction,
+           one.target + one.obstacle[0], offset(one), one.impulse});
+    }
+    return result;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::take(const std::vector<Cluster> &clusters)
+  {
+    std::vector<std::size_t> next(clusters.size(), 0);
+    for (std::size_t i = 0; i < chosen_.size(); ++i)
+      if (cluster_of_[i] >= 0) {
+        const auto k = std::size_t(cluster_of_[i]);
+        contacts_[chosen_[i]].impulse = clusters[k].contacts[next[k]++].impulse;
+      }
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::solve_others(const double tolerance,
+                                           CornerGroups<dim> &groups)
+  {
+    std::vector<unsigned int> others;
+    for (std::size_t i = 0; i < chosen_.size(); ++i)
+      if (cluster_of_[i] < 0)
+        others.push_back(chosen_[i]);
+    const std::size_t n = others.size();
+    if (n == 0)
+      return;
+    // contacts of the groups
+    std::map<unsigned int, std::vector<std::pair<unsigned int, double>>> at;
+    for (unsigned int i = 0; i < n; ++i)
+      for (const auto &[group, share] : contacts_[others[i]].ends)
+        at[group].emplace_back(i, share);
+    ContactProblem problem;
+    problem.dimension = dim;
+    problem.row_start = {0};
+    double mean = 0.;
+    std::map<unsigned int, std::array<double, dim * dim>> blocks;
+    for (unsigned int i = 0; i < n; ++i) {
+      const Contact &one = contacts_[others[i]];
+      blocks.clear();
+      for (const auto &[group, share] : one.ends)
+        for (const auto &[j, other] : at[group]) {
+          auto &block = blocks[j];
+          const auto &frame = contacts_[others[j]].frame;
+          for (unsigned int r = 0; r < dim; ++r)
+            for (unsigned int s = 0; s < dim; ++s)
+              for (unsigned int c = 0; c < dim; ++c)
+                block[r * dim + s] +=
+                    share * other * inverse_mass_[group * dim + c] *
+                    one.frame[r * dim + c] * frame[s * dim + c];
+        }
+      for (unsigned int r = 0; r < dim; ++r) {
+        for (const auto &[j, block] : blocks)
+          for (unsigned int s = 0; s < dim; ++s) {
+            problem.column.push_back(int(j * dim + s));
+            problem.value.push_back(block[r * dim + s]);
+          }
+        problem.row_start.push_back(int(problem.column.size()));
+        mean += blocks[i][r * dim + r] / double(n * dim);
+      }
+      problem.friction.push_back(one.friction);
+    }
+    for (double &value : problem.value)
+      value /= mean;
+    std::vector<double> r(n * dim);
+    problem.q.resize(n * dim);
+    for (unsigned int i = 0; i < n; ++i) {
+      const Contact &one = contacts_[others[i]];
+      const Vector U = relative_velocity(one, groups.velocity);
+      for (unsigned int c = 0; c < dim; ++c) {
+        r[i * dim + c] = one.impulse[c] * mean;
+        problem.q[i * dim + c] = U[c] - (c == 0       ? one.target
+                                         : one.turned ? -one.before[c]
+                                                      : 0.);
+      }
+    }
+    SolverControl control;
+    control.tolerance = tolerance;
+    control.attempts = 1; // what is left is bounded by its own books
+    const auto report = solve_contact_problem(
+        problem, AssembledMethod<ContactMethod::automatic>(), "automatic",
+        control, r);
+    inexact_ += !report.converged;
+    for (unsigned int i = 0; i < n; ++i) {
+      Contact &one = contacts_[others[i]];
+      for (unsigned int c = 0; c < dim; ++c)
+        one.impulse[c] = r[i * dim + c] / mean;
+      add(one, one.impulse, groups.velocity);
+    }
+  }
+
+  /** Where the contact works on the bodies it asks for less; true if so. */
+  template <int dim>
+  bool LeapfrogContacts<dim>::turn(Contact &contact) const
+  {
+    Vector sum;
+    double size = 0.;
+    for (unsigned int c = 0; c < dim; ++c) {
+      sum[c] = contact.velocity[c] + contact.before[c];
+      size += std::abs(contact.impulse[c]) *
+              (std::abs(contact.velocity[c]) + std::abs(contact.before[c]));
+    }
+    const double rubbing = tangential_dot<dim>(contact.impulse, sum),
+                 pushing = contact.impulse[0] * sum[0];
+    if (!contact.turned && rubbing > 1e-9 * size)
+      return contact.turned = true;
+    if (contact.target == contact.least || pushing + rubbing <= 1e-12 * size)
+      return false;
+    contact.target = contact.least;
+    return true;
+  }
+
+  template <int dim>
+  bool LeapfrogContacts<dim>::improve(const CornerGroups<dim> &groups)
+  {
+    bool is_new = false;
+    for (unsigned int k = 0; k < contacts_.size(); ++k) {
+      Contact &contact = contacts_[k];
+      contact.velocity = relative_velocity(contact, groups.velocity);
+      if (!contact.pushes) {
+        const double size =
+            std::abs(contact.velocity[0]) + std::abs(contact.target);
+        if (contact.velocity[0] - contact.target >= -1e-12 * size)
+          continue;
+        contact.pushes = is_new = true;
+        chosen_.push_back(k);
+      } else if (contact.friction > 0.)
+        is_new |= turn(contact);
+    }
+    std::sort(chosen_.begin(), chosen_.end());
+    return is_new;
+  }
+
+  // -------------------------------------------------------- end of the step
+
+  template <int dim>
+  auto LeapfrogContacts<dim>::account(const CornerGroups<dim> &groups)
+      -> Balance
+  {
+    Balance balance;
+    for (Contact &contact : contacts_) {
+      contact.velocity = relative_velocity(contact, groups.velocity);
+      const auto &row = contact.row;
+      const Vector &P = contact.impulse;
+      Vector mean;
+      for (unsigned int c = 0; c < dim; ++c)
+        mean[c] = (contact.velocity[c] + contact.before[c]) / 2.;
+      const double rubbing = tangential_dot<dim>(P, mean);
+      // to push apart what slides is a part of what friction takes
+      const double pushing = P[0] * mean[0];
+      balance.impact += std::max(0., -pushing);
+      balance.friction -= rubbing + std::max(0., pushing);
+      balance.positive_friction += std::max(0., rubbing);
+      balance.work += product<dim>(P, contact.obstacle);
+      balance.active += P[0] > 0.;
+      // it came in undetected by a step at its speed, at most
+      const double known =
+          std::max(row.overlap, state_.surface_overlap[row.place]) +
+          std::max(row.approach, state_.surface_approach[row.place]);
+      balance.penetration = std::max(balance.penetration, -row.gap);
+      balance.excess = std::max(balance.excess, -row.gap - 1.001 * known);
+    }
+    return balance;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::accept()
+  {
+    surfaces_.store_facets(state_);
+    std::fill(state_.surface_impulse.begin(), state_.surface_impulse.end(), 0.);
+    std::fill(state_.surface_contact.begin(), state_.surface_contact.end(), 0);
+    state_.touches.clear();
+    for (const Contact &contact : contacts_) {
+      const auto &row = contact.row;
+      const std::size_t place = row.place;
+      const Vector &U = contact.velocity;
+      double &approach = state_.surface_approach[place],
+             &overlap = state_.surface_overlap[place];
+      // facets that turn take any motion to a part across them
+      approach = std::max(
+          {approach, row.approach,
+           time_step_ * std::sqrt(std::max(
+                            product<dim>(U, U),
+                            product<dim>(contact.before, contact.before)))});
+      overlap = std::max({overlap, row.overlap, row.released ? -row.gap : 0.});
+      if (contact.impulse[0] <= 0.)
+        continue;
+      state_.surface_contact[place] |= SurfaceContacts<dim>::touches;
+      state_.surface_slip[place] +=
+          time_step_ * std::sqrt(tangential_dot<dim>(U, U));
+      SurfaceTouch touch;
+      touch.obstacle = row.partner == MovingRow<dim>::Partner::obstacle;
+      touch.block = row.block;
+      touch.material_2 =
+          discretization_.body_table().bodies[row.body_2].material;
+      touch.weight = row.weight;
+      touch.opening = row.gap + time_step_ * U[0];
+      for (unsigned int c = 0; c < dim; ++c) {
+        touch.position[c] = contact.place[c];
+        touch.normal[c] = contact.frame[c];
+        for (unsigned int r = 0; r < dim; ++r)
+          touch.impulse[c] += contact.frame[r * dim + c] * contact.impulse[r];
+        state_.surface_impulse[place * dim + c] += touch.impulse[c];
+      }
+      state_.touches.push_back(touch);
+    }
+    for (std::size_t k = 0; k < state_.obstacle_shift.size(); ++k)
+      if (const auto &v = input_.obstacles[k / 3].velocity[k % 3])
+        state_.obstacle_shift[k] +=
+            time_step_ * v->at(Point<dim>(), state_.time + time_step_ / 2.);
+    state_.last_step = time_step_;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::add_impulses(const std::vector<int> &row_of_group,
+                                           std::vector<double> &rows) const
+  {
+    for (const Contact &contact : contacts_)
+      for (const auto &[group, share] : contact.ends) {
+        const int row = group < row_of_group.size() ? row_of_group[group] : -1;
+        if (row < 0)
+          continue;
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c)
+            rows[std::size_t(row) * dim + c] +=
+                share * contact.frame[r * dim + c] * contact.impulse[r];
+      }
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::show(State &state) const
+  {
+    state.obstacle_shift = state_.obstacle_shift;
+    state.surface_impulse = state_.surface_impulse;
+    state.surface_slip = state_.surface_slip;
+    state.surface_worn = state_.surface_worn;
+    state.surface_wear_speed = state_.surface_wear_speed;
+    state.surface_overlap = state_.surface_overlap;
+    state.surface_approach = state_.surface_approach;
+    state.surface_contact = state_.surface_contact;
+    state.surface_facet = state_.surface_facet;
+    state.surface_gap = state_.surface_gap;
+    state.touches = state_.touches;
+  }
+
+  template class LeapfrogContacts<2>;
+  template class LeapfrogContacts<3>;
+} // namespace nsfd
