@@ -124,7 +124,8 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           q[c] = -point.impulse[c] - point.direction[c];
       } else {
-        const Vector dU = velocity_at(point, change_);
+        const Vector dU = relative_velocity<dim>(point.frame, point.groups,
+                                                 change_, point.ends);
         for (unsigned int r = 0; r < dim; ++r) {
           q[r] = -point.direction[r];
           for (unsigned int c = 0; c < dim; ++c)

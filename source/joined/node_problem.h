@@ -57,19 +57,26 @@ namespace nsfd
   };
 
   /** U = H v of a point: @p frame has the rows n, t1, t2, @p groups are those
-   * of body 1 and body 2 (-1: none). */
+   * of body 1 and body 2 (-1: none), @p ends stand in place of these. */
   template <int dim>
   std::array<double, dim>
   relative_velocity(const double *frame, const std::array<int, 2> &groups,
-                    const std::vector<std::array<double, dim>> &velocity)
+                    const std::vector<std::array<double, dim>> &velocity,
+                    const PointEnds *ends = nullptr)
   {
     const auto [a, b] = groups;
     std::array<double, dim> v{}, U{};
-    if (b >= 0)
-      v = velocity[std::size_t(b)];
-    if (a >= 0)
-      for (unsigned int c = 0; c < dim; ++c)
-        v[c] -= velocity[std::size_t(a)][c];
+    if (ends)
+      for (unsigned int k = 0; k < ends->size; ++k)
+        for (unsigned int c = 0; c < dim; ++c)
+          v[c] += ends->shares[k] * velocity[std::size_t(ends->groups[k])][c];
+    else {
+      if (b >= 0)
+        v = velocity[std::size_t(b)];
+      if (a >= 0)
+        for (unsigned int c = 0; c < dim; ++c)
+          v[c] -= velocity[std::size_t(a)][c];
+    }
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c)
         U[r] += frame[r * dim + c] * v[c];
@@ -81,18 +88,17 @@ namespace nsfd
   void push_groups(const double *frame, const std::array<int, 2> &groups,
                    const double *impulse,
                    const std::vector<std::array<double, dim>> &inverse_mass,
-                   std::vector<std::array<double, dim>> &velocity)
+                   std::vector<std::array<double, dim>> &velocity,
+                   const PointEnds *ends = nullptr)
   {
     std::array<double, dim> P{};
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c)
         P[c] += frame[r * dim + c] * impulse[r];
-    const auto [a, b] = groups;
-    for (unsigned int c = 0; c < dim; ++c) {
-      if (a >= 0)
-        velocity[std::size_t(a)][c] -= inverse_mass[std::size_t(a)][c] * P[c];
-      if (b >= 0)
-        velocity[std::size_t(b)][c] += inverse_mass[std::size_t(b)][c] * P[c];
-    }
+    for_ends(groups, ends, [&](const int g, const double share) {
+      for (unsigned int c = 0; c < dim; ++c)
+        velocity[std::size_t(g)][c] +=
+            share * inverse_mass[std::size_t(g)][c] * P[c];
+    });
   }
 } // namespace nsfd

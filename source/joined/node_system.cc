@@ -93,42 +93,15 @@ namespace nsfd
   void NodeSystem<dim>::push(const Point &point, const Vector &impulse,
                              std::vector<Vector> &velocity) const
   {
-    if (!point.ends)
-      return push_groups<dim>(point.frame, point.groups, impulse.data(),
-                              *inverse_mass_, velocity);
-    Vector P{};
-    for (unsigned int r = 0; r < dim; ++r)
-      for (unsigned int c = 0; c < dim; ++c)
-        P[c] += point.frame[r * dim + c] * impulse[r];
-    for_ends(point.groups, point.ends, [&](const int g, const double share) {
-      for (unsigned int c = 0; c < dim; ++c)
-        velocity[g][c] += share * (*inverse_mass_)[g][c] * P[c];
-    });
-  }
-
-  /** H v */
-  template <int dim>
-  auto NodeSystem<dim>::velocity_at(const Point &point,
-                                    const std::vector<Vector> &velocity)
-      -> Vector
-  {
-    if (!point.ends)
-      return relative_velocity<dim>(point.frame, point.groups, velocity);
-    Vector v{}, U{};
-    for_ends(point.groups, point.ends, [&](const int g, const double share) {
-      for (unsigned int c = 0; c < dim; ++c)
-        v[c] += share * velocity[g][c];
-    });
-    for (unsigned int r = 0; r < dim; ++r)
-      for (unsigned int c = 0; c < dim; ++c)
-        U[r] += point.frame[r * dim + c] * v[c];
-    return U;
+    push_groups<dim>(point.frame, point.groups, impulse.data(), *inverse_mass_,
+                     velocity, point.ends);
   }
 
   template <int dim>
   void NodeSystem<dim>::answer(Point &point, const bool near_first) const
   {
-    const Vector U = velocity_at(point, velocity_);
+    const Vector U = relative_velocity<dim>(point.frame, point.groups,
+                                            velocity_, point.ends);
     for (unsigned int c = 0; c < dim; ++c)
       point.local[c] =
           U[c] - point.R * (point.impulse[c] -

@@ -130,8 +130,6 @@ namespace nsfd
              const std::vector<double> &frames);
     void push(const Point &point, const Vector &impulse,
               std::vector<Vector> &velocity) const;
-    static Vector velocity_at(const Point &point,
-                              const std::vector<Vector> &velocity);
     void answer(Point &point, bool near_first = true) const;
     bool invert_slopes(Point &point, double soft, double &stiffest) const;
     void assemble();

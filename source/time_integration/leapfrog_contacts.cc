@@ -1,8 +1,9 @@
 #include "leapfrog_contacts.h"
 
+#include "local_product.h"
+
 #include "contact_detection/facet_geometry.h"
 #include "discretization/cell_geometry.h"
-#include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
@@ -16,23 +17,6 @@ namespace nsfd
 
   namespace
   {
-    template <int dim>
-    double product(const std::array<double, dim> &a,
-                   const std::array<double, dim> &b)
-    {
-      double sum = 0.;
-      for (unsigned int c = 0; c < dim; ++c)
-        sum += a[c] * b[c];
-      return sum;
-    }
-
-    /** The same without the normal components. */
-    template <int dim>
-    double tangential_dot(const std::array<double, dim> &a,
-                          const std::array<double, dim> &b)
-    {
-      return product<dim>(a, b) - a[0] * b[0];
-    }
     /**
      * Where the two bodies meet with @p ends as they are: what slides along a
      * facet that turns has a gap that changes with the place.
@@ -265,10 +249,21 @@ namespace nsfd
         key.push_back(end.first);
       const auto [entry, is_new] =
           known.emplace(std::move(key), contacts_.size());
+      double explained =
+          std::max(row.overlap, state_.surface_overlap[row.place]) +
+          std::max(row.approach, state_.surface_approach[row.place]);
+      // they had a common node until now, as a hinge has
+      if (explained == 0. && row.gap < 0. && state_.last_step > 0.)
+        explained = contact.row.overlap = -row.gap;
       if (!is_new) {
-        contacts_[entry->second].row.weight += row.weight;
+        Contact &same = contacts_[entry->second];
+        same.row.weight += row.weight;
+        same.places.push_back(row.place);
+        same.known = std::max(same.known, explained);
         continue;
       }
+      contact.places = {row.place};
+      contact.known = explained;
       using Partner = typename MovingRow<dim>::Partner;
       if (row.partner == Partner::obstacle)
         for (unsigned int c = 0; c < dim; ++c)
@@ -307,209 +302,6 @@ namespace nsfd
     }
   }
 
-  // ------------------------------------------------------------ their problem
-
-  /** Of U_T where friction opposes the sum. */
-  template <int dim>
-  auto LeapfrogContacts<dim>::offset(const Contact &contact) const -> Vector
-  {
-    Vector result{};
-    for (unsigned int c = 1; c < dim; ++c)
-      result[c] =
-          -contact.obstacle[c] + (contact.turned ? contact.before[c] : 0.);
-    return result;
-  }
-
-  template <int dim>
-  auto LeapfrogContacts<dim>::clusters(
-      const std::function<std::size_t(unsigned int)> &node_of)
-      -> std::vector<Cluster>
-  {
-    // contacts, then nodes and groups in the order in which they come
-    const std::size_t n = chosen_.size();
-    std::vector<std::size_t> parent;
-    const auto add_one = [&] {
-      parent.push_back(parent.size());
-      return parent.size() - 1;
-    };
-    const auto root = [&](std::size_t k) {
-      while (parent[k] != k)
-        k = parent[k] = parent[parent[k]];
-      return k;
-    };
-    const auto join = [&](const std::size_t one, const std::size_t two) {
-      const std::size_t a = root(one), b = root(two);
-      parent[std::max(a, b)] = std::min(a, b);
-    };
-    for (std::size_t i = 0; i < n; ++i)
-      add_one();
-    std::map<std::size_t, std::size_t> nodes;
-    std::map<unsigned int, std::size_t> groups;
-    for (std::size_t i = 0; i < n; ++i)
-      for (const auto &[group, share] : contacts_[chosen_[i]].ends) {
-        const std::size_t node = node_of(group);
-        if (node == no_node) {
-          const auto [entry, is_new] = groups.emplace(group, 0);
-          if (is_new)
-            entry->second = add_one();
-          join(i, entry->second);
-        } else {
-          const auto [entry, is_new] = nodes.emplace(node, 0);
-          if (is_new)
-            entry->second = add_one();
-          join(i, entry->second);
-        }
-      }
-    std::map<std::size_t, std::size_t> place; // of roots with nodes
-    std::vector<Cluster> result;
-    for (const auto &[node, k] : nodes) {
-      const auto [entry, is_new] = place.emplace(root(k), result.size());
-      if (is_new)
-        result.emplace_back();
-      result[entry->second].nodes.push_back(node);
-    }
-    cluster_of_.assign(n, -1);
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto found = place.find(root(i));
-      if (found == place.end())
-        continue;
-      const Contact &one = contacts_[chosen_[i]];
-      cluster_of_[i] = int(found->second);
-      result[found->second].contacts.push_back(
-          {one.ends, one.frame, one.row.interaction,
-           one.target + one.obstacle[0], offset(one), one.impulse});
-    }
-    return result;
-  }
-
-  template <int dim>
-  void LeapfrogContacts<dim>::take(const std::vector<Cluster> &clusters)
-  {
-    std::vector<std::size_t> next(clusters.size(), 0);
-    for (std::size_t i = 0; i < chosen_.size(); ++i)
-      if (cluster_of_[i] >= 0) {
-        const auto k = std::size_t(cluster_of_[i]);
-        contacts_[chosen_[i]].impulse = clusters[k].contacts[next[k]++].impulse;
-      }
-  }
-
-  template <int dim>
-  void LeapfrogContacts<dim>::solve_others(const double tolerance,
-                                           CornerGroups<dim> &groups)
-  {
-    std::vector<unsigned int> others;
-    for (std::size_t i = 0; i < chosen_.size(); ++i)
-      if (cluster_of_[i] < 0)
-        others.push_back(chosen_[i]);
-    const std::size_t n = others.size();
-    if (n == 0)
-      return;
-    // contacts of the groups
-    std::map<unsigned int, std::vector<std::pair<unsigned int, double>>> at;
-    for (unsigned int i = 0; i < n; ++i)
-      for (const auto &[group, share] : contacts_[others[i]].ends)
-        at[group].emplace_back(i, share);
-    ContactProblem problem;
-    problem.dimension = dim;
-    problem.row_start = {0};
-    double mean = 0.;
-    std::map<unsigned int, std::array<double, dim * dim>> blocks;
-    for (unsigned int i = 0; i < n; ++i) {
-      const Contact &one = contacts_[others[i]];
-      blocks.clear();
-      for (const auto &[group, share] : one.ends)
-        for (const auto &[j, other] : at[group]) {
-          auto &block = blocks[j];
-          const auto &frame = contacts_[others[j]].frame;
-          for (unsigned int r = 0; r < dim; ++r)
-            for (unsigned int s = 0; s < dim; ++s)
-              for (unsigned int c = 0; c < dim; ++c)
-                block[r * dim + s] +=
-                    share * other * inverse_mass_[group * dim + c] *
-                    one.frame[r * dim + c] * frame[s * dim + c];
-        }
-      for (unsigned int r = 0; r < dim; ++r) {
-        for (const auto &[j, block] : blocks)
-          for (unsigned int s = 0; s < dim; ++s) {
-            problem.column.push_back(int(j * dim + s));
-            problem.value.push_back(block[r * dim + s]);
-          }
-        problem.row_start.push_back(int(problem.column.size()));
-        mean += blocks[i][r * dim + r] / double(n * dim);
-      }
-      problem.friction.push_back(one.friction);
-    }
-    for (double &value : problem.value)
-      value /= mean;
-    std::vector<double> r(n * dim);
-    problem.q.resize(n * dim);
-    for (unsigned int i = 0; i < n; ++i) {
-      const Contact &one = contacts_[others[i]];
-      const Vector U = relative_velocity(one, groups.velocity);
-      for (unsigned int c = 0; c < dim; ++c) {
-        r[i * dim + c] = one.impulse[c] * mean;
-        problem.q[i * dim + c] = U[c] - (c == 0       ? one.target
-                                         : one.turned ? -one.before[c]
-                                                      : 0.);
-      }
-    }
-    SolverControl control;
-    control.tolerance = tolerance;
-    control.attempts = 1; // what is left is bounded by its own books
-    const auto report = solve_contact_problem(
-        problem, AssembledMethod<ContactMethod::automatic>(), "automatic",
-        control, r);
-    inexact_ += !report.converged;
-    for (unsigned int i = 0; i < n; ++i) {
-      Contact &one = contacts_[others[i]];
-      for (unsigned int c = 0; c < dim; ++c)
-        one.impulse[c] = r[i * dim + c] / mean;
-      add(one, one.impulse, groups.velocity);
-    }
-  }
-
-  /** Where the contact works on the bodies it asks for less; true if so. */
-  template <int dim>
-  bool LeapfrogContacts<dim>::turn(Contact &contact) const
-  {
-    Vector sum;
-    double size = 0.;
-    for (unsigned int c = 0; c < dim; ++c) {
-      sum[c] = contact.velocity[c] + contact.before[c];
-      size += std::abs(contact.impulse[c]) *
-              (std::abs(contact.velocity[c]) + std::abs(contact.before[c]));
-    }
-    const double rubbing = tangential_dot<dim>(contact.impulse, sum),
-                 pushing = contact.impulse[0] * sum[0];
-    if (!contact.turned && rubbing > 1e-9 * size)
-      return contact.turned = true;
-    if (contact.target == contact.least || pushing + rubbing <= 1e-12 * size)
-      return false;
-    contact.target = contact.least;
-    return true;
-  }
-
-  template <int dim>
-  bool LeapfrogContacts<dim>::improve(const CornerGroups<dim> &groups)
-  {
-    bool is_new = false;
-    for (unsigned int k = 0; k < contacts_.size(); ++k) {
-      Contact &contact = contacts_[k];
-      contact.velocity = relative_velocity(contact, groups.velocity);
-      if (!contact.pushes) {
-        const double size =
-            std::abs(contact.velocity[0]) + std::abs(contact.target);
-        if (contact.velocity[0] - contact.target >= -1e-12 * size)
-          continue;
-        contact.pushes = is_new = true;
-        chosen_.push_back(k);
-      } else if (contact.friction > 0.)
-        is_new |= turn(contact);
-    }
-    std::sort(chosen_.begin(), chosen_.end());
-    return is_new;
-  }
-
   // -------------------------------------------------------- end of the step
 
   template <int dim>
@@ -532,12 +324,9 @@ namespace nsfd
       balance.positive_friction += std::max(0., rubbing);
       balance.work += product<dim>(P, contact.obstacle);
       balance.active += P[0] > 0.;
-      // it came in undetected by a step at its speed, at most
-      const double known =
-          std::max(row.overlap, state_.surface_overlap[row.place]) +
-          std::max(row.approach, state_.surface_approach[row.place]);
       balance.penetration = std::max(balance.penetration, -row.gap);
-      balance.excess = std::max(balance.excess, -row.gap - 1.001 * known);
+      balance.excess =
+          std::max(balance.excess, -row.gap - 1.001 * contact.known);
     }
     return balance;
   }
@@ -553,15 +342,18 @@ namespace nsfd
       const auto &row = contact.row;
       const std::size_t place = row.place;
       const Vector &U = contact.velocity;
-      double &approach = state_.surface_approach[place],
-             &overlap = state_.surface_overlap[place];
       // facets that turn take any motion to a part across them
-      approach = std::max(
-          {approach, row.approach,
-           time_step_ * std::sqrt(std::max(
-                            product<dim>(U, U),
-                            product<dim>(contact.before, contact.before)))});
-      overlap = std::max({overlap, row.overlap, row.released ? -row.gap : 0.});
+      const double way =
+          time_step_ *
+          std::sqrt(std::max(product<dim>(U, U),
+                             product<dim>(contact.before, contact.before)));
+      for (const std::size_t one : contact.places) {
+        double &approach = state_.surface_approach[one],
+               &overlap = state_.surface_overlap[one];
+        approach = std::max({approach, row.approach, way});
+        overlap =
+            std::max({overlap, row.overlap, row.released ? -row.gap : 0.});
+      }
       if (contact.impulse[0] <= 0.)
         continue;
       state_.surface_contact[place] |= SurfaceContacts<dim>::touches;

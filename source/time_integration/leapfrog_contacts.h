@@ -102,6 +102,8 @@ namespace nsfd
     using Vector = std::array<double, dim>;
     struct Contact {
       MovingRow<dim> row;
+      std::vector<std::size_t> places; ///< of all rows that are the same
+      double known = 0.; ///< overlap that the way of a step explains, m
       std::array<double, dim> place{};
       std::array<double, dim * dim> frame{}; ///< rows n, t1, t2
       /// groups and what they have in the velocity of body 2 less that of

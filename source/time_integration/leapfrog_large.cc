@@ -226,7 +226,7 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::serialize(Archive &archive)
   {
-    archive.numbers("large", bulk_, stiffening_);
+    archive.numbers("large", bulk_, stiffening_, way_);
   }
 
   template class LeapfrogLarge<2>;

@@ -6,6 +6,7 @@
 
 #include "joined/finite_forces.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -61,6 +62,9 @@ namespace nsfd
     void take_forces(unsigned int step, double h,
                      const CornerGroups<dim> &groups,
                      LeapfrogEnergies &energies);
+    /** A frame may turn by what its sides move: overlaps up to the largest
+        @p way of a step so far are explained by it, m. */
+    double widen(const double way) { return way_ = std::max(way_, way); }
     /** Step number @p step is taken, in which a face may have lost its last
        hold; true if points have been left to the search. */
     bool accept(unsigned int step, bool separates, LeapfrogPoints<dim> &points);
@@ -86,7 +90,7 @@ namespace nsfd
     State state_;      ///< what the points of the mesh are
     double bulk_ = 0.; ///< of the last way, which the next step takes, J
     double stored_ = 0., power_ = 0.; ///< of the step
-    double stiffening_ = 1.;
+    double stiffening_ = 1., way_ = 0.;
     bool separates_ = true; ///< faces may be free, and not separated yet
     unsigned long long rounds_ = 0;
   };

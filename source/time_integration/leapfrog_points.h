@@ -109,6 +109,7 @@ namespace nsfd
              numerical = 0., viscous = 0.;
       double broken = 0.;      ///< area, m^2 or m
       double penetration = 0.; ///< beyond overlaps of released springs, m
+      double way = 0.;         ///< of two sides that touch, in the step, m
       unsigned int active = 0;
       bool beyond_unique = false;
       LineChanges changes; ///< of friction, damage, impact, numerical

@@ -57,9 +57,12 @@ namespace nsfd
     next.initial_energy = old.initial_energy;
     next.penetration =
         std::max({old.penetration, balance.penetration, bodies.penetration});
-    next.penetration_excess = std::max(
-        old.penetration_excess, std::max(balance.penetration, bodies.excess) -
-                                    1e-12 * discretization_.extent());
+    next.penetration_excess =
+        std::max(old.penetration_excess,
+                 std::max(balance.penetration -
+                              (large_ ? large_->widen(balance.way) : 0.),
+                          bodies.excess) -
+                     1e-12 * discretization_.extent());
     next.rigid_drift = old.rigid_drift;
     next.viscous_traction = old.viscous_traction;
     next.pressure_work = old.pressure_work + bodies.pressure_work;
