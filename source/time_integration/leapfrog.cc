@@ -125,7 +125,7 @@ namespace nsfd
     if (other_length)
       energies.numerical = (h - last) / 4. * (sums[1] - sums.back());
     if (large_)
-      large_->take_energies(kick, before_.velocity, g, energies);
+      large_->take_energies(h, last, before_.velocity, g, energies);
   }
 
   /** Forces and loads on the groups of a node that has split. */

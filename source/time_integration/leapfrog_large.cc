@@ -130,14 +130,16 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogLarge<dim>::take_energies(const double kick,
+  void LeapfrogLarge<dim>::take_energies(const double h, const double last,
                                          const std::vector<double> &before,
                                          const CornerGroups<dim> &groups,
                                          LeapfrogEnergies &energies)
   {
     const double front_before = forces_.front_power(groups, before),
                  front_after = forces_.front_power(groups, groups.velocity),
-                 taken = -kick / 2. * (front_before + front_after);
+                 taken = -(h + last) / 4. * (front_before + front_after);
+    // of elastic forces alone, where a step changes its length
+    energies.numerical -= (h - last) / 4. * (front_after - front_before);
     energies.power -= front_after;
     energies.viscous += std::max(0., taken);
     // steps that change their length are among it

@@ -54,8 +54,8 @@ namespace nsfd
     void add_impulses(const std::vector<int> &row_of_group,
                       std::vector<double> &rows) const;
     /** What bodies and contacts have, with the forces that acted in the step;
-        @p before are the velocities before it. */
-    void take_energies(double kick, const std::vector<double> &before,
+        @p before are the velocities before it; @p h and @p last as there. */
+    void take_energies(double h, double last, const std::vector<double> &before,
                        const CornerGroups<dim> &groups,
                        LeapfrogEnergies &energies);
     /** With the forces at its end, of step number @p step and length @p h. */
