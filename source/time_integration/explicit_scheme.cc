@@ -44,7 +44,19 @@ namespace nsfd
                              block.law_name, block.name));
     }
 
-    /** What explicit steps of large motions do not know yet. */
+    /** What explicit steps do not know yet. */
+    void refuse_history(SectionReader &reader, const SceneInput &scene)
+    {
+      for (const MaterialInput &material : scene.materials)
+        if (material.kind == MaterialKind::history_dependent)
+          reader.error("scheme",
+                       fmt::format("scheme = explicit is not available for "
+                                   "model = {}",
+                                   material.model_name),
+                       "write scheme = moreau-jean");
+    }
+
+    /** What those of large motions do not know yet. */
     void refuse_large(SectionReader &reader, const SceneInput &scene)
     {
       const auto refuse = [&reader](const std::string &what) {
@@ -54,10 +66,8 @@ namespace nsfd
       };
       for (const MaterialInput &material : scene.materials)
         if (material.kind != MaterialKind::finite_strain)
-          refuse(fmt::format("{} yet, and material `{}` is one",
-                             material.rigid ? "rigid bodies"
-                                            : "materials with history",
-                             material.name));
+          refuse(fmt::format("model = {} yet, which material `{}` has",
+                             material.model_name, material.name));
       for (const InterfaceInput &block : scene.interfaces)
         if (block.crack_pressure)
           refuse(fmt::format("pressure in cracks yet, and `{}` has one",
@@ -110,10 +120,8 @@ namespace nsfd
       if (scene.large_motion) {
         scene.time.forecast_gamma2 = 1.; // all that is near may touch
         refuse_large(reader, scene);
-      } else if (scene.has_history())
-        reader.error("scheme",
-                     "scheme = explicit has no materials with history yet",
-                     "write scheme = moreau-jean");
+      } else
+        refuse_history(reader, scene);
       const auto front = reader.raw(
           "front viscosity", "auto",
           "share of critical damping where the rate of strain jumps between "

@@ -2,6 +2,7 @@
 
 #include "local_product.h"
 
+#include "core/disjoint_sets.h"
 #include "nonsmooth/frictional_contact/contact_solver.h"
 
 #include <algorithm>
@@ -29,52 +30,36 @@ namespace nsfd
       const std::function<std::size_t(unsigned int)> &node_of)
       -> std::vector<Cluster>
   {
-    // contacts, then nodes and groups in the order in which they come
+    // contacts, then nodes and other groups
     const std::size_t n = chosen_.size();
-    std::vector<std::size_t> parent;
-    const auto add_one = [&] {
-      parent.push_back(parent.size());
-      return parent.size() - 1;
-    };
-    const auto root = [&](std::size_t k) {
-      while (parent[k] != k)
-        k = parent[k] = parent[parent[k]];
-      return k;
-    };
-    const auto join = [&](const std::size_t one, const std::size_t two) {
-      const std::size_t a = root(one), b = root(two);
-      parent[std::max(a, b)] = std::min(a, b);
-    };
-    for (std::size_t i = 0; i < n; ++i)
-      add_one();
-    std::map<std::size_t, std::size_t> nodes;
-    std::map<unsigned int, std::size_t> groups;
-    for (std::size_t i = 0; i < n; ++i)
-      for (const auto &[group, share] : contacts_[chosen_[i]].ends) {
-        const std::size_t node = node_of(group);
-        if (node == no_node) {
-          const auto [entry, is_new] = groups.emplace(group, 0);
-          if (is_new)
-            entry->second = add_one();
-          join(i, entry->second);
-        } else {
-          const auto [entry, is_new] = nodes.emplace(node, 0);
-          if (is_new)
-            entry->second = add_one();
-          join(i, entry->second);
-        }
+    std::map<std::size_t, unsigned int> nodes;
+    std::map<unsigned int, unsigned int> groups;
+    for (const unsigned int k : chosen_)
+      for (const auto &end : contacts_[k].ends) {
+        const std::size_t node = node_of(end.first);
+        const auto next = unsigned(n + nodes.size() + groups.size());
+        if (node == no_node)
+          groups.emplace(end.first, next);
+        else
+          nodes.emplace(node, next);
       }
-    std::map<std::size_t, std::size_t> place; // of roots with nodes
+    DisjointSets sets(n + nodes.size() + groups.size());
+    for (unsigned int i = 0; i < n; ++i)
+      for (const auto &end : contacts_[chosen_[i]].ends) {
+        const std::size_t node = node_of(end.first);
+        sets.join(i, node == no_node ? groups[end.first] : nodes[node]);
+      }
+    std::map<unsigned int, std::size_t> place; // of sets with nodes
     std::vector<Cluster> result;
     for (const auto &[node, k] : nodes) {
-      const auto [entry, is_new] = place.emplace(root(k), result.size());
+      const auto [entry, is_new] = place.emplace(sets.first(k), result.size());
       if (is_new)
         result.emplace_back();
       result[entry->second].nodes.push_back(node);
     }
     cluster_of_.assign(n, -1);
     for (std::size_t i = 0; i < n; ++i) {
-      const auto found = place.find(root(i));
+      const auto found = place.find(sets.first(unsigned(i)));
       if (found == place.end())
         continue;
       const Contact &one = contacts_[chosen_[i]];

@@ -3,6 +3,7 @@
 #include "local_product.h"
 
 #include "contact_detection/facet_geometry.h"
+#include "core/disjoint_sets.h"
 #include "discretization/cell_geometry.h"
 #include "nsfd/scene/scene_input.h"
 
@@ -67,6 +68,13 @@ namespace nsfd
         layout_(input, discretization),
         surfaces_(input, discretization, layout_, communicator)
   {
+    DisjointSets parts(discretization.bodies().size());
+    for (const auto &face : discretization.points().faces)
+      if (face.bodies[0] >= 0 && face.bodies[1] >= 0)
+        parts.join(unsigned(face.bodies[0]), unsigned(face.bodies[1]));
+    part_of_.resize(layout_.size());
+    for (std::size_t b = 0; b < layout_.size(); ++b)
+      part_of_[layout_[b].number] = parts.first(layout_[b].cells[0]);
   }
 
   template <int dim>
@@ -252,8 +260,13 @@ namespace nsfd
       double explained =
           std::max(row.overlap, state_.surface_overlap[row.place]) +
           std::max(row.approach, state_.surface_approach[row.place]);
-      // they had a common node until now, as a hinge has
-      if (explained == 0. && row.gap < 0. && state_.last_step > 0.)
+      // parts of one body had a node in common until now, as a hinge has
+      const bool is_new_surface =
+          row.released ||
+          (row.body_1 >= 0 && row.node != row.nowhere &&
+           state_.surface_facet[row.place] == Surfaces<dim>::no_key &&
+           part_of_[row.body_1] == part_of_[row.body_2]);
+      if (is_new_surface && state_.last_step > 0. && -row.gap > explained)
         explained = contact.row.overlap = -row.gap;
       if (!is_new) {
         Contact &same = contacts_[entry->second];

@@ -129,7 +129,8 @@ namespace nsfd
     const OneStepProblem<dim> &all_;
     const BodyLayout<dim> layout_;
     SurfaceContacts<dim> surfaces_;
-    State state_; ///< of the surfaces
+    State state_;                       ///< of the surfaces
+    std::vector<unsigned int> part_of_; ///< by body: of what was one
     double time_step_ = 0.;
     std::vector<Contact> contacts_; ///< of the step
     /// of these, those that push or have pushed in the step; which cluster they

@@ -171,8 +171,9 @@ namespace nsfd
       energies.power_after += groups.force[k] * groups.velocity[k];
     bulk_ = stored_ - stored_now - h / 2. * (power_ + energies.power_after);
     stored_ = stored_now;
+    // a longer step later would take or give energy, as each change does
     if (step % steps_between_looks == 0)
-      stiffening_ = forces_.stiffening();
+      stiffening_ = std::max(stiffening_, forces_.stiffening());
   }
 
   template <int dim>
