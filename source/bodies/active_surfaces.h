@@ -36,6 +36,23 @@ namespace nsfd
         the last step. Collective. */
     bool follow(const State &state);
 
+    /** Cells hang together by common nodes: the node that has the motion of a
+        node of SurfaceCells, and a number of the whole that a cell is in. */
+    struct Wholes {
+      std::vector<unsigned int> node, of_cell;
+    };
+    /** To be called before follow() where they are others. */
+    void set_wholes(Wholes wholes)
+    {
+      wholes_ = std::move(wholes);
+      known_ = false;
+    }
+    /** See SurfaceCells::merged(). */
+    unsigned int merged(const std::size_t node) const
+    {
+      return wholes_.node.empty() ? cells_.merged(node) : wholes_.node[node];
+    }
+
     struct Origin {
       unsigned int cell, face, node; ///< node of the face
     };
@@ -94,7 +111,10 @@ namespace nsfd
       Vector normal;
     };
     std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
-    std::vector<char> separated_; ///< per mesh face
+    /// per mesh face; where cells hang together, those that are open somewhere:
+    /// corners that they free may touch an obstacle
+    std::vector<char> separated_, opened_;
+    Wholes wholes_; ///< empty: every body is one
     bool known_ = false;
     std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
     std::vector<double> x_, v_; ///< of them by node, and centres

@@ -51,6 +51,11 @@ namespace nsfd
     /** After the step of the last call of rows(). */
     void store_facets(State &next) const;
 
+    /** Cells hang together now by common nodes, see ActiveSurfaces. */
+    void set_wholes(typename ActiveSurfaces<dim>::Wholes wholes)
+    {
+      active_.set_wholes(std::move(wholes));
+    }
     /** What may touch in a step of @p time_step from @p old, on all ranks the
         same; nothing is faster than @p largest_speed. Collective. */
     std::vector<MovingRow<dim>> rows(const State &old, double time_step,

@@ -255,7 +255,7 @@ namespace nsfd
       Vector normal;
       for (unsigned int d = 0; d < dim; ++d)
         normal[d] = pair.normal[d];
-      const unsigned int own = cells_.merged(row.node),
+      const unsigned int own = active_.merged(row.node),
                          other = unsigned(row.facet[v]);
       const auto known = seen_.find(UnorderedPair(other) << 32 | own);
       if (known != seen_.end() && known->second.normal * normal < opposed)
@@ -418,7 +418,7 @@ namespace nsfd
         row.place = places_.of_node(c, f, j);
         row.weight = face.weights[j];
         const auto [entry, is_new] = known.emplace(
-            std::pair(std::size_t(cells_.merged(row.node)), o), rows.size());
+            std::pair(std::size_t(active_.merged(row.node)), o), rows.size());
         if (is_new)
           add(row, o);
         else if (row.weight > rows[entry->second].weight) {

@@ -329,7 +329,7 @@ namespace nsfd
     }
     report.separates = communicator_.any(points_.accept());
     if (large_)
-      report.separates |= large_->accept(next.step, report.separates, points_);
+      report.separates |= large_->accept(points_);
     return report;
   }
 

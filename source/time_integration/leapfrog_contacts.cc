@@ -112,6 +112,33 @@ namespace nsfd
   {
     groups.scatter(groups.displacement, state_.displacement);
     groups.scatter(groups.velocity, state_.velocity);
+    if (groups.size() != n_groups_)
+      set_wholes(groups);
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::set_wholes(const CornerGroups<dim> &groups)
+  {
+    n_groups_ = groups.size();
+    const auto &table = discretization_.body_table();
+    const std::size_t n_cells = table.body_of_cell.size(),
+                      n = layout_.nodes_per_cell();
+    typename ActiveSurfaces<dim>::Wholes wholes;
+    wholes.node.resize(n_cells * n);
+    std::vector<unsigned int> first(groups.size(), unsigned(-1));
+    DisjointSets sets(n_cells);
+    for (unsigned int node = 0; node < n_cells * n; ++node) {
+      unsigned int &of_group = first[groups.of(layout_.own_node(node))];
+      if (of_group == unsigned(-1))
+        of_group = node;
+      else
+        sets.join(unsigned(node / n), unsigned(of_group / n));
+      wholes.node[node] = of_group;
+    }
+    wholes.of_cell.resize(n_cells);
+    for (unsigned int c = 0; c < n_cells; ++c)
+      wholes.of_cell[c] = sets.first(c);
+    surfaces_.set_wholes(std::move(wholes));
   }
 
   // ------------------------------------------------------ contacts of a step
@@ -260,11 +287,13 @@ namespace nsfd
       double explained =
           std::max(row.overlap, state_.surface_overlap[row.place]) +
           std::max(row.approach, state_.surface_approach[row.place]);
-      // parts of one body had a node in common until now, as a hinge has
+      // parts of one body had a node in common until now, as a hinge has, and
+      // an obstacle was touched by another corner of it
       const bool is_new_surface =
-          row.released ||
+          row.released || (row.body_1 < 0 && explained == 0.) ||
           (row.body_1 >= 0 && row.node != row.nowhere &&
-           state_.surface_facet[row.place] == Surfaces<dim>::no_key &&
+           (explained == 0. ||
+            state_.surface_facet[row.place] == Surfaces<dim>::no_key) &&
            part_of_[row.body_1] == part_of_[row.body_2]);
       if (is_new_surface && state_.last_step > 0. && -row.gap > explained)
         explained = contact.row.overlap = -row.gap;

@@ -115,6 +115,7 @@ namespace nsfd
     };
 
     void follow(const CornerGroups<dim> &groups);
+    void set_wholes(const CornerGroups<dim> &groups);
     bool make(const MovingRow<dim> &row, const CornerGroups<dim> &groups,
               Contact &contact) const;
     Vector relative_velocity(const Contact &contact,
@@ -131,6 +132,7 @@ namespace nsfd
     SurfaceContacts<dim> surfaces_;
     State state_;                       ///< of the surfaces
     std::vector<unsigned int> part_of_; ///< by body: of what was one
+    std::size_t n_groups_ = 0; ///< of the wholes that the surfaces know
     double time_step_ = 0.;
     std::vector<Contact> contacts_; ///< of the step
     /// of these, those that push or have pushed in the step; which cluster they

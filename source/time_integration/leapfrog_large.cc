@@ -17,7 +17,7 @@ namespace nsfd
     /// of the bound by the stiffest cell: it may become stiffer until the next
     /// look
     constexpr double share_of_bound = 0.97;
-    constexpr unsigned int steps_between_looks = 4, steps_between_searches = 16;
+    constexpr unsigned int steps_between_looks = 4;
   } // namespace
 
   template <int dim>
@@ -177,20 +177,27 @@ namespace nsfd
   }
 
   template <int dim>
-  bool LeapfrogLarge<dim>::accept(const unsigned int step, const bool separates,
-                                  LeapfrogPoints<dim> &points)
+  bool LeapfrogLarge<dim>::accept(LeapfrogPoints<dim> &points)
   {
     if (!contacts_)
       return false;
     contacts_->accept();
-    // what is nearly broken is free some steps later
-    separates_ = separates_ || separates;
-    if (!separates_ || (!separates && step % steps_between_searches != 0))
+    const auto n_open = [&points] {
+      const auto &chains = points.chains();
+      std::size_t n = chains.size();
+      for (std::size_t a = 0; a < chains.size(); ++a)
+        n += (chains.other.kind[a] == PointKind::free &&
+              chains.problem.kind[a] == PointKind::free) +
+             (chains.other.kind[a] == PointKind::cohesive);
+      return n;
+    };
+    if (n_open() == n_open_)
       return false;
     points.chains().show(state_, {});
     const auto parted = contacts_->part(state_);
     for (const unsigned int point : parted)
       points.part(point);
+    n_open_ = n_open();
     return !parted.empty();
   }
 

@@ -65,9 +65,8 @@ namespace nsfd
     /** A frame may turn by what its sides move: overlaps up to the largest
         @p way of a step so far are explained by it, m. */
     double widen(const double way) { return way_ = std::max(way_, way); }
-    /** Step number @p step is taken, in which a face may have lost its last
-       hold; true if points have been left to the search. */
-    bool accept(unsigned int step, bool separates, LeapfrogPoints<dim> &points);
+    /** The step is taken; true if points have been left to the search. */
+    bool accept(LeapfrogPoints<dim> &points);
 
     double stored() const { return communicator_.sum(forces_.stored()); }
     /** Where a cell is turned inside out; empty: nowhere. */
@@ -91,7 +90,7 @@ namespace nsfd
     double bulk_ = 0.; ///< of the last way, which the next step takes, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;
-    bool separates_ = true; ///< faces may be free, and not separated yet
+    std::size_t n_open_ = 0; ///< points that hold less than they did
     unsigned long long rounds_ = 0;
   };
 } // namespace nsfd
