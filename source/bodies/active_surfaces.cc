@@ -13,7 +13,7 @@ namespace nsfd
   template <int dim>
   ActiveSurfaces<dim>::ActiveSurfaces(const SceneInput &input,
                                       const Discretization<dim> &discretization,
-                                      const MovingBodies<dim> &bodies,
+                                      const BodyLayout<dim> &bodies,
                                       const Communicator &communicator,
                                       const SurfaceCells<dim> &cells,
                                       const ContactPlaces<dim> &places,
@@ -82,6 +82,7 @@ namespace nsfd
   {
     const auto &points = discretization_.points();
     separated_.resize(cells_.mesh_faces().size(), 0);
+    opened_.resize(separated_.size(), 0);
     std::vector<int> changed;
     for (std::size_t f = 0; f < points.faces.size(); ++f) {
       const int face = cells_.mesh_face(f);
@@ -89,6 +90,13 @@ namespace nsfd
         continue;
       const char now =
           state.kind[points.faces[f].first] == PointKind::separated;
+      if (!wholes_.node.empty() && !opened_[std::size_t(face)])
+        for (unsigned int i = 0; i < points.faces[f].count; ++i)
+          if (const PointKind kind = state.kind[points.faces[f].first + i];
+              kind != PointKind::bonded && kind != PointKind::separated) {
+            opened_[std::size_t(face)] = 1;
+            known_ = false;
+          }
       if (now != separated_[std::size_t(face)])
         changed.push_back(face);
     }
@@ -165,8 +173,8 @@ namespace nsfd
     std::vector<double> own;
     own.reserve(own_moving_nodes_.size() * 2 * dim);
     for (const std::size_t node : own_moving_nodes_) {
-      const std::size_t k = bodies_.layout().own_node(node);
-      const Point<dim> x = bodies_.layout().place(old, k);
+      const std::size_t k = bodies_.own_node(node);
+      const Point<dim> x = bodies_.place(old, k);
       own.insert(own.end(), x.begin_raw(), x.end_raw());
       own.insert(own.end(), old.velocity.begin() + long(k * dim),
                  old.velocity.begin() + long((k + 1) * dim));
@@ -215,8 +223,9 @@ namespace nsfd
       typename Surfaces<dim>::Facet facet;
       facet.n_vertices = unsigned(face.pieces[p].size());
       for (unsigned int v = 0; v < facet.n_vertices; ++v)
-        facet.vertex[v] = cells_.merged(first + face.pieces[p][v]);
+        facet.vertex[v] = merged(first + face.pieces[p][v]);
       facet.body = table_.body_of_cell[c];
+      facet.whole = wholes_.of_cell.empty() ? facet.body : wholes_.of_cell[c];
       facet.key = std::uint64_t(places_.of_node(c, f, 0)) * pieces_per_face + p;
       for (unsigned int v = 0; v < facet.n_vertices; ++v) {
         const unsigned int node = face.pieces[p][v];
@@ -247,7 +256,8 @@ namespace nsfd
       if (input_.obstacles[o].where.kind == Where::Kind::all)
         for (unsigned int c = 0; c < cells_.size(); ++c)
           for (unsigned int f = 0; f < cells_.faces(c).size(); ++f)
-            if (cells_.kind_of(c, f) >= 0 && is_surface(c, f))
+            if (const int face = cells_.kind_of(c, f);
+                face >= 0 && (is_surface(c, f) || opened_[std::size_t(face)]))
               obstacle_faces_.push_back({c, f, o});
   }
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "body_layout.h"
 #include "contact_places.h"
-#include "moving_bodies.h"
 
 #include "contact_detection/surface_search.h"
 
@@ -26,7 +26,7 @@ namespace nsfd
 
     ActiveSurfaces(const SceneInput &input,
                    const Discretization<dim> &discretization,
-                   const MovingBodies<dim> &bodies,
+                   const BodyLayout<dim> &bodies,
                    const Communicator &communicator,
                    const SurfaceCells<dim> &cells,
                    const ContactPlaces<dim> &places,
@@ -35,6 +35,23 @@ namespace nsfd
     /** Surfaces and their motion in @p state; true if they are others than in
         the last step. Collective. */
     bool follow(const State &state);
+
+    /** Cells hang together by common nodes: the node that has the motion of a
+        node of SurfaceCells, and a number of the whole that a cell is in. */
+    struct Wholes {
+      std::vector<unsigned int> node, of_cell;
+    };
+    /** To be called before follow() where they are others. */
+    void set_wholes(Wholes wholes)
+    {
+      wholes_ = std::move(wholes);
+      known_ = false;
+    }
+    /** See SurfaceCells::merged(). */
+    unsigned int merged(const std::size_t node) const
+    {
+      return wholes_.node.empty() ? cells_.merged(node) : wholes_.node[node];
+    }
 
     struct Origin {
       unsigned int cell, face, node; ///< node of the face
@@ -83,7 +100,7 @@ namespace nsfd
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const BodyTable &table_;
-    const MovingBodies<dim> &bodies_;
+    const BodyLayout<dim> &bodies_;
     const Communicator &all_;
     const SurfaceCells<dim> &cells_;
     const ContactPlaces<dim> &places_;
@@ -94,7 +111,10 @@ namespace nsfd
       Vector normal;
     };
     std::unordered_map<unsigned int, std::vector<Side>> sides_at_;
-    std::vector<char> separated_; ///< per mesh face
+    /// per mesh face; where cells hang together, those that are open somewhere:
+    /// corners that they free may touch an obstacle
+    std::vector<char> separated_, opened_;
+    Wholes wholes_; ///< empty: every body is one
     bool known_ = false;
     std::vector<std::size_t> moving_nodes_, own_moving_nodes_; ///< of surfaces
     std::vector<double> x_, v_; ///< of them by node, and centres

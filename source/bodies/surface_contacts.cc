@@ -13,18 +13,16 @@ namespace nsfd
   template <int dim>
   SurfaceContacts<dim>::SurfaceContacts(
       const SceneInput &input, const Discretization<dim> &discretization,
-      const MovingBodies<dim> &bodies, const Communicator &communicator)
+      const BodyLayout<dim> &bodies, const Communicator &communicator)
       : input_(input), discretization_(discretization),
         table_(discretization.body_table()), bodies_(bodies),
-        all_(communicator),
-        cells_(discretization, bodies.layout(), communicator),
+        all_(communicator), cells_(discretization, bodies, communicator),
         places_(cells_, table_), blocks_(input, table_),
         active_(input, discretization, bodies, communicator, cells_, places_,
                 blocks_)
   {
-    search_.share(communicator, [this](const unsigned int b) {
-      return bodies_.layout().is_own(b);
-    });
+    search_.share(communicator,
+                  [this](const unsigned int b) { return bodies_.is_own(b); });
   }
 
   template <int dim>

@@ -30,7 +30,7 @@ namespace nsfd
     /** Collective. */
     SurfaceContacts(const SceneInput &input,
                     const Discretization<dim> &discretization,
-                    const MovingBodies<dim> &bodies,
+                    const BodyLayout<dim> &bodies,
                     const Communicator &communicator);
 
     /** Nothing kept; broken faces are surfaces from the start.
@@ -51,9 +51,15 @@ namespace nsfd
     /** After the step of the last call of rows(). */
     void store_facets(State &next) const;
 
+    /** Cells hang together now by common nodes, see ActiveSurfaces. */
+    void set_wholes(typename ActiveSurfaces<dim>::Wholes wholes)
+    {
+      active_.set_wholes(std::move(wholes));
+    }
     /** What may touch in a step of @p time_step from @p old, on all ranks the
-        same. Collective. */
-    std::vector<MovingRow<dim>> rows(const State &old, double time_step);
+        same; nothing is faster than @p largest_speed. Collective. */
+    std::vector<MovingRow<dim>> rows(const State &old, double time_step,
+                                     double largest_speed);
 
     struct Counters {
       unsigned long long searches = 0, facets = 0, rows = 0;
@@ -88,7 +94,7 @@ namespace nsfd
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const BodyTable &table_;
-    const MovingBodies<dim> &bodies_;
+    const BodyLayout<dim> &bodies_;
     const Communicator &all_;
     const SurfaceCells<dim> cells_;
     const ContactPlaces<dim> places_;

@@ -28,7 +28,8 @@ namespace nsfd
 
   template <int dim>
   std::vector<MovingRow<dim>> SurfaceContacts<dim>::rows(const State &old,
-                                                         const double h)
+                                                         const double h,
+                                                         const double speed)
   {
     if (active_.follow(old)) {
       search_.topology_changed();
@@ -36,8 +37,7 @@ namespace nsfd
           counters_.facets, active_.set().surfaces.facets.size());
     }
     // twice the speed of two bodies that meet, and what rests
-    const double reach =
-        2. * h * bodies_.largest_speed(old) + 1e-9 * discretization_.extent();
+    const double reach = 2. * h * speed + 1e-9 * discretization_.extent();
     std::vector<Row> result;
     if (!input_.contacts.empty())
       add_surface_rows(old, reach, result);
@@ -255,7 +255,7 @@ namespace nsfd
       Vector normal;
       for (unsigned int d = 0; d < dim; ++d)
         normal[d] = pair.normal[d];
-      const unsigned int own = cells_.merged(row.node),
+      const unsigned int own = active_.merged(row.node),
                          other = unsigned(row.facet[v]);
       const auto known = seen_.find(UnorderedPair(other) << 32 | own);
       if (known != seen_.end() && known->second.normal * normal < opposed)
@@ -355,7 +355,7 @@ namespace nsfd
   {
     std::vector<Row> rows;
     const auto node_place = [&](const std::size_t node) {
-      return bodies_.layout().place(old, bodies_.layout().own_node(node));
+      return bodies_.place(old, bodies_.own_node(node));
     };
     const auto centre = [&](const unsigned int body) {
       Point<dim> result;
@@ -366,7 +366,7 @@ namespace nsfd
     const auto node_velocity = [&](const std::size_t node) {
       Vector v;
       for (unsigned int d = 0; d < dim; ++d)
-        v[d] = old.velocity[bodies_.layout().own_node(node) * dim + d];
+        v[d] = old.velocity[bodies_.own_node(node) * dim + d];
       return v;
     };
     const auto geometry = [&](const unsigned int o) {
@@ -392,7 +392,7 @@ namespace nsfd
     for (std::size_t k = 0; k < active_.obstacle_faces().size(); ++k) {
       const auto &[c, f, o] = active_.obstacle_faces()[k];
       const unsigned int b = table_.body_of_cell[c];
-      if (!bodies_.layout().is_own(b))
+      if (!bodies_.is_own(b))
         continue;
       if (cells_.ball_radius(b) > 0.) {
         Row row = ball_row(b);
@@ -418,7 +418,7 @@ namespace nsfd
         row.place = places_.of_node(c, f, j);
         row.weight = face.weights[j];
         const auto [entry, is_new] = known.emplace(
-            std::pair(std::size_t(cells_.merged(row.node)), o), rows.size());
+            std::pair(std::size_t(active_.merged(row.node)), o), rows.size());
         if (is_new)
           add(row, o);
         else if (row.weight > rows[entry->second].weight) {

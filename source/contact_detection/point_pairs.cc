@@ -65,7 +65,7 @@ namespace nsfd
         const auto &facet_b = surfaces_.facets[b.pair.facet];
         const double rounding =
             same_length * std::min(own_size(a), own_size(b));
-        if (facet_a.body != facet_b.body ||
+        if (facet_a.whole != facet_b.whole ||
             std::max(a.pair.gap, b.pair.gap) > rounding || notch(a, b))
           return false;
         if (a.is_kept != b.is_kept)
@@ -188,12 +188,12 @@ namespace nsfd
        */
       const Touch<dim> *kept(const Touch<dim> *nearest) const
       {
-        const auto body = [this](const Touch<dim> &touch) {
-          return surfaces_.facets[touch.pair.facet].body;
+        const auto whole = [this](const Touch<dim> &touch) {
+          return surfaces_.facets[touch.pair.facet].whole;
         };
         for (const auto &touch : valid_)
           if (touch.is_kept && nearest->pair.gap <= 0. &&
-              body(touch) == body(*nearest))
+              whole(touch) == whole(*nearest))
             return &touch;
         return nearest;
       }

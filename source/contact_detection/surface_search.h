@@ -11,8 +11,9 @@ namespace nsfd
   class Communicator;
 
   /**
-   * Surfaces of bodies without their positions. A vertex belongs to one body;
-   * facets of one body share their vertices, those of two bodies never do.
+   * Surfaces of bodies without their positions. A vertex belongs to one body,
+   * or to several that hang together there; facets of a body share their
+   * vertices.
    */
   template <int dim>
   struct Surfaces {
@@ -25,7 +26,8 @@ namespace nsfd
       std::array<unsigned int, 4> vertex{};
       unsigned int n_vertices = dim;
       unsigned int body = 0;
-      std::uint64_t key = 0; ///< unique; decides where geometry does not
+      unsigned int whole = 0; ///< bodies that hang together have the same
+      std::uint64_t key = 0;  ///< unique; decides where geometry does not
     };
     /// no facet has it; exact as a double, as keys are
     static constexpr std::uint64_t no_key = (std::uint64_t(1) << 53) - 1;

@@ -2,6 +2,7 @@
 
 #include "block_products.h"
 #include "constant_strain.h"
+#include "finite_forces.h"
 #include "tensor_forces.h"
 
 #include "discretization/cells.h"
@@ -129,6 +130,9 @@ namespace nsfd
                    const JoinedMesh<dim> &mesh, FrontViscosity front,
                    const GhostCells *ghosts)
   {
+    if (discretization.input().large_motion)
+      return std::make_unique<FiniteForces<dim>>(discretization, mesh,
+                                                 std::move(front));
     auto forces =
         elastic_forces(discretization, mesh, std::move(front), ghosts);
     if (discretization.input().has_viscous_bodies())

@@ -22,13 +22,14 @@ namespace nsfd
         continue;
       point_slopes<dim>(*problem_, point.index, point.local, point.R,
                         point.solution, point.slopes);
-      for (const int g : point.groups)
-        if (g >= 0 && unknown_[g] < 0) {
-          unknown_[g] = n_unknowns_;
-          n_unknowns_ += dim;
-          for (unsigned int c = 0; c < dim; ++c)
-            root_mass_[g][c] = std::sqrt((*inverse_mass_)[g][c]);
-        }
+      for_ends(point.groups, point.ends, [&](const int g, double) {
+        if (unknown_[g] >= 0)
+          return;
+        unknown_[g] = n_unknowns_;
+        n_unknowns_ += dim;
+        for (unsigned int c = 0; c < dim; ++c)
+          root_mass_[g][c] = std::sqrt((*inverse_mass_)[g][c]);
+      });
     }
   }
 
@@ -94,18 +95,17 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int j = 0; j < dim; ++j)
             K[r * dim + c] += point.frame[j * dim + r] * KF[j * dim + c];
-      for (const int g : point.groups)
-        for (const int f : point.groups) {
-          if (g < 0 || f < 0)
-            continue;
-          const double sign = g == f ? 1. : -1.;
+      for_ends(point.groups, point.ends, [&](const int g, const double of_g) {
+        for_ends(point.groups, point.ends, [&](const int f, const double of_f) {
+          const double share = of_g * of_f;
           for (unsigned int r = 0; r < dim; ++r) {
             double *row = matrix_.row(unknown_[g] + r) + unknown_[f];
             for (unsigned int c = 0; c < dim; ++c)
               row[c] +=
-                  sign * root_mass_[g][r] * K[r * dim + c] * root_mass_[f][c];
+                  share * root_mass_[g][r] * K[r * dim + c] * root_mass_[f][c];
           }
-        }
+        });
+      });
     }
   }
 
@@ -124,8 +124,8 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           q[c] = -point.impulse[c] - point.direction[c];
       } else {
-        const Vector dU =
-            relative_velocity<dim>(point.frame, point.groups, change_);
+        const Vector dU = relative_velocity<dim>(point.frame, point.groups,
+                                                 change_, point.ends);
         for (unsigned int r = 0; r < dim; ++r) {
           q[r] = -point.direction[r];
           for (unsigned int c = 0; c < dim; ++c)
@@ -139,13 +139,11 @@ namespace nsfd
       for (unsigned int r = 0; r < dim; ++r)
         for (unsigned int c = 0; c < dim; ++c)
           p[c] += point.frame[r * dim + c] * q[r];
-      for (unsigned int s = 0; s < 2; ++s) {
-        const int g = point.groups[s];
-        if (g >= 0 && unknown_[g] >= 0)
+      for_ends(point.groups, point.ends, [&](const int g, const double share) {
+        if (unknown_[g] >= 0)
           for (unsigned int c = 0; c < dim; ++c)
-            right_side_[unknown_[g] + c] +=
-                (s == 0 ? -1. : 1.) * root_mass_[g][c] * p[c];
-      }
+            right_side_[unknown_[g] + c] += share * root_mass_[g][c] * p[c];
+      });
     }
     matrix_.solve(right_side_.data());
     double change = 0., size = 0.;
@@ -154,13 +152,11 @@ namespace nsfd
       Vector step = point.residual;
       if (point.carries) {
         Vector v{};
-        for (unsigned int s = 0; s < 2; ++s) {
-          const int g = point.groups[s];
-          if (g >= 0)
-            for (unsigned int c = 0; c < dim; ++c)
-              v[c] += (s == 0 ? -1. : 1.) * root_mass_[g][c] *
-                      right_side_[unknown_[g] + c];
-        }
+        for_ends(
+            point.groups, point.ends, [&](const int g, const double share) {
+              for (unsigned int c = 0; c < dim; ++c)
+                v[c] += share * root_mass_[g][c] * right_side_[unknown_[g] + c];
+            });
         double U[dim];
         stored::multiply_vector<dim>(point.frame, v.data(), U);
         stored::subtract_vector<dim>(point.stiffness.data(), U, step.data());

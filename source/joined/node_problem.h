@@ -6,6 +6,31 @@
 
 namespace nsfd
 {
+  /** Groups and their shares in the velocity of body 2 less that of body 1, of
+      a point that is not between two nodes: a contact of surfaces. */
+  struct PointEnds {
+    std::array<int, 6> groups{};
+    std::array<double, 6> shares{};
+    unsigned int size = 0;
+  };
+
+  /** @p visit (group, share) of a point: @p ends if there are some, else body 1
+      and body 2 (-1: none). */
+  template <typename Visit>
+  void for_ends(const std::array<int, 2> &groups, const PointEnds *ends,
+                const Visit &visit)
+  {
+    if (!ends) {
+      if (groups[0] >= 0)
+        visit(groups[0], -1.);
+      if (groups[1] >= 0)
+        visit(groups[1], 1.);
+      return;
+    }
+    for (unsigned int k = 0; k < ends->size; ++k)
+      visit(ends->groups[k], ends->shares[k]);
+  }
+
   /** The active points around one node, between groups of corners of cells. */
   template <int dim>
   struct NodeProblem {
@@ -14,6 +39,7 @@ namespace nsfd
       /// below, of body 1 and of body 2; -1: none (an obstacle or support at
       /// rest)
       std::array<int, 2> groups;
+      const PointEnds *ends = nullptr; ///< in place of these
     };
     std::vector<Point> points;
     /// of every group and axis, 1/kg; 0 where the motion is prescribed
@@ -31,19 +57,26 @@ namespace nsfd
   };
 
   /** U = H v of a point: @p frame has the rows n, t1, t2, @p groups are those
-   * of body 1 and body 2 (-1: none). */
+   * of body 1 and body 2 (-1: none), @p ends stand in place of these. */
   template <int dim>
   std::array<double, dim>
   relative_velocity(const double *frame, const std::array<int, 2> &groups,
-                    const std::vector<std::array<double, dim>> &velocity)
+                    const std::vector<std::array<double, dim>> &velocity,
+                    const PointEnds *ends = nullptr)
   {
     const auto [a, b] = groups;
     std::array<double, dim> v{}, U{};
-    if (b >= 0)
-      v = velocity[std::size_t(b)];
-    if (a >= 0)
-      for (unsigned int c = 0; c < dim; ++c)
-        v[c] -= velocity[std::size_t(a)][c];
+    if (ends)
+      for (unsigned int k = 0; k < ends->size; ++k)
+        for (unsigned int c = 0; c < dim; ++c)
+          v[c] += ends->shares[k] * velocity[std::size_t(ends->groups[k])][c];
+    else {
+      if (b >= 0)
+        v = velocity[std::size_t(b)];
+      if (a >= 0)
+        for (unsigned int c = 0; c < dim; ++c)
+          v[c] -= velocity[std::size_t(a)][c];
+    }
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c)
         U[r] += frame[r * dim + c] * v[c];
@@ -55,18 +88,17 @@ namespace nsfd
   void push_groups(const double *frame, const std::array<int, 2> &groups,
                    const double *impulse,
                    const std::vector<std::array<double, dim>> &inverse_mass,
-                   std::vector<std::array<double, dim>> &velocity)
+                   std::vector<std::array<double, dim>> &velocity,
+                   const PointEnds *ends = nullptr)
   {
     std::array<double, dim> P{};
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c)
         P[c] += frame[r * dim + c] * impulse[r];
-    const auto [a, b] = groups;
-    for (unsigned int c = 0; c < dim; ++c) {
-      if (a >= 0)
-        velocity[std::size_t(a)][c] -= inverse_mass[std::size_t(a)][c] * P[c];
-      if (b >= 0)
-        velocity[std::size_t(b)][c] += inverse_mass[std::size_t(b)][c] * P[c];
-    }
+    for_ends(groups, ends, [&](const int g, const double share) {
+      for (unsigned int c = 0; c < dim; ++c)
+        velocity[std::size_t(g)][c] +=
+            share * inverse_mass[std::size_t(g)][c] * P[c];
+    });
   }
 } // namespace nsfd

@@ -59,15 +59,17 @@ namespace nsfd
     added.index = i;
     added.frame = &frames[i * dim * dim];
     added.groups = point.groups;
+    added.ends = point.ends;
     added.solution.reach = history(*problem_, i);
     added.solution.damages = false;
     Vector sum{};
     double speed = 0.;
-    for (const int g : point.groups)
-      for (unsigned int c = 0; c < dim && g >= 0; ++c) {
-        sum[c] += (*inverse_mass_)[g][c];
+    for_ends(point.groups, point.ends, [&](const int g, const double share) {
+      for (unsigned int c = 0; c < dim; ++c) {
+        sum[c] += share * share * (*inverse_mass_)[g][c];
         speed += std::abs(free_[g][c]);
       }
+    });
     // springs compute velocities from jumps
     if (problem_->kind[i] != PointKind::free)
       for (unsigned int c = 0; c < dim; ++c)
@@ -92,14 +94,14 @@ namespace nsfd
                              std::vector<Vector> &velocity) const
   {
     push_groups<dim>(point.frame, point.groups, impulse.data(), *inverse_mass_,
-                     velocity);
+                     velocity, point.ends);
   }
 
   template <int dim>
   void NodeSystem<dim>::answer(Point &point, const bool near_first) const
   {
-    const Vector U =
-        relative_velocity<dim>(point.frame, point.groups, velocity_);
+    const Vector U = relative_velocity<dim>(point.frame, point.groups,
+                                            velocity_, point.ends);
     for (unsigned int c = 0; c < dim; ++c)
       point.local[c] =
           U[c] - point.R * (point.impulse[c] -

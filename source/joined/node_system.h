@@ -100,6 +100,7 @@ namespace nsfd
       std::size_t index;
       const double *frame;
       std::array<int, 2> groups;
+      const PointEnds *ends;
       double R, speed;
       bool scalar;                ///< W of the point is R times the identity
       Vector rest;                ///< impulse at which its spring is slack

@@ -242,12 +242,15 @@ namespace nsfd
       high[d] = std::max(high[d], way);
     };
     const std::size_t n = state.displacement.size();
+    // explicit steps keep their motion: there is no state before
+    const bool keeps = previous.displacement.size() != n;
     for (std::size_t i = 0; i < n; ++i)
       widen(unsigned(i % dim),
-            state.displacement[i] - previous.displacement[i]);
+            keeps ? state.last_step * state.velocity[i]
+                  : state.displacement[i] - previous.displacement[i]);
     for (std::size_t o = 0; o < input_.obstacles.size(); ++o)
       for (unsigned int d = 0; d < dim; ++d)
-        widen(d, state.obstacle_shift.empty()
+        widen(d, state.obstacle_shift.empty() || keeps
                      ? 0.
                      : state.obstacle_shift[3 * o + d] -
                            previous.obstacle_shift[3 * o + d]);

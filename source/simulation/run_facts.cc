@@ -83,6 +83,8 @@ namespace nsfd
         });
       case WatchedLine::load_steps:
         return input.statics && input.statics->steps;
+      case WatchedLine::large_motion:
+        return input.large_motion && input.time.scheme.at_nodes;
       default:
         return true;
       }
@@ -110,6 +112,7 @@ namespace nsfd
                    ? "set cohesion rule = exact"
                    : "set step to a shorter time";
       case WatchedLine::load_steps:
+      case WatchedLine::large_motion:
         return "set step to a shorter time";
       default:
         return "";
@@ -123,7 +126,7 @@ namespace nsfd
       // what the rules of explicit steps, end points, released faces and
       // frames of large motions make comes and goes: as well as curves can be
       // read
-      constexpr double of_pure_rules = 1e-2;
+      constexpr double of_pure_rules = 1e-2, of_large_motion = 1e-2;
       const double scale = std::max(watch.scale, state.largest_energy);
       const auto share = [scale](const double energy) {
         return energy == 0. ? 0. : energy / scale;
@@ -145,6 +148,8 @@ namespace nsfd
           given.bound = never_gives(line, input) || input.time.scheme.at_nodes
                             ? energy_round_off + share(watch.noise)
                             : of_pure_rules;
+        if (line == WatchedLine::large_motion)
+          given.bound = of_large_motion;
         if (line == WatchedLine::load_steps) // as much as a single step may
           given.bound = EquilibriumSearch<2>::jump_share;
         given.advice = advice_of(line, input);

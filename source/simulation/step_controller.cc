@@ -30,6 +30,10 @@ namespace nsfd
         limit = std::min(limit, *longest);
         any = true;
       }
+    if (input_.large_motion && input_.time.scheme.at_nodes) {
+      limit = std::min(limit, limits.stable_share() * model_.explicit_limit);
+      any = true;
+    }
     if (!any)
       return;
     if (control.time() < redo_until_)

@@ -64,6 +64,8 @@ namespace nsfd
       return at;
     };
     for (const unsigned int a : node.points) {
+      if (chains.problem.kind[a] == PointKind::separated)
+        continue;
       const auto &corners = mesh_.corners(chains.point[a]);
       if (corners[0] != JoinedMesh<dim>::none &&
           corners[1] != JoinedMesh<dim>::none &&

@@ -31,6 +31,8 @@ namespace nsfd
       return "numerical";
     case WatchedLine::load_steps:
       return "load steps";
+    case WatchedLine::large_motion:
+      return "large motion";
     }
     return "";
   }
@@ -68,6 +70,8 @@ namespace nsfd
       return time.scheme.theta_scheme && !scene.large_motion &&
              time.cohesion_rule == CohesionRule::exact &&
              !scene.has_bonded_faces();
+    case WatchedLine::large_motion:
+      return false;
     default:
       return true;
     }

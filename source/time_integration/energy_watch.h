@@ -21,9 +21,12 @@ namespace nsfd
     supports, ///< rows of supports beyond their prescribed motion: none
     scheme,   ///< what the rules of the time step make: `numerical`
     /// work of the loads between two equilibria above that of their mean
-    load_steps
+    load_steps,
+    /// explicit steps of large motions: forces that are not linear, frames
+    /// that turn; a part of `numerical` that is not in `scheme`
+    large_motion
   };
-  constexpr std::size_t n_watched_lines = 9;
+  constexpr std::size_t n_watched_lines = 10;
 
   /** "friction", ...: as the certificate names it. */
   const char *name_of(WatchedLine line);

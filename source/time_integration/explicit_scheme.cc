@@ -44,10 +44,46 @@ namespace nsfd
                              block.law_name, block.name));
     }
 
+    /** What explicit steps do not know yet. */
+    void refuse_history(SectionReader &reader, const SceneInput &scene)
+    {
+      for (const MaterialInput &material : scene.materials)
+        if (material.kind == MaterialKind::history_dependent)
+          reader.error("scheme",
+                       fmt::format("scheme = explicit is not available for "
+                                   "model = {}",
+                                   material.model_name),
+                       "write scheme = moreau-jean");
+    }
+
+    /** What those of large motions do not know yet. */
+    void refuse_large(SectionReader &reader, const SceneInput &scene)
+    {
+      const auto refuse = [&reader](const std::string &what) {
+        reader.error("scheme",
+                     "scheme = explicit with motion = large has no " + what,
+                     "write scheme = moreau-jean");
+      };
+      for (const MaterialInput &material : scene.materials)
+        if (material.kind != MaterialKind::finite_strain)
+          refuse(fmt::format("model = {} yet, which material `{}` has",
+                             material.model_name, material.name));
+      for (const InterfaceInput &block : scene.interfaces)
+        if (block.crack_pressure)
+          refuse(fmt::format("pressure in cracks yet, and `{}` has one",
+                             block.name));
+      for (const ContactInput &contact : scene.contacts)
+        refuse_lift(reader, contact);
+    }
+
     template <int dim>
     void make_leapfrog(const IntegratorParts<dim> &parts,
                        Integrators<dim> &integrators)
     {
+      if (parts.input.large_motion && parts.communicator.size() > 1)
+        throw std::runtime_error(
+            "scheme = explicit with motion = large runs on one rank yet; start "
+            "it without mpirun, or write scheme = moreau-jean");
       integrators.other = std::make_unique<Leapfrog<dim>>(
           parts.input, parts.discretization, parts.communicator,
           parts.ghost_layer());
@@ -68,6 +104,8 @@ namespace nsfd
       return traits;
     }
 
+    bool takes_nonlinear_bodies() const override { return true; }
+
     std::string solver() const override { return "node by node"; }
 
     std::vector<std::string> entries() const override
@@ -77,7 +115,13 @@ namespace nsfd
 
     void read(SectionReader &reader, SceneInput &scene) const override
     {
-      scene.time.maximum_bisections = 0; // see Leapfrog
+      // steps of small motions have one length, see Leapfrog
+      scene.time.maximum_bisections = scene.large_motion ? 8 : 0;
+      if (scene.large_motion) {
+        scene.time.forecast_gamma2 = 1.; // all that is near may touch
+        refuse_large(reader, scene);
+      } else
+        refuse_history(reader, scene);
       const auto front = reader.raw(
           "front viscosity", "auto",
           "share of critical damping where the rate of strain jumps between "
@@ -114,6 +158,6 @@ namespace nsfd
 
   NSFD_REGISTER(TimeSchemeRegistry, ExplicitScheme, "explicit",
                 "explicit steps of joined cells with lumped mass, impulses in "
-                "one problem per node; motion = small",
+                "one problem per node",
                 "front viscosity = 0.1");
 } // namespace nsfd

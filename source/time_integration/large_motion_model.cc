@@ -90,7 +90,7 @@ namespace nsfd
   {
     if (!parts.input.contacts.empty() || !parts.input.obstacles.empty())
       contacts_ = std::make_unique<SurfaceContacts<dim>>(
-          parts.input, parts.discretization, bodies,
+          parts.input, parts.discretization, bodies.layout(),
           parts.delassus.communicator());
   }
 
@@ -157,7 +157,7 @@ namespace nsfd
     std::vector<MovingRow<dim>> rows;
     if (contacts_) {
       const Stopwatch watch(parts_.timings.contact_search);
-      rows = contacts_->rows(old, h);
+      rows = contacts_->rows(old, h, bodies_.largest_speed(old));
     }
     const auto pins =
         pin_rows(parts_.input, bodies_, parts_.delassus.communicator(), old);

@@ -9,6 +9,8 @@
 #include "joined/rigid_clusters.h"
 #include "nsfd/scene/scene_input.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -44,6 +46,10 @@ namespace nsfd
         })
   {
     ghosts_.set_mesh(mesh_, hanging_);
+    if (const auto *finite =
+            dynamic_cast<const FiniteForces<dim> *>(forces_.get()))
+      large_ = std::make_unique<LeapfrogLarge<dim>>(
+          input, discretization_, mesh_, all_, communicator, *finite);
     if (!hanging_.any() && !has_rigid_cells(input))
       return;
     State state = ghosts_.with(initial_state());
@@ -79,13 +85,13 @@ namespace nsfd
   {
     const auto &g = *groups_;
     const std::size_t n = g.force.size();
-    const bool first = last == 0.;
+    const bool other_length = h != last;            // also in the first step
     std::vector<const std::vector<double> *> loads; // given and in cracks
     if (!loads_.of_groups().empty())
       loads.push_back(&loads_.of_groups());
     if (loads_.cracks())
       loads.push_back(&loads_.cracks()->of_groups());
-    const std::size_t n_rows = 3 + 2 * loads.size() + (first ? 1 : 0);
+    const std::size_t n_rows = 3 + 2 * loads.size() + (other_length ? 1 : 0);
     terms_.resize(n_rows * n);
     double *const rows = terms_.data();
     for (std::size_t i = 0, k = 0; i < g.size(); ++i)
@@ -103,7 +109,7 @@ namespace nsfd
           row[k] = (*load)[k] * (*velocity)[k];
         row += n;
       }
-    for (std::size_t k = 0; first && k < n; ++k)
+    for (std::size_t k = 0; other_length && k < n; ++k)
       row[k] = g.force[k] * before_.velocity[k];
     const double of_bodies = rigid_ ? rigid_->kinetic_energy(g, terms_) : 0.;
     const auto sums = ghosts_.sums(g, terms_, n_rows);
@@ -116,8 +122,10 @@ namespace nsfd
       const std::size_t at = 1 + 2 * loads.size();
       energies.pressure_work = kick / 2. * (sums[at] + sums[at + 1]);
     }
-    if (first)
-      energies.numerical = h / 4. * (sums[1] - sums.back());
+    if (other_length)
+      energies.numerical = (h - last) / 4. * (sums[1] - sums.back());
+    if (large_)
+      large_->take_energies(h, last, before_.velocity, g, energies);
   }
 
   /** Forces and loads on the groups of a node that has split. */
@@ -197,29 +205,29 @@ namespace nsfd
       rigid_->set_velocities(time, h, kick, g.force, given, supports_, g);
   }
 
-  /** What all ranks have done at the nodes. Collective. */
   template <int dim>
-  void Leapfrog<dim>::count(const typename LeapfrogPoints<dim>::Outcome &mine,
-                            StepReport &report)
+  void Leapfrog<dim>::Counters::add(
+      const Communicator &communicator,
+      const typename LeapfrogPoints<dim>::Outcome &mine, StepReport &report)
   {
     const double here[7] = {double(mine.problems),   double(mine.sweeps),
                             double(mine.newton),     double(mine.inexact),
                             double(report.released), double(!mine.converged),
                             double(mine.held)};
-    const auto all = communicator_.sums(here, 7, 1);
-    counters_.problems += std::uint64_t(all[0]);
-    counters_.sweeps += std::uint64_t(all[1]);
-    counters_.newton += std::uint64_t(all[2]);
-    counters_.inexact += std::uint64_t(all[3]);
-    counters_.released += std::uint64_t(all[4]);
-    counters_.held += std::uint64_t(all[6]);
-    counters_.excess = std::max(counters_.excess, mine.excess);
+    const auto all = communicator.sums(here, 7, 1);
+    problems += std::uint64_t(all[0]);
+    sweeps += std::uint64_t(all[1]);
+    newton += std::uint64_t(all[2]);
+    inexact += std::uint64_t(all[3]);
+    released += std::uint64_t(all[4]);
+    held += std::uint64_t(all[6]);
+    excess = std::max(excess, mine.excess);
     report.solver.sweeps = unsigned(all[1]);
     report.solver.newton = unsigned(all[2]);
     report.released = unsigned(all[4]);
     report.solver.converged = all[5] == 0.;
     report.beyond_unique = all[6] > 0.;
-    report.solver.residual = communicator_.max(mine.residual);
+    report.solver.residual = communicator.max(mine.residual);
   }
 
   template <int dim>
@@ -229,7 +237,7 @@ namespace nsfd
     const Stopwatch watch(counters_.seconds);
     StepReport report;
     const double last = old.last_step, kick = (h + last) / 2.;
-    if (last > 0. && h != last)
+    if (last > 0. && h != last && !large_)
       throw std::logic_error("explicit steps have one length");
     auto &g = *groups_;
     const auto go_back = [&] {
@@ -241,6 +249,9 @@ namespace nsfd
       const Charge charge(Cost::laws);
       report.released = let_go();
     }
+    Energies energies;
+    if (large_)
+      large_->begin(old.time, h, supports_.mask(), g, points_, energies);
     {
       const Charge charge(Cost::free_motion);
       loads_.move_to(old.time, g);
@@ -249,8 +260,10 @@ namespace nsfd
     typename LeapfrogPoints<dim>::Outcome outcome;
     {
       const Charge charge(Cost::solver);
-      outcome =
-          points_.solve(h, last, supports_.mask(), input_.solver.tolerance, g);
+      const double tolerance = input_.solver.tolerance;
+      outcome = large_ ? large_->solve(h, last, supports_.mask(), tolerance,
+                                       points_, g)
+                       : points_.solve(h, last, supports_.mask(), tolerance, g);
       if (rigid_)
         points_.solve_rigid(input_.solver.tolerance, communicator_, *rigid_, g,
                             outcome);
@@ -260,7 +273,7 @@ namespace nsfd
       }
     }
     ghosts_.start(g);
-    count(outcome, report);
+    counters_.add(communicator_, outcome, report);
     ghosts_.finish(g);
     if (!report.solver.converged) {
       go_back();
@@ -268,10 +281,11 @@ namespace nsfd
                             StepRejected::Cure::none);
     }
     const Charge charge(Cost::energy_balance);
-    Energies energies;
     set_energies(kick, h, last, energies);
     std::fill(supports_.rows().begin(), supports_.rows().end(), 0.);
     points_.add_impulses(supports_.row_of_group(), supports_.rows());
+    if (large_)
+      large_->add_impulses(supports_.row_of_group(), supports_.rows());
     energies.work += supports_.work(communicator_, kick, before_.velocity, g);
     if (rigid_)
       energies.work += rigid_->work(kick, supports_);
@@ -286,16 +300,26 @@ namespace nsfd
       hanging_.set_forces(*forces_, *groups_);
     }
     const auto front = forces_->front().finish(communicator_);
-    energies.stored -= front_.stored / 2.;
-    energies.power += front.before;
-    // the part of the kinetic energy that the viscosity holds
-    energies.kinetic -= h / 4. * front.after;
-    energies.viscous = front.taken;
-    if (forces_->viscous())
-      damp(h, last, energies);
-    energies.power_after = ghosts_.dot(g, g.force, g.velocity) + front.after;
-    front_ = front;
+    if (large_)
+      large_->take_forces(old.step + 1, h, g, energies);
+    else {
+      energies.stored -= before_.front.stored / 2.;
+      energies.power += front.before;
+      // the part of the kinetic energy that the viscosity holds
+      energies.kinetic -= h / 4. * front.after;
+      energies.viscous = front.taken;
+      if (forces_->viscous())
+        damp(h, last, energies);
+      energies.power_after = ghosts_.dot(g, g.force, g.velocity) + front.after;
+    }
+    before_.front = front;
     try {
+      if (const std::string place = large_ ? large_->inverted() : "";
+          !place.empty())
+        throw StepRejected(fmt::format(
+            "the cell at {} (before the motion) is turned inside out at t = "
+            "{:.6g}: take smaller cells there, or a law by which they break",
+            place, old.time + h));
       account(old, h, energies, next, report);
     } catch (const StepRejected &rejected) {
       // the state before it is what the run can still show
@@ -304,6 +328,8 @@ namespace nsfd
       throw StepRejected(rejected.what(), StepRejected::Cure::none);
     }
     report.separates = communicator_.any(points_.accept());
+    if (large_)
+      report.separates |= large_->accept(points_);
     return report;
   }
 

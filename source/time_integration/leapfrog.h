@@ -2,6 +2,7 @@
 
 #include "face_release.h"
 #include "leapfrog_ghosts.h"
+#include "leapfrog_large.h"
 #include "leapfrog_loads.h"
 #include "leapfrog_points.h"
 #include "prescribed_groups.h"
@@ -35,7 +36,8 @@ namespace nsfd
    * kinetic and elastic energy of the state. The first step takes
    * h/4 f.(v+ - v-), which is numerical.
    *
-   * All steps have the same length. With v_k = v_{k-1/2} + (h/2) M^-1 f,
+   * In small motions all steps have the same length. With v_k = v_{k-1/2} +
+   * (h/2) M^-1 f,
    *
    *   E = v_k.M v_k/2 + U(q_k) - (h^2/8) f.M^-1 f,
    *
@@ -81,6 +83,10 @@ namespace nsfd
                        unsigned int idle_rounds) override;
     void show(State &state) const override;
     bool keeps_motion() const override { return true; }
+    double stable_share() const override
+    {
+      return large_ ? large_->stable_share() : 1.;
+    }
 
     const std::vector<double> &reactions() const override
     {
@@ -94,12 +100,7 @@ namespace nsfd
     void serialize(Archive &archive) override;
 
   private:
-    /** Of the bodies in a step, J; `power` is f.v+, W. */
-    struct Energies {
-      double kinetic = 0., stored = 0., work = 0., numerical = 0.;
-      double power = 0., power_after = 0.; ///< of the elastic forces
-      double viscous = 0., pressure_work = 0.;
-    };
+    using Energies = LeapfrogEnergies;
 
     void take(const State &state, std::vector<std::uint8_t> intact, bool start);
     void show_at(State &state, const std::vector<unsigned int> &place) const;
@@ -108,8 +109,6 @@ namespace nsfd
     void set_energies(double kick, double h, double last, Energies &energies);
     void gather(std::size_t node);
     unsigned int let_go();
-    void count(const typename LeapfrogPoints<dim>::Outcome &mine,
-               StepReport &report);
     void move_freely(double kick, double time, double h);
     void damp(double h, double last, Energies &energies);
     void account(const State &old, double h, const Energies &bodies,
@@ -131,17 +130,23 @@ namespace nsfd
     LeapfrogLoads<dim> loads_;
     StepCheck check_;
     std::unique_ptr<CornerGroups<dim>> groups_;
-    std::unique_ptr<RigidGroups<dim>> rigid_; ///< null: there are none
+    std::unique_ptr<RigidGroups<dim>> rigid_;   ///< null: there are none
+    std::unique_ptr<LeapfrogLarge<dim>> large_; ///< null: motions are small
     struct {
       std::vector<double> displacement, velocity;
+      FrontViscosity::Powers front;
     } before_; ///< the step
     std::vector<double> terms_;
-    FrontViscosity::Powers front_;
     struct Counters {
       double excess = 0.; ///< of a traction over the strength, less 1
       unsigned long long problems = 0, sweeps = 0, newton = 0, released = 0,
                          inexact = 0, held = 0;
       double seconds = 0.; ///< of steps
+
+      /** What all ranks have done at the nodes. Collective. */
+      void add(const Communicator &communicator,
+               const typename LeapfrogPoints<dim>::Outcome &mine,
+               StepReport &report);
     } counters_;
   };
 } // namespace nsfd

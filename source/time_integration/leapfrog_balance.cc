@@ -263,6 +263,16 @@ namespace nsfd
     balance.viscous = sums[viscous];
     balance.broken = sums[broken];
     balance.penetration = communicator.max(balance.penetration);
+    for (const unsigned int a : moved_)
+      if (chains_.closed[a]) {
+        double square = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          square +=
+              chains_.velocity[a * dim + c] * chains_.velocity[a * dim + c];
+        balance.way = std::max(balance.way, square);
+      }
+    balance.way = chains_.problem.time_step * chains_.problem.theta *
+                  std::sqrt(balance.way);
     balance.beyond_unique = communicator.any(balance.beyond_unique);
     balance.active = unsigned(communicator.sum_integer(balance.active));
     const auto set = [&](const WatchedLine line, const Row row) {

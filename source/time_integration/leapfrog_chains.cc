@@ -96,6 +96,39 @@ namespace nsfd
   }
 
   template <int dim>
+  double LeapfrogChains<dim>::turn(const std::size_t a,
+                                   const std::array<double, dim * dim> &axes)
+  {
+    double *const old = &frame[a * dim * dim];
+    std::array<double, dim * dim> Q{};
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int s = 0; s < dim; ++s)
+        for (unsigned int c = 0; c < dim; ++c)
+          Q[r * dim + s] += axes[r * dim + c] * old[s * dim + c];
+    const auto stored = [&] {
+      double sum = 0.;
+      for (unsigned int chain = 0; chain < 2; ++chain) {
+        sum += problem.weight[a] * stored_energy<dim>(problem, a);
+        swap();
+      }
+      return sum;
+    };
+    const bool stores = problem.kind[a] == PointKind::cohesive ||
+                        problem.kind[a] == PointKind::elastic;
+    const double before = stores ? stored() : 0.;
+    for (auto *array : {&problem.jump_old, &problem.jump_free, &velocity,
+                        &old_velocity, &impulse}) {
+      std::array<double, dim> turned{};
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int s = 0; s < dim; ++s)
+          turned[r] += Q[r * dim + s] * (*array)[a * dim + s];
+      std::copy(turned.begin(), turned.end(), &(*array)[a * dim]);
+    }
+    std::copy(axes.begin(), axes.end(), old);
+    return stores ? stored() - before : 0.;
+  }
+
+  template <int dim>
   void LeapfrogChains<dim>::reorder(const std::vector<unsigned int> &order)
   {
     OneStepProblem<dim> &p = problem;

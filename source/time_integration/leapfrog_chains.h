@@ -42,6 +42,10 @@ namespace nsfd
     void release(unsigned int mesh_point, const double *axes,
                  const Factors &factors);
 
+    /** The axes of point @p a are others from now on: what it has stays where
+        it is. Returns how much more energy it stores along them, J. */
+    double turn(std::size_t a, const std::array<double, dim * dim> &axes);
+
     /** Point k is what @p order[k] has been. */
     void reorder(const std::vector<unsigned int> &order);
 

@@ -1,7 +1,7 @@
 #include "leapfrog_points.h"
 
 #include "coupled_nodes.h"
-#include "energy_safe_sliding.h"
+#include "point_velocities.h"
 
 #include "discretization/discretization.h"
 #include "joined/held_nodes.h"
@@ -61,16 +61,6 @@ namespace nsfd
     count_holds();
   }
 
-  template <int dim>
-  std::size_t LeapfrogPoints<dim>::n_counted() const
-  {
-    std::size_t n = 0;
-    for (const Node &node : nodes_)
-      if (mesh_.counts(node.node))
-        n += node.points.size();
-    return n;
-  }
-
   /** Chains of the points of every face that are not broken. */
   template <int dim>
   void LeapfrogPoints<dim>::count_holds()
@@ -109,28 +99,6 @@ namespace nsfd
     nodes_.put(chains_.point);
   }
 
-  /** U of the points of the step from @p first on. */
-  template <int dim>
-  void LeapfrogPoints<dim>::set_velocities(const std::size_t first,
-                                           const CornerGroups<dim> &groups)
-  {
-    for (std::size_t k = first; k < moved_.size(); ++k) {
-      const unsigned int a = moved_[k];
-      const auto &corners = mesh_.corners(chains_.point[a]);
-      std::array<double, dim> v{}, U{};
-      for (unsigned int side = 0; side < 2; ++side)
-        if (corners[side] != JoinedMesh<dim>::none)
-          for (unsigned int c = 0; c < dim; ++c)
-            v[c] += (side == 0 ? -1. : 1.) *
-                    groups.velocity[groups.of(corners[side]) * dim + c];
-      const double *frame = &chains_.frame[std::size_t(a) * dim * dim];
-      for (unsigned int r = 0; r < dim; ++r)
-        for (unsigned int c = 0; c < dim; ++c)
-          U[r] += frame[r * dim + c] * v[c];
-      std::copy(U.begin(), U.end(), &chains_.velocity[std::size_t(a) * dim]);
-    }
-  }
-
   /** Of the step that comes: contact. */
   template <int dim>
   void LeapfrogPoints<dim>::set_point(const unsigned int a)
@@ -141,6 +109,9 @@ namespace nsfd
     const double u = p.jump_free[a * dim], U = chains_.old_velocity[a * dim];
     chains_.turned[a] = 0;
     p.target[a] = -(u + chains_.released[a]) / h;
+    // as faces turn, what was closed may overlap: to push it out takes energy
+    if (discretization_.input().large_motion)
+      p.target[a] = std::min(p.target[a], -U);
     const double e = p.kind[a] == PointKind::free
                          ? p.interactions[p.interaction[a]].restitution
                          : 0.;
@@ -151,40 +122,6 @@ namespace nsfd
     const bool drags = chains_.beta[a] > 0. && !(p.from_closed && U < 0.);
     if (!p.viscosity.empty())
       p.viscosity[a] = drags ? all_.viscosity[chains_.point[a]] : 0.;
-  }
-
-  /**
-   * Friction that opposes the velocity of the end of a step gives energy where
-   * sliding turns round in it: such points oppose the mean from then on, which
-   * never gives any; or @p all that rub, where the problem was not solved. True
-   * if there are new ones.
-   */
-  template <int dim>
-  bool LeapfrogPoints<dim>::turn_friction(const std::size_t first,
-                                          const bool all)
-  {
-    OneStepProblem<dim> &p = chains_.problem;
-    bool turned = false;
-    for (std::size_t k = first; k < moved_.size(); ++k) {
-      const unsigned int a = moved_[k];
-      if (chains_.solution[a].frozen.threshold <= 0. || chains_.turned[a])
-        continue;
-      const double *P = &chains_.impulse[a * dim],
-                   *U = &chains_.velocity[a * dim],
-                   *before = &chains_.old_velocity[a * dim];
-      const double work =
-          friction_work<dim>(p, a, chains_.solution[a], P, U, before, 0.5);
-      double size = 0.;
-      for (unsigned int c = 1; c < dim; ++c)
-        size += std::abs(P[c]) * (std::abs(U[c]) + std::abs(before[c]));
-      if (work <= 1e-9 * size && !all)
-        continue;
-      turned = true;
-      chains_.turned[a] = 1;
-      for (unsigned int c = 1; c < dim; ++c)
-        p.sliding_offset[a * dim + c] = chains_.old_velocity[a * dim + c];
-    }
-    return turned;
   }
 
   /** False if there is something to solve in the step of @p node. */
@@ -293,8 +230,8 @@ namespace nsfd
         solved = held->any() && solve();
       }
       take_velocities();
-      set_velocities(first, groups);
-    } while (turn_friction(first, !solved));
+      set_velocities(moved_, first, mesh_, groups, chains_);
+    } while (turn_friction(moved_, first, !solved, chains_));
     outcome.converged = outcome.converged && solved;
     if (mesh_.counts(node.node))
       outcome.inexact += !report.converged;
@@ -312,7 +249,9 @@ namespace nsfd
   auto LeapfrogPoints<dim>::solve(const double h, const double last,
                                   const std::vector<std::uint8_t> &prescribed,
                                   const double tolerance,
-                                  CornerGroups<dim> &groups) -> Outcome
+                                  CornerGroups<dim> &groups,
+                                  const std::vector<std::size_t> &apart)
+      -> Outcome
   {
     Outcome outcome;
     OneStepProblem<dim> &p = chains_.problem;
@@ -332,7 +271,8 @@ namespace nsfd
       node.elastic[chain_].is_new |= is_new;
       if (node.is_new)
         nodes_.collect(node, prescribed, groups, chains_);
-      if (!node.problem.points.empty() && !node.is_rigid)
+      if (!node.problem.points.empty() && !node.is_rigid &&
+          !std::binary_search(apart.begin(), apart.end(), node.node))
         solve_node(node, tolerance, groups, outcome);
     }
     return outcome;
@@ -392,7 +332,7 @@ namespace nsfd
         if (communicator.any(held->any()))
           solved = solve();
       }
-      set_velocities(first, groups);
+      set_velocities(moved_, first, mesh_, groups, chains_);
       if (communicator.any(!report.converged || report.inexact > 0) &&
           communicator.any(stiff))
         outcome.impossible =
@@ -400,7 +340,8 @@ namespace nsfd
             "obstacle: in scheme = explicit its points need cells that deform "
             "on the other side; write scheme = moreau-jean";
     } while (!outcome.impossible &&
-             communicator.any(turn_friction(first, communicator.any(!solved))));
+             communicator.any(turn_friction(
+                 moved_, first, communicator.any(!solved), chains_)));
     outcome.converged = outcome.converged && solved;
     outcome.inexact += report.inexact;
     if (!(report.residual <= outcome.residual)) {
@@ -421,8 +362,10 @@ namespace nsfd
     for (const Node &node : nodes_) {
       if (!node.is_driven)
         continue;
-      for (const auto &[a, sides] : node.problem.points)
+      for (const auto &point : node.problem.points)
         for (unsigned int side = 0; side < 2; ++side) {
+          const auto &sides = point.groups;
+          const std::size_t a = point.point;
           if (sides[side] < 0)
             continue;
           const int row = row_of_group[node.groups[std::size_t(sides[side])]];

@@ -7,6 +7,7 @@
 #include "nonsmooth/one_step_problem.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace nsfd
@@ -36,15 +37,20 @@ namespace nsfd
     LeapfrogPoints(const Discretization<dim> &discretization,
                    const JoinedMesh<dim> &mesh, const OneStepProblem<dim> &all);
 
-    /** Those that this rank sums over: see JoinedMesh. */
-    std::size_t n_counted() const;
-
     using Factors = typename LeapfrogChains<dim>::Factors;
     /** See LeapfrogChains. */
     void add(unsigned int point, const Factors &factors, const State &state);
     void release(unsigned int point, const Factors &factors);
     /** After all that are add()ed: see ActiveNodes. */
     void sort() { nodes_.sort(1., chains_); }
+
+    using AxesOf =
+        std::function<std::array<double, dim * dim>(std::size_t point)>;
+    /** The faces have turned: rows n, t1, t2 of points of the mesh. Returns how
+        much more energy is stored along them, J, see LeapfrogChains. */
+    double turn(const AxesOf &axes_of);
+    /** A point of the mesh is separated: others look for what it touches. */
+    void part(unsigned int point);
 
     /** Stored in them at the start, J. Collective. */
     double initial_energy(const Communicator &communicator) const;
@@ -63,11 +69,32 @@ namespace nsfd
      * The problems of all nodes, from the velocities of the groups without
      * impulses to those with them. @p last is the length of the step before,
      * 0 if there was none; @p prescribed: bit c of a group, component c. What
-     * is not solved to round-off counts as solved below @p tolerance.
+     * is not solved to round-off counts as solved below @p tolerance. Nodes
+     * that are @p apart (ascending) are left.
      */
     Outcome solve(double time_step, double last,
                   const std::vector<std::uint8_t> &prescribed, double tolerance,
-                  CornerGroups<dim> &groups);
+                  CornerGroups<dim> &groups,
+                  const std::vector<std::size_t> &apart = {});
+    /** Contacts of surfaces, and the nodes with points that have groups in
+        common with them: one problem. */
+    struct Cluster {
+      struct Contact {
+        std::vector<std::pair<unsigned int, double>> ends; ///< group, share
+        std::array<double, dim * dim> frame;
+        unsigned int interaction;
+        double target; ///< of U_N
+        /// friction opposes U_T and this; impulse: in and out
+        std::array<double, dim> offset, impulse;
+      };
+      std::vector<std::size_t> nodes; ///< of the mesh
+      std::vector<Contact> contacts;
+    };
+    /** One that solve() has left; velocities as there. Adds to @p outcome. */
+    void solve_cluster(Cluster &cluster,
+                       const std::vector<std::uint8_t> &prescribed,
+                       double tolerance, CornerGroups<dim> &groups,
+                       Outcome &outcome);
     /** Then those at @p rigid bodies, which solve() leaves: if these are free,
         all in one, see CoupledNodes. Adds to @p outcome: two of them, or
         one and an obstacle, do not touch. Collective. */
@@ -82,6 +109,7 @@ namespace nsfd
              numerical = 0., viscous = 0.;
       double broken = 0.;      ///< area, m^2 or m
       double penetration = 0.; ///< beyond overlaps of released springs, m
+      double way = 0.;         ///< of two sides that touch, in the step, m
       unsigned int active = 0;
       bool beyond_unique = false;
       LineChanges changes; ///< of friction, damage, impact, numerical
@@ -114,12 +142,10 @@ namespace nsfd
     void set_point(unsigned int a);
     bool solve_loose(Node &node);
     bool solve_elastic(Node &node);
-    bool turn_friction(std::size_t first, bool all);
     void account_point(unsigned int a, std::size_t row, Balance &balance);
     void account_spring(unsigned int a, std::size_t row, Balance &balance);
     void keep_jump(unsigned int a, bool held);
     void keep(unsigned int a, const PointEnergies<dim> &energies);
-    void set_velocities(std::size_t first, const CornerGroups<dim> &groups);
     void begin(const Node &node);
     void solve_node(Node &node, double tolerance, CornerGroups<dim> &groups,
                     Outcome &outcome);

@@ -43,29 +43,37 @@ namespace nsfd
     const double share = h / 8. * (bodies.power - bodies.power_after);
     energy.kinetic = bodies.kinetic - share;
     energy.elastic = bodies.stored - h / 2. * bodies.power + share;
-    energy.cohesive += balance.stored;
+    energy.cohesive += balance.stored + bodies.turned;
     energy.damage += balance.damage;
-    energy.friction += balance.friction;
-    energy.impact += balance.impact;
+    energy.friction += balance.friction + bodies.friction;
+    energy.impact += balance.impact + bodies.impact;
     energy.viscous += balance.viscous + bodies.viscous;
     energy.numerical += balance.numerical + bodies.numerical;
     energy.work += bodies.work + bodies.pressure_work;
     next.broken_area = old.broken_area + balance.broken;
-    next.positive_friction_work =
-        old.positive_friction_work + balance.positive_friction;
+    next.positive_friction_work = old.positive_friction_work +
+                                  balance.positive_friction +
+                                  bodies.positive_friction;
     next.initial_energy = old.initial_energy;
-    next.penetration = std::max(old.penetration, balance.penetration);
+    next.penetration =
+        std::max({old.penetration, balance.penetration, bodies.penetration});
     next.penetration_excess =
         std::max(old.penetration_excess,
-                 balance.penetration - 1e-12 * discretization_.extent());
+                 std::max(balance.penetration -
+                              (large_ ? large_->widen(balance.way) : 0.),
+                          bodies.excess) -
+                     1e-12 * discretization_.extent());
     next.rigid_drift = old.rigid_drift;
     next.viscous_traction = old.viscous_traction;
     next.pressure_work = old.pressure_work + bodies.pressure_work;
-    report.active = balance.active;
+    report.active = balance.active + bodies.touching;
     report.beyond_unique |= balance.beyond_unique;
     report.changes = balance.changes;
     report.changes.taken[std::size_t(WatchedLine::scheme)] =
         energy.numerical - old.energy.numerical;
+    report.changes.taken[std::size_t(WatchedLine::large_motion)] = bodies.large;
+    report.changes.taken[std::size_t(WatchedLine::friction)] += bodies.friction;
+    report.changes.taken[std::size_t(WatchedLine::impact)] += bodies.impact;
     report.changes.taken[std::size_t(WatchedLine::viscous)] =
         energy.viscous - old.energy.viscous;
     close_balance(old, next, report);
@@ -110,6 +118,8 @@ namespace nsfd
     show_at(state, ghosts_.own_points());
     if (loads_.cracks())
       loads_.cracks()->show(ghosts_.own_points(), state);
+    if (large_)
+      large_->show(state);
     const auto *layer = ghosts_.layer();
     if (!layer)
       return;
@@ -126,14 +136,18 @@ namespace nsfd
     counters["gauss_seidel_sweeps"] = double(counters_.sweeps);
     counters["newton"] = double(counters_.newton);
     counters["released_points"] = double(counters_.released);
-    counters["active_points"] =
-        double(communicator_.sum_integer(points_.n_counted()));
+    std::size_t n_points = 0;
+    for (const unsigned int point : points_.chains().point)
+      n_points += mesh_.counts(mesh_.node_of_point(point));
+    counters["active_points"] = double(communicator_.sum_integer(n_points));
     counters["node_problems_above_1e-12"] = double(counters_.inexact);
     counters["held_node_problems"] = double(counters_.held);
     counters["groups"] = double(communicator_.sum_integer(
         groups_ ? groups_->size() - groups_->not_counted().size() : 0));
     counters["worst_excess_over_strength"] =
         communicator_.max(counters_.excess);
+    if (large_)
+      large_->fill_counters(counters);
   }
 
   template <int dim>
@@ -160,11 +174,13 @@ namespace nsfd
       hanging_.set_forces(*forces_, *groups_);
       front.holds = false;
     }
-    archive.numbers("front", front_.before, front_.after, front_.stored,
-                    front_.taken);
+    archive.numbers("front", before_.front.before, before_.front.after,
+                    before_.front.stored, before_.front.taken);
     archive.common("reactions", supports_.reactions());
     if (rigid_)
       rigid_->serialize(archive);
+    if (large_)
+      large_->serialize(archive);
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \

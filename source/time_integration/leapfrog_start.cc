@@ -51,6 +51,8 @@ namespace nsfd
         state.released_overlap[i] = std::max(0., -state.jump[i * dim]);
     State own = ghosts_.without(std::move(state));
     own.bond_traction.assign(own.jump.size(), 0.);
+    if (large_)
+      large_->set_initial(own);
     release_zeros(own);
     return own;
   }
@@ -86,7 +88,9 @@ namespace nsfd
     hanging_.set_forces(*forces_, *groups_);
     if (auto *viscous = forces_->viscous())
       viscous->set(*groups_, hanging_);
-    front_ = forces_->front().finish(communicator_);
+    before_.front = forces_->front().finish(communicator_);
+    if (large_)
+      large_->start(state);
     loads_.start(state.time, *groups_);
   }
 
@@ -108,7 +112,9 @@ namespace nsfd
       terms_[k] = g.mass[k / dim] * g.velocity[k] * g.velocity[k] / 2.;
     const double of_bodies = rigid_ ? rigid_->kinetic_energy(g, terms_) : 0.;
     state.energy.kinetic = ghosts_.sum(g, terms_) + of_bodies;
-    state.energy.elastic = -ghosts_.dot(g, g.force, g.displacement) / 2.;
+    state.energy.elastic = large_
+                               ? large_->stored()
+                               : -ghosts_.dot(g, g.force, g.displacement) / 2.;
     state.energy.cohesive = points_.initial_energy(communicator_);
     begin_balance(state);
     State own = ghosts_.without(std::move(state));

@@ -51,7 +51,8 @@ namespace nsfd
     const State &old = step.old, &next = step.next;
     LineChanges &changes = report.changes;
     changes.taken[std::size_t(WatchedLine::scheme)] =
-        next.energy.numerical - old.energy.numerical;
+        next.energy.numerical - old.energy.numerical -
+        changes.taken[std::size_t(WatchedLine::large_motion)];
     // at rest there is no energy but what the loads would give in a step
     changes.scale = std::max(next.largest_energy, step.energy_scale);
     // |P - P*|_R times |U|_(1/R): impulses of rows that ask for the same may be

@@ -82,6 +82,8 @@ namespace nsfd
       (void)state;
       return time_step;
     }
+    /** Of the bound of explicit steps at rest: what is stable from here. */
+    virtual double stable_share() const { return 1.; }
     /**
      * Up to which length (s) a step has one solution, by the points that
      * softened between @p old and @p next.

@@ -1,0 +1,405 @@
+#include "finite_forces.h"
+
+#include "discretization/cell_geometry.h"
+#include "discretization/cells.h"
+#include "discretization/point_places.h"
+#include "materials/strain.h"
+#include "nsfd/materials/material_model.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /// stresses at a face are at most this times those at the points of the
+    /// cell quadrature, of cells whose strain is not constant
+    constexpr double beyond_quadrature = 3.;
+
+    template <int dim>
+    using Matrix = std::array<double, dim * dim>;
+
+    /** F S. */
+    template <int dim>
+    Matrix<dim> first_piola(const Matrix<dim> &F, const Voigt<dim> &S)
+    {
+      Matrix<dim> P{};
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = 0; e < dim; ++e)
+            P[c * dim + d] += F[c * dim + e] * S[voigt_place<dim>(e, d)];
+      return P;
+    }
+
+    /** det F F^-T. */
+    template <int dim>
+    Matrix<dim> cofactors(const Matrix<dim> &F)
+    {
+      if constexpr (dim == 2)
+        return {F[3], -F[2], -F[1], F[0]};
+      else {
+        Matrix<dim> C;
+        for (unsigned int a = 0; a < 3; ++a)
+          for (unsigned int b = 0; b < 3; ++b) {
+            const unsigned int a1 = (a + 1) % 3, a2 = (a + 2) % 3,
+                               b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+            C[a * 3 + b] = F[a1 * 3 + b1] * F[a2 * 3 + b2] -
+                           F[a1 * 3 + b2] * F[a2 * 3 + b1];
+          }
+        return C;
+      }
+    }
+
+    template <int dim>
+    double square(const Matrix<dim> &A)
+    {
+      double sum = 0.;
+      for (const double a : A)
+        sum += a * a;
+      return sum;
+    }
+
+    /** A x. */
+    template <int dim>
+    std::array<double, dim> multiply(const Matrix<dim> &A, const double *x)
+    {
+      std::array<double, dim> y{};
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          y[c] += A[c * dim + d] * x[d];
+      return y;
+    }
+  } // namespace
+
+  template <int dim>
+  FiniteForces<dim>::FiniteForces(const Discretization<dim> &discretization,
+                                  const JoinedMesh<dim> &mesh,
+                                  FrontViscosity front)
+      : CellForces<dim>(std::move(front)), discretization_(discretization),
+        mesh_(mesh), differ_(discretization.cells().differ()),
+        sides_(discretization.points().n_points),
+        displacement_(mesh.n_corners() * dim), forces_(mesh.n_corners() * dim),
+        stored_(discretization.bodies().size()),
+        peaks_(discretization.bodies().size())
+  {
+    const Cells<dim> &cells = discretization.cells();
+    const SceneInput &input = discretization.input();
+    for (const MaterialInput &m : input.materials)
+      materials_.push_back(
+          m.kind == MaterialKind::finite_strain
+              ? m.model->template hyperelastic<dim>(m, input.plane_stress)
+              : nullptr);
+    const std::size_t n =
+        differ_ ? cells.bodies.size() : cells.bodies.classes.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      Tables &here = tables_.emplace_back();
+      if (!differ_ && cells.bodies.classes[k].bodies.empty())
+        continue;
+      const auto of_body =
+          cells.shape(differ_ ? k : cells.bodies.classes[k].bodies[0]);
+      const BodyShape<dim> &shape = *of_body;
+      here.n_nodes = shape.n_nodes;
+      const bool constant =
+          shape.reference.is_simplex() && shape.n_nodes == dim + 1;
+      for (unsigned int q = 0; q < (constant ? 1 : shape.JxW.size()); ++q) {
+        here.JxW.push_back(constant ? shape.volume : shape.JxW[q]);
+        for (unsigned int i = 0; i < shape.n_nodes; ++i)
+          for (unsigned int d = 0; d < dim; ++d)
+            here.gradients.push_back(shape.gradients[q * shape.n_nodes + i][d]);
+      }
+      if (constant)
+        continue;
+      for (const auto &place : shape.slot_places) {
+        const auto inverse =
+            invert(jacobian(shape.reference, shape.corners, place));
+        for (unsigned int i = 0; i < shape.n_nodes; ++i) {
+          const auto g =
+              transpose(inverse) * cells.element->shape_grad(i, place);
+          for (unsigned int d = 0; d < dim; ++d)
+            here.slot_gradients.push_back(g[d]);
+        }
+      }
+    }
+    for_all_places(cells.bodies, sides_.size(),
+                   [&](const std::size_t body, const unsigned int slot,
+                       const std::size_t point, const unsigned int side) {
+                     sides_[point][side] = {int(body) + 1, slot};
+                   });
+    for (auto &sides : sides_)
+      for (auto &side : sides)
+        --side.first; // -1: none
+    if (this->front_.acts())
+      front_forces_.assign(forces_.size(), 0.);
+  }
+
+  template <int dim>
+  FiniteForces<dim>::~FiniteForces() = default;
+
+  template <int dim>
+  const Hyperelastic<dim> &
+  FiniteForces<dim>::material(const std::size_t cell) const
+  {
+    return *materials_[discretization_.cells().body_class(cell).material];
+  }
+
+  template <int dim>
+  auto FiniteForces<dim>::deformation(const std::size_t cell,
+                                      const double *gradients) const -> Matrix
+  {
+    Matrix F{};
+    for (unsigned int c = 0; c < dim; ++c)
+      F[c * dim + c] = 1.;
+    const unsigned int n = tables(cell).n_nodes;
+    const double *u = &displacement_[discretization_.bodies().first_dof[cell]];
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          F[c * dim + d] += u[i * dim + c] * gradients[i * dim + d];
+    return F;
+  }
+
+  template <int dim>
+  void FiniteForces<dim>::set_cell(const std::size_t cell)
+  {
+    const Tables &here = tables(cell);
+    const std::size_t first = discretization_.bodies().first_dof[cell];
+    const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
+    double *f = &forces_[first];
+    std::fill_n(f, n * dim, 0.);
+    stored_[cell] = peaks_[cell] = 0.;
+    double volume = 0., now = 0.;
+    for (unsigned int q = 0; q < n_q; ++q) {
+      const double *g = &here.gradients[std::size_t(q) * n * dim],
+                   JxW = here.JxW[q];
+      const Matrix F = deformation(cell, g);
+      const double J = jacobian<dim>(F.data());
+      const auto C = symmetric_product<dim>(F.data(), F.data());
+      Voigt<dim> S;
+      if (!(J > 0.) || !material(cell).stress(C, S)) {
+        inverted_ = int(cell);
+        return;
+      }
+      volume += JxW;
+      now += JxW * J;
+      stored_[cell] += JxW * material(cell).energy(C);
+      const Matrix P = first_piola<dim>(F, S);
+      peaks_[cell] = std::max(peaks_[cell], square<dim>(P));
+      for (unsigned int i = 0; i < n; ++i) {
+        const auto of_node = multiply<dim>(P, g + i * dim);
+        for (unsigned int c = 0; c < dim; ++c)
+          f[i * dim + c] -= JxW * of_node[c];
+      }
+    }
+    if (!this->front_.acts())
+      return;
+    this->front_.update(cell, now / volume - 1., volume);
+    const double tension = this->front_.tension[cell];
+    double *more = &front_forces_[first];
+    std::fill_n(more, n * dim, 0.);
+    for (unsigned int q = 0; q < n_q && tension != 0.; ++q) {
+      const double *g = &here.gradients[std::size_t(q) * n * dim];
+      const Matrix C = cofactors<dim>(deformation(cell, g));
+      for (unsigned int i = 0; i < n; ++i) {
+        const auto of_node = multiply<dim>(C, g + i * dim);
+        for (unsigned int c = 0; c < dim; ++c)
+          more[i * dim + c] -= here.JxW[q] * tension * of_node[c];
+      }
+    }
+    for (unsigned int k = 0; k < n * dim; ++k)
+      f[k] += more[k];
+  }
+
+  template <int dim>
+  void FiniteForces<dim>::set_forces(CornerGroups<dim> &groups)
+  {
+    inverted_ = -1;
+    groups.scatter(groups.displacement, displacement_);
+    for (std::size_t cell = 0; cell < stored_.size(); ++cell)
+      set_cell(cell);
+    std::fill(groups.force.begin(), groups.force.end(), 0.);
+    for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        groups.force[groups.of(i) * dim + c] += forces_[i * dim + c];
+  }
+
+  template <int dim>
+  std::array<double, dim>
+  FiniteForces<dim>::corner_force(const std::size_t corner,
+                                  const CornerGroups<dim> &) const
+  {
+    std::array<double, dim> force;
+    std::copy_n(&forces_[corner * dim], dim, force.begin());
+    return force;
+  }
+
+  template <int dim>
+  double
+  FiniteForces<dim>::front_power(const CornerGroups<dim> &groups,
+                                 const std::vector<double> &velocity) const
+  {
+    double sum = 0.;
+    for (std::size_t k = 0; k < front_forces_.size(); ++k)
+      if (front_forces_[k] != 0.)
+        sum += front_forces_[k] * velocity[groups.of(k / dim) * dim + k % dim];
+    return sum;
+  }
+
+  template <int dim>
+  const double *FiniteForces<dim>::at_slot(const std::size_t cell,
+                                           const unsigned int slot) const
+  {
+    const Tables &here = tables(cell);
+    return here.slot_gradients.empty()
+               ? here.gradients.data()
+               : &here.slot_gradients[std::size_t(slot) * here.n_nodes * dim];
+  }
+
+  template <int dim>
+  auto FiniteForces<dim>::stress_at(const std::size_t cell,
+                                    const double *gradients) const -> Matrix
+  {
+    const Matrix F = deformation(cell, gradients);
+    Voigt<dim> S;
+    if (!(jacobian<dim>(F.data()) > 0.) ||
+        !material(cell).stress(symmetric_product<dim>(F.data(), F.data()), S))
+      return {};
+    return first_piola<dim>(F, S);
+  }
+
+  template <int dim>
+  auto FiniteForces<dim>::frame(const std::size_t point) const -> Matrix
+  {
+    const double *rest = &discretization_.points().frame[point * dim * dim];
+    Matrix F{};
+    for (const auto &[cell, slot] : sides_[point])
+      if (cell >= 0) {
+        const Matrix of_side =
+            deformation(std::size_t(cell), at_slot(std::size_t(cell), slot));
+        for (unsigned int k = 0; k < dim * dim; ++k)
+          F[k] += of_side[k] / 2.;
+      }
+    // two sides that have turned far from each other have no mean normal
+    Matrix axes;
+    std::copy_n(rest, dim * dim, axes.begin());
+    if (!(jacobian<dim>(F.data()) > 0.))
+      return axes;
+    const auto put = [&](const unsigned int row, std::array<double, dim> x) {
+      for (unsigned int other = 0; other < row; ++other) {
+        double dot = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          dot += x[c] * axes[other * dim + c];
+        for (unsigned int c = 0; c < dim; ++c)
+          x[c] -= dot * axes[other * dim + c];
+      }
+      double length = 0.;
+      for (const double of_x : x)
+        length += of_x * of_x;
+      for (unsigned int c = 0; c < dim; ++c)
+        axes[row * dim + c] = x[c] / std::sqrt(length);
+    };
+    put(0, multiply<dim>(cofactors<dim>(F), rest));
+    for (unsigned int row = 1; row < dim; ++row)
+      put(row, multiply<dim>(F, rest + row * dim));
+    return axes;
+  }
+
+  template <int dim>
+  std::array<double, dim>
+  FiniteForces<dim>::traction(const StrengthSites &sites,
+                              const std::size_t site) const
+  {
+    const auto &points = discretization_.points();
+    const unsigned int first = sites.first_point[site],
+                       last = first + sites.n_points[site];
+    double length = 0.;
+    for (unsigned int i = first; i < last; ++i)
+      length += points.weight[i];
+    std::array<double, dim> result{};
+    for (unsigned int i = first; i < last; ++i) {
+      const double *rest = &points.frame[std::size_t(i) * dim * dim];
+      std::array<double, dim> t{};
+      for (const auto &[cell, slot] : sides_[i]) {
+        const Matrix P =
+            stress_at(std::size_t(cell), at_slot(std::size_t(cell), slot));
+        const auto of_side = multiply<dim>(P, rest);
+        for (unsigned int c = 0; c < dim; ++c)
+          t[c] += of_side[c] / 2.;
+      }
+      const auto local = multiply<dim>(frame(i), t.data());
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          result[c] += points.weight[i] / length * rest[r * dim + c] * local[r];
+      if (tables(std::size_t(sides_[i][0].first)).slot_gradients.empty() &&
+          tables(std::size_t(sides_[i][1].first)).slot_gradients.empty()) {
+        for (double &x : result) // the same along the face
+          x *= length / points.weight[i];
+        break;
+      }
+    }
+    return result;
+  }
+
+  template <int dim>
+  void FiniteForces<dim>::squared_tractions(const StrengthSites &sites,
+                                            std::vector<double> &squares) const
+  {
+    constexpr double quiet =
+        StrengthSites::looked_at * StrengthSites::looked_at;
+    const auto peak = [this](const std::size_t cell) {
+      const bool constant = tables(cell).slot_gradients.empty();
+      return peaks_[cell] *
+             (constant ? 1. : beyond_quadrature * beyond_quadrature);
+    };
+    squares.resize(sites.size());
+    for (std::size_t face = 0; face + 1 < sites.first_of_face.size(); ++face)
+      for (std::size_t k = sites.first_of_face[face];
+           k < sites.first_of_face[face + 1]; ++k)
+        squares[k] =
+            std::max(peak(sites.cells[k][0]), peak(sites.cells[k][1])) <
+                    quiet * sites.least[face]
+                ? 0.
+                : sites.square(k, traction(sites, k));
+  }
+
+  template <int dim>
+  double FiniteForces<dim>::stiffening() const
+  {
+    const auto norm = [](const auto &values) {
+      double sum = 0.;
+      for (const double x : values)
+        sum += x * x;
+      return std::sqrt(sum);
+    };
+    std::vector<double> at_rest;
+    Voigt<dim> unit{}, S;
+    for (unsigned int c = 0; c < dim; ++c)
+      unit[c] = 1.;
+    VoigtBlock<dim> tangent;
+    for (const auto &material : materials_) {
+      at_rest.push_back(1.);
+      if (material && material->stress(unit, S, &tangent))
+        at_rest.back() = norm(tangent);
+    }
+    double most = 1.;
+    for (std::size_t cell = 0; cell < stored_.size(); ++cell) {
+      const Tables &here = tables(cell);
+      const double rest =
+          at_rest[discretization_.cells().body_class(cell).material];
+      for (std::size_t q = 0; q < here.JxW.size(); ++q) {
+        const Matrix F =
+            deformation(cell, &here.gradients[q * here.n_nodes * dim]);
+        if (!material(cell).stress(symmetric_product<dim>(F.data(), F.data()),
+                                   S, &tangent))
+          continue;
+        most = std::max(most, norm(tangent) / rest * square<dim>(F) / dim +
+                                  norm(S) / material(cell).modulus());
+      }
+    }
+    return most;
+  }
+
+  template class FiniteForces<2>;
+  template class FiniteForces<3>;
+} // namespace nsfd

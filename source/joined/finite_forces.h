@@ -1,0 +1,86 @@
+#pragma once
+
+#include "cell_forces.h"
+
+#include "nsfd/materials/hyperelastic.h"
+
+namespace nsfd
+{
+  /**
+   * Forces of finite strain on joined cells, f = -dU/dq,
+   *
+   *   f_i = -sum_q JxW_q P grad N_i,   P = F S(F^T F),
+   *
+   * and the pressure of the front viscosity on the cofactors of F. Tractions
+   * are nominal ones, P N, per area before deformation, with their parts along
+   * and across the normal that the face has now. Frames of faces turn with the
+   * mean motion of both sides.
+   */
+  template <int dim>
+  class FiniteForces final : public CellForces<dim>
+  {
+  public:
+    FiniteForces(const Discretization<dim> &discretization,
+                 const JoinedMesh<dim> &mesh, FrontViscosity front);
+    ~FiniteForces() override;
+
+    void set_forces(CornerGroups<dim> &groups) override;
+    std::array<double, dim>
+    corner_force(std::size_t corner,
+                 const CornerGroups<dim> &groups) const override;
+    void squared_tractions(const StrengthSites &sites,
+                           std::vector<double> &squares) const override;
+    /** Turned back: its parts along the axes of the frame at rest are those
+        along the axes of frame(). */
+    std::array<double, dim> traction(const StrengthSites &sites,
+                                     std::size_t site) const override;
+
+    // all of the last forces
+
+    /** By cell, J. */
+    const std::vector<double> &stored() const { return stored_; }
+    /** Power of the front viscosity against @p velocity of the groups, W. */
+    double front_power(const CornerGroups<dim> &groups,
+                       const std::vector<double> &velocity) const;
+    /** Rows n, t1, t2 at a point between two cells. */
+    std::array<double, dim * dim> frame(std::size_t point) const;
+    /** A cell that is turned inside out, or has no stress; -1: none. */
+    int inverted() const { return inverted_; }
+    /**
+     * How much higher the square of the largest frequency of a cell may be
+     * than at rest: an estimate that is 1 there.
+     */
+    double stiffening() const;
+
+  private:
+    using Matrix = std::array<double, dim * dim>;
+    /** Of a class of cells, or of one of those that have no class. */
+    struct Tables {
+      unsigned int n_nodes = 0;
+      std::vector<double> JxW, gradients; ///< point x node x dim, 1/m
+      std::vector<double> slot_gradients; ///< slot x node x dim; empty: those
+                                          ///< of the one point
+    };
+
+    const Tables &tables(const std::size_t cell) const
+    {
+      return tables_[differ_ ? cell : discretization_.bodies().class_of[cell]];
+    }
+    const Hyperelastic<dim> &material(std::size_t cell) const;
+    Matrix deformation(std::size_t cell, const double *gradients) const;
+    const double *at_slot(std::size_t cell, unsigned int slot) const;
+    Matrix stress_at(std::size_t cell, const double *gradients) const;
+    void set_cell(std::size_t cell);
+
+    const Discretization<dim> &discretization_;
+    const JoinedMesh<dim> &mesh_;
+    const bool differ_;
+    std::vector<Tables> tables_;
+    std::vector<std::unique_ptr<const Hyperelastic<dim>>> materials_;
+    /// of a point, both sides: cell and slot
+    std::vector<std::array<std::pair<int, unsigned int>, 2>> sides_;
+    std::vector<double> displacement_, forces_, front_forces_; ///< of corners
+    std::vector<double> stored_, peaks_; ///< J; largest P:P of a cell
+    int inverted_ = -1;
+  };
+} // namespace nsfd

@@ -1,0 +1,231 @@
+#include "leapfrog_points.h"
+#include "point_velocities.h"
+
+#include "joined/held_nodes.h"
+
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+
+// LeapfrogPoints where faces turn and surfaces meet others.
+
+namespace nsfd
+{
+  namespace
+  {
+    /** Of @p from those of @p places from @p first on, as the first of @p to.
+     */
+    template <int dim>
+    void copy_points(const OneStepProblem<dim> &from,
+                     const std::vector<unsigned int> &places,
+                     const std::size_t first, OneStepProblem<dim> &to)
+    {
+      to.interactions = from.interactions;
+      to.rule = from.rule;
+      to.time_step = from.time_step;
+      to.theta = from.theta;
+      to.from_closed = from.from_closed;
+      to.slip_max.assign(from.slip_max.empty() ? 0 : to.n_points, 0.);
+      to.viscosity.assign(from.viscosity.empty() ? 0 : to.n_points, 0.);
+      const auto copy = [&](const std::size_t width, const auto &one,
+                            auto &two) {
+        for (std::size_t k = first; k < places.size() && !one.empty(); ++k)
+          std::copy_n(one.begin() + long(places[k] * width), width,
+                      two.begin() + long((k - first) * width));
+      };
+      copy(1, from.kind, to.kind);
+      copy(1, from.mask, to.mask);
+      copy(1, from.contact, to.contact);
+      copy(1, from.interaction, to.interaction);
+      for (auto member :
+           {&OneStepProblem<dim>::weight, &OneStepProblem<dim>::opening_max,
+            &OneStepProblem<dim>::compression_stiffness,
+            &OneStepProblem<dim>::target, &OneStepProblem<dim>::slip_max,
+            &OneStepProblem<dim>::viscosity,
+            &OneStepProblem<dim>::strength_factor,
+            &OneStepProblem<dim>::opening_factor,
+            &OneStepProblem<dim>::majorant_normal,
+            &OneStepProblem<dim>::majorant_tangential})
+        copy(1, from.*member, to.*member);
+      for (auto member :
+           {&OneStepProblem<dim>::given_velocity,
+            &OneStepProblem<dim>::jump_old, &OneStepProblem<dim>::jump_free,
+            &OneStepProblem<dim>::sliding_offset})
+        copy(dim, from.*member, to.*member);
+    }
+  } // namespace
+
+  template <int dim>
+  double LeapfrogPoints<dim>::turn(const AxesOf &axes_of)
+  {
+    // by less than this what a point does is the same to four digits
+    constexpr double least_angle = 1e-4;
+    double more = 0.;
+    for (Node &node : nodes_)
+      for (const unsigned int a : node.points) {
+        if (chains_.problem.kind[a] == PointKind::separated)
+          continue;
+        const auto axes = axes_of(chains_.point[a]);
+        double square = 0.;
+        for (unsigned int k = 0; k < dim * dim; ++k) {
+          const double d = axes[k] - chains_.frame[a * dim * dim + k];
+          square += d * d;
+        }
+        if (square < least_angle * least_angle)
+          continue;
+        more += chains_.turn(a, axes);
+        for (auto &elastic : node.elastic)
+          elastic.is_new = true;
+      }
+    return more;
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::part(const unsigned int point)
+  {
+    Node &node = nodes_.of(mesh_.node_of_point(point));
+    for (const unsigned int a : node.points)
+      if (chains_.point[a] == point) {
+        chains_.problem.kind[a] = chains_.other.kind[a] = PointKind::separated;
+        for (unsigned int c = 0; c < dim; ++c)
+          chains_.impulse[a * dim + c] = 0.;
+        chains_.closed[a] = 0;
+      }
+    node.is_new = true;
+  }
+
+  template <int dim>
+  void LeapfrogPoints<dim>::solve_cluster(
+      Cluster &cluster, const std::vector<std::uint8_t> &prescribed,
+      const double tolerance, CornerGroups<dim> &groups, Outcome &outcome)
+  {
+    const std::size_t first = moved_.size();
+    for (const std::size_t node : cluster.nodes)
+      begin(nodes_.of(node));
+    springs_.resize(moved_.size(), nullptr);
+    const std::size_t n = moved_.size() - first;
+    // the problem: points, then contacts
+    OneStepProblem<dim> problem;
+    resize(problem, n + cluster.contacts.size());
+    std::vector<double> frames, impulses;
+    std::vector<LocalSolution<dim>> solutions(problem.n_points);
+    NodeProblem<dim> all;
+    std::vector<unsigned int> of_all;
+    std::unordered_map<unsigned int, int> known;
+    const auto local = [&](const unsigned int group) {
+      const auto [entry, is_new] = known.emplace(group, int(of_all.size()));
+      if (is_new) {
+        of_all.push_back(group);
+        auto &inverse = all.inverse_mass.emplace_back();
+        for (unsigned int c = 0; c < dim; ++c)
+          inverse[c] =
+              prescribed[group] & (1u << c) ? 0. : 1. / groups.mass[group];
+      }
+      return entry->second;
+    };
+    std::size_t k = 0;
+    for (const std::size_t node : cluster.nodes) {
+      const Node &here = nodes_.of(node);
+      for (const auto &point : here.problem.points) {
+        std::array<int, 2> sides = point.groups;
+        for (int &side : sides)
+          if (side >= 0)
+            side = local(here.groups[std::size_t(side)]);
+        all.points.push_back({k, sides});
+        const double *frame = &chains_.frame[point.point * dim * dim];
+        frames.insert(frames.end(), frame, frame + dim * dim);
+        ++k;
+      }
+    }
+    std::vector<PointEnds> ends(cluster.contacts.size());
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const auto &contact = cluster.contacts[i];
+      for (const auto &[group, share] : contact.ends) {
+        ends[i].groups[ends[i].size] = local(group);
+        ends[i].shares[ends[i].size++] = share;
+      }
+      all.points.push_back({n + i, {{-1, -1}}, &ends[i]});
+      frames.insert(frames.end(), contact.frame.begin(), contact.frame.end());
+    }
+    const auto fetch = [&] {
+      copy_points(chains_.problem, moved_, first, problem);
+      impulses.assign(problem.n_points * dim, 0.);
+      for (std::size_t i = 0; i < n; ++i)
+        std::copy_n(&chains_.impulse[moved_[first + i] * dim], dim,
+                    &impulses[i * dim]);
+      for (std::size_t i = 0; i < ends.size(); ++i) {
+        const auto &contact = cluster.contacts[i];
+        problem.contact[n + i] = 1;
+        problem.interaction[n + i] = contact.interaction;
+        problem.target[n + i] = contact.target;
+        std::copy_n(contact.offset.begin(), dim,
+                    &problem.sliding_offset[(n + i) * dim]);
+        std::copy_n(contact.impulse.begin(), dim, &impulses[(n + i) * dim]);
+      }
+    };
+    std::vector<std::array<double, dim>> free;
+    for (const unsigned int group : of_all)
+      std::copy_n(&groups.velocity[group * dim], dim,
+                  free.emplace_back().begin());
+    std::optional<HeldNodes<dim>> held;
+    NodeReport report;
+    const auto solve = [&] {
+      held.reset();
+      fetch();
+      const auto attempt = [&] {
+        all.velocity = free;
+        report = solver_.solve(problem, frames, all, impulses, solutions);
+        outcome.sweeps += report.sweeps;
+        outcome.newton += report.newton;
+        ++outcome.problems;
+        return report.converged || report.residual <= tolerance;
+      };
+      bool solved = attempt();
+      if (!solved) {
+        held.emplace(problem);
+        held->hold(all);
+        solved = held->any() && attempt();
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        const unsigned int a = moved_[first + i];
+        std::copy_n(&impulses[i * dim], dim, &chains_.impulse[a * dim]);
+        chains_.solution[a] = solutions[i];
+      }
+      for (std::size_t g = 0; g < of_all.size(); ++g)
+        std::copy_n(all.velocity[g].begin(), dim,
+                    &groups.velocity[of_all[g] * dim]);
+      set_velocities(moved_, first, mesh_, groups, chains_);
+      return solved;
+    };
+    bool solved;
+    do
+      solved = solve();
+    while (turn_friction(moved_, first, !solved, chains_));
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      std::copy_n(&impulses[(n + i) * dim], dim,
+                  cluster.contacts[i].impulse.begin());
+    outcome.converged = outcome.converged && solved;
+    outcome.inexact += !report.converged;
+    if (!(report.residual <= outcome.residual)) {
+      outcome.residual = report.residual;
+      outcome.worst = chains_.point[moved_[first]];
+    }
+    if (held && held->any()) {
+      ++outcome.held;
+      held->mark(solutions);
+      outcome.excess = std::max(outcome.excess, held->excess(impulses));
+      for (std::size_t i = 0; i < n; ++i)
+        chains_.solution[moved_[first + i]] = solutions[i];
+    }
+  }
+
+#define NSFD_INSTANTIATE(dim)                                                  \
+  template double LeapfrogPoints<dim>::turn(const AxesOf &);                   \
+  template void LeapfrogPoints<dim>::part(unsigned int);                       \
+  template void LeapfrogPoints<dim>::solve_cluster(                            \
+      Cluster &, const std::vector<std::uint8_t> &, double,                    \
+      CornerGroups<dim> &, Outcome &)
+  NSFD_INSTANTIATE(2);
+  NSFD_INSTANTIATE(3);
+#undef NSFD_INSTANTIATE
+} // namespace nsfd

@@ -1,0 +1,461 @@
+#include "leapfrog_contacts.h"
+
+#include "local_product.h"
+
+#include "contact_detection/facet_geometry.h"
+#include "core/disjoint_sets.h"
+#include "discretization/cell_geometry.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Where the two bodies meet with @p ends as they are: what slides along a
+     * facet that turns has a gap that changes with the place.
+     */
+    template <int dim>
+    void meet(const RowEnds<dim> &ends, MovingRow<dim> &row)
+    {
+      using Partner = typename MovingRow<dim>::Partner;
+      if (row.partner == Partner::edge) {
+        const Tensor<1, dim> a = ends.of_2[1] - ends.of_2[0],
+                             b = ends.of_1[1] - ends.of_1[0],
+                             apart = ends.of_1[0] - ends.of_2[0];
+        const double aa = a * a, ab = a * b, bb = b * b,
+                     det = aa * bb - ab * ab;
+        if (!(det > 1e-6 * aa * bb))
+          return;
+        const double on_2 = (bb * (a * apart) - ab * (b * apart)) / det,
+                     on_1 = (ab * (a * apart) - aa * (b * apart)) / det;
+        if (on_2 < 0. || on_2 > 1. || on_1 < 0. || on_1 > 1.)
+          return;
+        row.edge_weights = {{1. - on_2, on_2}};
+        row.weights[0] = 1. - on_1;
+        row.weights[1] = on_1;
+      } else if (row.partner == Partner::facet) {
+        typename Surfaces<dim>::Facet facet;
+        facet.n_vertices = row.n_facet;
+        std::array<double, 4 * dim> x{};
+        for (unsigned int v = 0; v < row.n_facet; ++v) {
+          facet.vertex[v] = v;
+          for (unsigned int c = 0; c < dim; ++c)
+            x[v * dim + c] = ends.of_1[v][c];
+        }
+        std::array<double, dim> y;
+        for (unsigned int c = 0; c < dim; ++c)
+          y[c] = ends.of_2[0][c];
+        row.weights = closest_place<dim>(facet, plane_of<dim>(facet, x.data()),
+                                         x.data(), y)
+                          .weights;
+      }
+    }
+  } // namespace
+
+  template <int dim>
+  LeapfrogContacts<dim>::LeapfrogContacts(
+      const SceneInput &input, const Discretization<dim> &discretization,
+      const OneStepProblem<dim> &all, const Communicator &communicator)
+      : input_(input), discretization_(discretization), all_(all),
+        layout_(input, discretization),
+        surfaces_(input, discretization, layout_, communicator)
+  {
+    DisjointSets parts(discretization.bodies().size());
+    for (const auto &face : discretization.points().faces)
+      if (face.bodies[0] >= 0 && face.bodies[1] >= 0)
+        parts.join(unsigned(face.bodies[0]), unsigned(face.bodies[1]));
+    part_of_.resize(layout_.size());
+    for (std::size_t b = 0; b < layout_.size(); ++b)
+      part_of_[layout_[b].number] = parts.first(layout_[b].cells[0]);
+  }
+
+  template <int dim>
+  LeapfrogContacts<dim>::~LeapfrogContacts() = default;
+
+  template <int dim>
+  void LeapfrogContacts<dim>::start(const State &state)
+  {
+    state_ = state;
+    state_.touches.clear();
+    const auto &obstacles = input_.obstacles;
+    if (state_.obstacle_shift.empty() &&
+        std::any_of(obstacles.begin(), obstacles.end(),
+                    [](const auto &obstacle) { return obstacle.moves(); }))
+      state_.obstacle_shift.assign(3 * obstacles.size(), 0.);
+  }
+
+  template <int dim>
+  std::vector<unsigned int> LeapfrogContacts<dim>::part(const State &state)
+  {
+    const auto before = state_.kind;
+    state_.kind = state.kind;
+    surfaces_.part(state_);
+    std::vector<unsigned int> parted;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (state_.kind[i] == PointKind::separated &&
+          before[i] != PointKind::separated)
+        parted.push_back(unsigned(i));
+    return parted;
+  }
+
+  /** Surfaces go to where the groups are. */
+  template <int dim>
+  void LeapfrogContacts<dim>::follow(const CornerGroups<dim> &groups)
+  {
+    groups.scatter(groups.displacement, state_.displacement);
+    groups.scatter(groups.velocity, state_.velocity);
+    if (groups.size() != n_groups_)
+      set_wholes(groups);
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::set_wholes(const CornerGroups<dim> &groups)
+  {
+    n_groups_ = groups.size();
+    const auto &table = discretization_.body_table();
+    const std::size_t n_cells = table.body_of_cell.size(),
+                      n = layout_.nodes_per_cell();
+    typename ActiveSurfaces<dim>::Wholes wholes;
+    wholes.node.resize(n_cells * n);
+    std::vector<unsigned int> first(groups.size(), unsigned(-1));
+    DisjointSets sets(n_cells);
+    for (unsigned int node = 0; node < n_cells * n; ++node) {
+      unsigned int &of_group = first[groups.of(layout_.own_node(node))];
+      if (of_group == unsigned(-1))
+        of_group = node;
+      else
+        sets.join(unsigned(node / n), unsigned(of_group / n));
+      wholes.node[node] = of_group;
+    }
+    wholes.of_cell.resize(n_cells);
+    for (unsigned int c = 0; c < n_cells; ++c)
+      wholes.of_cell[c] = sets.first(c);
+    surfaces_.set_wholes(std::move(wholes));
+  }
+
+  // ------------------------------------------------------ contacts of a step
+
+  template <int dim>
+  auto LeapfrogContacts<dim>::relative_velocity(
+      const Contact &contact, const std::vector<double> &velocity) const
+      -> Vector
+  {
+    Vector v{}, U{};
+    for (const auto &[group, share] : contact.ends)
+      for (unsigned int c = 0; c < dim; ++c)
+        v[c] += share * velocity[group * dim + c];
+    for (unsigned int r = 0; r < dim; ++r) {
+      U[r] = -contact.obstacle[r];
+      for (unsigned int c = 0; c < dim; ++c)
+        U[r] += contact.frame[r * dim + c] * v[c];
+    }
+    return U;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::add(const Contact &contact, const Vector &impulse,
+                                  std::vector<double> &velocity) const
+  {
+    Vector P{};
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        P[c] += contact.frame[r * dim + c] * impulse[r];
+    for (const auto &[group, share] : contact.ends)
+      for (unsigned int c = 0; c < dim; ++c)
+        velocity[group * dim + c] +=
+            share * inverse_mass_[group * dim + c] * P[c];
+  }
+
+  /** False if nothing can move there. */
+  template <int dim>
+  bool LeapfrogContacts<dim>::make(const MovingRow<dim> &row,
+                                   const CornerGroups<dim> &groups,
+                                   Contact &contact) const
+  {
+    using Partner = typename MovingRow<dim>::Partner;
+    contact.row = row;
+    const auto group = [&](const std::size_t node) {
+      return groups.of(layout_.own_node(node));
+    };
+    const auto add_end = [&](const std::size_t node, const double share) {
+      const unsigned int g = group(node);
+      for (auto &end : contact.ends)
+        if (end.first == g) {
+          end.second += share;
+          return;
+        }
+      contact.ends.emplace_back(g, share);
+    };
+    // where they are in the middle of the step
+    RowEnds<dim> ends;
+    const auto place = [&](const std::size_t node) {
+      const std::size_t corner = layout_.own_node(node), g = group(node);
+      Point<dim> x = at_node<dim>(layout_.rest(), corner);
+      for (unsigned int c = 0; c < dim; ++c)
+        x[c] += groups.displacement[g * dim + c] +
+                time_step_ / 2. * groups.velocity[g * dim + c];
+      return x;
+    };
+    std::vector<unsigned int> of_2;
+    if (row.partner == Partner::edge)
+      for (unsigned int v = 0; v < 2; ++v) {
+        ends.of_2[v] = place(row.edge[v]);
+        of_2.push_back(group(row.edge[v]));
+      }
+    else {
+      ends.of_2[0] = place(row.node);
+      of_2.push_back(group(row.node));
+      add_end(row.node, 1.);
+    }
+    for (unsigned int v = 0; v < row.n_facet; ++v) {
+      ends.of_1[v] = place(row.facet[v]);
+      if (std::find(of_2.begin(), of_2.end(), group(row.facet[v])) !=
+          of_2.end())
+        return false; // neighbours on one surface
+    }
+    meet<dim>(ends, contact.row);
+    if (row.partner == Partner::edge)
+      for (unsigned int v = 0; v < 2; ++v)
+        add_end(row.edge[v], contact.row.edge_weights[v]);
+    for (unsigned int v = 0; v < row.n_facet; ++v)
+      add_end(row.facet[v], -contact.row.weights[v]);
+    contact.ends.erase(std::remove_if(contact.ends.begin(), contact.ends.end(),
+                                      [](const auto &end) {
+                                        return std::abs(end.second) < 1e-12;
+                                      }),
+                       contact.ends.end());
+    bool moves = false;
+    for (const auto &[g, share] : contact.ends)
+      for (unsigned int c = 0; c < dim; ++c)
+        moves = moves || inverse_mass_[g * dim + c] > 0.;
+    if (!moves)
+      return false;
+    const auto normal =
+        row_normal(input_, contact.row, ends, state_.obstacle_shift);
+    const auto axes = local_frame<dim>(normal);
+    const auto x = row_place(contact.row, ends, normal);
+    for (unsigned int r = 0; r < dim; ++r) {
+      contact.place[r] = x[r];
+      for (unsigned int c = 0; c < dim; ++c)
+        contact.frame[r * dim + c] = axes[r][c];
+    }
+    return true;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::find(const double time, const double h,
+                                   const std::vector<std::uint8_t> &prescribed,
+                                   const CornerGroups<dim> &groups)
+  {
+    time_step_ = h;
+    state_.time = time;
+    follow(groups);
+    inverse_mass_.resize(groups.size() * dim);
+    double speed = 0.;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      double square = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        inverse_mass_[g * dim + c] =
+            prescribed[g] & (1u << c) ? 0. : 1. / groups.mass[g];
+        const double v = groups.velocity[g * dim + c];
+        square += v * v;
+      }
+      speed = std::max(speed, square);
+    }
+    contacts_.clear();
+    chosen_.clear();
+
+    // cells around a node meet the same facet at one place
+    std::map<std::vector<unsigned int>, std::size_t> known;
+    for (const auto &row : surfaces_.rows(state_, h, std::sqrt(speed))) {
+      Contact contact;
+      if (!make(row, groups, contact))
+        continue;
+      std::vector<unsigned int> key{unsigned(row.partner), row.obstacle};
+      for (const auto &end : contact.ends)
+        key.push_back(end.first);
+      const auto [entry, is_new] =
+          known.emplace(std::move(key), contacts_.size());
+      double explained =
+          std::max(row.overlap, state_.surface_overlap[row.place]) +
+          std::max(row.approach, state_.surface_approach[row.place]);
+      // parts of one body had a node in common until now, as a hinge has, and
+      // an obstacle was touched by another corner of it
+      const bool is_new_surface =
+          row.released || (row.body_1 < 0 && explained == 0.) ||
+          (row.body_1 >= 0 && row.node != row.nowhere &&
+           (explained == 0. ||
+            state_.surface_facet[row.place] == Surfaces<dim>::no_key) &&
+           part_of_[row.body_1] == part_of_[row.body_2]);
+      if (is_new_surface && state_.last_step > 0. && -row.gap > explained)
+        explained = contact.row.overlap = -row.gap;
+      if (!is_new) {
+        Contact &same = contacts_[entry->second];
+        same.row.weight += row.weight;
+        same.places.push_back(row.place);
+        same.known = std::max(same.known, explained);
+        continue;
+      }
+      contact.places = {row.place};
+      contact.known = explained;
+      using Partner = typename MovingRow<dim>::Partner;
+      if (row.partner == Partner::obstacle)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (const auto &v = input_.obstacles[row.obstacle].velocity[c]) {
+            const double own = v->at(Point<dim>(), time + h / 2.);
+            for (unsigned int r = 0; r < dim; ++r)
+              contact.obstacle[r] += contact.frame[r * dim + c] * own;
+          }
+      const auto &law = all_.interactions[row.interaction];
+      contact.friction = law.friction;
+      contact.before = relative_velocity(contact, groups.velocity);
+      const double before = contact.before[0];
+      contact.least = std::min(-row.gap / h, -before);
+      if (law.restitution > 0. && before < 0. && row.gap + h * before <= 0.)
+        contact.least = std::max(contact.least, -law.restitution * before);
+      // half of what friction takes if it goes on to slide
+      contact.target = std::max(
+          contact.least,
+          std::min(-row.gap / h, law.friction *
+                                         std::sqrt(tangential_dot<dim>(
+                                             contact.before, contact.before)) /
+                                         2. -
+                                     std::max(0., before)));
+      for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int c = 0; c < dim; ++c)
+          contact.impulse[r] += row.share * contact.frame[r * dim + c] *
+                                state_.surface_impulse[row.place * dim + c];
+      contact.impulse[0] = std::max(contact.impulse[0], 0.);
+      if (contact.impulse[0] == 0.)
+        contact.impulse = {};
+      else {
+        contact.pushes = true;
+        chosen_.push_back(unsigned(contacts_.size()));
+      }
+      contacts_.push_back(std::move(contact));
+    }
+  }
+
+  // -------------------------------------------------------- end of the step
+
+  template <int dim>
+  auto LeapfrogContacts<dim>::account(const CornerGroups<dim> &groups)
+      -> Balance
+  {
+    Balance balance;
+    for (Contact &contact : contacts_) {
+      contact.velocity = relative_velocity(contact, groups.velocity);
+      const auto &row = contact.row;
+      const Vector &P = contact.impulse;
+      Vector mean;
+      for (unsigned int c = 0; c < dim; ++c)
+        mean[c] = (contact.velocity[c] + contact.before[c]) / 2.;
+      const double rubbing = tangential_dot<dim>(P, mean);
+      // to push apart what slides is a part of what friction takes
+      const double pushing = P[0] * mean[0];
+      balance.impact += std::max(0., -pushing);
+      balance.friction -= rubbing + std::max(0., pushing);
+      balance.positive_friction += std::max(0., rubbing);
+      balance.work += product<dim>(P, contact.obstacle);
+      balance.active += P[0] > 0.;
+      balance.penetration = std::max(balance.penetration, -row.gap);
+      balance.excess =
+          std::max(balance.excess, -row.gap - 1.001 * contact.known);
+    }
+    return balance;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::accept()
+  {
+    surfaces_.store_facets(state_);
+    std::fill(state_.surface_impulse.begin(), state_.surface_impulse.end(), 0.);
+    std::fill(state_.surface_contact.begin(), state_.surface_contact.end(), 0);
+    state_.touches.clear();
+    for (const Contact &contact : contacts_) {
+      const auto &row = contact.row;
+      const std::size_t place = row.place;
+      const Vector &U = contact.velocity;
+      // facets that turn take any motion to a part across them
+      const double way =
+          time_step_ *
+          std::sqrt(std::max(product<dim>(U, U),
+                             product<dim>(contact.before, contact.before)));
+      for (const std::size_t one : contact.places) {
+        double &approach = state_.surface_approach[one],
+               &overlap = state_.surface_overlap[one];
+        approach = std::max({approach, row.approach, way});
+        overlap =
+            std::max({overlap, row.overlap, row.released ? -row.gap : 0.});
+      }
+      if (contact.impulse[0] <= 0.)
+        continue;
+      state_.surface_contact[place] |= SurfaceContacts<dim>::touches;
+      state_.surface_slip[place] +=
+          time_step_ * std::sqrt(tangential_dot<dim>(U, U));
+      SurfaceTouch touch;
+      touch.obstacle = row.partner == MovingRow<dim>::Partner::obstacle;
+      touch.block = row.block;
+      touch.material_2 =
+          discretization_.body_table().bodies[row.body_2].material;
+      touch.weight = row.weight;
+      touch.opening = row.gap + time_step_ * U[0];
+      for (unsigned int c = 0; c < dim; ++c) {
+        touch.position[c] = contact.place[c];
+        touch.normal[c] = contact.frame[c];
+        for (unsigned int r = 0; r < dim; ++r)
+          touch.impulse[c] += contact.frame[r * dim + c] * contact.impulse[r];
+        state_.surface_impulse[place * dim + c] += touch.impulse[c];
+      }
+      state_.touches.push_back(touch);
+    }
+    for (std::size_t k = 0; k < state_.obstacle_shift.size(); ++k)
+      if (const auto &v = input_.obstacles[k / 3].velocity[k % 3])
+        state_.obstacle_shift[k] +=
+            time_step_ * v->at(Point<dim>(), state_.time + time_step_ / 2.);
+    state_.last_step = time_step_;
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::add_impulses(const std::vector<int> &row_of_group,
+                                           std::vector<double> &rows) const
+  {
+    for (const Contact &contact : contacts_)
+      for (const auto &[group, share] : contact.ends) {
+        const int row = group < row_of_group.size() ? row_of_group[group] : -1;
+        if (row < 0)
+          continue;
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c)
+            rows[std::size_t(row) * dim + c] +=
+                share * contact.frame[r * dim + c] * contact.impulse[r];
+      }
+  }
+
+  template <int dim>
+  void LeapfrogContacts<dim>::show(State &state) const
+  {
+    state.obstacle_shift = state_.obstacle_shift;
+    state.surface_impulse = state_.surface_impulse;
+    state.surface_slip = state_.surface_slip;
+    state.surface_worn = state_.surface_worn;
+    state.surface_wear_speed = state_.surface_wear_speed;
+    state.surface_overlap = state_.surface_overlap;
+    state.surface_approach = state_.surface_approach;
+    state.surface_contact = state_.surface_contact;
+    state.surface_facet = state_.surface_facet;
+    state.surface_gap = state_.surface_gap;
+    state.touches = state_.touches;
+  }
+
+  template class LeapfrogContacts<2>;
+  template class LeapfrogContacts<3>;
+} // namespace nsfd

@@ -1,0 +1,145 @@
+#pragma once
+
+#include "leapfrog_points.h"
+
+#include "bodies/row_geometry.h"
+#include "bodies/surface_contacts.h"
+#include "joined/corner_groups.h"
+#include "nonsmooth/one_step_problem.h"
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * Contact between any two surfaces, and with obstacles, in explicit steps of
+   * joined cells. A contact is between a node of a surface and a facet, or
+   * between two edges; their groups carry its impulses P. The gap g at the
+   * start of a step of length h asks for
+   *
+   *   U_N+ >= a = min(-g/h, -U_N-),   P_N >= 0,   P_N (U_N+ - a) = 0,
+   *
+   * and -e U_N- at least where the contact closes with a restitution e. The
+   * first is no overlap at the end of the step, the second that the work
+   * P_N (U_N+ + U_N-)/2 of a contact on the bodies is never positive. Friction
+   * opposes the velocity after the step and, where that would do work on the
+   * bodies, the mean of both. What slides and overlaps, since facets turn in a
+   * step, may be pushed apart by work that friction takes in the same step.
+   */
+  template <int dim>
+  class LeapfrogContacts
+  {
+  public:
+    /** @p all are the constant data of the points of the mesh. */
+    LeapfrogContacts(const SceneInput &input,
+                     const Discretization<dim> &discretization,
+                     const OneStepProblem<dim> &all,
+                     const Communicator &communicator);
+    ~LeapfrogContacts();
+
+    /** Nothing kept yet. */
+    void set_initial(State &state) const { surfaces_.set_initial(state); }
+    /** What the surfaces keep is that of @p state. */
+    void start(const State &state);
+
+    /** Points of the mesh that are left to the search now; @p state has what
+        points are. */
+    std::vector<unsigned int> part(const State &state);
+
+    /**
+     * What may touch in a step of length @p h from @p time, groups at its
+     * start; @p prescribed: bit c of a group, component c.
+     */
+    void find(double time, double h,
+              const std::vector<std::uint8_t> &prescribed,
+              const CornerGroups<dim> &groups);
+    bool any() const { return !contacts_.empty(); }
+
+    using Cluster = typename LeapfrogPoints<dim>::Cluster;
+    /**
+     * Those that push have groups in common with nodes: @p node_of says which
+     * node has points and the group. Others stay out.
+     */
+    std::vector<Cluster>
+    clusters(const std::function<std::size_t(unsigned int)> &node_of);
+    static constexpr std::size_t no_node = std::size_t(-1);
+    /** The impulses of the last clusters(). */
+    void take(const std::vector<Cluster> &clusters);
+    /** The others that push: their impulses, and what these do to the
+       velocities of @p groups, which have none of them. */
+    void solve_others(double tolerance, CornerGroups<dim> &groups);
+    /** With the velocities after all: those that overlap at the end push from
+        now on, friction that works on the bodies opposes the mean velocity.
+        False if there is nothing new. */
+    bool improve(const CornerGroups<dim> &groups);
+
+    struct Balance {
+      double friction = 0., positive_friction = 0., impact = 0.,
+             work = 0.;                     ///< J; of obstacles
+      double penetration = 0., excess = 0.; ///< m
+      unsigned int active = 0;
+    };
+    /** Of the step, with the velocities of the groups after it. */
+    Balance account(const CornerGroups<dim> &groups);
+    /** The balanced step is taken. */
+    void accept();
+    /** See LeapfrogPoints. */
+    void add_impulses(const std::vector<int> &row_of_group,
+                      std::vector<double> &rows) const;
+
+    /** Places of the surfaces, and what touched in the last step. */
+    void show(State &state) const;
+    const typename SurfaceContacts<dim>::Counters &counters() const
+    {
+      return surfaces_.counters();
+    }
+    /** Contacts that were not solved to the tolerance. */
+    unsigned long long inexact() const { return inexact_; }
+
+  private:
+    using Vector = std::array<double, dim>;
+    struct Contact {
+      MovingRow<dim> row;
+      std::vector<std::size_t> places; ///< of all rows that are the same
+      double known = 0.; ///< overlap that the way of a step explains, m
+      std::array<double, dim> place{};
+      std::array<double, dim * dim> frame{}; ///< rows n, t1, t2
+      /// groups and what they have in the velocity of body 2 less that of
+      /// body 1
+      std::vector<std::pair<unsigned int, double>> ends;
+      Vector before{}, impulse{}, velocity{}, obstacle{}; ///< local
+      double target = 0., least = 0., friction = 0.; ///< target without work
+      bool turned = false, pushes = false; ///< friction opposes the mean
+    };
+
+    void follow(const CornerGroups<dim> &groups);
+    void set_wholes(const CornerGroups<dim> &groups);
+    bool make(const MovingRow<dim> &row, const CornerGroups<dim> &groups,
+              Contact &contact) const;
+    Vector relative_velocity(const Contact &contact,
+                             const std::vector<double> &velocity) const;
+    void add(const Contact &contact, const Vector &impulse,
+             std::vector<double> &velocity) const;
+    bool turn(Contact &contact) const;
+    Vector offset(const Contact &contact) const;
+
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    const OneStepProblem<dim> &all_;
+    const BodyLayout<dim> layout_;
+    SurfaceContacts<dim> surfaces_;
+    State state_;                       ///< of the surfaces
+    std::vector<unsigned int> part_of_; ///< by body: of what was one
+    std::size_t n_groups_ = 0; ///< of the wholes that the surfaces know
+    double time_step_ = 0.;
+    std::vector<Contact> contacts_; ///< of the step
+    /// of these, those that push or have pushed in the step; which cluster they
+    /// are in, -1: none
+    std::vector<unsigned int> chosen_;
+    std::vector<int> cluster_of_;
+    std::vector<double> inverse_mass_; ///< dim per group, 1/kg
+    unsigned long long inexact_ = 0;
+  };
+} // namespace nsfd

@@ -1,0 +1,244 @@
+#include "leapfrog_large.h"
+
+#include "discretization/cells.h"
+#include "nsfd/core/archive.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /// of the bound by the stiffest cell: it may become stiffer until the next
+    /// look
+    constexpr double share_of_bound = 0.97;
+    constexpr unsigned int steps_between_looks = 4;
+  } // namespace
+
+  template <int dim>
+  LeapfrogLarge<dim>::LeapfrogLarge(const SceneInput &input,
+                                    const Discretization<dim> &discretization,
+                                    const JoinedMesh<dim> &mesh,
+                                    const OneStepProblem<dim> &all,
+                                    const Communicator &communicator,
+                                    const FiniteForces<dim> &forces)
+      : input_(input), discretization_(discretization), mesh_(mesh),
+        communicator_(communicator), forces_(forces)
+  {
+    if (!input.contacts.empty() || !input.obstacles.empty())
+      contacts_ = std::make_unique<LeapfrogContacts<dim>>(input, discretization,
+                                                          all, communicator);
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::set_initial(State &state) const
+  {
+    if (contacts_)
+      contacts_->set_initial(state);
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::start(const State &state)
+  {
+    state_ = state;
+    if (contacts_)
+      contacts_->start(state);
+    stored_ = stored();
+  }
+
+  template <int dim>
+  double LeapfrogLarge<dim>::stable_share() const
+  {
+    return stiffening_ > 1. ? share_of_bound / std::sqrt(stiffening_) : 1.;
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::begin(const double time, const double h,
+                                 const std::vector<std::uint8_t> &prescribed,
+                                 const CornerGroups<dim> &groups,
+                                 LeapfrogPoints<dim> &points,
+                                 LeapfrogEnergies &energies)
+  {
+    energies.turned =
+        points.turn([this](const std::size_t i) { return forces_.frame(i); });
+    if (contacts_)
+      contacts_->find(time, h, prescribed, groups);
+  }
+
+  /** The node of a group that points hold; else no_node. */
+  template <int dim>
+  std::vector<std::size_t>
+  LeapfrogLarge<dim>::nodes_of_groups(const LeapfrogPoints<dim> &points,
+                                      const CornerGroups<dim> &groups) const
+  {
+    std::vector<std::size_t> result(groups.size(),
+                                    LeapfrogContacts<dim>::no_node);
+    const auto &chains = points.chains();
+    for (std::size_t a = 0; a < chains.size(); ++a)
+      if (has_impulse(chains.problem.kind[a]))
+        for (const unsigned int corner : mesh_.corners(chains.point[a]))
+          if (corner != JoinedMesh<dim>::none)
+            result[groups.of(corner)] = mesh_.node(corner);
+    return result;
+  }
+
+  template <int dim>
+  auto LeapfrogLarge<dim>::solve(const double h, const double last,
+                                 const std::vector<std::uint8_t> &prescribed,
+                                 const double tolerance,
+                                 LeapfrogPoints<dim> &points,
+                                 CornerGroups<dim> &groups) ->
+      typename LeapfrogPoints<dim>::Outcome
+  {
+    constexpr unsigned int most_rounds = 30;
+    if (!contacts_ || !contacts_->any())
+      return points.solve(h, last, prescribed, tolerance, groups);
+    const std::vector<double> free = groups.velocity;
+    const auto node_of = nodes_of_groups(points, groups);
+    typename LeapfrogPoints<dim>::Outcome outcome;
+    for (unsigned int round = 0; round < most_rounds; ++round) {
+      groups.velocity = free;
+      auto clusters = contacts_->clusters(
+          [&](const unsigned int group) { return node_of[group]; });
+      std::vector<std::size_t> apart;
+      for (const auto &cluster : clusters)
+        apart.insert(apart.end(), cluster.nodes.begin(), cluster.nodes.end());
+      std::sort(apart.begin(), apart.end());
+      outcome = points.solve(h, last, prescribed, tolerance, groups, apart);
+      for (auto &cluster : clusters)
+        points.solve_cluster(cluster, prescribed, tolerance, groups, outcome);
+      contacts_->take(clusters);
+      contacts_->solve_others(tolerance, groups);
+      ++rounds_;
+      if (!contacts_->improve(groups))
+        break;
+    }
+    return outcome;
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::add_impulses(const std::vector<int> &row_of_group,
+                                        std::vector<double> &rows) const
+  {
+    if (contacts_)
+      contacts_->add_impulses(row_of_group, rows);
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::take_energies(const double h, const double last,
+                                         const std::vector<double> &before,
+                                         const CornerGroups<dim> &groups,
+                                         LeapfrogEnergies &energies)
+  {
+    const double front_before = forces_.front_power(groups, before),
+                 front_after = forces_.front_power(groups, groups.velocity),
+                 taken = -(h + last) / 4. * (front_before + front_after);
+    // of elastic forces alone, where a step changes its length
+    energies.numerical -= (h - last) / 4. * (front_after - front_before);
+    energies.power -= front_after;
+    energies.viscous += std::max(0., taken);
+    // steps that change their length are among it
+    energies.large =
+        energies.numerical + std::min(0., taken) + bulk_ - energies.turned;
+    energies.numerical = energies.large;
+    energies.stored = stored_;
+    power_ = energies.power;
+    if (!contacts_)
+      return;
+    const auto contacts = contacts_->account(groups);
+    energies.friction = contacts.friction;
+    energies.positive_friction = contacts.positive_friction;
+    energies.impact = contacts.impact;
+    energies.work += contacts.work;
+    energies.penetration = contacts.penetration;
+    energies.excess = contacts.excess;
+    energies.touching = contacts.active;
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::take_forces(const unsigned int step, const double h,
+                                       const CornerGroups<dim> &groups,
+                                       LeapfrogEnergies &energies)
+  {
+    const double stored_now = stored();
+    energies.power_after = -forces_.front_power(groups, groups.velocity);
+    for (std::size_t k = 0; k < groups.force.size(); ++k)
+      energies.power_after += groups.force[k] * groups.velocity[k];
+    bulk_ = stored_ - stored_now - h / 2. * (power_ + energies.power_after);
+    stored_ = stored_now;
+    // a longer step later would take or give energy, as each change does
+    if (step % steps_between_looks == 0)
+      stiffening_ = std::max(stiffening_, forces_.stiffening());
+  }
+
+  template <int dim>
+  bool LeapfrogLarge<dim>::accept(LeapfrogPoints<dim> &points)
+  {
+    if (!contacts_)
+      return false;
+    contacts_->accept();
+    const auto n_open = [&points] {
+      const auto &chains = points.chains();
+      std::size_t n = chains.size();
+      for (std::size_t a = 0; a < chains.size(); ++a)
+        n += (chains.other.kind[a] == PointKind::free &&
+              chains.problem.kind[a] == PointKind::free) +
+             (chains.other.kind[a] == PointKind::cohesive);
+      return n;
+    };
+    if (n_open() == n_open_)
+      return false;
+    points.chains().show(state_, {});
+    const auto parted = contacts_->part(state_);
+    for (const unsigned int point : parted)
+      points.part(point);
+    n_open_ = n_open();
+    return !parted.empty();
+  }
+
+  template <int dim>
+  std::string LeapfrogLarge<dim>::inverted() const
+  {
+    if (forces_.inverted() < 0)
+      return {};
+    const auto x =
+        discretization_.cells().centre(std::size_t(forces_.inverted()));
+    std::vector<double> place(x.begin_raw(), x.end_raw());
+    return fmt::format("({:.6g})", fmt::join(place, ", "));
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::show(State &state) const
+  {
+    if (contacts_)
+      contacts_->show(state);
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::fill_counters(std::map<std::string, double> &c) const
+  {
+    if (!contacts_)
+      return;
+    const auto &contacts = contacts_->counters();
+    c["contact_searches"] = double(contacts.searches);
+    c["contact_facets"] = double(contacts.facets);
+    c["contact_rows"] = double(contacts.rows);
+    c["contact_overlap"] = contacts.largest_overlap;
+    c["contact_rounds"] = double(rounds_);
+    c["contact_problems_above_tolerance"] = double(contacts_->inexact());
+  }
+
+  template <int dim>
+  void LeapfrogLarge<dim>::serialize(Archive &archive)
+  {
+    archive.numbers("large", bulk_, stiffening_, way_);
+  }
+
+  template class LeapfrogLarge<2>;
+  template class LeapfrogLarge<3>;
+} // namespace nsfd

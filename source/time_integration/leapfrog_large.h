@@ -1,0 +1,96 @@
+#pragma once
+
+#include "leapfrog_contacts.h"
+#include "leapfrog_energies.h"
+#include "leapfrog_points.h"
+
+#include "joined/finite_forces.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+namespace nsfd
+{
+  class Archive;
+
+  /**
+   * What motions of any size add to the steps of Leapfrog: points turn with
+   * their faces, surfaces meet others, and forces are no linear function. In
+   *
+   *   E_{k+1/2} = v.M v/2 + U(q_k) - (h/2) f.v
+   *
+   * the way from q_{k-1} to q_k then leaves
+   * U(q_k) - U(q_{k-1}) + (h/2) (f_{k-1} + f_k).v, the error of the trapezoidal
+   * rule, of third order in h and without a sign: it is numerical.
+   */
+  template <int dim>
+  class LeapfrogLarge
+  {
+  public:
+    LeapfrogLarge(const SceneInput &input,
+                  const Discretization<dim> &discretization,
+                  const JoinedMesh<dim> &mesh, const OneStepProblem<dim> &all,
+                  const Communicator &communicator,
+                  const FiniteForces<dim> &forces);
+
+    void set_initial(State &state) const;
+    /** From @p state, with the forces there. */
+    void start(const State &state);
+
+    /** Of the bound of the step at rest: what is stable now. */
+    double stable_share() const;
+
+    /** Before the velocities change in a step of length @p h from @p time. */
+    void begin(double time, double h,
+               const std::vector<std::uint8_t> &prescribed,
+               const CornerGroups<dim> &groups, LeapfrogPoints<dim> &points,
+               LeapfrogEnergies &energies);
+    /** See LeapfrogPoints::solve(). */
+    typename LeapfrogPoints<dim>::Outcome
+    solve(double h, double last, const std::vector<std::uint8_t> &prescribed,
+          double tolerance, LeapfrogPoints<dim> &points,
+          CornerGroups<dim> &groups);
+    void add_impulses(const std::vector<int> &row_of_group,
+                      std::vector<double> &rows) const;
+    /** What bodies and contacts have, with the forces that acted in the step;
+        @p before are the velocities before it; @p h and @p last as there. */
+    void take_energies(double h, double last, const std::vector<double> &before,
+                       const CornerGroups<dim> &groups,
+                       LeapfrogEnergies &energies);
+    /** With the forces at its end, of step number @p step and length @p h. */
+    void take_forces(unsigned int step, double h,
+                     const CornerGroups<dim> &groups,
+                     LeapfrogEnergies &energies);
+    /** A frame may turn by what its sides move: overlaps up to the largest
+        @p way of a step so far are explained by it, m. */
+    double widen(const double way) { return way_ = std::max(way_, way); }
+    /** The step is taken; true if points have been left to the search. */
+    bool accept(LeapfrogPoints<dim> &points);
+
+    double stored() const { return communicator_.sum(forces_.stored()); }
+    /** Where a cell is turned inside out; empty: nowhere. */
+    std::string inverted() const;
+    void show(State &state) const;
+    void fill_counters(std::map<std::string, double> &counters) const;
+    void serialize(Archive &archive);
+
+  private:
+    std::vector<std::size_t>
+    nodes_of_groups(const LeapfrogPoints<dim> &points,
+                    const CornerGroups<dim> &groups) const;
+
+    const SceneInput &input_;
+    const Discretization<dim> &discretization_;
+    const JoinedMesh<dim> &mesh_;
+    const Communicator &communicator_;
+    const FiniteForces<dim> &forces_;
+    std::unique_ptr<LeapfrogContacts<dim>> contacts_; ///< null: none
+    State state_;      ///< what the points of the mesh are
+    double bulk_ = 0.; ///< of the last way, which the next step takes, J
+    double stored_ = 0., power_ = 0.; ///< of the step
+    double stiffening_ = 1., way_ = 0.;
+    std::size_t n_open_ = 0; ///< points that hold less than they did
+    unsigned long long rounds_ = 0;
+  };
+} // namespace nsfd
