@@ -284,9 +284,15 @@ namespace nsfd
         key.push_back(end.first);
       const auto [entry, is_new] =
           known.emplace(std::move(key), contacts_.size());
-      double explained =
-          std::max(row.overlap, state_.surface_overlap[row.place]) +
-          std::max(row.approach, state_.surface_approach[row.place]);
+      std::vector<std::size_t> places = {row.place};
+      if (row.twin != row.nowhere)
+        places.push_back(row.twin);
+      double explained = 0.;
+      for (const std::size_t place : places)
+        explained = std::max(
+            explained,
+            std::max(row.overlap, state_.surface_overlap[place]) +
+                std::max(row.approach, state_.surface_approach[place]));
       // parts of one body had a node in common until now, as a hinge has, and
       // an obstacle was touched by another corner of it
       const bool is_new_surface =
@@ -300,11 +306,11 @@ namespace nsfd
       if (!is_new) {
         Contact &same = contacts_[entry->second];
         same.row.weight += row.weight;
-        same.places.push_back(row.place);
+        same.places.insert(same.places.end(), places.begin(), places.end());
         same.known = std::max(same.known, explained);
         continue;
       }
-      contact.places = {row.place};
+      contact.places = std::move(places);
       contact.known = explained;
       using Partner = typename MovingRow<dim>::Partner;
       if (row.partner == Partner::obstacle)
