@@ -134,6 +134,8 @@ int main(int argc, char **argv)
     const fs::path base = options.folder / std::to_string(seed),
                    file = base.string() + ".prm", log = base.string() + ".log";
     std::ofstream(file) << scene.text;
+    for (const auto &[name, text] : scene.files)
+      std::ofstream(options.folder / name) << text;
     const wall::Ended ended = run(options, file, base, log);
     const wall::Verdict verdict =
         wall::judge(base, log, ended, scene.keeps_momentum, scene.end);
@@ -160,6 +162,8 @@ int main(int argc, char **argv)
       fs::remove_all(base, error);
       fs::remove(file, error);
       fs::remove(log, error);
+      for (const auto &[name, text] : scene.files)
+        fs::remove(options.folder / name, error);
     }
   }
   fmt::print("\n{:<38} {:>7} {:>4} {:>7} {:>6} {:>8}  {}\n", "kind", "through",

@@ -53,14 +53,20 @@ namespace wall
   struct Substance {
     const char *name;
     double young, poisson, density;
-    double wave_speed() const { return std::sqrt(young / density); }
+    /** Of pressure. */
+    double wave_speed() const
+    {
+      return std::sqrt(young * (1. - poisson) / (1. + poisson) /
+                       (1. - 2. * poisson) / density);
+    }
   };
 
   struct Body {
     std::string name;
     Vector low{}, high{};
     std::array<int, 3> cells{{1, 1, 1}};
-    std::string shape = "box"; ///< or triangles, tetrahedra, ball
+    std::string shape = "box"; ///< or triangles, tetrahedra, gmsh, ball
+    double distortion = 0.;    ///< of the mesh
     bool rigid = false, breakable = false;
     Substance substance{};
     Vector velocity{};
@@ -85,7 +91,7 @@ namespace wall
   /** A scene before it is text. Lengths in m, times in s. */
   struct Draft {
     int dim = 2;
-    bool large = true, touches = true;
+    bool large = true, touches = true, plane_stress = false;
     Kind kind = Kind::elastic;
     std::string integrator;
     double unit = 1.;      ///< a length that bodies are about as large as
@@ -95,15 +101,45 @@ namespace wall
     std::vector<Body> bodies;
     std::vector<Block> blocks;
     double gravity = 0.;
+    bool jointed =
+        false; ///< parts of one mesh do not all touch: some are joined
     bool keeps_momentum = true;
 
     double wave_speed() const;
     double smallest_edge() const;
     int n_cells() const;
+    bool is_rigid() const;
   };
 
   /** Bodies, supports and drives. */
   void lay_out(Draft &draft, Draw &draw);
+
+  /** Holds a side of all bodies, or only what is upright to it. */
+  void hold(Draft &draft, const std::string &side, bool fully);
+  /** A plane below all bodies, at rest. */
+  void add_floor(Draft &draft, Draw &draw, double height);
+  /** A ball or a disc that comes from above. */
+  void add_hammer(Draft &draft, Draw &draw, const Vector &place, double radius);
+  /** Motion or load of a side that grows, starts at once or oscillates. */
+  void drive(Draft &draft, Draw &draw, const std::string &side, int direction,
+             double sign);
+  /** Holds a place of a rigid body. */
+  void add_pin(Draft &draft, Draw &draw);
+
+  struct Touch {
+    double friction = 0., restitution = 0.;
+    std::vector<std::string> entries() const;
+  };
+  Touch draw_touch(Draw &draw);
+
+  /** The direction that is up, and its sides. */
+  inline int up(const Draft &draft) { return draft.dim - 1; }
+  inline char axis(const int d) { return "xyz"[d]; }
+  std::string corner(const Vector &point, int dim);
+
+  /** Material, Interface and Contact blocks. */
+  std::vector<Block> material_blocks(const Draft &draft, Draw &draw);
+  std::vector<Block> interface_blocks(const Draft &draft, Draw &draw);
 
   /** A number with a unit, as users write it. */
   std::string length(double metres);

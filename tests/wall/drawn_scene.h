@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 namespace wall
@@ -8,7 +9,9 @@ namespace wall
   struct DrawnScene {
     /// motion, integrator, what bodies do, whether they touch
     std::string kind;
-    std::string text;           ///< of the parameter file
+    std::string text; ///< of the parameter file
+    /// other files by their names: meshes
+    std::map<std::string, std::string> files;
     double end = 0.;            ///< s
     bool keeps_momentum = true; ///< no load, support, drive or obstacle
   };

@@ -44,70 +44,12 @@ namespace wall
       return cells;
     }
 
-    int up(const Draft &draft) { return draft.dim - 1; }
-    char axis(const int d) { return "xyz"[d]; }
-
     /** Sizes with the height in the last direction. */
     Vector sizes(const Draft &draft, const double width, const double height,
                  const double depth)
     {
       return draft.dim == 2 ? Vector{{width, height, 1.}}
                             : Vector{{width, depth, height}};
-    }
-
-    void hold(Draft &draft, const std::string &side, const bool fully)
-    {
-      Block block{"Boundary: " + side, {}};
-      for (int d = 0; d < draft.dim; ++d)
-        if (fully || d == up(draft))
-          block.entries.push_back(fmt::format("velocity {} = 0", axis(d)));
-      draft.blocks.push_back(block);
-      draft.keeps_momentum = false;
-    }
-
-    void floor(Draft &draft, const double height, const double friction,
-               const double restitution, const std::string &where)
-    {
-      Vector point{}, normal{};
-      point[up(draft)] = height;
-      normal[up(draft)] = 1.;
-      std::string p, n;
-      for (int d = 0; d < draft.dim; ++d) {
-        p += (d ? ", " : "") + length(point[d]);
-        n += (d ? ", " : "") + fmt::format("{}", normal[d]);
-      }
-      draft.blocks.push_back(
-          {"Obstacle: floor",
-           {"where = " + where, "point = " + p, "normal = " + n,
-            fmt::format("friction = {:.2f}", friction),
-            fmt::format("restitution = {:.2f}", restitution)}});
-      draft.keeps_momentum = false;
-    }
-
-    /** A motion or a load of a side that grows, starts at once or oscillates.
-     */
-    void drive(Draft &draft, Draw &draw, const std::string &side, const int d,
-               const double sign)
-    {
-      const double c = draft.substance.wave_speed(),
-                   rise = draft.unit / c * draw.between(1., 10.);
-      const std::string shape =
-          draw.chance(0.5)   ? fmt::format(" * min(1, t / ({}))", time(rise))
-          : draw.chance(0.7) ? ""
-                             : fmt::format(" * sin(t / ({}))", time(rise));
-      Block block{"Boundary: " + side, {}};
-      if (draw.chance(0.75)) {
-        block.entries.push_back(fmt::format("velocity {} = {}{}", axis(d),
-                                            speed(sign * draft.speed), shape));
-        if (draw.chance(0.5))
-          block.entries.push_back(
-              fmt::format("velocity {} = 0", axis((d + 1) % draft.dim)));
-      } else
-        block.entries.push_back(fmt::format(
-            "traction {} = {}{}", axis(d),
-            pressure(sign * draft.substance.young * draft.speed / c), shape));
-      draft.blocks.push_back(block);
-      draft.keeps_momentum = false;
     }
 
     std::string top(const Draft &draft)
@@ -117,18 +59,6 @@ namespace wall
     std::string bottom(const Draft &draft)
     {
       return draft.dim == 2 ? "bottom" : "front";
-    }
-
-    double some_friction(Draw &draw)
-    {
-      return draw.chance(0.25) ? 0.
-                               : draw.between(0., draw.chance(0.7) ? 0.8 : 2.);
-    }
-    double some_restitution(Draw &draw)
-    {
-      return draw.chance(0.6)   ? 0.
-             : draw.chance(0.1) ? 1.
-                                : draw.between(0., 1.);
     }
 
     /** A body thrown at a plate. */
@@ -157,6 +87,7 @@ namespace wall
       if (draft.large && draw.chance(0.3)) {
         shot.shape = "ball";
         shot.cells = {{1, 1, 1}};
+        shot.high[up(draft)] = shot.low[up(draft)] + shot.high[0] - shot.low[0];
       }
       if (draw.chance(0.6)) {
         hold(draft, "left", draw.chance(0.5));
@@ -186,8 +117,7 @@ namespace wall
       if (draw.chance(0.5))
         hold(draft, bottom(draft), true);
       else
-        floor(draft, 0., some_friction(draw), some_restitution(draw),
-              draft.large ? "all" : bottom(draft));
+        add_floor(draft, draw, 0.);
       if (draw.chance(0.7))
         drive(draft, draw, top(draft), draw.chance(0.5) ? up(draft) : 0, -1.);
       else {
@@ -261,7 +191,7 @@ namespace wall
       }
       draft.gravity = draw.chance(0.5) ? 9.81 : 0.;
       if (draw.chance(0.8))
-        floor(draft, 0., some_friction(draw), some_restitution(draw), "all");
+        add_floor(draft, draw, 0.);
     }
 
     /** One body, driven or thrown. */
@@ -276,12 +206,19 @@ namespace wall
           box(draft, "block", low, size,
               cells_of(size, u / draw.whole(1, draft.dim == 2 ? 5 : 2))));
       Body &block = draft.bodies[0];
+      if (draft.touches && draft.large && draw.chance(0.3)) {
+        Vector above = block.centre();
+        above[up(draft)] = block.high[up(draft)] + draft.gap + 0.5 * u;
+        add_hammer(draft, draw, above, 0.5 * u);
+        if (draw.chance(0.6))
+          hold(draft, bottom(draft), draw.chance(0.5));
+        return;
+      }
       if (draft.touches) {
         block.velocity[up(draft)] = -draft.speed;
         if (draw.chance(0.4))
           block.velocity[0] = draft.speed * draw.between(-1., 1.);
-        floor(draft, 0., some_friction(draw), some_restitution(draw),
-              draft.large ? "all" : bottom(draft));
+        add_floor(draft, draw, 0.);
         return;
       }
       const double fate = draw.between(0., 1.);
@@ -301,6 +238,7 @@ namespace wall
       const double u = draft.unit;
       const int n = draw.whole(2, 4),
                 cells = draw.whole(1, draft.dim == 2 ? 4 : 2);
+      draft.jointed = draw.chance(0.3);
       const Vector size = sizes(draft, u * draw.between(0.5, 2.), u, u);
       for (int i = 0; i < n; ++i) {
         Vector low{};
@@ -328,19 +266,24 @@ namespace wall
     {
       const bool several = draw.chance(0.25),
                  // all bodies of a mesh have cells of one sort
-          simplices = (draft.large || !draft.touches) && draw.chance(0.25);
+          simplices = (draft.large || !draft.touches) && draw.chance(0.25),
+                 gmsh = simplices && draw.chance(0.4);
       for (std::size_t i = 0; i < draft.bodies.size(); ++i) {
         Body &body = draft.bodies[i];
         body.substance =
             several ? substances[draw.whole(0, 7)] : draft.substance;
         const std::size_t role = draw.one_of({0.4, 0.3, 0.3});
         body.rigid = draft.kind == Kind::rigid ||
-                     (draft.kind == Kind::mixed && role == 0);
+                     (draft.kind == Kind::mixed && role == 0 && i > 0);
         body.breakable =
             !body.rigid && (draft.kind == Kind::breakable ||
                             (draft.kind == Kind::mixed && role == 1));
         if (simplices)
-          body.shape = draft.dim == 2 ? "triangles" : "tetrahedra";
+          body.shape = gmsh             ? "gmsh"
+                       : draft.dim == 2 ? "triangles"
+                                        : "tetrahedra";
+        else if (draw.chance(0.15) && draft.large)
+          body.distortion = draw.between(0.05, 0.2);
       }
     }
   } // namespace
@@ -381,6 +324,12 @@ namespace wall
     return edge;
   }
 
+  bool Draft::is_rigid() const
+  {
+    return std::all_of(bodies.begin(), bodies.end(),
+                       [](const Body &body) { return body.rigid; });
+  }
+
   int Draft::n_cells() const
   {
     int n = 0;
@@ -419,5 +368,7 @@ namespace wall
                     : alone)(draft, draw);
     }
     give_substances(draft, draw);
+    if (draft.large && draw.chance(0.15))
+      add_pin(draft, draw);
   }
 } // namespace wall
