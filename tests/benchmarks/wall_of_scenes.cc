@@ -3,12 +3,12 @@
 // suite; a few fixed seeds are.
 //
 //   wall_of_scenes FIRST_SEED N [FOLDER] [--only KIND] [--write SEED]
-//                  [--program NSFD] [--seconds S] [--keep]
+//                  [--program NSFD] [--seconds S] [--keep] [--details]
 //
 // Scenes FIRST_SEED to FIRST_SEED + N - 1. FOLDER (default: wall) gets the
 // scene, the log and the results of every failure; with --keep of all. KIND is
 // any part of the name of a kind, as the table prints it. --write prints a
-// scene and runs nothing.
+// scene and runs nothing; --details prints a line for what went through, too.
 #include "../wall/drawn_scene.h"
 #include "../wall/verdict.h"
 
@@ -36,7 +36,7 @@ namespace
     std::string only, program = NSFD_PROGRAM;
     long write = -1;
     unsigned int seconds = 10;
-    bool keep = false;
+    bool keep = false, details = false;
   };
 
   /** The program, with a limit of CPU, and what it printed in a file. */
@@ -98,6 +98,8 @@ namespace
         options.seconds = unsigned(std::atoi(argv[++i]));
       else if (!std::strcmp(argv[i], "--keep"))
         options.keep = true;
+      else if (!std::strcmp(argv[i], "--details"))
+        options.details = true;
       else
         words.emplace_back(argv[i]);
     }
@@ -116,7 +118,7 @@ int main(int argc, char **argv)
   Options options;
   if (!read_options(argc, argv, options)) {
     fmt::print("wall_of_scenes FIRST_SEED N [FOLDER] [--only KIND] [--write "
-               "SEED] [--program NSFD] [--seconds S] [--keep]\n");
+               "SEED] [--program NSFD] [--seconds S] [--keep] [--details]\n");
     return 1;
   }
   if (options.write >= 0) {
@@ -148,6 +150,9 @@ int main(int argc, char **argv)
     else
       ++count.not_through;
     count.silent += verdict.silent;
+    if (verdict.through && options.details)
+      fmt::print("{:>6} {}: through, {:.2f} s\n", seed, scene.kind,
+                 ended.cpu_seconds);
     if (!verdict.through) {
       fmt::print("{:>6} {}: {}{}\n", seed, scene.kind,
                  verdict.silent ? "SILENT " : "", verdict.message);

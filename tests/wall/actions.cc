@@ -91,7 +91,8 @@ namespace wall
         draft.kind == Kind::rigid
             ? draft.substance.density * draft.speed * draft.speed
             : draft.substance.density * c * draft.speed;
-    if (draw.chance(0.75)) {
+    // rigid bodies between two sides that move cannot follow
+    if (draft.kind != Kind::rigid && draw.chance(0.75)) {
       block.entries.push_back(fmt::format("velocity {} = {}{}", axis(d),
                                           speed(sign * draft.speed), shape));
       if (draw.chance(0.5))

@@ -36,8 +36,9 @@ namespace wall
                           pressure(0.01 * what.young));
       }
       if (name == "viscoplastic")
-        entries.push_back(fmt::format("relaxation time = {}",
-                                      time(draft.unit / what.wave_speed())));
+        entries.push_back(
+            fmt::format("viscosity = {:.3g} Pa*s",
+                        0.01 * what.young * draft.unit / what.wave_speed()));
       if (name == "linear elastic" && !draft.plane_stress && draw.chance(0.1))
         entries.push_back(fmt::format(
             "shear viscosity = {:.3g} Pa*s",

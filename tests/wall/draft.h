@@ -65,7 +65,7 @@ namespace wall
     std::string name;
     Vector low{}, high{};
     std::array<int, 3> cells{{1, 1, 1}};
-    std::string shape = "box"; ///< or triangles, tetrahedra, gmsh, ball
+    std::string shape = "box"; ///< or notched, ball, gmsh, or a type of mesh
     double distortion = 0.;    ///< of the mesh
     bool rigid = false, breakable = false;
     Substance substance{};
@@ -77,6 +77,8 @@ namespace wall
       return {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]),
               0.5 * (low[2] + high[2])};
     }
+    /** Its cells are quadrilaterals or hexahedra. */
+    bool is_boxes() const { return shape == "box" || shape == "notched"; }
     int n_cells(int dim) const;
     /** The shortest edge. */
     double edge(int dim) const;

@@ -86,16 +86,24 @@ namespace wall
       std::string cells;
       for (int d = 0; d < draft.dim; ++d)
         cells += (d ? ", " : "") + std::to_string(body.cells[d]);
-      Block block{
-          name,
-          {"type = " + std::string(body.shape == "triangles"
-                                       ? "crossed triangles"
-                                   : body.shape == "tetrahedra" ? "tetrahedra"
-                                   : draft.dim == 2             ? "rectangle"
-                                                                : "brick"),
-           "lower corner = " + corner(body.low, draft.dim),
-           "upper corner = " + corner(body.high, draft.dim),
-           "cells = " + cells}};
+      const std::string type = body.shape == "notched" ? "notched plate"
+                               : body.shape != "box"   ? body.shape
+                               : draft.dim == 2        ? "rectangle"
+                                                       : "brick";
+      Block block{name,
+                  {"type = " + type,
+                   "lower corner = " + corner(body.low, draft.dim),
+                   "upper corner = " + corner(body.high, draft.dim),
+                   "cells = " + cells}};
+      if (body.shape == "notched") {
+        block.entries.push_back("notch length = " +
+                                length(std::max(1, body.cells[0] / 3) *
+                                       (body.high[0] - body.low[0]) /
+                                       body.cells[0]));
+        block.entries.push_back("notch height = " + length(body.centre()[1]));
+        block.entries.push_back("notch width = " +
+                                length(0.5 * body.edge(draft.dim)));
+      }
       if (body.distortion > 0.)
         block.entries.push_back(
             fmt::format("distortion = {:.2f}", body.distortion));
@@ -187,6 +195,8 @@ namespace wall
           body.breakable = !smooth;
         }
       }
+      if (draft.large && draw.chance(0.15))
+        add_pin(draft, draw);
     }
   } // namespace
 

@@ -232,6 +232,23 @@ namespace wall
             draw.chance(0.7) ? 1. : -1.);
     }
 
+    /** A plate with a slot from the left, pulled open. */
+    void notched(Draft &draft, Draw &draw)
+    {
+      const double u = draft.unit;
+      const Vector size = {{u * draw.between(1., 3.), u, 1.}};
+      Body plate = box(draft, "plate", {}, size,
+                       cells_of(size, u / (2 * draw.whole(1, 4))));
+      plate.cells[1] += 1 - plate.cells[1] % 2; // the slot is a row of cells
+      plate.shape = "notched";
+      draft.bodies.push_back(plate);
+      drive(draft, draw, "top", 1, 1.);
+      if (draw.chance(0.5))
+        hold(draft, "bottom", draw.chance(0.5));
+      else
+        drive(draft, draw, "bottom", 1, -1.);
+    }
+
     /** Parts with one mesh whose sides meet node by node. */
     void parts(Draft &draft, Draw &draw)
     {
@@ -268,6 +285,8 @@ namespace wall
                  // all bodies of a mesh have cells of one sort
           simplices = (draft.large || !draft.touches) && draw.chance(0.25),
                  gmsh = simplices && draw.chance(0.4);
+      const char *const triangles =
+          draw.chance(0.6) ? "crossed triangles" : "diagonal triangles";
       for (std::size_t i = 0; i < draft.bodies.size(); ++i) {
         Body &body = draft.bodies[i];
         body.substance =
@@ -278,9 +297,11 @@ namespace wall
         body.breakable =
             !body.rigid && (draft.kind == Kind::breakable ||
                             (draft.kind == Kind::mixed && role == 1));
+        if (body.shape == "notched")
+          continue;
         if (simplices)
           body.shape = gmsh             ? "gmsh"
-                       : draft.dim == 2 ? "triangles"
+                       : draft.dim == 2 ? triangles
                                         : "tetrahedra";
         else if (draw.chance(0.15) && draft.large)
           body.distortion = draw.between(0.05, 0.2);
@@ -293,9 +314,9 @@ namespace wall
     if (shape == "ball")
       return dim == 2 ? 5 : 7;
     return cells[0] * cells[1] * (dim == 3 ? cells[2] : 1) *
-           (shape == "box"         ? 1
-            : shape == "triangles" ? 4
-                                   : 24);
+           (is_boxes() ? 1
+            : dim == 2 ? 4
+                       : 24);
   }
 
   double Body::edge(const int dim) const
@@ -305,7 +326,7 @@ namespace wall
     double edge = 1e30;
     for (int d = 0; d < dim; ++d)
       edge = std::min(edge, (high[d] - low[d]) / cells[d]);
-    return shape == "box" ? edge : 0.5 * edge;
+    return is_boxes() ? edge : 0.5 * edge;
   }
 
   double Draft::wave_speed() const
@@ -352,7 +373,9 @@ namespace wall
         draw.chance(0.25)
             ? 0.
             : draft.unit * std::min(0.3, slowness * draw.decades(0.1, 2.));
-    if (!draft.touches)
+    if (!draft.touches && draft.dim == 2 && draw.chance(0.3))
+      notched(draft, draw);
+    else if (!draft.touches)
       alone(draft, draw);
     else if (!draft.large) {
       if (draw.chance(0.3))
@@ -368,7 +391,5 @@ namespace wall
                     : alone)(draft, draw);
     }
     give_substances(draft, draw);
-    if (draft.large && draw.chance(0.15))
-      add_pin(draft, draw);
   }
 } // namespace wall
