@@ -72,9 +72,11 @@ namespace wall
       const double strength =
           std::clamp(impedance * draft.speed * draw.decades(0.05, 2.),
                      1e-6 * young, 0.05 * young);
+      // the cohesive length in cells, and openings well below a cell
       const double edge = draft.smallest_edge(),
-                   toughness = strength * strength / young * edge *
-                               draw.decades(0.05, 20.);
+                   toughness = std::min(strength * strength / young * edge *
+                                            draw.decades(0.05, 20.),
+                                        0.05 * strength * edge);
       static const Entries extrinsic = {"camacho-ortiz", "dugdale",
                                         "ppr-extrinsic"};
       static const Entries intrinsic = {"michel-suquet", "xu-needleman",

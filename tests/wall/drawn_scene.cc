@@ -137,12 +137,15 @@ namespace wall
           2. * draft.gap / draft.speed +
           draft.unit / draft.wave_speed() * draw.decades(2., 50.);
       end = std::min(n * h, is_rigid ? 1e30 : wanted);
+      // what Gmsh makes of a size is known to the program
+      const bool in_crossings =
+          !is_rigid && (draw.chance(0.5) ||
+                        (is_explicit && draft.bodies[0].shape == "gmsh"));
       std::string step =
-          !is_rigid && (draw.chance(draft.large && is_explicit ? 0.8 : 0.3))
+          !is_rigid && draw.chance(draft.large && is_explicit ? 0.8 : 0.3)
               ? "auto"
-          : draw.chance(0.5) && !is_rigid
-              ? fmt::format("{:.3g} courant", courant)
-              : time(h);
+          : in_crossings ? fmt::format("{:.3g} courant", courant)
+                         : time(h);
       if (statics) {
         end = 0.01 * draft.unit / draft.speed * draw.decades(0.1, 3.);
         step = time(end / draw.whole(10, 40));

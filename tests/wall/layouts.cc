@@ -54,11 +54,11 @@ namespace wall
 
     std::string top(const Draft &draft)
     {
-      return draft.dim == 2 ? "top" : "back";
+      return draft.dim == 2 ? "top" : "front";
     }
     std::string bottom(const Draft &draft)
     {
-      return draft.dim == 2 ? "bottom" : "front";
+      return draft.dim == 2 ? "bottom" : "back";
     }
 
     /** A body thrown at a plate. */
