@@ -53,7 +53,8 @@ namespace wall
     point[up(draft)] = height;
     Block block{"Obstacle: floor",
                 {std::string("where = ") + (draft.large      ? "all"
-                                            : draft.dim == 2 ? "bottom" : "back"),
+                                            : draft.dim == 2 ? "bottom"
+                                                             : "back"),
                  "point = " + corner(point, draft.dim),
                  draft.dim == 2 ? "normal = 0, 1" : "normal = 0, 0, 1"}};
     for (const std::string &entry : draw_touch(draw).entries())
