@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -247,6 +248,14 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         contact.frame[r * dim + c] = axes[r][c];
     }
+    double yields = 0., free = 0.;
+    for (const auto &[g, share] : contact.ends)
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double along = share * normal[c];
+        yields += along * along * inverse_mass_[g * dim + c];
+        free += along * along / groups.mass[g];
+      }
+    contact.can_part = yields > 1e-12 * free;
     return true;
   }
 
@@ -340,6 +349,12 @@ namespace nsfd
           contact.impulse[r] += row.share * contact.frame[r * dim + c] *
                                 state_.surface_impulse[row.place * dim + c];
       contact.impulse[0] = std::max(contact.impulse[0], 0.);
+      // no impulse keeps apart what is driven together: the overlap tells
+      if (!contact.can_part) {
+        contact.impulse = {};
+        contact.least = contact.target =
+            -std::numeric_limits<double>::infinity();
+      }
       if (contact.impulse[0] == 0.)
         contact.impulse = {};
       else {

@@ -112,6 +112,7 @@ namespace nsfd
       Vector before{}, impulse{}, velocity{}, obstacle{}; ///< local
       double target = 0., least = 0., friction = 0.; ///< target without work
       bool turned = false, pushes = false; ///< friction opposes the mean
+      bool can_part = true; ///< the motion along the normal is not prescribed
     };
 
     void follow(const CornerGroups<dim> &groups);

@@ -1,0 +1,158 @@
+#include "../wall/drawn_scene.h"
+#include "../wall/verdict.h"
+#include "program.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+// Scenes of the wall, tests/wall, with fixed seeds: one or two of every kind.
+// tests/benchmarks/wall_of_scenes.cc runs them by the hundred.
+
+namespace end_to_end::test_wall
+{
+  namespace
+  {
+    struct Seed {
+      unsigned int seed;
+      const char *kind; ///< another one: the generator draws other scenes now
+    };
+
+    void PrintTo(const Seed &seed, std::ostream *out)
+    {
+      *out << seed.seed << ": " << seed.kind;
+    }
+
+    class WallTest : public testing::TestWithParam<Seed>
+    {
+    };
+
+    TEST_P(WallTest, GoesThrough)
+    {
+      const Workspace workspace;
+      const wall::DrawnScene scene = wall::draw_scene(GetParam().seed);
+      EXPECT_EQ(scene.kind, GetParam().kind);
+      for (const auto &[name, text] : scene.files)
+        write_text(workspace.path() / name, text);
+      write_text(workspace.path() / "scene.prm", scene.text);
+      const Outcome outcome =
+          nsfd(workspace,
+               {"scene.prm", "--set", "Output/directory=results", "--force"});
+      write_text(workspace.path() / "log", outcome.out + outcome.err);
+      wall::Ended ended;
+      ended.exit_code = outcome.exit_code;
+      const wall::Verdict verdict =
+          wall::judge(workspace.path() / "results", workspace.path() / "log",
+                      ended, scene.keeps_momentum, scene.end);
+      EXPECT_TRUE(verdict.through) << verdict.message << "\n" << scene.text;
+    }
+
+    INSTANTIATE_TEST_SUITE_P(
+        Seeds, WallTest,
+        testing::Values(Seed{20, "large auto breakable alone"},
+                        Seed{72, "large auto breakable contact"},
+                        Seed{136, "large auto elastic contact"},
+                        Seed{108, "large auto rigid contact"},
+                        Seed{3, "large explicit breakable alone"},
+                        Seed{17, "large explicit breakable alone"},
+                        Seed{7, "large explicit breakable contact"},
+                        Seed{9, "large explicit breakable contact"},
+                        Seed{16, "large explicit breakable contact"},
+                        Seed{2, "large explicit elastic alone"},
+                        Seed{11, "large explicit elastic contact"},
+                        Seed{89, "large explicit elastic contact"},
+                        Seed{31, "large explicit mixed contact"},
+                        Seed{27, "large moreau-jean breakable alone"},
+                        Seed{63, "large moreau-jean breakable contact"},
+                        Seed{21, "large moreau-jean elastic contact"},
+                        Seed{23, "large moreau-jean mixed contact"},
+                        Seed{41, "large moreau-jean rigid contact"},
+                        Seed{25, "small auto breakable contact"},
+                        Seed{36, "small explicit breakable contact"},
+                        Seed{56, "small explicit breakable alone"},
+                        Seed{113, "small explicit elastic contact"},
+                        Seed{8, "small explicit mixed contact"},
+                        Seed{45, "small moreau-jean breakable contact"},
+                        Seed{160, "small moreau-jean elastic alone"},
+                        Seed{155, "small moreau-jean mixed contact"},
+                        Seed{44, "small moreau-jean rigid contact"},
+                        Seed{87, "small quasi-static breakable alone"},
+                        Seed{15, "small symplectic elastic contact"}),
+        [](const testing::TestParamInfo<Seed> &info) {
+          return std::to_string(info.param.seed);
+        });
+
+    /** A run with one line of its certificate, and what it moved. */
+    struct WrittenRun {
+      explicit WrittenRun(const std::filesystem::path &folder) : folder_(folder)
+      {
+        std::filesystem::create_directories(folder);
+        line("given by impact", "ok", 1e-12);
+        fragments(3.);
+        write_text(folder / "history.csv", "step,kinetic\n0,9\n9,5\n");
+      }
+      void line(const std::string &name, const std::string &verdict,
+                const double value) const
+      {
+        nlohmann::json summary;
+        summary["final_time"] = 1.;
+        summary["failure"] = nullptr;
+        summary["certificate"]["ok"] = true;
+        summary["certificate"]["lines"][name] = {
+            {"verdict", verdict}, {"value", value}, {"bound", 1e-9}};
+        write_text(folder_ / "summary.json", summary.dump());
+      }
+      /** 2 kg at 3 m/s before. */
+      void fragments(const double speed) const
+      {
+        write_text(folder_ / "fragments.csv",
+                   "step,fragment,mass,vx,vy\n0,0,2,3,0\n9,0,1," +
+                       std::to_string(2. * speed) + ",1\n9,1,1,0,-1\n");
+      }
+      wall::Verdict verdict(const int exit_code,
+                            const bool keeps_momentum) const
+      {
+        wall::Ended ended;
+        ended.exit_code = exit_code;
+        return wall::judge(folder_, folder_ / "log", ended, keeps_momentum, 1.);
+      }
+
+    private:
+      std::filesystem::path folder_;
+    };
+  } // namespace
+
+  TEST(Wall, JudgesWhatWentWrong)
+  {
+    const Workspace workspace;
+    const WrittenRun run(workspace.path() / "run");
+    EXPECT_TRUE(run.verdict(0, true).through);
+    EXPECT_FALSE(run.verdict(3, true).through);
+    EXPECT_FALSE(run.verdict(139, true).through);
+    EXPECT_TRUE(run.verdict(1, true).refused);
+    run.fragments(2.999);
+    EXPECT_TRUE(run.verdict(0, false).through) << "a load acts";
+    EXPECT_FALSE(run.verdict(0, true).through);
+    EXPECT_TRUE(run.verdict(0, true).silent) << "its certificate is ok";
+    run.fragments(3.);
+    for (const char *name :
+         {"given by friction", "given by joints", "given by supports",
+          "given by large motion", "balance residual", "penetration"}) {
+      run.line(name, "not ok", 1e-6);
+      const wall::Verdict verdict = run.verdict(0, true);
+      EXPECT_FALSE(verdict.through) << name;
+      EXPECT_NEAR(verdict.worst, 1e3, 1e-6) << name;
+      EXPECT_NE(verdict.message.find(name), std::string::npos);
+    }
+    // what the certificate says of accuracy is no failure
+    run.line("uniqueness", "not ok", 3.);
+    EXPECT_TRUE(run.verdict(0, true).through);
+  }
+
+  TEST(Wall, DrawsTheSameSceneForASeed)
+  {
+    for (const unsigned int seed : {1u, 77u, 4000u})
+      EXPECT_EQ(wall::draw_scene(seed).text, wall::draw_scene(seed).text);
+    EXPECT_NE(wall::draw_scene(1).text, wall::draw_scene(2).text);
+  }
+} // namespace end_to_end::test_wall
