@@ -4,7 +4,9 @@
 
 namespace nsfd
 {
-  /** LU with row pivots of a few unknowns; the memory is used again. */
+  /** LU with row pivots of a few unknowns; the memory is used again. Zeros at
+     both ends of rows cost nothing: unknowns of one place should be neighbours.
+   */
   class DenseLU
   {
   public:
@@ -24,6 +26,6 @@ namespace nsfd
   private:
     int n_ = 0;
     std::vector<double> a_;
-    std::vector<int> pivot_;
+    std::vector<int> pivot_, begin_, end_; ///< of what is not zero in a row
   };
 } // namespace nsfd

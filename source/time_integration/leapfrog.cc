@@ -297,7 +297,23 @@ namespace nsfd
         g.displacement[k] = before_.displacement[k] + h * g.velocity[k];
       hanging_.follow(g);
       forces_->front().begin_step(h, kick);
+      if (large_)
+        large_->keep_front(forces_->front());
       hanging_.set_forces(*forces_, *groups_);
+    }
+    if (const std::string place = large_ ? large_->inverted() : "";
+        !place.empty()) {
+      before_.displacement.swap(g.displacement);
+      go_back();
+      large_->go_back(forces_->front());
+      hanging_.set_forces(*forces_, *groups_);
+      forces_->front().holds = false;
+      throw StepRejected(fmt::format(
+          "the cell at {} (before the motion) would be turned inside out in "
+          "the "
+          "step of {:.4g} s at t = {:.6g} s: smaller cells there, or a law by "
+          "which they break, may help",
+          place, h, old.time));
     }
     const auto front = forces_->front().finish(communicator_);
     if (large_)
@@ -314,12 +330,6 @@ namespace nsfd
     }
     before_.front = front;
     try {
-      if (const std::string place = large_ ? large_->inverted() : "";
-          !place.empty())
-        throw StepRejected(fmt::format(
-            "the cell at {} (before the motion) is turned inside out at t = "
-            "{:.6g}: take smaller cells there, or a law by which they break",
-            place, old.time + h));
       account(old, h, energies, next, report);
     } catch (const StepRejected &rejected) {
       // the state before it is what the run can still show

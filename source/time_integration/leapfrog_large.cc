@@ -64,8 +64,9 @@ namespace nsfd
                                  LeapfrogPoints<dim> &points,
                                  LeapfrogEnergies &energies)
   {
-    energies.turned =
+    turned_ +=
         points.turn([this](const std::size_t i) { return forces_.frame(i); });
+    energies.turned = turned_;
     if (contacts_)
       contacts_->find(time, h, prescribed, groups);
   }
@@ -179,6 +180,7 @@ namespace nsfd
   template <int dim>
   bool LeapfrogLarge<dim>::accept(LeapfrogPoints<dim> &points)
   {
+    turned_ = 0.;
     if (!contacts_)
       return false;
     contacts_->accept();

@@ -69,6 +69,21 @@ namespace nsfd
     bool accept(LeapfrogPoints<dim> &points);
 
     double stored() const { return communicator_.sum(forces_.stored()); }
+    /** Before the next forces, which may not be: see inverted(). */
+    void keep_front(const FrontViscosity &front)
+    {
+      if (front.acts())
+        front_ = front;
+    }
+    /** No cell was well: the front is as it was, and holds for the forces of
+       the step before; shorter steps come. */
+    void go_back(FrontViscosity &front)
+    {
+      if (front.acts())
+        front = front_;
+      front.holds = true;
+      stiffening_ *= 4.;
+    }
     /** Where a cell is turned inside out; empty: nowhere. */
     std::string inverted() const;
     void show(State &state) const;
@@ -86,8 +101,10 @@ namespace nsfd
     const Communicator &communicator_;
     const FiniteForces<dim> &forces_;
     std::unique_ptr<LeapfrogContacts<dim>> contacts_; ///< null: none
-    State state_;      ///< what the points of the mesh are
-    double bulk_ = 0.; ///< of the last way, which the next step takes, J
+    State state_;          ///< what the points of the mesh are
+    FrontViscosity front_; ///< of the forces that act in the step
+    double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J
+    double bulk_ = 0.;     ///< of the last way, which the next step takes, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;
     std::size_t n_open_ = 0; ///< points that hold less than they did

@@ -71,7 +71,10 @@ namespace nsfd
     report.changes = balance.changes;
     report.changes.taken[std::size_t(WatchedLine::scheme)] =
         energy.numerical - old.energy.numerical;
-    report.changes.taken[std::size_t(WatchedLine::large_motion)] = bodies.large;
+    // the way of a law over two steps has their mean velocity only if both have
+    // one length
+    report.changes.taken[std::size_t(WatchedLine::large_motion)] =
+        bodies.large + (h != old.last_step ? balance.numerical : 0.);
     report.changes.taken[std::size_t(WatchedLine::friction)] += bodies.friction;
     report.changes.taken[std::size_t(WatchedLine::impact)] += bodies.impact;
     report.changes.taken[std::size_t(WatchedLine::viscous)] =

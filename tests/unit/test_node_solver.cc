@@ -284,4 +284,73 @@ namespace node_test::test_node_solver
       other.accept();
     }
   }
+
+  /** A point whose ends are listed is the one between the same two groups; and
+     a facet of two groups that move alike is one group of their masses. */
+  TEST(NodeSolver, ContactsHaveSharesOfSeveralGroups)
+  {
+    const NamedLaw &entry = continuous[0];
+    std::shared_ptr<const CohesiveLaw> law =
+        test::make_law(entry.name, entry.entries);
+    for (int r = 0; r < 6; ++r) {
+      NodeRun<2> run(setting_of(r, law, 0.4), r);
+      for (int k = 0; k < 20; ++k) {
+        run.prepare();
+        NodeRun<2> listed = run;
+        std::vector<PointEnds> ends(listed.node.points.size());
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+          auto &point = listed.node.points[i];
+          for (unsigned int side = 0; side < 2; ++side)
+            if (point.groups[side] >= 0) {
+              ends[i].groups[ends[i].size] = point.groups[side];
+              ends[i].shares[ends[i].size++] = side == 0 ? -1. : 1.;
+            }
+          point.groups = {{-1, -1}};
+          point.ends = &ends[i];
+        }
+        NodeRun<2> halves = listed;
+        // every group is two halves that share what acts on it
+        for (std::size_t i = 0; i < ends.size(); ++i)
+          halves.node.points[i].ends = nullptr;
+        std::vector<PointEnds> of_halves(ends.size());
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+          for (unsigned int e = 0; e < ends[i].size; ++e)
+            for (unsigned int half = 0; half < 2; ++half) {
+              PointEnds &mine = of_halves[i];
+              mine.groups[mine.size] = 2 * ends[i].groups[e] + int(half);
+              mine.shares[mine.size++] = ends[i].shares[e] / 2.;
+            }
+          halves.node.points[i].ends = &of_halves[i];
+        }
+        std::vector<std::array<double, 2>> inverse, velocity;
+        for (std::size_t g = 0; g < listed.node.inverse_mass.size(); ++g)
+          for (unsigned int half = 0; half < 2; ++half) {
+            inverse.push_back(listed.node.inverse_mass[g]);
+            for (double &x : inverse.back())
+              x *= 2.;
+            velocity.push_back(listed.node.velocity[g]);
+          }
+        halves.node.inverse_mass = inverse;
+        halves.node.velocity = velocity;
+        NodeSolver<2> solver;
+        for (NodeRun<2> *one : {&run, &listed, &halves})
+          EXPECT_TRUE(solver
+                          .solve(one->problem, one->frames, one->node,
+                                 one->impulses, one->solutions)
+                          .converged);
+        EXPECT_EQ(run.impulses, listed.impulses);
+        EXPECT_EQ(run.node.velocity, listed.node.velocity);
+        double size = 0.;
+        for (const auto &v : run.node.velocity)
+          size = std::max({size, std::abs(v[0]), std::abs(v[1])});
+        for (std::size_t g = 0; g < run.node.velocity.size(); ++g)
+          for (unsigned int c = 0; c < 2; ++c)
+            EXPECT_NEAR((halves.node.velocity[2 * g][c] +
+                         halves.node.velocity[2 * g + 1][c]) /
+                            2.,
+                        run.node.velocity[g][c], 1e-10 * size);
+        run.accept();
+      }
+    }
+  }
 } // namespace node_test::test_node_solver
