@@ -135,10 +135,13 @@ namespace wall
       const bool given = name.rfind("given by", 0) == 0;
       if (!given && name != "balance residual" && name != "penetration")
         continue;
-      if (line.value("verdict", "") != "not ok")
-        continue;
+      // what the bulk of explicit steps may give, whatever a run calls good
+      constexpr double of_large_motion = 1e-3;
+      const bool is_bulk = name == "given by large motion";
       const double value = line.value("value", 0.),
-                   bound = line.value("bound", 0.);
+                   bound = is_bulk ? of_large_motion : line.value("bound", 0.);
+      if (is_bulk ? value <= bound : line.value("verdict", "") != "not ok")
+        continue;
       fail(bound > 0. ? value / bound : 1e3,
            fmt::format("{} {:.2g}, at most {:.2g}", name, value, bound));
     }
