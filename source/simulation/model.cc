@@ -60,8 +60,11 @@ namespace nsfd
     choose_path(input);
     if (!input.time.scheme.at_nodes) {
       build_delassus(input, communicator);
-      if (input.time.scheme.explicit_forces)
+      if (input.time.scheme.explicit_forces) {
+        explicit_limit = stable_limit(input, communicator);
+        control = dynamic_control(input, 0.);
         check_stability(input, communicator, problems);
+      }
       if (!problems.empty())
         return problems;
       charge_memory("blocks of the bodies");

@@ -27,7 +27,7 @@ namespace nsfd
     std::unique_ptr<MeshGroups<dim>> groups;
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<StepControl> control;
-    double explicit_limit = 0.; ///< of steps on joined cells, s
+    double explicit_limit = 0.; ///< of explicit steps, s
     std::string path;           ///< of the linear algebra: local or assembled
     std::unique_ptr<DelassusOperator<dim>> delassus;
     JoinedDelassus<dim> *bonded = nullptr; ///< the same, if faces are bonded

@@ -94,12 +94,18 @@ namespace nsfd
   template <int dim>
   double Model<dim>::dynamic_step(const SceneInput &input) const
   {
-    if (input.time.scheme.at_nodes &&
-        input.time.step_kind == StepKind::automatic)
-      return 0.9 * explicit_limit;
-    return input.time.step * (input.time.step_kind == StepKind::time
-                                  ? 1.
-                                  : discretization->crossing_time());
+    // of the longest that is stable
+    constexpr double share = 0.9;
+    const bool is_automatic = input.time.step_kind == StepKind::automatic;
+    if (input.time.scheme.at_nodes && is_automatic)
+      return share * explicit_limit;
+    const double step =
+        input.time.step * (input.time.step_kind == StepKind::time
+                               ? 1.
+                               : discretization->crossing_time());
+    return is_automatic && explicit_limit > 0. && step > explicit_limit
+               ? share * explicit_limit
+               : step;
   }
 
   template <int dim>

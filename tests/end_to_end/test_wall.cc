@@ -77,7 +77,8 @@ namespace end_to_end::test_wall
                         Seed{155, "small moreau-jean mixed contact"},
                         Seed{44, "small moreau-jean rigid contact"},
                         Seed{87, "small quasi-static breakable alone"},
-                        Seed{15, "small symplectic elastic contact"}),
+                        Seed{15, "small symplectic elastic contact"},
+                        Seed{357, "small symplectic elastic contact"}),
         [](const testing::TestParamInfo<Seed> &info) {
           return std::to_string(info.param.seed);
         });

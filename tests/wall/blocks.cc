@@ -39,7 +39,8 @@ namespace wall
         entries.push_back(
             fmt::format("viscosity = {:.3g} Pa*s",
                         0.01 * what.young * draft.unit / what.wave_speed()));
-      if (name == "linear elastic" && !draft.plane_stress && draw.chance(0.1))
+      if (name == "linear elastic" && !draft.plane_stress &&
+          draft.integrator != "arkode" && draw.chance(0.1))
         entries.push_back(fmt::format(
             "shear viscosity = {:.3g} Pa*s",
             what.young * 0.02 * draft.smallest_edge() / what.wave_speed()));
