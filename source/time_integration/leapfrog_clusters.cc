@@ -208,7 +208,8 @@ namespace nsfd
     outcome.inexact += !report.converged;
     if (!(report.residual <= outcome.residual)) {
       outcome.residual = report.residual;
-      outcome.worst = chains_.point[moved_[first]];
+      if (n > 0) // else all points of its nodes are between prescribed groups
+        outcome.worst = chains_.point[moved_[first]];
     }
     if (held && held->any()) {
       ++outcome.held;

@@ -195,7 +195,12 @@ namespace nsfd
     };
     if (n_open() == n_open_)
       return false;
-    points.chains().show(state_, {});
+    const auto &chains = points.chains();
+    chains.show(state_, {});
+    // one of the two chains of a point may still hold
+    for (std::size_t a = 0; a < chains.size(); ++a)
+      if (state_.kind[chains.point[a]] == PointKind::free)
+        state_.kind[chains.point[a]] = chains.problem.kind[a];
     const auto parted = contacts_->part(state_);
     for (const unsigned int point : parted)
       points.part(point);
