@@ -333,7 +333,9 @@ namespace nsfd
       contact.friction = law.friction;
       contact.before = relative_velocity(contact, groups.velocity);
       const double before = contact.before[0];
-      contact.least = std::min(-row.gap / h, -before);
+      // an overlap that is left goes at a tenth of the speed of what closes
+      contact.least = std::min(
+          -row.gap / h, row.gap < 0. && before < 0. ? -0.1 * before : -before);
       if (law.restitution > 0. && before < 0. && row.gap + h * before <= 0.)
         contact.least = std::max(contact.least, -law.restitution * before);
       // half of what friction takes if it goes on to slide

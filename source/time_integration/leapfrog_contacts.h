@@ -21,6 +21,7 @@ namespace nsfd
    *
    *   U_N+ >= a = min(-g/h, -U_N-),   P_N >= 0,   P_N (U_N+ - a) = 0,
    *
+   * (-0.1 U_N- where it overlaps and closes: it shall not bounce)
    * and -e U_N- at least where the contact closes with a restitution e. The
    * first is no overlap at the end of the step, the second that the work
    * P_N (U_N+ + U_N-)/2 of a contact on the bodies is never positive. Friction

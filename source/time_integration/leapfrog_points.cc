@@ -111,7 +111,8 @@ namespace nsfd
     p.target[a] = -(u + chains_.released[a]) / h;
     // as faces turn, what was closed may overlap: to push it out takes energy
     if (discretization_.input().large_motion)
-      p.target[a] = std::min(p.target[a], -U);
+      p.target[a] =
+          std::min(p.target[a], p.target[a] > 0. && U < 0. ? -0.1 * U : -U);
     const double e = p.kind[a] == PointKind::free
                          ? p.interactions[p.interaction[a]].restitution
                          : 0.;
