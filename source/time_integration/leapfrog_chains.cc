@@ -194,7 +194,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogChains<dim>::serialize(Archive &archive, const std::size_t n)
+  void LeapfrogChains<dim>::serialize(Archive &archive, const std::size_t n,
+                                      const bool turn)
   {
     OneStepProblem<dim> &p = problem;
     const Archive::Part part(archive, "chain");
@@ -221,6 +222,8 @@ namespace nsfd
       store("slip_max", p.slip_max, 1);
     store("compression", p.compression_stiffness, 1);
     store("beta", beta, 1);
+    if (turn) // what a state says of points is along these axes
+      store("frame", frame, dim * dim);
   }
 
   template struct LeapfrogChains<2>;

@@ -56,11 +56,11 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  double LeapfrogPoints<dim>::turn(const AxesOf &axes_of)
+  std::vector<double> LeapfrogPoints<dim>::turn(const AxesOf &axes_of)
   {
     // by less than this what a point does is the same to four digits
     constexpr double least_angle = 1e-4;
-    double more = 0.;
+    std::vector<double> more;
     for (Node &node : nodes_)
       for (const unsigned int a : node.points) {
         if (chains_.problem.kind[a] == PointKind::separated)
@@ -73,7 +73,7 @@ namespace nsfd
         }
         if (square < least_angle * least_angle)
           continue;
-        more += chains_.turn(a, axes);
+        more.push_back(chains_.turn(a, axes));
         for (auto &elastic : node.elastic)
           elastic.is_new = true;
       }
@@ -221,7 +221,7 @@ namespace nsfd
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
-  template double LeapfrogPoints<dim>::turn(const AxesOf &);                   \
+  template std::vector<double> LeapfrogPoints<dim>::turn(const AxesOf &);      \
   template void LeapfrogPoints<dim>::part(unsigned int);                       \
   template void LeapfrogPoints<dim>::solve_cluster(                            \
       Cluster &, const std::vector<std::uint8_t> &, double,                    \

@@ -64,8 +64,8 @@ namespace nsfd
                                  LeapfrogPoints<dim> &points,
                                  LeapfrogEnergies &energies)
   {
-    turned_ +=
-        points.turn([this](const std::size_t i) { return forces_.frame(i); });
+    turned_ += communicator_.sum(
+        points.turn([this](const std::size_t i) { return forces_.frame(i); }));
     energies.turned = turned_;
     if (contacts_)
       contacts_->find(time, h, prescribed, groups);
@@ -167,9 +167,11 @@ namespace nsfd
                                        LeapfrogEnergies &energies)
   {
     const double stored_now = stored();
-    energies.power_after = -forces_.front_power(groups, groups.velocity);
-    for (std::size_t k = 0; k < groups.force.size(); ++k)
-      energies.power_after += groups.force[k] * groups.velocity[k];
+    std::vector<double> powers(groups.force.size());
+    for (std::size_t k = 0; k < powers.size(); ++k)
+      powers[k] = groups.force[k] * groups.velocity[k];
+    energies.power_after = communicator_.sum(powers) -
+                           forces_.front_power(groups, groups.velocity);
     bulk_ = stored_ - stored_now - h / 2. * (power_ + energies.power_after);
     stored_ = stored_now;
     // a longer step later would take or give energy, as each change does

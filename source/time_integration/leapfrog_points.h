@@ -47,8 +47,8 @@ namespace nsfd
     using AxesOf =
         std::function<std::array<double, dim * dim>(std::size_t point)>;
     /** The faces have turned: rows n, t1, t2 of points of the mesh. Returns how
-        much more energy is stored along them, J, see LeapfrogChains. */
-    double turn(const AxesOf &axes_of);
+        much more energy each stores along them, J, see LeapfrogChains. */
+    std::vector<double> turn(const AxesOf &axes_of);
     /** A point of the mesh is separated: others look for what it touches. */
     void part(unsigned int point);
 
@@ -131,7 +131,8 @@ namespace nsfd
     /** The chain that is not shown, of points that have been add()ed. */
     void serialize(Archive &archive)
     {
-      chains_.serialize(archive, discretization_.points().n_points);
+      chains_.serialize(archive, discretization_.points().n_points,
+                        discretization_.input().large_motion);
       count_holds();
     }
 
