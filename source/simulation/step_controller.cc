@@ -88,6 +88,13 @@ namespace nsfd
     }
     failure += fmt::format("; {} bisections did not help",
                            input_.time.maximum_bisections);
+    const auto &materials = input_.materials;
+    if (input_.large_motion && !input_.time.scheme.at_nodes &&
+        std::all_of(materials.begin(), materials.end(), [](const auto &m) {
+          return m.kind == MaterialKind::finite_strain;
+        }))
+      failure += "; with scheme = explicit no step has a problem of all bodies "
+                 "to solve";
     return Outcome::failed;
   }
 
