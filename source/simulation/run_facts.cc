@@ -126,7 +126,7 @@ namespace nsfd
       // what the rules of explicit steps, end points, released faces and
       // frames of large motions make comes and goes: as well as curves can be
       // read
-      constexpr double of_pure_rules = 1e-2, of_large_motion = 1e-2;
+      constexpr double of_pure_rules = 1e-2, of_large_motion = 1e-3;
       const double scale = std::max(watch.scale, state.largest_energy);
       const auto share = [scale](const double energy) {
         return energy == 0. ? 0. : energy / scale;

@@ -72,9 +72,10 @@ namespace nsfd
     report.changes.taken[std::size_t(WatchedLine::scheme)] =
         energy.numerical - old.energy.numerical;
     // the way of a law over two steps has their mean velocity only if both have
-    // one length
+    // one length; the first step of all has its own way
+    const bool other_length = old.last_step > 0. && h != old.last_step;
     report.changes.taken[std::size_t(WatchedLine::large_motion)] =
-        bodies.large + (h != old.last_step ? balance.numerical : 0.);
+        bodies.large + (other_length ? balance.numerical : 0.);
     report.changes.taken[std::size_t(WatchedLine::friction)] += bodies.friction;
     report.changes.taken[std::size_t(WatchedLine::impact)] += bodies.impact;
     report.changes.taken[std::size_t(WatchedLine::viscous)] =
