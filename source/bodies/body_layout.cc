@@ -3,6 +3,7 @@
 #include "discretization/body_shape.h"
 #include "discretization/cell_geometry.h"
 #include "discretization/cells.h"
+#include "discretization/slot_gradients.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <deal.II/fe/fe.h>
@@ -163,14 +164,7 @@ namespace nsfd
       if (body.bodies.empty())
         continue;
       const auto of_body = discretization_.cells().shape(body.bodies[0]);
-      const BodyShape<dim> &shape = *of_body;
-      for (const Place &place : shape.slot_places) {
-        const auto inverse =
-            invert(jacobian(shape.reference, shape.corners, place));
-        for (unsigned int i = 0; i < shape.n_nodes; ++i)
-          gradients.push_back(transpose(inverse) *
-                              element.shape_grad(i, place));
-      }
+      gradients = nsfd::slot_gradients<dim>(*of_body, element);
     }
   }
 

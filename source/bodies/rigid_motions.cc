@@ -200,17 +200,23 @@ namespace nsfd
   }
 
   template <int dim>
-  std::array<double, dim> RigidMotions<dim>::pin_drift(const unsigned int k,
-                                                       const State &state) const
+  auto RigidMotions<dim>::pinned(const unsigned int k, const State &state) const
+      -> Pinned
   {
     const MovingBody &body =
         layout_[std::size_t(layout_.own_body(body_of_pin(k)))];
-    const RigidState rigid = of(state, body);
     Vec3 at{};
     for (unsigned int d = 0; d < dim; ++d)
       at[d] = input_.pins[k].at[d];
-    const Vec3 off =
-        rigid.centre + rotation(rigid.orientation) * (at - body.centre) - at;
+    return {of(state, body), at, at - body.centre};
+  }
+
+  template <int dim>
+  std::array<double, dim> RigidMotions<dim>::pin_drift(const unsigned int k,
+                                                       const State &state) const
+  {
+    const auto [rigid, at, arm] = pinned(k, state);
+    const Vec3 off = rigid.centre + rotation(rigid.orientation) * arm - at;
     std::array<double, dim> result;
     std::copy_n(off.begin(), dim, result.begin());
     return result;
@@ -221,14 +227,10 @@ namespace nsfd
   RigidMotions<dim>::pin_velocity(const unsigned int k,
                                   const State &state) const
   {
-    const MovingBody &body =
-        layout_[std::size_t(layout_.own_body(body_of_pin(k)))];
-    const RigidState rigid = of(state, body);
-    Vec3 at{};
-    for (unsigned int d = 0; d < dim; ++d)
-      at[d] = input_.pins[k].at[d];
-    const Vec3 v = rigid.velocity + rotation(rigid.orientation) *
-                                        cross(rigid.spin, at - body.centre);
+    const Pinned pin = pinned(k, state);
+    const RigidState &rigid = pin.rigid;
+    const Vec3 v = rigid.velocity +
+                   rotation(rigid.orientation) * cross(rigid.spin, pin.arm);
     std::array<double, dim> result;
     std::copy_n(v.begin(), dim, result.begin());
     return result;

@@ -55,6 +55,12 @@ namespace nsfd
   private:
     using Vector = dealii::Tensor<1, dim>;
 
+    struct Pinned {
+      RigidState rigid;
+      Vec3 at, arm; ///< the place of the pin, from the centre at rest
+    };
+    Pinned pinned(unsigned int pin, const State &state) const;
+
     RigidState nearest(const State &state, const MovingBody &body) const;
 
     const SceneInput &input_;

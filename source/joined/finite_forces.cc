@@ -1,8 +1,8 @@
 #include "finite_forces.h"
 
-#include "discretization/cell_geometry.h"
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
+#include "discretization/slot_gradients.h"
 #include "materials/strain.h"
 #include "nsfd/materials/material_model.h"
 #include "nsfd/scene/scene_input.h"
@@ -111,16 +111,9 @@ namespace nsfd
       }
       if (constant)
         continue;
-      for (const auto &place : shape.slot_places) {
-        const auto inverse =
-            invert(jacobian(shape.reference, shape.corners, place));
-        for (unsigned int i = 0; i < shape.n_nodes; ++i) {
-          const auto g =
-              transpose(inverse) * cells.element->shape_grad(i, place);
-          for (unsigned int d = 0; d < dim; ++d)
-            here.slot_gradients.push_back(g[d]);
-        }
-      }
+      for (const auto &g : slot_gradients(shape, *cells.element))
+        for (unsigned int d = 0; d < dim; ++d)
+          here.slot_gradients.push_back(g[d]);
     }
     for_all_places(cells.bodies, sides_.size(),
                    [&](const std::size_t body, const unsigned int slot,

@@ -12,10 +12,9 @@ namespace nsfd
 {
   namespace
   {
-    bool is_joined(const PointOrigin &origin, const PointKind kind)
+    bool is_joint(const PointOrigin &origin, const PointKind kind)
     {
-      return origin.kind == PointOrigin::Kind::interface &&
-             (kind == PointKind::prescribed || kind == PointKind::rigid);
+      return origin.kind == PointOrigin::Kind::interface && is_joined(kind);
     }
   } // namespace
 
@@ -37,7 +36,7 @@ namespace nsfd
     if (table.n_rigid == 0)
       return false;
     for (std::size_t i = 0; i < points.n_points; ++i) {
-      if (!is_joined(parts_.discretization.origins()[i], old.kind[i]))
+      if (!is_joint(parts_.discretization.origins()[i], old.kind[i]))
         continue;
       for (const auto cell : points.faces[points.face_of[i]].cells)
         if (table.is_rigid(table.body_of_global(cell)))
@@ -56,7 +55,7 @@ namespace nsfd
     for (std::size_t i = 0; i < old.kind.size(); ++i)
       for (unsigned int c = 0; c < dim; ++c) {
         const double U = old.relative_velocity[i * dim + c];
-        if (is_joined(origins[i], old.kind[i]))
+        if (is_joint(origins[i], old.kind[i]))
           off = std::max(off, std::abs(U));
         else if (origins[i].kind == PointOrigin::Kind::motion &&
                  motion.drives(i, c))

@@ -103,7 +103,7 @@ namespace nsfd
     const SceneInput &input = parts_.input;
     State state = initial_motion(input, parts_.discretization);
     bodies_.set_initial(state);
-    state.obstacle_shift = obstacles_.initial_shifts();
+    state.obstacle_shift = initial_shifts(input);
     bodies_.start(state, 0., input.time.theta,
                   std::vector<double>(state.velocity.size(), 0.),
                   state.obstacle_shift, state.obstacle_shift);

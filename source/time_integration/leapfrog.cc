@@ -310,12 +310,12 @@ namespace nsfd
       forces_->front().holds = false;
       throw StepRejected(fmt::format(
           "the cell at {} (before the motion) would be turned inside out in "
-          "the "
-          "step of {:.4g} s at t = {:.6g} s: smaller cells there, or a law by "
-          "which they break, may help",
+          "the step of {:.4g} s at t = {:.6g} s: smaller cells there, or a law "
+          "by which they break, may help",
           place, h, old.time));
     }
     const auto front = forces_->front().finish(communicator_);
+    energies.power_after = ghosts_.dot(g, g.force, g.velocity);
     if (large_)
       large_->take_forces(old.step + 1, h, g, energies);
     else {
@@ -326,7 +326,7 @@ namespace nsfd
       energies.viscous = front.taken;
       if (forces_->viscous())
         damp(h, last, energies);
-      energies.power_after = ghosts_.dot(g, g.force, g.velocity) + front.after;
+      energies.power_after += front.after;
     }
     before_.front = front;
     try {

@@ -26,8 +26,7 @@ namespace nsfd
   }
 
   template <int dim>
-  auto LeapfrogContacts<dim>::clusters(
-      const std::function<std::size_t(unsigned int)> &node_of)
+  auto LeapfrogContacts<dim>::clusters(const std::vector<std::size_t> &node_of)
       -> std::vector<Cluster>
   {
     // contacts, then nodes and other groups
@@ -36,7 +35,7 @@ namespace nsfd
     std::map<unsigned int, unsigned int> groups;
     for (const unsigned int k : chosen_)
       for (const auto &end : contacts_[k].ends) {
-        const std::size_t node = node_of(end.first);
+        const std::size_t node = node_of[end.first];
         const auto next = unsigned(n + nodes.size() + groups.size());
         if (node == no_node)
           groups.emplace(end.first, next);
@@ -46,7 +45,7 @@ namespace nsfd
     DisjointSets sets(n + nodes.size() + groups.size());
     for (unsigned int i = 0; i < n; ++i)
       for (const auto &end : contacts_[chosen_[i]].ends) {
-        const std::size_t node = node_of(end.first);
+        const std::size_t node = node_of[end.first];
         sets.join(i, node == no_node ? groups[end.first] : nodes[node]);
       }
     std::map<unsigned int, std::size_t> place; // of sets with nodes
@@ -201,7 +200,7 @@ namespace nsfd
 
 #define NSFD_INSTANTIATE(dim)                                                  \
   template auto LeapfrogContacts<dim>::clusters(                               \
-      const std::function<std::size_t(unsigned int)> &)                        \
+      const std::vector<std::size_t> &)                                        \
       ->std::vector<Cluster>;                                                  \
   template void LeapfrogContacts<dim>::take(const std::vector<Cluster> &);     \
   template void LeapfrogContacts<dim>::solve_others(double,                    \

@@ -1,6 +1,7 @@
 #include "leapfrog_contacts.h"
 
 #include "local_product.h"
+#include "obstacle_motion.h"
 
 #include "contact_detection/facet_geometry.h"
 #include "core/disjoint_sets.h"
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <tuple>
 
 namespace nsfd
 {
@@ -86,18 +86,20 @@ namespace nsfd
   {
     state_ = state;
     state_.touches.clear();
-    const auto &obstacles = input_.obstacles;
-    if (state_.obstacle_shift.empty() &&
-        std::any_of(obstacles.begin(), obstacles.end(),
-                    [](const auto &obstacle) { return obstacle.moves(); }))
-      state_.obstacle_shift.assign(3 * obstacles.size(), 0.);
+    if (state_.obstacle_shift.empty())
+      state_.obstacle_shift = initial_shifts(input_);
   }
 
   template <int dim>
-  std::vector<unsigned int> LeapfrogContacts<dim>::part(const State &state)
+  std::vector<unsigned int>
+  LeapfrogContacts<dim>::part(const LeapfrogChains<dim> &chains)
   {
+    // one of the two chains of a point may still hold
+    for (std::size_t a = 0; a < chains.size(); ++a)
+      state_.kind[chains.point[a]] = chains.other.kind[a] == PointKind::free
+                                         ? chains.problem.kind[a]
+                                         : chains.other.kind[a];
     const auto before = state_.kind;
-    state_.kind = state.kind;
     surfaces_.part(state_);
     std::vector<unsigned int> parted;
     for (std::size_t i = 0; i < before.size(); ++i)

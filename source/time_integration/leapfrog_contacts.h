@@ -7,7 +7,6 @@
 #include "joined/corner_groups.h"
 #include "nonsmooth/one_step_problem.h"
 
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -45,9 +44,9 @@ namespace nsfd
     /** What the surfaces keep is that of @p state. */
     void start(const State &state);
 
-    /** Points of the mesh that are left to the search now; @p state has what
-        points are. */
-    std::vector<unsigned int> part(const State &state);
+    /** Points of the mesh that are left to the search now, by what active ones
+        are. */
+    std::vector<unsigned int> part(const LeapfrogChains<dim> &chains);
 
     /**
      * What may touch in a step of length @p h from @p time, groups at its
@@ -60,11 +59,10 @@ namespace nsfd
 
     using Cluster = typename LeapfrogPoints<dim>::Cluster;
     /**
-     * Those that push have groups in common with nodes: @p node_of says which
-     * node has points and the group. Others stay out.
+     * Those that push have groups in common with nodes: @p node_of
+     * group is the node that has points and it, or no_node. Others stay out.
      */
-    std::vector<Cluster>
-    clusters(const std::function<std::size_t(unsigned int)> &node_of);
+    std::vector<Cluster> clusters(const std::vector<std::size_t> &node_of);
     static constexpr std::size_t no_node = std::size_t(-1);
     /** The impulses of the last clusters(). */
     void take(const std::vector<Cluster> &clusters);

@@ -27,7 +27,7 @@ namespace nsfd
                                     const OneStepProblem<dim> &all,
                                     const Communicator &communicator,
                                     const FiniteForces<dim> &forces)
-      : input_(input), discretization_(discretization), mesh_(mesh),
+      : discretization_(discretization), mesh_(mesh),
         communicator_(communicator), forces_(forces)
   {
     if (!input.contacts.empty() || !input.obstacles.empty())
@@ -45,7 +45,6 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::start(const State &state)
   {
-    state_ = state;
     if (contacts_)
       contacts_->start(state);
     stored_ = stored();
@@ -104,8 +103,7 @@ namespace nsfd
     typename LeapfrogPoints<dim>::Outcome outcome;
     for (unsigned int round = 0; round < most_rounds; ++round) {
       groups.velocity = free;
-      auto clusters = contacts_->clusters(
-          [&](const unsigned int group) { return node_of[group]; });
+      auto clusters = contacts_->clusters(node_of);
       std::vector<std::size_t> apart;
       for (const auto &cluster : clusters)
         apart.insert(apart.end(), cluster.nodes.begin(), cluster.nodes.end());
@@ -167,11 +165,7 @@ namespace nsfd
                                        LeapfrogEnergies &energies)
   {
     const double stored_now = stored();
-    std::vector<double> powers(groups.force.size());
-    for (std::size_t k = 0; k < powers.size(); ++k)
-      powers[k] = groups.force[k] * groups.velocity[k];
-    energies.power_after = communicator_.sum(powers) -
-                           forces_.front_power(groups, groups.velocity);
+    energies.power_after -= forces_.front_power(groups, groups.velocity);
     bulk_ = stored_ - stored_now - h / 2. * (power_ + energies.power_after);
     stored_ = stored_now;
     // a longer step later would take or give energy, as each change does
@@ -197,13 +191,7 @@ namespace nsfd
     };
     if (n_open() == n_open_)
       return false;
-    const auto &chains = points.chains();
-    chains.show(state_, {});
-    // one of the two chains of a point may still hold
-    for (std::size_t a = 0; a < chains.size(); ++a)
-      if (state_.kind[chains.point[a]] == PointKind::free)
-        state_.kind[chains.point[a]] = chains.problem.kind[a];
-    const auto parted = contacts_->part(state_);
+    const auto parted = contacts_->part(points.chains());
     for (const unsigned int point : parted)
       points.part(point);
     n_open_ = n_open();

@@ -58,7 +58,8 @@ namespace nsfd
     void take_energies(double h, double last, const std::vector<double> &before,
                        const CornerGroups<dim> &groups,
                        LeapfrogEnergies &energies);
-    /** With the forces at its end, of step number @p step and length @p h. */
+    /** With the forces at its end, of step number @p step and length @p h;
+        `power_after` is that of all forces before. */
     void take_forces(unsigned int step, double h,
                      const CornerGroups<dim> &groups,
                      LeapfrogEnergies &energies);
@@ -95,13 +96,11 @@ namespace nsfd
     nodes_of_groups(const LeapfrogPoints<dim> &points,
                     const CornerGroups<dim> &groups) const;
 
-    const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     const Communicator &communicator_;
     const FiniteForces<dim> &forces_;
     std::unique_ptr<LeapfrogContacts<dim>> contacts_; ///< null: none
-    State state_;          ///< what the points of the mesh are
     FrontViscosity front_; ///< of the forces that act in the step
     double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J
     double bulk_ = 0.;     ///< of the last way, which the next step takes, J

@@ -6,10 +6,9 @@
 
 namespace nsfd
 {
-  template <int dim>
-  std::vector<double> ObstacleMotion<dim>::initial_shifts() const
+  std::vector<double> initial_shifts(const SceneInput &input)
   {
-    const auto &obstacles = input_.obstacles;
+    const auto &obstacles = input.obstacles;
     const bool moves =
         std::any_of(obstacles.begin(), obstacles.end(),
                     [](const auto &obstacle) { return obstacle.moves(); });

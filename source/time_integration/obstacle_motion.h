@@ -7,6 +7,9 @@
 
 namespace nsfd
 {
+  /** Of obstacles at t = 0, as State::obstacle_shift: empty if none moves. */
+  std::vector<double> initial_shifts(const SceneInput &input);
+
   /** Obstacles that move as the input says, and contacts with them. */
   template <int dim>
   class ObstacleMotion
@@ -17,9 +20,8 @@ namespace nsfd
     {
     }
 
-    /** At t = 0, and at the end of a step from @p old by the theta rule, as
+    /** At the end of a step from @p old by the theta rule, as
         State::obstacle_shift. */
-    std::vector<double> initial_shifts() const;
     std::vector<double> shifts(const State &old, double time_step) const;
 
     /** From H v of the bodies to that relative to the obstacles at @p time. */

@@ -1,4 +1,5 @@
 #include "make_scene.h"
+#include "two_blocks.h"
 
 #include <gtest/gtest.h>
 
@@ -302,24 +303,7 @@ end
 
   // --- joints, supports and contacts of meshes that do not match
 
-  const std::string pressed = R"(
-set dimension = 2
-set motion = large
-subsection Mesh
-  set type = bodies
-end
-subsection Body: outer
-  set type         = rectangle
-  set lower corner = 0, 0
-  set upper corner = 20 mm, 50 mm
-  set cells        = 4, 5
-end
-subsection Body: inner
-  set type         = rectangle
-  set lower corner = 0, 50 mm
-  set upper corner = 20 mm, 100 mm
-  set cells        = 3, 5
-end
+  const std::string pressed = two_blocks + R"(
 subsection Material: m
   set model         = saint-venant kirchhoff
   set Young modulus = 1 GPa

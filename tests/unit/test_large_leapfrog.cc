@@ -1,5 +1,6 @@
 #include "leapfrog_steps.h"
 #include "momenta.h"
+#include "two_blocks.h"
 
 #include "joined/finite_forces.h"
 
@@ -92,33 +93,16 @@ end
     }
 
     /** Two blocks of different meshes, one of them with a velocity. */
-    const std::string pair = R"(
-set dimension = 2
-set motion    = large
-subsection Mesh
-  set type = bodies
-end
-subsection Body: anvil
-  set type         = rectangle
-  set lower corner = 0, 0
-  set upper corner = 20 mm, 50 mm
-  set cells        = 4, 5
-end
-subsection Body: block
-  set type         = rectangle
-  set lower corner = 0, 50 mm
-  set upper corner = 20 mm, 100 mm
-  set cells        = 3, 5
-end
+    const std::string pair = test::two_blocks + R"(
 subsection Material: lower
-  set where         = anvil
+  set where         = outer
   set model         = saint-venant kirchhoff
   set Young modulus = 1 GPa
   set Poisson ratio = 0
   set density       = 1000 kg/m^3
 end
 subsection Material: upper
-  set where         = block
+  set where         = inner
   set model         = saint-venant kirchhoff
   set Young modulus = 1 GPa
   set Poisson ratio = 0
