@@ -121,8 +121,8 @@ namespace nsfd
     for (unsigned int side = 0; side < 2; ++side)
       for (std::size_t i = 0; i < points.n_points; ++i)
         if (places[side][i].body >= 0) {
-          const auto t = traction_on<dim>(stress[places[side][i].body],
-                                          &points.frame[i * dim * dim]);
+          const auto t =
+              traction_on<dim>(stress[places[side][i].body], points.axes(i));
           std::copy(t.begin(), t.end(), &traction[side][i * dim]);
         }
     mesh_.delassus.exchange({{traction[0].data(), traction[1].data()}}, dim);

@@ -50,7 +50,7 @@ namespace nsfd
   {
     for (unsigned int a = 0; a < dim; ++a)
       for (unsigned int d = 0; d < dim; ++d)
-        points_.frame[(i * dim + a) * dim + d] = frame[a][d];
+        points_.frames[(i * dim + a) * dim + d] = frame[a][d];
   }
 
   /** Slots of a body are in the order of the rows of all ranks. */
@@ -114,7 +114,8 @@ namespace nsfd
     points_.n_points = n_mesh_points_ + rows_.size();
     points_.n_owned = n_own_mesh_points_ + n_own_rows_;
     put(rest.position, points_.position, dim);
-    put(rest.frame, points_.frame, dim * dim);
+    put(rest.frames_of_points(), points_.frames, dim * dim);
+    points_.frame_of_face = false;
     put(rest.weight, points_.weight, 1);
     put(rest.face_of, points_.face_of, 1);
     for (std::size_t f = 0; f < n_mesh_faces_; ++f)

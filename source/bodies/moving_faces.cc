@@ -89,7 +89,7 @@ namespace nsfd
         for (unsigned int a = 1; a < dim; ++a) {
           Vector T;
           for (unsigned int d = 0; d < dim; ++d)
-            T[d] = rest.frame[(std::size_t(slot.point) * dim + a) * dim + d];
+            T[d] = rest.axes(slot.point)[a * dim + d];
           Vector sum;
           for (unsigned int i = 0; i < n; ++i)
             sum += (g[i] * T) * Vector(at_node<dim>(places, first + i));

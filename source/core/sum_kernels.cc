@@ -2,17 +2,12 @@
 #include "sum_kernels.h"
 
 #include "instruction_sets.h"
+#include "vector8.h"
 
 #include <cstring>
 
 namespace nsfd
 {
-  namespace
-  {
-    typedef double Vector8 __attribute__((vector_size(64)));
-    typedef double Vector8u __attribute__((vector_size(64), aligned(8)));
-  } // namespace
-
   NSFD_CLONES
   unsigned long long largest_bits(const double *x, const std::size_t n)
   {

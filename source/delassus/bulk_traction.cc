@@ -94,7 +94,7 @@ namespace nsfd
     const auto &points = delassus_.points();
     const auto &bodies = delassus_.bodies();
     const auto add = [&](const std::size_t i) {
-      const double *Q = points.frame.data() + i * dim * dim;
+      const double *Q = points.axes(i);
       double t[dim];
       // on the outward normals: n of body 1, -n of body 2, whose values are
       // scattered with the sign of the jump

@@ -160,10 +160,8 @@ namespace nsfd
       double *block = face_blocks_.data() + face_offset_[f];
       for (unsigned int p = 0; p < face.count; ++p)
         for (unsigned int q = 0; q < face.count; ++q) {
-          const double *Qp =
-              points_.frame.data() + (face.first + p) * dim * dim;
-          const double *Qq =
-              points_.frame.data() + (face.first + q) * dim * dim;
+          const double *Qp = points_.axes(face.first + p);
+          const double *Qq = points_.axes(face.first + q);
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j) {
               double value = 0.;

@@ -30,7 +30,7 @@ namespace nsfd
   void FaceTraces<dim>::to_cartesian(const double *local) const
   {
     for (std::size_t i = 0; i < points_.n_points; ++i) {
-      const double *Q = points_.frame.data() + i * dim * dim;
+      const double *Q = points_.axes(i);
       for (unsigned int c = 0; c < dim; ++c) {
         double value = 0.;
         for (unsigned int k = 0; k < dim; ++k)
@@ -44,7 +44,7 @@ namespace nsfd
   void FaceTraces<dim>::add_sides(double *local) const
   {
     for (std::size_t i = 0; i < points_.n_points; ++i) {
-      const double *Q = points_.frame.data() + i * dim * dim;
+      const double *Q = points_.axes(i);
       double jump[dim];
       for (unsigned int c = 0; c < dim; ++c)
         jump[c] = side_2_[i * dim + c] + side_1_[i * dim + c];

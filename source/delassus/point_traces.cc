@@ -61,16 +61,16 @@ namespace nsfd
         place_[i] = n++;
     for (auto &side : sides_)
       side.resize(std::size_t(n));
-    for_all_places(
-        bodies, points.n_points,
-        [&](const std::size_t b, const unsigned int slot,
-            const std::size_t point, const unsigned int s) {
-          if (wanted[point])
-            sides_[s][place_[point]] = make_trace<dim>(
-                bodies.classes[bodies.class_of[b]], slot, s == 1 ? 1. : -1.,
-                points.frame.data() + point * dim * dim,
-                first_dof + static_cast<long long>(bodies.first_dof[b]));
-        });
+    for_all_places(bodies, points.n_points,
+                   [&](const std::size_t b, const unsigned int slot,
+                       const std::size_t point, const unsigned int s) {
+                     if (wanted[point])
+                       sides_[s][place_[point]] = make_trace<dim>(
+                           bodies.classes[bodies.class_of[b]], slot,
+                           s == 1 ? 1. : -1., points.axes(point),
+                           first_dof +
+                               static_cast<long long>(bodies.first_dof[b]));
+                   });
 
     double largest = 0.;
     for (const auto &body : bodies.classes)

@@ -264,9 +264,8 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             group.frame[(((batch * group.count + q) * dim + k) * dim + c) *
                             width +
-                        lane] =
-                float(points_.frame[((first + q) * dim + k) * dim + c] * root /
-                      s[q * dim + k]);
+                        lane] = float(points_.axes(first + q)[k * dim + c] *
+                                      root / s[q * dim + k]);
     }
   }
 

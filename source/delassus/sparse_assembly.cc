@@ -294,8 +294,7 @@ namespace nsfd
       const std::size_t m = sides[s].support.size();
       H[s].assign(n_rows * m, 0.);
       for (unsigned int p = 0; m > 0 && p < f.count; ++p) {
-        const double *Q =
-            points_.frame.data() + std::size_t(f.first + p) * dim * dim;
+        const double *Q = points_.axes(f.first + p);
         const Place &place = places_[s][f.first + p];
         for (std::size_t j = 0; j < m; ++j)
           for (unsigned int c = 0; c < dim; ++c) {

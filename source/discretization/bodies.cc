@@ -81,6 +81,18 @@ namespace nsfd
   }
 
   template <int dim>
+  std::vector<double> InterfacePoints<dim>::frames_of_points() const
+  {
+    if (!frame_of_face)
+      return frames;
+    std::vector<double> all;
+    all.reserve(n_points * dim * dim);
+    for (std::size_t i = 0; i < n_points; ++i)
+      all.insert(all.end(), axes(i), axes(i) + dim * dim);
+    return all;
+  }
+
+  template <int dim>
   std::vector<char> shared_bodies(const Bodies &bodies,
                                   const InterfacePoints<dim> &points)
   {
@@ -120,6 +132,8 @@ namespace nsfd
     return order;
   }
 
+  template struct InterfacePoints<2>;
+  template struct InterfacePoints<3>;
   template std::vector<char> shared_bodies(const Bodies &,
                                            const InterfacePoints<2> &);
   template std::vector<char> shared_bodies(const Bodies &,

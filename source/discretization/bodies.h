@@ -105,8 +105,11 @@ namespace nsfd
   struct InterfacePoints {
     std::size_t n_points = 0, n_owned = 0;
     std::vector<double> position; ///< dim per point
-    std::vector<double> frame;    ///< dim x dim: rows n, t1, t2
-    std::vector<double> weight;   ///< JxW in m (2D) or m^2
+    /// dim x dim each, of points, or of faces: see axes()
+    std::vector<double> frames;
+    /// to the last bit, all points of a face have one frame
+    bool frame_of_face = false;
+    std::vector<double> weight; ///< JxW in m (2D) or m^2
     /// points of one face are consecutive
     struct Face {
       unsigned int first = 0, count = 0;
@@ -128,6 +131,15 @@ namespace nsfd
       std::vector<unsigned char> side;
     };
     std::vector<Neighbor> neighbors;
+
+    /** Of a point, dim x dim: rows n, t1, t2. */
+    const double *axes(const std::size_t point) const
+    {
+      return frames.data() +
+             (frame_of_face ? face_of[point] : point) * dim * dim;
+    }
+    /** dim x dim per point. */
+    std::vector<double> frames_of_points() const;
   };
 
   /** The bodies of this rank, class by class, in the order of their work. */

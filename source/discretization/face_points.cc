@@ -42,6 +42,7 @@ namespace nsfd
       typename InterfacePoints<dim>::Face face;
       PointOrigin origin;
       bool owned = true;
+      unsigned int found = 0; ///< as which one
     };
 
     /** Goes through the faces of the cells of this rank. */
@@ -58,6 +59,7 @@ namespace nsfd
                     const SceneInput &input, CellSet set);
 
       using Frame = std::array<Tensor<1, dim>, dim>;
+      static constexpr unsigned int n_axes = dim * dim;
 
       std::vector<NewFace<dim>> faces;
       InterfacePoints<dim> points; ///< theirs: positions, frames and weights
@@ -70,6 +72,7 @@ namespace nsfd
     private:
       NewFace<dim> make_face(const Cell &cell, unsigned int face_no,
                              PointOrigin origin, const Frame *frame = nullptr);
+      void add_frames(const std::vector<double> &frames);
       void add_boundary(const Cell &cell, unsigned int face_no);
       bool is_inner(const Cell &cell, const Cell &neighbor) const;
       void add_interior(const Cell &cell, unsigned int face_no);
@@ -101,6 +104,7 @@ namespace nsfd
           input_(input), shares_(input, groups, materials),
           body_of_(bodies_of_cells(triangulation, set))
     {
+      points.frame_of_face = true; // until one has several
       for (const auto &cell : cells_of(triangulation, set)) {
         if (shares_.any())
           springs_inside.push_back(shares_.inside(cell));
@@ -139,6 +143,7 @@ namespace nsfd
       result.face.first = unsigned(points.n_points);
       result.face.count = quadrature.size();
       points.n_points += quadrature.size();
+      std::vector<double> frames;
       for (unsigned int q = 0; q < quadrature.size(); ++q) {
         const auto xi = quadrature.point(q);
         Tensor<1, dim> n = geometry.normal(xi);
@@ -150,10 +155,34 @@ namespace nsfd
           points.position.push_back(position[c]);
         for (const auto &axis : axes)
           for (unsigned int c = 0; c < dim; ++c)
-            points.frame.push_back(axis[c]);
+            frames.push_back(axis[c]);
         points.weight.push_back(measure * quadrature.weight(q));
       }
+      add_frames(frames);
       return result;
+    }
+
+    /** Of the points of the next face. */
+    template <int dim>
+    void FaceCollector<dim>::add_frames(const std::vector<double> &frames)
+    {
+      const auto one = frames.begin() + n_axes;
+      bool same = true;
+      for (auto frame = one; same && frame != frames.end(); frame += n_axes)
+        same = std::equal(frames.begin(), one, frame);
+      if (points.frame_of_face && !same) {
+        std::vector<double> of_faces;
+        of_faces.swap(points.frames);
+        auto frame = of_faces.begin();
+        for (const auto &face : faces) {
+          for (unsigned int q = 0; q < face.face.count; ++q)
+            points.frames.insert(points.frames.end(), frame, frame + n_axes);
+          frame += n_axes;
+        }
+        points.frame_of_face = false;
+      }
+      points.frames.insert(points.frames.end(), frames.begin(),
+                           points.frame_of_face ? one : frames.end());
     }
 
     template <int dim>
@@ -344,6 +373,8 @@ namespace nsfd
     InterfacePoints<dim> owned_first(std::vector<NewFace<dim>> &faces,
                                      InterfacePoints<dim> &&found)
     {
+      for (unsigned int f = 0; f < faces.size(); ++f)
+        faces[f].found = f;
       const auto others =
           std::stable_partition(faces.begin(), faces.end(),
                                 [](const auto &face) { return face.owned; });
@@ -351,18 +382,22 @@ namespace nsfd
       points.n_points = found.n_points;
       // one after the other: there is never more than one of them twice
       const auto move = [&](std::vector<double> &from, const unsigned int width,
-                            std::vector<double> &to) {
+                            const bool of_faces, std::vector<double> &to) {
         to.reserve(from.size());
         for (const auto &face : faces) {
           const auto first =
-              from.begin() + long(std::size_t(face.face.first) * width);
-          to.insert(to.end(), first, first + face.face.count * width);
+              from.begin() +
+              long(std::size_t(of_faces ? face.found : face.face.first) *
+                   width);
+          to.insert(to.end(), first,
+                    first + (of_faces ? 1 : face.face.count) * width);
         }
         from = std::vector<double>();
       };
-      move(found.position, dim, points.position);
-      move(found.frame, dim * dim, points.frame);
-      move(found.weight, 1, points.weight);
+      points.frame_of_face = found.frame_of_face;
+      move(found.position, dim, false, points.position);
+      move(found.frames, dim * dim, points.frame_of_face, points.frames);
+      move(found.weight, 1, false, points.weight);
       unsigned int first = 0;
       for (auto face = faces.begin(); face != faces.end(); ++face) {
         if (face == others)

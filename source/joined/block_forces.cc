@@ -75,13 +75,13 @@ namespace nsfd
 
   template <int dim>
   std::array<double, dim>
-  BlockForces<dim>::traction(const StrengthSites &sites,
+  BlockForces<dim>::traction(const StrengthSites<dim> &sites,
                              const std::size_t site) const
   {
     const auto &weight = discretization_.points().weight;
     std::array<double, dim> result{};
-    const unsigned int first = sites.first_point[site],
-                       last = first + sites.n_points[site];
+    const unsigned int first = sites[site].first_point,
+                       last = first + sites[site].n_points;
     double length = 0.;
     for (unsigned int i = first; i < last; ++i)
       length += weight[i];
@@ -94,12 +94,17 @@ namespace nsfd
   }
 
   template <int dim>
-  void BlockForces<dim>::squared_tractions(const StrengthSites &sites,
-                                           std::vector<double> &squares) const
+  void BlockForces<dim>::squared_tractions(
+      const StrengthSites<dim> &sites,
+      typename StrengthSites<dim>::Near &near) const
   {
-    squares.resize(sites.size());
-    for (std::size_t k = 0; k < sites.size(); ++k)
-      squares[k] = sites.square(k, traction(sites, k));
+    near.site.clear();
+    near.square.clear();
+    for (unsigned int k = 0; k < sites.size(); ++k)
+      if (!sites.is_released(k)) {
+        near.site.push_back(k);
+        near.square.push_back(sites.square(k, traction(sites, k)));
+      }
   }
 
   namespace

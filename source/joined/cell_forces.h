@@ -2,50 +2,13 @@
 
 #include "corner_groups.h"
 #include "front_viscosity.h"
+#include "strength_sites.h"
 #include "viscous_forces.h"
 
 #include <memory>
 
 namespace nsfd
 {
-  /**
-   * Faces that may be released: where the mean traction of both sides is
-   * compared with a strength. A site is a face (its points are released
-   * together, the traction is averaged along it), or a point of cells of higher
-   * degree.
-   */
-  struct StrengthSites {
-    /// share of its strength from which on the traction of a site is computed
-    static constexpr double looked_at = 0.6;
-
-    std::vector<unsigned int> first_point, n_points;
-    std::vector<std::array<unsigned int, 2>> cells;
-    /// unit normal from body 1 to body 2, dim components
-    std::vector<double> normal;
-    /// of |t_T|^2 beside <t_N>_+^2, and the square of the strength, Pa^2
-    std::vector<double> shear_weight, limit;
-    /// first sites of the faces, and the end
-    std::vector<std::size_t> first_of_face;
-    /// by face: no smaller square of a traction reaches a limit, Pa^2
-    std::vector<double> least;
-
-    std::size_t size() const { return cells.size(); }
-
-    /** <t_N>_+^2 + shear_weight |t_T|^2 of a traction @p t at a site, Pa^2. */
-    template <std::size_t dim>
-    double square(const std::size_t site,
-                  const std::array<double, dim> &t) const
-    {
-      double sum = 0., pull = 0.;
-      for (std::size_t c = 0; c < dim; ++c) {
-        sum += t[c] * t[c];
-        pull += t[c] * normal[site * dim + c];
-      }
-      return (pull > 0. ? pull * pull : 0.) +
-             shear_weight[site] * (sum - pull * pull);
-    }
-  };
-
   /** Elastic forces of cells on the groups of their corners. */
   template <int dim>
   class CellForces
@@ -64,14 +27,16 @@ namespace nsfd
     corner_force(std::size_t corner, const CornerGroups<dim> &groups) const = 0;
 
     /**
-     * <t_N>_+^2 + shear_weight |t_T|^2 of the mean traction at every site, of
-     * the displacements of the last forces, Pa^2; 0 may stand where it is less
-     * than `looked_at`^2 times the limit.
+     * <t_N>_+^2 + shear_weight |t_T|^2 of the mean traction, of the
+     * displacements of the last forces, Pa^2, at all sites that are not
+     * released where it is beyond `looked_at`^2 times the limit; at others it
+     * may be 0.
      */
-    virtual void squared_tractions(const StrengthSites &sites,
-                                   std::vector<double> &squares) const = 0;
+    virtual void
+    squared_tractions(const StrengthSites<dim> &sites,
+                      typename StrengthSites<dim>::Near &near) const = 0;
     /** {sigma n} at a site in the axes x, y, z, Pa. */
-    virtual std::array<double, dim> traction(const StrengthSites &sites,
+    virtual std::array<double, dim> traction(const StrengthSites<dim> &sites,
                                              std::size_t site) const = 0;
 
     FrontViscosity &front() { return front_; }

@@ -1,9 +1,12 @@
 #include "constant_strain.h"
 
 #include "core/instruction_sets.h"
+#include "core/vector8.h"
 #include "discretization/cells.h"
 #include "linear_algebra/block_kernels.h"
 #include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
 
 namespace nsfd
 {
@@ -19,95 +22,89 @@ namespace nsfd
       return a == b ? a : dim == 2 ? 2u : a + b + 2u; // xy, xz, yz
     }
 
+    NSFD_INLINE const Vector8u &row(const double *values, const unsigned int k)
+    {
+      return reinterpret_cast<const Vector8u *>(values)[k];
+    }
+
     /** Of one block: stresses from the displacements of its corners. */
     template <int dim>
     NSFD_INLINE void strain_block(const double *cells, const unsigned int *of,
-                                  const double *q, double *stresses)
+                                  const double *q, Vector8 *stresses)
     {
-      double u[dim + 1][dim][lanes];
-      for (unsigned int l = 0; l < lanes; ++l)
-        for (unsigned int i = 0; i <= dim; ++i)
-          for (unsigned int c = 0; c < dim; ++c)
-            u[i][c][l] = q[std::size_t(of[l * (dim + 1) + i]) * dim + c];
-      double H[dim][dim][lanes];
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int l = 0; l < lanes; ++l) {
-            double sum = 0.;
-            for (unsigned int i = 1; i <= dim; ++i)
-              sum += (u[i][c][l] - u[0][c][l]) *
-                     cells[((i - 1) * dim + d) * lanes + l];
-            H[c][d][l] = sum;
-          }
-      const double *lambda = cells + (dim * dim + 1) * lanes,
-                   *mu = lambda + lanes;
-      for (unsigned int l = 0; l < lanes; ++l) {
-        double trace = 0.;
-        for (unsigned int a = 0; a < dim; ++a)
-          trace += H[a][a][l];
-        for (unsigned int a = 0; a < dim; ++a)
-          for (unsigned int b = a; b < dim; ++b)
-            stresses[component(dim, a, b) * lanes + l] =
-                mu[l] * (H[a][b][l] + H[b][a][l]) +
-                (a == b ? lambda[l] * trace : 0.);
+      Vector8 u[dim + 1][dim];
+      for (unsigned int i = 0; i <= dim; ++i) {
+        const double *at[lanes];
+        for (unsigned int l = 0; l < lanes; ++l)
+          at[l] = q + std::size_t(of[l * (dim + 1) + i]) * dim;
+        for (unsigned int c = 0; c < dim; ++c)
+          u[i][c] = Vector8{at[0][c], at[1][c], at[2][c], at[3][c],
+                            at[4][c], at[5][c], at[6][c], at[7][c]};
       }
+      Vector8 H[dim][dim];
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d) {
+          H[c][d] = (u[1][c] - u[0][c]) * row(cells, d);
+          for (unsigned int i = 2; i <= dim; ++i)
+            H[c][d] += (u[i][c] - u[0][c]) * row(cells, (i - 1) * dim + d);
+        }
+      const Vector8 lambda = row(cells, dim * dim + 1),
+                    mu = row(cells, dim * dim + 2);
+      Vector8 trace = H[0][0];
+      for (unsigned int a = 1; a < dim; ++a)
+        trace += H[a][a];
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = a; b < dim; ++b) {
+          Vector8 &sigma = stresses[component(dim, a, b)];
+          sigma = mu * (H[a][b] + H[b][a]);
+          if (a == b)
+            sigma += lambda * trace;
+        }
     }
 
-    /** tr eps of all lanes. */
+    /** tr eps. */
     template <int dim>
     NSFD_INLINE void dilatation_block(const double *cells,
-                                      const double *stresses, double *result)
+                                      const Vector8 *stresses, Vector8 &result)
     {
-      const double *lambda = cells + (dim * dim + 1) * lanes,
-                   *mu = lambda + lanes;
-      double trace[lanes] = {};
-      for (unsigned int a = 0; a < dim; ++a)
-        for (unsigned int l = 0; l < lanes; ++l)
-          trace[l] += stresses[a * lanes + l];
-      for (unsigned int l = 0; l < lanes; ++l)
-        result[l] = mu[l] > 0. ? trace[l] / (dim * lambda[l] + 2. * mu[l]) : 0.;
+      const Vector8 lambda = row(cells, dim * dim + 1),
+                    mu = row(cells, dim * dim + 2), zero = {};
+      Vector8 trace = stresses[0];
+      for (unsigned int a = 1; a < dim; ++a)
+        trace += stresses[a];
+      const Vector8 stiffness = dim * lambda + 2. * mu;
+      result = mu > 0. ? trace / (mu > 0. ? stiffness : zero + 1.) : zero;
     }
 
     /** The largest sigma : sigma of the lanes. */
     template <int dim>
-    NSFD_INLINE double peak_of_block(const double *stresses)
+    NSFD_INLINE double peak_of_block(const Vector8 *stresses)
     {
-      double square[lanes] = {};
-      for (unsigned int s = 0; s < dim * (dim + 1) / 2; ++s)
-        for (unsigned int l = 0; l < lanes; ++l)
-          square[l] += (s < dim ? 1. : 2.) * stresses[s * lanes + l] *
-                       stresses[s * lanes + l];
-      double peak = 0.;
-      for (unsigned int l = 0; l < lanes; ++l)
+      Vector8 square = stresses[0] * stresses[0];
+      for (unsigned int s = 1; s < dim * (dim + 1) / 2; ++s)
+        square += (s < dim ? 1. : 2.) * stresses[s] * stresses[s];
+      double peak = square[0];
+      for (unsigned int l = 1; l < lanes; ++l)
         peak = square[l] > peak ? square[l] : peak;
       return peak;
     }
 
     /** -volume sigma grad N_i of its corners. */
     template <int dim>
-    NSFD_INLINE void force_block(const double *cells, const double *elastic,
-                                 const double *tension, double (*F)[dim][lanes])
+    NSFD_INLINE void force_block(const double *cells, const Vector8 *sigma,
+                                 Vector8 (*F)[dim])
     {
-      const double *volume = cells + dim * dim * lanes;
-      double stresses[dim * (dim + 1) / 2 * lanes];
-      for (unsigned int s = 0; s < dim * (dim + 1) / 2; ++s)
-        for (unsigned int l = 0; l < lanes; ++l)
-          stresses[s * lanes + l] =
-              elastic[s * lanes + l] + (s < dim && tension ? tension[l] : 0.);
+      const Vector8 volume = row(cells, dim * dim);
       for (unsigned int c = 0; c < dim; ++c) {
-        for (unsigned int l = 0; l < lanes; ++l)
-          F[0][c][l] = 0.;
-        for (unsigned int i = 1; i <= dim; ++i)
-          for (unsigned int l = 0; l < lanes; ++l) {
-            double sum = 0.;
-            for (unsigned int d = 0; d < dim; ++d)
-              sum += stresses[component(dim, c < d ? c : d, c < d ? d : c) *
-                                  lanes +
-                              l] *
-                     cells[((i - 1) * dim + d) * lanes + l];
-            F[i][c][l] = -volume[l] * sum;
-            F[0][c][l] += volume[l] * sum;
-          }
+        F[0][c] = Vector8{};
+        for (unsigned int i = 1; i <= dim; ++i) {
+          Vector8 sum = sigma[component(dim, 0, c)] * row(cells, (i - 1) * dim);
+          for (unsigned int d = 1; d < dim; ++d)
+            sum += sigma[component(dim, c < d ? c : d, c < d ? d : c)] *
+                   row(cells, (i - 1) * dim + d);
+          F[i][c] = -volume * sum;
+          F[0][c] -= F[i][c];
+        }
       }
     }
 
@@ -119,11 +116,9 @@ namespace nsfd
     {
       constexpr unsigned int n_corners = dim + 1,
                              n_stresses = dim * (dim + 1) / 2;
-      double F[n_corners][dim][lanes];
       for (std::size_t first = 0; first < n_cells; first += lanes) {
         const std::size_t block = first / lanes;
         const double *mine = cells + block * per_cell<dim> * lanes;
-        double *sigma = stresses + block * n_stresses * lanes;
         const unsigned int *corners = of + first * n_corners;
         unsigned int last[n_corners * lanes];
         const auto count =
@@ -131,24 +126,25 @@ namespace nsfd
         if (count < lanes) { // corners beyond the last cell: those of it
           for (unsigned int k = 0; k < n_corners * lanes; ++k)
             last[k] = corners[k < n_corners * count ? k : k % n_corners];
-          strain_block<dim>(mine, last, q, sigma);
-        } else
-          strain_block<dim>(mine, corners, q, sigma);
-        peaks[block] = peak_of_block<dim>(sigma);
-        double tension[lanes] = {};
-        if (front) {
-          double now[lanes];
-          dilatation_block<dim>(mine, sigma, now);
-          const double *volume = mine + dim * dim * lanes;
-          if (count == lanes)
-            front->update_block<lanes>(first, now, volume);
-          else
-            for (unsigned int l = 0; l < count; ++l)
-              front->update(first + l, now[l], volume[l]);
-          for (unsigned int l = 0; l < count; ++l)
-            tension[l] = front->tension[first + l];
+          corners = last;
         }
-        force_block<dim>(mine, sigma, front ? tension : nullptr, F);
+        Vector8 sigma[n_stresses], F[n_corners][dim];
+        strain_block<dim>(mine, corners, q, sigma);
+        for (unsigned int s = 0; s < n_stresses; ++s)
+          reinterpret_cast<Vector8u *>(stresses)[block * n_stresses + s] =
+              sigma[s];
+        peaks[block] = peak_of_block<dim>(sigma);
+        if (front) {
+          Vector8 now;
+          dilatation_block<dim>(mine, sigma, now);
+          const Vector8 volume = row(mine, dim * dim);
+          Vector8 tension;
+          front->update_block(first, count, now, volume);
+          FrontViscosity::get(&front->tension[first], count, tension);
+          for (unsigned int a = 0; a < dim; ++a)
+            sigma[a] += tension;
+        }
+        force_block<dim>(mine, sigma, F);
         for (unsigned int l = 0; l < count; ++l)
           for (unsigned int i = 0; i < n_corners; ++i)
             for (unsigned int c = 0; c < dim; ++c)
@@ -171,64 +167,6 @@ namespace nsfd
                    double *peaks, double *f, FrontViscosity *front)
     {
       set_all<3>(n, cells, of, q, stresses, peaks, f, front);
-    }
-
-    template <int dim>
-    NSFD_INLINE void square_all(const StrengthSites &sites,
-                                const double *stresses, const double *peaks,
-                                double *squares)
-    {
-      constexpr unsigned int n_stresses = dim * (dim + 1) / 2;
-      constexpr double quiet =
-          StrengthSites::looked_at * StrengthSites::looked_at;
-      const double *least = sites.least.data();
-      const std::size_t n = sites.size();
-      const auto *cells = sites.cells.data();
-      const double *normals = sites.normal.data(),
-                   *weights = sites.shear_weight.data();
-      for (std::size_t k = 0; k < n; ++k) {
-        // |(sigma_1 + sigma_2) n / 2| is not above either norm's largest
-        const double peak_1 = peaks[cells[k][0] / lanes],
-                     peak_2 = peaks[cells[k][1] / lanes];
-        if ((peak_1 > peak_2 ? peak_1 : peak_2) < quiet * least[k]) {
-          squares[k] = 0.;
-          continue;
-        }
-        double sigma[n_stresses];
-        const double *one = stresses +
-                            (cells[k][0] / lanes) * n_stresses * lanes +
-                            cells[k][0] % lanes,
-                     *two = stresses +
-                            (cells[k][1] / lanes) * n_stresses * lanes +
-                            cells[k][1] % lanes;
-        for (unsigned int s = 0; s < n_stresses; ++s)
-          sigma[s] = (one[s * lanes] + two[s * lanes]) / 2.;
-        const double *n_k = normals + k * dim;
-        double square = 0., pull = 0.;
-        for (unsigned int a = 0; a < dim; ++a) {
-          double t = 0.;
-          for (unsigned int b = 0; b < dim; ++b)
-            t += sigma[component(dim, a < b ? a : b, a < b ? b : a)] * n_k[b];
-          square += t * t;
-          pull += t * n_k[a];
-        }
-        const double shear = square - pull * pull;
-        squares[k] = (pull > 0. ? pull * pull : 0.) + weights[k] * shear;
-      }
-    }
-
-    NSFD_CLONES
-    void square_plane(const StrengthSites &sites, const double *stresses,
-                      const double *peaks, double *squares)
-    {
-      square_all<2>(sites, stresses, peaks, squares);
-    }
-
-    NSFD_CLONES
-    void square_space(const StrengthSites &sites, const double *stresses,
-                      const double *peaks, double *squares)
-    {
-      square_all<3>(sites, stresses, peaks, squares);
     }
   } // namespace
 
@@ -318,27 +256,49 @@ namespace nsfd
 
   template <int dim>
   void ConstantStrainForces<dim>::squared_tractions(
-      const StrengthSites &sites, std::vector<double> &squares) const
+      const StrengthSites<dim> &sites,
+      typename StrengthSites<dim>::Near &near) const
   {
-    squares.resize(sites.size());
-    (dim == 2 ? square_plane : square_space)(sites, stresses_.data(),
-                                             peaks_.data(), squares.data());
+    static_assert(lanes == StrengthSites<dim>::cells_of_block,
+                  "bounds are of blocks of lanes");
+    // |(sigma_1 + sigma_2) n / 2| is not above either norm's largest
+    sites.find(peaks_, near);
+    for (std::size_t n = 0; n < near.site.size(); ++n) {
+      const std::size_t k = near.site[n];
+      const auto &cells = sites[k].cells;
+      const double *one = stresses_.data() +
+                          (cells[0] / lanes) * n_stresses * lanes +
+                          cells[0] % lanes,
+                   *two = stresses_.data() +
+                          (cells[1] / lanes) * n_stresses * lanes +
+                          cells[1] % lanes;
+      double sigma[n_stresses];
+      for (unsigned int s = 0; s < n_stresses; ++s)
+        sigma[s] = (one[s * lanes] + two[s * lanes]) / 2.;
+      const double *const normal = sites.normal(k);
+      std::array<double, dim> t{};
+      for (unsigned int a = 0; a < dim; ++a)
+        for (unsigned int b = 0; b < dim; ++b)
+          t[a] +=
+              sigma[component(dim, std::min(a, b), std::max(a, b))] * normal[b];
+      near.square[n] = sites.square(k, t);
+    }
   }
 
   template <int dim>
   std::array<double, dim>
-  ConstantStrainForces<dim>::traction(const StrengthSites &sites,
+  ConstantStrainForces<dim>::traction(const StrengthSites<dim> &sites,
                                       const std::size_t site) const
   {
     std::array<double, dim> result{};
-    for (const unsigned int cell : sites.cells[site]) {
+    for (const unsigned int cell : sites[site].cells) {
       const double *sigma =
           stresses_.data() + (cell / lanes) * n_stresses * lanes + cell % lanes;
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int b = 0; b < dim; ++b)
           result[a] +=
               sigma[component(dim, std::min(a, b), std::max(a, b)) * lanes] *
-              sites.normal[site * dim + b] / 2.;
+              sites.normal(site)[b] / 2.;
     }
     return result;
   }

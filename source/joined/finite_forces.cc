@@ -264,7 +264,7 @@ namespace nsfd
   template <int dim>
   auto FiniteForces<dim>::frame(const std::size_t point) const -> Matrix
   {
-    const double *rest = &discretization_.points().frame[point * dim * dim];
+    const double *rest = discretization_.points().axes(point);
     Matrix F{};
     for (const auto &[cell, slot] : sides_[point])
       if (cell >= 0) {
@@ -300,18 +300,18 @@ namespace nsfd
 
   template <int dim>
   std::array<double, dim>
-  FiniteForces<dim>::traction(const StrengthSites &sites,
+  FiniteForces<dim>::traction(const StrengthSites<dim> &sites,
                               const std::size_t site) const
   {
     const auto &points = discretization_.points();
-    const unsigned int first = sites.first_point[site],
-                       last = first + sites.n_points[site];
+    const unsigned int first = sites[site].first_point,
+                       last = first + sites[site].n_points;
     double length = 0.;
     for (unsigned int i = first; i < last; ++i)
       length += points.weight[i];
     std::array<double, dim> result{};
     for (unsigned int i = first; i < last; ++i) {
-      const double *rest = &points.frame[std::size_t(i) * dim * dim];
+      const double *rest = points.axes(i);
       std::array<double, dim> t{};
       for (const auto &[cell, slot] : sides_[i]) {
         const Matrix P =
@@ -335,25 +335,28 @@ namespace nsfd
   }
 
   template <int dim>
-  void FiniteForces<dim>::squared_tractions(const StrengthSites &sites,
-                                            std::vector<double> &squares) const
+  void FiniteForces<dim>::squared_tractions(
+      const StrengthSites<dim> &sites,
+      typename StrengthSites<dim>::Near &near) const
   {
-    constexpr double quiet =
-        StrengthSites::looked_at * StrengthSites::looked_at;
-    const auto peak = [this](const std::size_t cell) {
+    constexpr unsigned int width = StrengthSites<dim>::cells_of_block;
+    constexpr double quiet = sites.looked_at * sites.looked_at;
+    const auto bound = [this](const std::size_t cell) {
       const bool constant = tables(cell).slot_gradients.empty();
       return peaks_[cell] *
              (constant ? 1. : beyond_quadrature * beyond_quadrature);
     };
-    squares.resize(sites.size());
-    for (std::size_t face = 0; face + 1 < sites.first_of_face.size(); ++face)
-      for (std::size_t k = sites.first_of_face[face];
-           k < sites.first_of_face[face + 1]; ++k)
-        squares[k] =
-            std::max(peak(sites.cells[k][0]), peak(sites.cells[k][1])) <
-                    quiet * sites.least[face]
-                ? 0.
-                : sites.square(k, traction(sites, k));
+    std::vector<double> bounds((peaks_.size() + width - 1) / width, 0.);
+    for (std::size_t cell = 0; cell < peaks_.size(); ++cell)
+      bounds[cell / width] = std::max(bounds[cell / width], bound(cell));
+    sites.find(bounds, near);
+    for (std::size_t n = 0; n < near.site.size(); ++n) {
+      const std::size_t k = near.site[n];
+      const auto &cells = sites[k].cells;
+      if (!(std::max(bound(cells[0]), bound(cells[1])) <
+            quiet * sites[k].least))
+        near.square[n] = sites.square(k, traction(sites, k));
+    }
   }
 
   template <int dim>

@@ -28,11 +28,12 @@ namespace nsfd
     std::array<double, dim>
     corner_force(std::size_t corner,
                  const CornerGroups<dim> &groups) const override;
-    void squared_tractions(const StrengthSites &sites,
-                           std::vector<double> &squares) const override;
+    void
+    squared_tractions(const StrengthSites<dim> &sites,
+                      typename StrengthSites<dim>::Near &near) const override;
     /** Turned back: its parts along the axes of the frame at rest are those
         along the axes of frame(). */
-    std::array<double, dim> traction(const StrengthSites &sites,
+    std::array<double, dim> traction(const StrengthSites<dim> &sites,
                                      std::size_t site) const override;
 
     // all of the last forces

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace nsfd
 {
@@ -36,34 +35,46 @@ namespace nsfd
       return result;
     }
 
-    /** Sums over the neighbours of a cell, and psi eta of cells from them. */
+    /** psi eta of a cell from sums over its neighbours, of jumps of the rate
+        and of sizes. */
+    NSFD_INLINE double viscosity_of(const double jump, const double size,
+                                    const double eta)
+    {
+      const double ratio = jump / (size > 0. ? size : 1.),
+                   of_sharp = std::abs(size > 0. ? ratio : 0.) / sharp,
+                   share = of_sharp < 1. ? of_sharp : 1.;
+      return eta * share * share * share;
+    }
+
+    /** Of cells that have all @p n_slots neighbours; numbers for others. */
     NSFD_CLONES
-    void set_viscosities(const std::size_t n, const std::size_t *first_neighbor,
+    void set_viscosities(const std::size_t n, const unsigned int n_slots,
                          const unsigned int *neighbor, const double *rate,
                          const double *eta, double *viscosity)
     {
-      constexpr std::size_t width = 64;
-      double jump[width], size[width];
-      for (std::size_t first = 0; first < n; first += width) {
-        const std::size_t count = std::min(width, n - first);
-        for (std::size_t l = 0; l < count; ++l) {
-          const double mine = rate[first + l], my_size = std::abs(mine);
-          double of_jump = 0., of_size = 0.;
-          for (std::size_t k = first_neighbor[first + l];
-               k < first_neighbor[first + l + 1]; ++k) {
-            const double other = rate[neighbor[k]];
-            of_jump += other - mine;
-            of_size += std::abs(other) + my_size;
-          }
-          jump[l] = of_jump;
-          size[l] = of_size;
+      for (std::size_t first = 0; first + lanes <= n;
+           first += lanes, neighbor += n_slots * lanes) {
+        const auto vector = [](const double *x)
+                                NSFD_INLINED -> const Vector8u & {
+          return *reinterpret_cast<const Vector8u *>(x);
+        };
+        const Vector8 mine = vector(rate + first), zero = {}, one = zero + 1.;
+        const Vector8 my_size = mine < 0. ? -mine : mine;
+        Vector8 jump = {}, size = {};
+        for (unsigned int k = 0; k < n_slots; ++k) {
+          const unsigned int *of = neighbor + k * lanes;
+          const Vector8 other = {rate[of[0]], rate[of[1]], rate[of[2]],
+                                 rate[of[3]], rate[of[4]], rate[of[5]],
+                                 rate[of[6]], rate[of[7]]};
+          jump += other - mine;
+          size += (other < 0. ? -other : other) + my_size;
         }
-        for (std::size_t l = 0; l < count; ++l) {
-          const double ratio = jump[l] / (size[l] > 0. ? size[l] : 1.),
-                       of_sharp = std::abs(size[l] > 0. ? ratio : 0.) / sharp,
-                       share = of_sharp < 1. ? of_sharp : 1.;
-          viscosity[first + l] = eta[first + l] * share * share * share;
-        }
+        const Vector8 ratio =
+            size > 0. ? jump / (size > 0. ? size : one) : zero;
+        const Vector8 of_sharp = (ratio < 0. ? -ratio : ratio) / sharp;
+        const Vector8 share = of_sharp < 1. ? of_sharp : one;
+        *reinterpret_cast<Vector8u *>(viscosity + first) =
+            vector(eta + first) * share * share * share;
       }
     }
   } // namespace
@@ -97,64 +108,67 @@ namespace nsfd
       if (!faces[f].boundary && deforms(faces[f].bodies[0]) &&
           deforms(faces[f].bodies[1]))
         pairs.push_back(f);
-    first_neighbor_.assign(n + 1, 0);
+    std::vector<double> n_neighbors(n, 0.);
     for (const std::size_t f : pairs)
       for (const int b : faces[f].bodies)
-        ++first_neighbor_[std::size_t(b) + 1];
-    std::partial_sum(first_neighbor_.begin(), first_neighbor_.end(),
-                     first_neighbor_.begin());
-    neighbor_.resize(first_neighbor_.back());
+        ++n_neighbors[std::size_t(b)];
+    for (const double here : n_neighbors)
+      n_slots_ = std::max(n_slots_, unsigned(here));
+    neighbor_.resize((n + lanes - 1) / lanes * lanes * n_slots_);
+    for (std::size_t b = 0; b < n; ++b)
+      for (unsigned int k = 0; k < n_slots_; ++k)
+        neighbor_[slot(b, k)] = unsigned(b);
     const auto larger = larger_cells(discretization);
     if (!larger.empty())
       weight_.assign(neighbor_.size(), 1.);
-    auto next = first_neighbor_;
+    std::vector<std::uint8_t> next(n, 0);
     for (const std::size_t f : pairs)
       for (unsigned int side = 0; side < 2; ++side) {
         const auto &pair = faces[f].bodies;
-        const std::size_t k = next[std::size_t(pair[side])]++;
+        const std::size_t b = std::size_t(pair[side]), k = slot(b, next[b]++);
         neighbor_[k] = unsigned(pair[1 - side]);
         // a rate that is linear in space has no second difference: centres
         // are 3/2 of the smaller cell apart, 3/4 of the larger one
         if (!larger.empty() && larger[f])
           weight_[k] = side == 0 ? 2. / 3. : 4. / 3. / (1u << (dim - 1));
       }
-    // ghosts have neighbours that are not here
-    std::vector<double> n_neighbors;
     for (std::size_t b = 0; b < n; ++b)
-      n_neighbors.push_back(
-          double(first_neighbor_[b + 1] - first_neighbor_[b]));
+      if (n_neighbors[b] < n_slots_ || b >= n / lanes * lanes ||
+          !weight_.empty())
+        others_.push_back(unsigned(b));
+    // ghosts have neighbours that are not here
     if (ghosts_)
       ghosts_->fetch(n_neighbors);
     for (std::size_t b = 0; b < n; ++b)
-      if (n_neighbors[b] == 1. && first_neighbor_[b + 1] > first_neighbor_[b])
+      if (n_neighbors[b] == 1. && next[b] > 0)
         ends_.push_back(unsigned(b));
   }
 
-  /** Beside cells of other sizes. */
+  /** At the boundary, and beside cells of other sizes. */
   void FrontViscosity::set_viscosity(const std::size_t cell)
   {
     double jump = 0., size = 0.;
-    for (std::size_t k = first_neighbor_[cell]; k < first_neighbor_[cell + 1];
-         ++k) {
-      const double other = rate[neighbor_[k]];
-      jump += weight_[k] * (other - rate[cell]);
-      size += weight_[k] * (std::abs(other) + std::abs(rate[cell]));
+    for (unsigned int i = 0; i < n_slots_; ++i) {
+      const std::size_t k = slot(cell, i);
+      if (neighbor_[k] == cell)
+        break; // there are no more
+      const double other = rate[neighbor_[k]],
+                   weight = weight_.empty() ? 1. : weight_[k];
+      jump += weight * (other - rate[cell]);
+      size += weight * (std::abs(other) + std::abs(rate[cell]));
     }
-    const double ratio = size > 0. ? jump / size : 0.;
-    const double share = std::min(1., std::abs(ratio) / sharp);
-    viscosity[cell] = eta_[cell] * share * share * share;
+    viscosity[cell] = viscosity_of(jump, size, eta_[cell]);
   }
 
   FrontViscosity::Powers
   FrontViscosity::finish(const Communicator &communicator)
   {
     const std::size_t n = eta_.size();
-    if (weight_.empty() && n > 0)
-      set_viscosities(n, first_neighbor_.data(), neighbor_.data(), rate.data(),
-                      eta_.data(), viscosity.data());
-    else
-      for (std::size_t b = 0; b < n; ++b)
-        set_viscosity(b);
+    if (weight_.empty())
+      set_viscosities(n, n_slots_, neighbor_.data(), rate.data(), eta_.data(),
+                      viscosity.data());
+    for (const unsigned int b : others_)
+      set_viscosity(b);
     if (ghosts_ && acts_) {
       ghosts_->fetch(viscosity);
       for (std::size_t b = 0; b < n; ++b)
@@ -163,7 +177,7 @@ namespace nsfd
     }
     // at an end there is no second difference
     for (const unsigned int b : ends_) {
-      const unsigned int other = neighbor_[first_neighbor_[b]];
+      const unsigned int other = neighbor_[slot(b, 0)];
       viscosity[b] =
           eta_[other] > 0. ? viscosity[other] / eta_[other] * eta_[b] : 0.;
     }

@@ -4,7 +4,9 @@
 
 #include "core/communicator.h"
 #include "core/instruction_sets.h"
+#include "core/vector8.h"
 #include "discretization/discretization.h"
+#include "linear_algebra/block_kernels.h"
 
 #include <algorithm>
 #include <limits>
@@ -72,59 +74,61 @@ namespace nsfd
      * m^3 or m^2. */
     void update(const std::size_t cell, const double now, const double volume)
     {
-      update_block<1>(cell, &now, &volume);
+      update_block(cell, 1, now, volume);
     }
 
-    /** The same of @p n cells one after the other. */
-    template <unsigned int n>
-    NSFD_INLINE void update_block(const std::size_t first, const double *now,
-                                  const double *volume)
+    /** The same of @p count cells one after the other, 8 at most, of Vector8: a
+     * number of a cell does not depend on its place among them. */
+    template <typename Number>
+    NSFD_INLINE void update_block(const std::size_t first,
+                                  const unsigned int count, const Number &now,
+                                  const Number &volume)
     {
       if (holds) {
-        std::copy_n(now, n, &dilatation[first]);
+        put(now, count, &dilatation[first]);
         return;
       }
-      // All in arrays that nothing else can be: loops over lanes. At the start
-      // there was no step: as after an endless one the rate is 0.
-      const double h = h_ > 0. ? h_ : std::numeric_limits<double>::infinity(),
-                   kick = kick_, last_step = h_;
-      double V[n], x[n], p[n], d[n], before[n], last[n], limit[n];
-      for (unsigned int l = 0; l < n; ++l) {
-        V[l] = volume[l];
-        x[l] = now[l];
-        p[l] = tension[first + l];
-        d[l] = dilatation[first + l];
-        before[l] = present_viscosity[first + l];
-        last[l] = rate[first + l];
-        limit[l] = viscosity[first + l];
+      // at the start there was no step: as after an endless one the rate is 0
+      const double h = h_ > 0. ? h_ : std::numeric_limits<double>::infinity();
+      Number p, d, before, last, next;
+      get(&tension[first], count, p);
+      get(&dilatation[first], count, d);
+      get(&present_viscosity[first], count, before);
+      get(&rate[first], count, last);
+      get(&viscosity[first], count, next);
+      const Number D = (now - d) / h, zero = {};
+      before *= kick_;
+      const Number r = D != 0. ? last / (D != 0. ? D : zero + 1.) : zero;
+      const Number least = before / -h * r * (2. + r);
+      next = next < least ? least : next;
+      const Number sum = last + D;
+      const std::size_t n = eta_.size();
+      put(volume * p * D, count, &terms_[first]);
+      put(volume * next * D * D, count, &terms_[n + first]);
+      put(volume * next * D * now, count, &terms_[2 * n + first]);
+      put(volume / 4. * (before * sum * sum - (before - h_ * next) * D * D),
+          count, &terms_[3 * n + first]);
+      put(next, count, &present_viscosity[first]);
+      put(next * D, count, &tension[first]);
+      put(now, count, &dilatation[first]);
+      put(D, count, &rate[first]);
+    }
+
+    NSFD_INLINE static void get(const double *from, unsigned int, double &to)
+    {
+      to = *from;
+    }
+    /** @p count numbers, and zeros. */
+    NSFD_INLINE static void get(const double *from, const unsigned int count,
+                                Vector8 &to)
+    {
+      if (count == lanes) {
+        to = *reinterpret_cast<const Vector8u *>(from);
+        return;
       }
-      double D[n], next[n], terms[4][n];
-      for (unsigned int l = 0; l < n; ++l) {
-        D[l] = (x[l] - d[l]) / h;
-        before[l] = kick * before[l];
-      }
-      for (unsigned int l = 0; l < n; ++l) {
-        const double ratio = last[l] / (D[l] != 0. ? D[l] : 1.);
-        const double r = D[l] != 0. ? ratio : 0.;
-        const double least = -before[l] / h * r * (2. + r);
-        next[l] = limit[l] < least ? least : limit[l];
-      }
-      for (unsigned int l = 0; l < n; ++l) {
-        const double sum = last[l] + D[l];
-        terms[0][l] = V[l] * p[l] * D[l];
-        terms[1][l] = V[l] * next[l] * D[l] * D[l];
-        terms[2][l] = V[l] * next[l] * D[l] * x[l];
-        terms[3][l] = V[l] / 4. *
-                      (before[l] * sum * sum -
-                       (before[l] - last_step * next[l]) * D[l] * D[l]);
-        p[l] = next[l] * D[l];
-      }
-      for (unsigned int row = 0; row < 4; ++row)
-        std::copy_n(terms[row], n, &terms_[row * eta_.size() + first]);
-      std::copy_n(next, n, &present_viscosity[first]);
-      std::copy_n(p, n, &tension[first]);
-      std::copy_n(x, n, &dilatation[first]);
-      std::copy_n(D, n, &rate[first]);
+      to = Vector8{};
+      for (unsigned int l = 0; l < count; ++l)
+        to[l] = from[l];
     }
 
     /** Tensions stay what they are: those of a checkpoint. */
@@ -144,15 +148,35 @@ namespace nsfd
     void serialize(Archive &archive, const std::vector<std::size_t> &first_dof);
 
   private:
+    NSFD_INLINE static void put(const double from, unsigned int, double *to)
+    {
+      *to = from;
+    }
+    NSFD_INLINE static void put(const Vector8 &from, const unsigned int count,
+                                double *to)
+    {
+      if (count == lanes) {
+        *reinterpret_cast<Vector8u *>(to) = from;
+        return;
+      }
+      for (unsigned int l = 0; l < count; ++l)
+        to[l] = from[l];
+    }
     void set_viscosity(std::size_t cell);
+    /** Of neighbour @p k of a cell: those of `lanes` cells side by side. */
+    std::size_t slot(const std::size_t cell, const unsigned int k) const
+    {
+      return (cell / lanes * n_slots_ + k) * lanes + cell % lanes;
+    }
 
     bool acts_ = false;
     const GhostCells *ghosts_ = nullptr; ///< null: there are none
     std::vector<double> eta_;            ///< Pa s
-    std::vector<std::size_t> first_neighbor_;
-    std::vector<unsigned int> neighbor_;
-    std::vector<double> weight_;     ///< beside it; empty: all cells are alike
-    std::vector<unsigned int> ends_; ///< cells with one neighbour
+    unsigned int n_slots_ = 0;           ///< the most neighbours of a cell
+    std::vector<unsigned int> neighbor_; ///< see slot(); itself: none
+    std::vector<double> weight_; ///< beside it; empty: all cells are alike
+    std::vector<unsigned int> others_; ///< cells that have their own sums
+    std::vector<unsigned int> ends_;   ///< cells with one neighbour
     std::vector<double> terms_;
     double h_ = 0., kick_ = 0.;
   };

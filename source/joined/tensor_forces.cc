@@ -318,18 +318,18 @@ namespace nsfd
 
   template <int dim>
   std::array<double, dim>
-  TensorForces<dim>::traction(const StrengthSites &sites,
+  TensorForces<dim>::traction(const StrengthSites<dim> &sites,
                               const std::size_t site) const
   {
     const auto &weight = discretization_.points().weight;
     std::array<double, dim> result{};
-    const unsigned int first = sites.first_point[site],
-                       last = first + sites.n_points[site];
+    const unsigned int first = sites[site].first_point,
+                       last = first + sites[site].n_points;
     double length = 0.;
     for (unsigned int i = first; i < last; ++i)
       length += weight[i];
     for (unsigned int side = 0; side < 2; ++side) {
-      const double *of_cell = tractions(sites.cells[site][side]);
+      const double *of_cell = tractions(sites[site].cells[side]);
       const double sign = side == 0 ? 0.5 : -0.5;
       for (unsigned int i = first; i < last; ++i) {
         const double share = sign * weight[i] / length;
@@ -347,20 +347,23 @@ namespace nsfd
   }
 
   template <int dim>
-  void TensorForces<dim>::squared_tractions(const StrengthSites &sites,
-                                            std::vector<double> &squares) const
+  void TensorForces<dim>::squared_tractions(
+      const StrengthSites<dim> &sites,
+      typename StrengthSites<dim>::Near &near) const
   {
-    const double quiet = sites.looked_at * sites.looked_at;
-    squares.assign(sites.size(), 0.);
-    for (std::size_t f = 0; f < sites.least.size(); ++f) {
-      const std::size_t first = sites.first_of_face[f];
-      const auto &cells = sites.cells[first];
+    constexpr unsigned int width = StrengthSites<dim>::cells_of_block;
+    constexpr double quiet = sites.looked_at * sites.looked_at;
+    std::vector<double> bounds((bound_.size() + width - 1) / width, 0.);
+    for (std::size_t cell = 0; cell < bound_.size(); ++cell)
+      bounds[cell / width] =
+          std::max(bounds[cell / width], bound_[cell] * bound_[cell]);
+    sites.find(bounds, near);
+    for (std::size_t n = 0; n < near.site.size(); ++n) {
+      const std::size_t k = near.site[n];
+      const auto &cells = sites[k].cells;
       const double largest = (bound_[cells[0]] + bound_[cells[1]]) / 2.;
-      if (!(largest * largest >= quiet * sites.least[f]))
-        continue;
-      for (std::size_t k = first; k < sites.first_of_face[f + 1]; ++k)
-        if (std::isfinite(sites.limit[k])) // it is not released
-          squares[k] = sites.square(k, traction(sites, k));
+      if (largest * largest >= quiet * sites[k].least)
+        near.square[n] = sites.square(k, traction(sites, k));
     }
   }
 

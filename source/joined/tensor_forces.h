@@ -31,9 +31,10 @@ namespace nsfd
     std::array<double, dim>
     corner_force(std::size_t corner,
                  const CornerGroups<dim> &groups) const override;
-    void squared_tractions(const StrengthSites &sites,
-                           std::vector<double> &squares) const override;
-    std::array<double, dim> traction(const StrengthSites &sites,
+    void
+    squared_tractions(const StrengthSites<dim> &sites,
+                      typename StrengthSites<dim>::Near &near) const override;
+    std::array<double, dim> traction(const StrengthSites<dim> &sites,
                                      std::size_t site) const override;
 
     /** All cells are such. */

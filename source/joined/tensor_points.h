@@ -4,6 +4,7 @@
 #include "tensor_kernels.h"
 
 #include "core/instruction_sets.h"
+#include "core/vector8.h"
 
 #include <cmath>
 
@@ -11,7 +12,6 @@ namespace nsfd
 {
   namespace
   {
-    typedef double Vector8 __attribute__((vector_size(64)));
     static_assert(lanes == 8, "one vector for all cells of a block");
 
     /** N nodes per direction, 0: what the line says, up to 9. */

@@ -3,15 +3,10 @@
 #include "block_kernels.h"
 
 #include "core/instruction_sets.h"
+#include "core/vector8.h"
 
 namespace nsfd
 {
-  namespace
-  {
-    typedef double Vector8 __attribute__((vector_size(64)));
-    typedef double Vector8u __attribute__((vector_size(64), aligned(8)));
-  } // namespace
-
   NSFD_CLONES
   void multiply_lanes(const double *A, const unsigned int rows,
                       const unsigned int cols, const double *X, double *Y)

@@ -18,7 +18,7 @@ namespace nsfd
   pieces_of(const InterfacePoints<dim> &points,
             const typename InterfacePoints<dim>::Face &face)
   {
-    const double *Q = &points.frame[face.first * dim * dim];
+    const double *Q = points.axes(face.first);
     std::vector<BrokenPoint> pieces(face.count);
     std::vector<double> place(face.count, 0.); // along the first tangent
     double length = 0., middle = 0.;

@@ -136,7 +136,7 @@ namespace nsfd
       Values values_at(const std::size_t i) const
       {
         const auto &points = discretization_.points();
-        const double *frame = &points.frame[i * dim * dim];
+        const double *frame = points.axes(i);
         const double *u = &state_.jump[i * dim], *P = &state_.impulse[i * dim];
         Vector3 jump{}, traction{};
         const bool bonded = state_.kind[i] == PointKind::bonded;

@@ -182,7 +182,9 @@ namespace nsfd
   template <int dim>
   void FragmentMotion<dim>::mesh_changed(const State &start)
   {
-    first_beta_ = start.beta;
+    held_at_start_.clear();
+    for (const double beta : start.beta)
+      held_at_start_.push_back(beta >= 1e-3);
     masses_.clear();
     for (const auto &body : discretization_.bodies().classes) {
       auto &mass = masses_.emplace_back();
@@ -282,9 +284,10 @@ namespace nsfd
     return body;
   }
 
+  /** Made when they are asked for: all at once are more than the mesh. */
   template <int dim>
-  auto FragmentMotion<dim>::bodies(const State &state) const
-      -> std::vector<Body>
+  template <typename Visit>
+  void FragmentMotion<dim>::for_bodies(const State &state, Visit &&visit) const
   {
     // where no cell is rigid unknowns are values at nodes
     const bool has_rigid =
@@ -296,29 +299,25 @@ namespace nsfd
     }
     const auto &displacement = has_rigid ? nodal[0] : state.displacement;
     const auto &velocity = has_rigid ? nodal[1] : state.velocity;
-    std::vector<Body> result;
-    if (!moving_)
-      result.reserve(discretization_.bodies().size());
     std::vector<char> seen(moving_ ? moving_->layout().size() : 0, 0);
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
       if (!moving_ ||
           !moving_->layout()[moving_->layout().body_of_cell(c)].is_rigid()) {
-        result.push_back(cell_body(c, displacement, velocity));
+        visit(cell_body(c, displacement, velocity));
         continue;
       }
       const unsigned int b = moving_->layout().body_of_cell(c);
       if (seen[b])
         continue;
       seen[b] = 1;
-      result.push_back(rigid_body(b, state));
-      result.back().cell = c;
+      Body body = rigid_body(b, state);
+      body.cell = c;
+      visit(body);
     }
-    return result;
   }
 
   template <int dim>
   auto FragmentMotion<dim>::amounts(const State &state,
-                                    const std::vector<Body> &bodies,
                                     const Pieces &pieces) const
       -> std::vector<Amounts>
   {
@@ -328,7 +327,7 @@ namespace nsfd
       ++sum.cells;
       sum.volume.add(discretization_.cells().volume(c));
     }
-    for (const Body &body : bodies) {
+    for_bodies(state, [&](const Body &body) {
       Amounts &sum = sums[pieces.of_cell(body.cell)];
       sum.mass.add(body.mass);
       sum.kinetic.add(body.kinetic);
@@ -336,11 +335,11 @@ namespace nsfd
         sum.moment[c].add(body.mass * body.centre[c]);
         sum.momentum[c].add(body.mass * body.velocity[c]);
       }
-    }
+    });
     const auto &points = discretization_.points();
     for (const auto &face : points.faces)
       for (unsigned int i = face.first; i < face.first + face.count; ++i)
-        if (!face.boundary && state.beta[i] < 1e-3 && first_beta_[i] >= 1e-3)
+        if (!face.boundary && state.beta[i] < 1e-3 && held_at_start_[i])
           for (const int side : face.bodies)
             if (side >= 0)
               sums[pieces.of_cell(unsigned(side))].surface.add(
@@ -354,10 +353,8 @@ namespace nsfd
                                const Fragments<dim> &fragments) const
   {
     const Pieces pieces(fragments.number_bodies());
-    const auto own = bodies(state);
     std::vector<int> n_per_rank;
-    const auto all =
-        gather(communicator_, amounts(state, own, pieces), n_per_rank);
+    const auto all = gather(communicator_, amounts(state, pieces), n_per_rank);
     const auto sums = joined(all);
     std::vector<FragmentRecord> records;
     for (const Amounts &sum : sums) {
@@ -379,10 +376,10 @@ namespace nsfd
           {records[piece.number].centre, records[piece.number].velocity});
     places = scatter(communicator_, places, n_per_rank);
     auto motions = pieces.template make<Motions>();
-    for (const Body &body : own) {
+    for_bodies(state, [&](const Body &body) {
       const unsigned int piece = pieces.of_cell(body.cell);
       motions[piece].add(body, places[piece]);
-    }
+    });
     for (const Motions &motion : joined(gather(communicator_, motions)))
       motion.finish(records[motion.number]);
     return records;

@@ -48,9 +48,9 @@ namespace nsfd
     Body cell_body(unsigned int cell, const std::vector<double> &displacement,
                    const std::vector<double> &velocity) const;
     Body rigid_body(std::size_t body, const State &state) const;
-    std::vector<Body> bodies(const State &state) const;
+    template <typename Visit>
+    void for_bodies(const State &state, Visit &&visit) const;
     std::vector<Amounts> amounts(const State &state,
-                                 const std::vector<Body> &bodies,
                                  const Pieces &pieces) const;
 
     const Discretization<dim> &discretization_;
@@ -58,6 +58,6 @@ namespace nsfd
     const MovingBodies<dim> *moving_;
     std::vector<std::vector<double>> masses_; ///< by class, node x node;
                                               ///< none where cells differ()
-    std::vector<double> first_beta_;
+    std::vector<bool> held_at_start_;         ///< by point: not broken
   };
 } // namespace nsfd

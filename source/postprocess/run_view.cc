@@ -67,7 +67,7 @@ namespace nsfd
   template <int dim>
   RunView::PointState RunViewOf<dim>::at(const std::size_t i) const
   {
-    const double *frame = &discretization_.points().frame[i * dim * dim];
+    const double *frame = discretization_.points().axes(i);
     const State &state = *motion_.state();
     PointState result;
     for (unsigned int r = 0; r < dim; ++r)
@@ -332,7 +332,7 @@ namespace nsfd
         SidePoint side;
         for (unsigned int c = 0; c < dim; ++c) {
           side.position[c] = points.position[i * dim + c];
-          side.normal[c] = points.frame[i * dim * dim + c];
+          side.normal[c] = points.axes(i)[c];
         }
         side.sign = bodies.slot_sign[s];
         side.area = points.weight[i];
@@ -352,7 +352,7 @@ namespace nsfd
           if (previous && motion_.row().time_step > 0.)
             u = bulk * u + (1. - bulk) * previous->jump[i * dim + r];
           for (unsigned int c = 0; c < dim; ++c)
-            side.jump[c] += u * points.frame[(i * dim + r) * dim + c];
+            side.jump[c] += u * points.axes(i)[r * dim + c];
         }
         side.kind = state.kind[i];
         side.beta = state.beta[i];

@@ -93,7 +93,7 @@ namespace nsfd
   RunView::Vector ViewedMotion<dim>::traction(const std::size_t i) const
   {
     const auto &points = discretization_.points();
-    const double *frame = &points.frame[i * dim * dim];
+    const double *frame = points.axes(i);
     RunView::Vector result{};
     const auto add = [&](const double factor, const double *local) {
       for (unsigned int r = 0; r < dim; ++r)

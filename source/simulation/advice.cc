@@ -106,7 +106,7 @@ namespace nsfd
         const double share = points.weight[i] / volume;
         terms[i] = share;
         for (unsigned int a = 0; a < dim; ++a) {
-          const double n = points.frame[i * dim * dim + a], square = n * n;
+          const double n = points.axes(i)[a], square = n * n;
           terms[(1 + a) * points.n_owned + i] = share * square * square;
           terms[(1 + dim + a) * points.n_owned + i] =
               share * square * (1. - square);

@@ -13,7 +13,7 @@ namespace nsfd
                                     const State &state)
   {
     for (const unsigned int i : added) {
-      const double *frame = &points.frame[std::size_t(i) * dim * dim];
+      const double *frame = points.axes(i);
       chains_.add(i, frame, faces.factors(i), state);
       const std::size_t a = chains_.size() - 1;
       const OneStepProblem<dim> &p = chains_.problem;

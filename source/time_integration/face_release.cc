@@ -24,15 +24,18 @@ namespace nsfd
   FaceRelease<dim>::FaceRelease(const Discretization<dim> &discretization,
                                 const OneStepProblem<dim> &all,
                                 const HangingNodes<dim> &hanging)
-      : discretization_(discretization)
+      : discretization_(discretization), sites_(discretization.points())
   {
     const auto &points = discretization.points();
     const auto &input = discretization.input();
     const Cells<dim> &cells = discretization.cells();
-    site_of_.assign(points.n_points, -1);
-    if (input.discretization.degree == 1)
-      reserve(points.faces.size()); // a site per face
-    for (const auto &face : points.faces) {
+    first_site_.assign(points.faces.size(), -1);
+    if (input.discretization.degree == 1) { // a site per face
+      sites_.reserve(points.faces.size());
+      factors_.reserve(points.faces.size());
+    }
+    for (std::size_t f = 0; f < points.faces.size(); ++f) {
+      const auto &face = points.faces[f];
       const PointOrigin &origin = discretization.origins()[face.first];
       if (origin.kind != PointOrigin::Kind::interface ||
           !input.interfaces[origin.block].law)
@@ -42,13 +45,21 @@ namespace nsfd
       double sides = 2.;
       for (const int b : face.bodies)
         sides -= cells.body_class(std::size_t(b)).undeformed;
+      const double share = sides > 0. ? 2. / sides : 1.;
+      if (share != 1. && share_.empty())
+        share_.assign(sites_.size(), 1.);
       const bool whole = cells.class_shape(std::size_t(face.bodies[0]))
                              .reference.is_simplex() ||
                          input.discretization.degree == 1;
-      sites_.first_of_face.push_back(sites_.size());
+      first_site_[f] = int(sites_.size());
+      typename StrengthSites<dim>::Site site;
+      site.n_points = whole ? face.count : 1;
+      site.cells = {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}};
       double least = infinity;
-      for (unsigned int k = 0; k < (whole ? 1 : face.count); ++k) {
-        const unsigned int i = face.first + k;
+      std::vector<typename StrengthSites<dim>::Site> of_face;
+      for (unsigned int i = face.first; i < face.first + face.count;
+           i += site.n_points) {
+        site.first_point = i;
         typename LeapfrogPoints<dim>::Factors of_law = {all.strength_factor[i],
                                                         all.opening_factor[i]};
         if (whole) {
@@ -56,51 +67,34 @@ namespace nsfd
                                                   discretization.extent());
           of_law = {factors.strength, factors.strength / factors.toughness};
         }
-        for (unsigned int j = i; j < i + (whole ? face.count : 1); ++j)
-          site_of_[j] = int(sites_.size());
-        sites_.first_point.push_back(i);
-        sites_.n_points.push_back(whole ? face.count : 1);
-        sites_.cells.push_back(
-            {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}});
-        const double *normal = &points.frame[std::size_t(i) * dim * dim];
-        sites_.normal.insert(sites_.normal.end(), normal, normal + dim);
         factors_.push_back(of_law);
-        const LawPoint here = law(sites_.size() - 1);
+        const LawPoint here(*block.law, of_law.strength, of_law.opening,
+                            block.plateau);
         const double shear[2] = {1., 0.};
         const double of_shear =
             here.template effective_traction<dim>(0., shear);
-        sites_.shear_weight.push_back(of_shear * of_shear);
+        site.shear_weight = of_shear * of_shear;
         // the surface of two scalars is within the norm of its two ends only
         // between two of them points are held by their law from the start
-        share_.push_back(sides > 0. ? 2. / sides : 1.);
-        const double strength = here.strength() / share_.back();
-        sites_.limit.push_back((block.law->mixed() ? 0.5 : 1.) * strength *
-                               strength);
-        least = std::min(least, sites_.limit.back() /
-                                    std::max(1., sites_.shear_weight.back()));
+        if (!share_.empty())
+          share_.push_back(share);
+        const double strength = here.strength() / share;
+        site.limit = (block.law->mixed() ? 0.5 : 1.) * strength * strength;
+        least = std::min(least, site.limit / std::max(1., site.shear_weight));
+        of_face.push_back(site);
       }
       if (!hanging.held().empty()) {
-        held_.resize(sites_.size(), hanging.held()[face.first]);
+        held_.resize(sites_.size() + of_face.size(),
+                     hanging.held()[face.first]);
         // tractions between the nodes of a cell are beyond those at them
         least /= hanging.spread() * hanging.spread();
       }
-      sites_.least.push_back(least);
+      for (auto &one : of_face) {
+        one.least = least;
+        sites_.add(one);
+      }
     }
-    sites_.first_of_face.push_back(sites_.size());
-  }
-
-  template <int dim>
-  void FaceRelease<dim>::reserve(const std::size_t n)
-  {
-    sites_.first_point.reserve(n);
-    sites_.n_points.reserve(n);
-    sites_.cells.reserve(n);
-    sites_.normal.reserve(n * dim);
-    sites_.first_of_face.reserve(n + 1);
-    factors_.reserve(n);
-    for (auto *list :
-         {&sites_.shear_weight, &sites_.limit, &sites_.least, &share_})
-      list->reserve(n);
+    sites_.finish(cells.bodies.size());
   }
 
   template <int dim>
@@ -108,7 +102,7 @@ namespace nsfd
   {
     const auto &block =
         discretization_.input().interfaces
-            [discretization_.origins()[sites_.first_point[site]].block];
+            [discretization_.origins()[sites_[site].first_point].block];
     return LawPoint(*block.law, factors_[site].strength, factors_[site].opening,
                     block.plateau);
   }
@@ -117,10 +111,14 @@ namespace nsfd
   typename LeapfrogPoints<dim>::Factors
   FaceRelease<dim>::factors(const unsigned int point) const
   {
-    const int site = site_of_[point];
-    if (site < 0)
+    const auto &points = discretization_.points();
+    const int first = first_site_[points.face_of[point]];
+    if (first < 0)
       return {};
-    return factors_[std::size_t(site)];
+    const unsigned int within =
+        point - points.faces[points.face_of[point]].first;
+    return factors_[std::size_t(first) +
+                    within / sites_[std::size_t(first)].n_points];
   }
 
   template <int dim>
@@ -128,17 +126,17 @@ namespace nsfd
   {
     intact_ = std::move(intact);
     for (std::size_t k = 0; k < sites_.size(); ++k)
-      if (!intact_[sites_.first_point[k]])
-        sites_.limit[k] = infinity;
+      if (!intact_[sites_[k].first_point])
+        sites_.release(k);
   }
 
   template <int dim>
   void FaceRelease<dim>::let_go(const std::size_t site,
                                 std::vector<unsigned int> &released)
   {
-    const unsigned int first = sites_.first_point[site];
-    sites_.limit[site] = infinity;
-    for (unsigned int i = first; i < first + sites_.n_points[site]; ++i) {
+    sites_.release(site);
+    const unsigned int first = sites_[site].first_point;
+    for (unsigned int i = first; i < first + sites_[site].n_points; ++i) {
       intact_[i] = 0;
       released.push_back(i);
     }
@@ -149,7 +147,7 @@ namespace nsfd
   FaceRelease<dim>::in_frame(const std::size_t point,
                              const std::array<double, dim> &t) const
   {
-    const double *frame = &discretization_.points().frame[point * dim * dim];
+    const double *frame = discretization_.points().axes(point);
     std::array<double, dim> local{};
     for (unsigned int r = 0; r < dim; ++r)
       for (unsigned int c = 0; c < dim; ++c)
@@ -168,8 +166,8 @@ namespace nsfd
     if (!viscous)
       return t;
     const auto &weight = discretization_.points().weight;
-    const unsigned int first = sites_.first_point[site],
-                       last = first + sites_.n_points[site];
+    const unsigned int first = sites_[site].first_point,
+                       last = first + sites_[site].n_points;
     double length = 0.;
     for (unsigned int i = first; i < last; ++i)
       length += weight[i];
@@ -181,49 +179,83 @@ namespace nsfd
     return t;
   }
 
+  /** Where viscous materials add to tractions, these are at hand nowhere. */
+  template <int dim>
+  void FaceRelease<dim>::add_viscous(const CellForces<dim> &forces)
+  {
+    const auto &viscous = *forces.viscous();
+    typename StrengthSites<dim>::Near all;
+    auto square = near_.square.begin();
+    auto site = near_.site.begin();
+    for (unsigned int k = 0; k < sites_.size(); ++k) {
+      const bool is_near = site != near_.site.end() && *site == k;
+      const auto &cells = sites_[k].cells;
+      if (!sites_.is_released(k) &&
+          (viscous.acts_in(cells[0]) || viscous.acts_in(cells[1]))) {
+        all.site.push_back(k);
+        all.square.push_back(sites_.square(k, traction(forces, k)));
+      } else if (is_near) {
+        all.site.push_back(k);
+        all.square.push_back(*square);
+      }
+      if (is_near) {
+        ++site;
+        ++square;
+      }
+    }
+    near_ = std::move(all);
+  }
+
   template <int dim>
   auto FaceRelease<dim>::reached(const CellForces<dim> &forces, double &excess)
       -> std::vector<unsigned int>
   {
     std::vector<unsigned int> released;
-    old_squares_.swap(squares_);
-    forces.squared_tractions(sites_, squares_);
-    if (const auto *viscous = forces.viscous())
-      for (std::size_t k = 0; k < sites_.size(); ++k)
-        if (std::isfinite(sites_.limit[k]) &&
-            (viscous->acts_in(sites_.cells[k][0]) ||
-             viscous->acts_in(sites_.cells[k][1])))
-          squares_[k] = sites_.square(k, traction(forces, k));
-    old_squares_.resize(squares_.size(), infinity); // nothing has grown
-    constexpr double seen = StrengthSites::looked_at,
+    std::swap(near_, last_near_);
+    forces.squared_tractions(sites_, near_);
+    if (forces.viscous())
+      add_viscous(forces);
+    constexpr double seen = StrengthSites<dim>::looked_at,
                      least = (too_far + seen) / 2.;
-    for (std::size_t k = 0; k < sites_.size(); ++k) {
-      if (!(squares_[k] >= least * least * sites_.limit[k]))
+    std::size_t last = 0;
+    for (std::size_t n = 0; n < near_.site.size(); ++n) {
+      const std::size_t k = near_.site[n];
+      const double square = near_.square[n];
+      if (!(square >= least * least * sites_[k].limit))
         continue;
       const LawPoint here = law(k);
-      double share = share_[k] * std::sqrt(squares_[k]) / here.strength();
+      double share = share_of(k) * std::sqrt(square) / here.strength();
       if (here.law().mixed()) {
-        const auto t = in_frame(sites_.first_point[k], traction(forces, k));
-        share = share_[k] * here.template effective_traction<dim>(t[0], &t[1]) /
+        const auto t = in_frame(sites_[k].first_point, traction(forces, k));
+        share = share_of(k) *
+                here.template effective_traction<dim>(t[0], &t[1]) /
                 here.strength();
       }
       if (!held_.empty() && held_[k]) {
         if (share > worst_held_.share) {
-          const unsigned int first = sites_.first_point[k];
+          const unsigned int first = sites_[k].first_point;
           const auto &points = discretization_.points();
           worst_held_ = {share, points.faces[points.face_of[first]].centre,
                          discretization_.origins()[first].block};
         }
         continue;
       }
+      while (last < last_near_.site.size() && last_near_.site[last] < k)
+        ++last;
+      double old_square = 0.;
+      if (!has_looked_)
+        old_square = infinity; // nothing has grown
+      else if (last < last_near_.site.size() && last_near_.site[last] == k)
+        old_square = last_near_.square[last];
       // what it was below that has not been looked at
       const double before =
-          std::max(seen, share * std::sqrt(old_squares_[k] / squares_[k]));
+          std::max(seen, share * std::sqrt(old_square / square));
       if (share < 1. && 2. * share - before < too_far)
         continue;
       excess = std::max(excess, share - 1.);
       let_go(k, released);
     }
+    has_looked_ = true;
     return released;
   }
 
@@ -262,16 +294,26 @@ namespace nsfd
       worst_held_.share = values[dim];
       worst_held_.block = unsigned(values[dim + 1]);
     }
-    std::vector<double> all(discretization_.points().n_points, infinity);
+    // 0 where it was not looked at, infinite everywhere if never
+    std::vector<double> all(discretization_.points().n_points,
+                            has_looked_ ? 0. : infinity);
     if (!archive.reads())
-      for (std::size_t k = 0; k < squares_.size(); ++k)
-        all[sites_.first_point[k]] = squares_[k];
+      for (std::size_t n = 0; n < near_.site.size(); ++n)
+        all[sites_[near_.site[n]].first_point] = near_.square[n];
     archive.points("squared_tractions", all);
     if (!archive.reads())
       return;
-    squares_.resize(sites_.size());
-    for (std::size_t k = 0; k < sites_.size(); ++k)
-      squares_[k] = all[sites_.first_point[k]];
+    near_ = {};
+    for (unsigned int k = 0; k < sites_.size(); ++k) {
+      const double square = all[sites_[k].first_point];
+      has_looked_ = square != infinity;
+      if (!has_looked_)
+        break;
+      if (square != 0.) {
+        near_.site.push_back(k);
+        near_.square.push_back(square);
+      }
+    }
   }
 
   template <int dim>
@@ -280,13 +322,13 @@ namespace nsfd
   {
     std::fill(tractions.begin(), tractions.end(), 0.);
     for (std::size_t k = 0; k < sites_.size(); ++k) {
-      const unsigned int first = sites_.first_point[k];
+      const unsigned int first = sites_[k].first_point;
       if (!intact_[first])
         continue;
       auto t = traction(forces, k);
       for (double &of_t : t)
-        of_t *= share_[k];
-      for (unsigned int i = first; i < first + sites_.n_points[k]; ++i) {
+        of_t *= share_of(k);
+      for (unsigned int i = first; i < first + sites_[k].n_points; ++i) {
         const auto local = in_frame(i, t);
         std::copy(local.begin(), local.end(), &tractions[std::size_t(i) * dim]);
       }

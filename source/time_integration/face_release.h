@@ -59,23 +59,30 @@ namespace nsfd
               std::vector<double> &tractions) const;
 
   private:
-    void reserve(std::size_t n_sites);
     LawPoint law(std::size_t site) const;
     std::array<double, dim> in_frame(std::size_t point,
                                      const std::array<double, dim> &t) const;
     std::array<double, dim> traction(const CellForces<dim> &forces,
                                      std::size_t site) const;
+    double share_of(const std::size_t site) const
+    {
+      return share_.empty() ? 1. : share_[site];
+    }
+    void add_viscous(const CellForces<dim> &forces);
     void let_go(std::size_t site, std::vector<unsigned int> &released);
 
     const Discretization<dim> &discretization_;
-    StrengthSites sites_;
-    std::vector<double> share_; ///< of sites: traction over the mean that is
-                                ///< computed, 2 beside a rigid cell
+    StrengthSites<dim> sites_;
+    /// of sites: traction over the mean that is computed, 2 beside a rigid
+    /// cell; empty: 1
+    std::vector<double> share_;
     std::vector<typename LeapfrogPoints<dim>::Factors> factors_; ///< of sites
-    std::vector<int> site_of_; ///< by point, -1: it is never released
-    std::vector<double> squares_, old_squares_; ///< of this step and the last
-    std::vector<std::uint8_t> intact_;          ///< by point
-    std::vector<std::uint8_t> held_;            ///< by site; empty: none is
+    std::vector<int> first_site_; ///< by face, -1: it is never released
+    /// of this step and the last
+    typename StrengthSites<dim>::Near near_, last_near_;
+    bool has_looked_ = false;          ///< there was a step
+    std::vector<std::uint8_t> intact_; ///< by point
+    std::vector<std::uint8_t> held_;   ///< by site; empty: none is
     Held worst_held_;
   };
 } // namespace nsfd

@@ -115,9 +115,8 @@ namespace nsfd
     const auto &points = discretization.points();
     double gap = 0.;
     for (unsigned int c = 0; c < dim; ++c)
-      gap += points.frame[i * dim * dim + c] *
-             (points.position[i * dim + c] -
-              input.obstacles[origin.block].point[c]);
+      gap += points.axes(i)[c] * (points.position[i * dim + c] -
+                                  input.obstacles[origin.block].point[c]);
     return gap;
   }
 

@@ -94,7 +94,7 @@ namespace nsfd
         for (unsigned int r = 0; r < dim; ++r)
           for (unsigned int c = 0; c < dim; ++c) {
             const double share =
-                (side == 0 ? -1. : 1.) * points.frame[(i * dim + r) * dim + c];
+                (side == 0 ? -1. : 1.) * points.axes(i)[r * dim + c];
             state.jump[i * dim + r] +=
                 share * state.displacement[corner * dim + c];
             state.relative_velocity[i * dim + r] +=

@@ -117,8 +117,7 @@ namespace nsfd
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int d = 0; d < dim; ++d)
           state.jump[i * dim + a] +=
-              bodies_.points().frame[(i * dim + a) * dim + d] *
-              jumps[i * dim + d];
+              bodies_.points().axes(i)[a * dim + d] * jumps[i * dim + d];
     state.relative_velocity.resize(n * dim);
     parts_.delassus.relative_velocity(bodies_.old_velocity().data(),
                                       state.relative_velocity.data());
@@ -244,14 +243,14 @@ namespace nsfd
   void LargeMotionModel<dim>::set_problem()
   {
     const auto &rows = bodies_.contacts().rows();
-    const auto &frame = bodies_.points().frame;
     const std::size_t n = parts_.discretization.points().n_points;
     for (std::size_t j = 0; j < n; ++j)
       for (unsigned int a = 0; a < dim; ++a) {
         const std::size_t i = bodies_.contacts().mesh_point(j);
+        const double *const frame = bodies_.points().axes(i);
         double value = 0.;
         for (unsigned int d = 0; d < dim; ++d)
-          value += frame[(i * dim + a) * dim + d] * mesh_jumps_[j * dim + d];
+          value += frame[a * dim + d] * mesh_jumps_[j * dim + d];
         old_.jump[i * dim + a] = value;
       }
     for (std::size_t k = 0; k < rows.size(); ++k)

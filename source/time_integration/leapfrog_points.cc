@@ -80,8 +80,7 @@ namespace nsfd
                                 const Factors &factors, const State &state)
   {
     const auto &points = discretization_.points();
-    chains_.add(point, &points.frame[std::size_t(point) * dim * dim], factors,
-                state);
+    chains_.add(point, points.axes(point), factors, state);
     if (state.beta[point] < 1e-3)
       hold_of_face_[points.face_of[point]] -= 2;
     nodes_.put(chains_.point);
@@ -91,8 +90,7 @@ namespace nsfd
   void LeapfrogPoints<dim>::release(const unsigned int point,
                                     const Factors &factors)
   {
-    const double *frame =
-        &discretization_.points().frame[std::size_t(point) * dim * dim];
+    const double *frame = discretization_.points().axes(point);
     // each sort costs some steps: a few in all
     nodes_.sort(1.25, chains_);
     chains_.release(point, frame, factors);

@@ -44,7 +44,7 @@ namespace nsfd
       if (obstacle.velocity[d]) {
         const double v = obstacle.velocity[d]->at(dealii::Point<dim>(), time);
         for (unsigned int a = 0; a < dim; ++a)
-          result[a] += contacts_.points().frame[(i * dim + a) * dim + d] * v;
+          result[a] += contacts_.points().axes(i)[a * dim + d] * v;
       }
     return result;
   }

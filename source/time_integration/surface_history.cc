@@ -58,9 +58,10 @@ namespace nsfd
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere; ++a)
         for (unsigned int d = 0; d < dim; ++d) {
-          const std::size_t c = contacts_.row_point(k) * dim + a;
-          impulse[c] += rows[k].share * contacts_.points().frame[c * dim + d] *
-                        old.surface_impulse[rows[k].place * dim + d];
+          const std::size_t i = contacts_.row_point(k);
+          impulse[i * dim + a] += rows[k].share *
+                                  contacts_.points().axes(i)[a * dim + d] *
+                                  old.surface_impulse[rows[k].place * dim + d];
         }
   }
 
@@ -80,9 +81,8 @@ namespace nsfd
       contact.twin = row.twin;
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int d = 0; d < dim; ++d)
-          contact.impulse[d] +=
-              contacts_.points().frame[(i * dim + a) * dim + d] *
-              next.impulse[i * dim + a];
+          contact.impulse[d] += contacts_.points().axes(i)[a * dim + d] *
+                                next.impulse[i * dim + a];
       contact.slip = next.slip[i];
       contact.overlap = next.released_overlap[i];
       contact.approach = next.approach[i];
@@ -150,10 +150,10 @@ namespace nsfd
       touch.opening = next.jump[i * dim];
       for (unsigned int d = 0; d < dim; ++d) {
         touch.position[d] = points.position[i * dim + d];
-        touch.normal[d] = points.frame[i * dim * dim + d];
+        touch.normal[d] = points.axes(i)[d];
         for (unsigned int a = 0; a < dim; ++a)
           touch.impulse[d] +=
-              points.frame[(i * dim + a) * dim + d] * next.impulse[i * dim + a];
+              points.axes(i)[a * dim + d] * next.impulse[i * dim + a];
       }
     }
     return result;

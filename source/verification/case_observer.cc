@@ -275,7 +275,7 @@ namespace nsfd
           state.kind[i] == PointKind::prescribed ||
           state.kind[i] == PointKind::bonded)
         continue;
-      const double *Q = &points.frame[i * dim * dim];
+      const double *Q = points.axes(i);
       std::array<double, 3> x{}, normal{};
       for (unsigned int c = 0; c < dim; ++c) {
         x[c] = points.position[i * dim + c];

@@ -127,8 +127,7 @@ subsection Indicator: any
       const auto &interaction = problem.interactions[problem.interaction[i]];
       const double C = interaction.law ? interaction.law->normal_stiffness()
                                        : interaction.normal_stiffness;
-      const double *frame =
-          &mesh.model.discretization->points().frame[i * dim * dim];
+      const double *frame = mesh.model.discretization->points().axes(i);
       std::array<double, dim> t{};
       for (unsigned int k = 0; k < dim; ++k)
         for (unsigned int c = 0; c < dim; ++c)
@@ -147,7 +146,7 @@ subsection Indicator: any
       {
         const auto &points = mesh.model.discretization->points();
         for (std::size_t i = 0; i < points.n_points; ++i) {
-          const double *n = &points.frame[i * dim * dim];
+          const double *n = points.axes(i);
           const auto t = spring_traction(mesh, i);
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int c = 0; std::abs(n[d]) > 0.5 && c < dim; ++c) {

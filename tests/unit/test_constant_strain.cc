@@ -164,41 +164,56 @@ end
     {
       const Both<dim> both;
       constexpr double weight = 1.5;
-      StrengthSites sites;
       const auto &points = both.made.discretization->points();
+      const auto sites_of = [&](const double limit) {
+        StrengthSites<dim> sites(points);
+        for (const auto &face : points.faces)
+          if (!face.boundary)
+            sites.add({face.first,
+                       face.count,
+                       {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}},
+                       weight,
+                       limit,
+                       limit / weight});
+        sites.finish(both.made.discretization->bodies().size());
+        return sites;
+      };
+      const auto all = sites_of(0.);
       std::vector<double> expected;
-      for (const auto &face : points.faces) {
-        if (face.boundary)
-          continue;
-        sites.first_point.push_back(face.first);
-        sites.cells.push_back(
-            {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}});
-        const double *normal = &points.frame[face.first * dim * dim];
-        sites.normal.insert(sites.normal.end(), normal, normal + dim);
-        sites.shear_weight.push_back(weight);
-        const std::size_t k = sites.size() - 1;
-        expected.push_back(sites.square(k, both.forces.traction(sites, k)));
-      }
+      for (std::size_t k = 0; k < all.size(); ++k)
+        expected.push_back(all.square(k, both.forces.traction(all, k)));
       const double most = *std::max_element(expected.begin(), expected.end());
-      unsigned int left_out = 0;
+      std::size_t left_out = 0;
       for (const double share : {0., 0.1, 1., 10., 1e10}) {
         const double limit = share * most;
-        sites.limit.assign(sites.size(), limit);
-        sites.least.assign(sites.size(), limit / weight);
-        std::vector<double> squares;
-        both.forces.squared_tractions(sites, squares);
+        auto sites = sites_of(limit);
+        typename StrengthSites<dim>::Near near;
+        both.forces.squared_tractions(sites, near);
+        EXPECT_TRUE(std::is_sorted(near.site.begin(), near.site.end()));
+        std::vector<double> squares(sites.size(), 0.);
+        for (std::size_t n = 0; n < near.site.size(); ++n)
+          squares[near.site[n]] = near.square[n];
         for (std::size_t k = 0; k < sites.size(); ++k) {
-          const double looked_at =
-              StrengthSites::looked_at * StrengthSites::looked_at * limit;
+          const double looked_at = StrengthSites<dim>::looked_at *
+                                   StrengthSites<dim>::looked_at * limit;
           if (squares[k] != 0. || expected[k] >= looked_at) {
             EXPECT_NEAR(squares[k], expected[k], 1e-13 * most) << k;
           }
-          left_out += squares[k] == 0.;
         }
+        left_out += sites.size() - near.site.size();
         EXPECT_EQ(*std::max_element(squares.begin(), squares.end()) > 0.,
                   share < 1e10);
+        // what is released is not looked at, whatever its traction
+        const auto before = near.site;
+        for (std::size_t k = 0; k < sites.size(); k += 2)
+          sites.release(k);
+        both.forces.squared_tractions(sites, near);
+        std::vector<unsigned int> odd;
+        std::copy_if(before.begin(), before.end(), std::back_inserter(odd),
+                     [](const unsigned int k) { return k % 2 == 1; });
+        EXPECT_EQ(near.site, odd);
       }
-      EXPECT_GT(left_out, sites.size()); // of the last round, and others
+      EXPECT_GT(left_out, all.size()); // of the last round, and others
     }
 
     TEST(ConstantStrain, StrengthsWithinReachAreLookedAt)

@@ -195,7 +195,7 @@ end
     for (std::size_t i = 0; i < points.n_points; ++i) {
       if (scene.state.kind[i] != PointKind::bonded)
         continue;
-      const double *Q = &points.frame[i * dim * dim];
+      const double *Q = points.axes(i);
       // sigma = lambda tr(e) 1 + 2 mu e, e_xx = 0.3, e_xy = 0.1
       double sigma_n[3] = {lambda * 0.3 * Q[0], lambda * 0.3 * Q[1],
                            dim == 3 ? lambda * 0.3 * Q[dim - 1] : 0.};

@@ -33,7 +33,7 @@ namespace solver_checks::test_solvers_one_point
 
       points.n_points = points.n_owned = 1;
       points.position = {0., 0.};
-      points.frame = {1., 0., 0., 1.};
+      points.frames = {1., 0., 0., 1.};
       points.weight = {0.4};
       InterfacePoints<2>::Face face;
       face.first = 0;

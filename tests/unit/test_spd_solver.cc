@@ -93,7 +93,7 @@ end
       k[i] = 1e4 * std::pow(10., 0.5 * exponent[points.face_of[i / dim]]) *
              (i % dim == 0 ? 2. : 1.);
       if (broken && std::abs(face.centre[0] - 2.) < 0.3 &&
-          std::abs(points.frame[(i / dim) * dim * dim]) > 0.85)
+          std::abs(points.axes(i / dim)[0]) > 0.85)
         k[i] = 0.;
     }
     return k;

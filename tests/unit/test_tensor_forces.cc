@@ -64,7 +64,6 @@ end
             tensors(*this->discretization, mesh, front)
       {
         EXPECT_TRUE(TensorForces<dim>::fits(*this->discretization));
-        set_sites();
       }
 
       static std::vector<std::uint8_t>
@@ -76,35 +75,25 @@ end
         return intact;
       }
 
-      /** A face of cells of degree 1, else a point; limits are set later. */
-      void set_sites()
+      /** A face of cells of degree 1, else a point. */
+      StrengthSites<dim> sites(const double limit) const
       {
         const auto &points = this->discretization->points();
         const bool whole = this->input->discretization.degree == 1;
+        StrengthSites<dim> result(points);
         for (const auto &face : points.faces) {
           if (face.bodies[0] < 0 || face.bodies[1] < 0)
             continue;
-          sites.first_of_face.push_back(sites.size());
-          sites.least.push_back(0.);
-          for (unsigned int k = 0; k < (whole ? 1 : face.count); ++k) {
-            sites.first_point.push_back(face.first + k);
-            sites.n_points.push_back(whole ? face.count : 1);
-            sites.cells.push_back(
-                {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}});
-            const double *normal =
-                &points.frame[std::size_t(face.first + k) * dim * dim];
-            sites.normal.insert(sites.normal.end(), normal, normal + dim);
-            sites.shear_weight.push_back(1.5);
-            sites.limit.push_back(0.);
-          }
+          for (unsigned int k = 0; k < (whole ? 1 : face.count); ++k)
+            result.add({face.first + k,
+                        whole ? face.count : 1,
+                        {{unsigned(face.bodies[0]), unsigned(face.bodies[1])}},
+                        1.5,
+                        limit,
+                        limit / 1.5});
         }
-        sites.first_of_face.push_back(sites.size());
-      }
-
-      void set_limits(const double limit)
-      {
-        std::fill(sites.limit.begin(), sites.limit.end(), limit);
-        std::fill(sites.least.begin(), sites.least.end(), limit / 1.5);
+        result.finish(this->discretization->bodies().size());
+        return result;
       }
 
       dealii::Point<dim> node(const std::size_t b, const unsigned int i) const
@@ -118,8 +107,20 @@ end
       FrontViscosity front;
       BlockForces<dim> blocks;
       TensorForces<dim> tensors;
-      StrengthSites sites;
     };
+
+    /** Of all sites, 0 where they are not near. */
+    template <int dim>
+    std::vector<double> squares_of(const CellForces<dim> &forces,
+                                   const StrengthSites<dim> &sites)
+    {
+      typename StrengthSites<dim>::Near near;
+      forces.squared_tractions(sites, near);
+      std::vector<double> all(sites.size(), 0.);
+      for (std::size_t n = 0; n < near.site.size(); ++n)
+        all[near.site[n]] = near.square[n];
+      return all;
+    }
 
     double largest(const std::vector<double> &x)
     {
@@ -139,7 +140,7 @@ end
       std::mt19937 random(degree);
       std::uniform_real_distribution<double> between(-1e-9, 1e-9);
       auto &groups = pair.groups;
-      std::vector<double> force, expected, squares, expected_squares;
+      std::vector<double> force, expected;
       for (unsigned int step = 0; step < 3;
            ++step) { // tensions from the second
         for (double &value : groups.displacement)
@@ -163,20 +164,19 @@ end
         for (unsigned int c = 0; c < dim; ++c)
           ASSERT_NEAR(mine[c], others[c], 1e-12 * largest(expected));
       }
-      pair.set_limits(0.);
-      pair.blocks.squared_tractions(pair.sites, expected_squares);
+      const auto all = pair.sites(0.);
+      const auto expected_squares = squares_of(pair.blocks, all);
       const double most = largest(expected_squares);
-      for (std::size_t k = 0; k < pair.sites.size(); ++k) {
-        const auto mine = pair.tensors.traction(pair.sites, k),
-                   others = pair.blocks.traction(pair.sites, k);
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        const auto mine = pair.tensors.traction(all, k),
+                   others = pair.blocks.traction(all, k);
         for (unsigned int c = 0; c < dim; ++c)
           ASSERT_NEAR(mine[c], others[c], 1e-12 * std::sqrt(most)) << k;
       }
       // what is near a limit is not missed, what is far from it left out
       for (const double share : {0., 0.1, 0.5, 0.99, 1e10}) {
-        pair.set_limits(share * most);
         pair.tensors.set_forces(groups); // nothing is known yet
-        pair.tensors.squared_tractions(pair.sites, squares);
+        const auto squares = squares_of(pair.tensors, pair.sites(share * most));
         ASSERT_EQ(squares.size(), expected_squares.size());
         for (std::size_t k = 0; k < squares.size(); ++k) {
           if (squares[k] != 0. || expected_squares[k] >= share * most) {
@@ -239,11 +239,10 @@ end
       double trace = 0.;
       for (unsigned int c = 0; c < dim; ++c)
         trace += H[c][c];
-      const auto &points = pair.discretization->points();
-      for (std::size_t k = 0; k < pair.sites.size() && degree > 1; ++k) {
-        const double *n =
-            &points.frame[pair.sites.first_point[k] * std::size_t(dim * dim)];
-        const auto t = pair.tensors.traction(pair.sites, k);
+      const auto sites = pair.sites(0.);
+      for (std::size_t k = 0; k < sites.size() && degree > 1; ++k) {
+        const double *n = sites.normal(k);
+        const auto t = pair.tensors.traction(sites, k);
         for (unsigned int c = 0; c < dim; ++c) {
           double expected = lambda * trace * n[c];
           for (unsigned int d = 0; d < dim; ++d)

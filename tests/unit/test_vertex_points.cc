@@ -118,8 +118,11 @@ end
         EXPECT_NEAR(normal.norm(), points.weight[i], 1e-12);
         if (points.faces[points.face_of[i]].boundary)
           continue;
-        EXPECT_NEAR(normal * at(points.frame, 9 * i) / normal.norm(),
-                    -bodies.slot_sign[s], 1e-12);
+        EXPECT_NEAR(
+            normal *
+                Vector(dealii::ArrayView<const double>(points.axes(i), 3)) /
+                normal.norm(),
+            -bodies.slot_sign[s], 1e-12);
       }
     unsigned int n_sides = 0;
     for (const auto &face : points.faces)

@@ -91,8 +91,7 @@ namespace nsfd
       const std::size_t n = mine.dofs.size();
       mine.rows.assign(std::size_t(face.count) * dim * n, 0.);
       for (unsigned int q = 0; q < face.count; ++q) {
-        const double *Q =
-            points.frame.data() + std::size_t(face.first + q) * dim * dim;
+        const double *Q = points.axes(face.first + q);
         for (const Side &side : sides[face.first + q]) {
           const auto &body = bodies.classes[bodies.class_of[side.body]];
           for (std::size_t a = 0; a < n; ++a) {

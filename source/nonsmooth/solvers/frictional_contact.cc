@@ -204,11 +204,11 @@ namespace nsfd
               Part &part = parts.emplace_back();
               std::tie(part.face_i, part.number_i) = key_of(points, i);
               std::tie(part.face_j, part.number_j) = key_of(points, j);
-              part.block = block_of(
-                  W, unsigned(s - bodies.first_slot[b]),
-                  unsigned(t - bodies.first_slot[b]),
-                  double(bodies.slot_sign[s]) * bodies.slot_sign[t],
-                  &points.frame[i * dim * dim], &points.frame[j * dim * dim]);
+              part.block =
+                  block_of(W, unsigned(s - bodies.first_slot[b]),
+                           unsigned(t - bodies.first_slot[b]),
+                           double(bodies.slot_sign[s]) * bodies.slot_sign[t],
+                           points.axes(i), points.axes(j));
             }
         }
         return parts;

@@ -95,7 +95,7 @@ namespace nsfd
       package.put(points.n_points);
       package.put(points.n_owned);
       package.put(points.position);
-      package.put(points.frame);
+      package.put(points.frames_of_points());
       package.put(points.weight);
       package.put(points.faces);
       return package.bytes();
@@ -183,7 +183,7 @@ namespace nsfd
       package.get(points[r].n_points);
       package.get(points[r].n_owned);
       package.get(points[r].position);
-      package.get(points[r].frame);
+      package.get(points[r].frames);
       package.get(points[r].weight);
       package.get(points[r].faces);
 
@@ -202,7 +202,7 @@ namespace nsfd
         }
       const std::size_t owned = points[r].n_owned;
       append(points[r].position, owned * dim, points_.position);
-      append(points[r].frame, owned * dim * dim, points_.frame);
+      append(points[r].frames, owned * dim * dim, points_.frames);
       append(points[r].weight, owned, points_.weight);
       points_.n_points += owned;
       points_.n_owned = points_.n_points;

@@ -135,7 +135,7 @@ namespace nsfd
     std::array<std::vector<double>, 2> side;
     delassus.delassus_sides(impulse.data(), side);
     const auto add = [&](const std::size_t i, const double *change) {
-      const double *Q = points.frame.data() + i * dim * dim;
+      const double *Q = points.axes(i);
       for (unsigned int s = 0; s < 2; ++s) {
         const PointPlace mine = place[s][i];
         if (mine.body < 0)
@@ -179,7 +179,7 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.slip_max.size(); ++i)
       reach[i].slip = problem.slip_max[i];
     const auto solve = [&](const std::size_t i) {
-      const double *Q = points.frame.data() + i * dim * dim;
+      const double *Q = points.axes(i);
       std::array<double, dim> local;
       for (unsigned int k = 0; k < dim; ++k) {
         local[k] = problem.free_velocity[i * dim + k];
