@@ -53,6 +53,17 @@ namespace nsfd
                const std::vector<std::uint8_t> &closed, NodeProblem<dim> &node,
                std::vector<double> &impulses, std::vector<double> &velocities);
 
+    /** It is solved soon. */
+    void prefetch() const
+    {
+      merged_.prefetch();
+      if (is_loose_)
+        loose_.prefetch();
+      nsfd::prefetch(points_);
+      if (!is_loose_)
+        nsfd::prefetch(inverse_);
+    }
+
     /** LooseNode may solve it. */
     bool is_loose() const { return is_loose_; }
     const LooseNode<dim> &loose() const { return loose_; }

@@ -29,6 +29,12 @@ namespace nsfd
       std::array<int, 2> groups; ///< merged
     };
     const std::vector<Broken> &broken() const { return broken_; }
+    /** It is solved soon. */
+    void prefetch() const
+    {
+      nsfd::prefetch(held_);
+      nsfd::prefetch(broken_);
+    }
 
     /**
      * Velocities of the groups of @p node, of its broken points, and impulses

@@ -2,6 +2,8 @@
 
 #include "node_problem.h"
 
+#include "core/prefetch.h"
+
 #include <cstdint>
 
 namespace nsfd
@@ -26,6 +28,13 @@ namespace nsfd
                 const std::vector<std::uint8_t> &holds);
 
     std::size_t size() const { return inverse_mass_.size(); }
+    /** It is asked soon. */
+    void prefetch() const
+    {
+      nsfd::prefetch(groups_);
+      nsfd::prefetch(inverse_mass_);
+      nsfd::prefetch(carried_);
+    }
     /** Where @p group of the node is; -1 stays. */
     int of(const int group) const
     {

@@ -29,6 +29,16 @@ namespace nsfd
       ElasticNode<dim> node;
     };
     std::array<Elastic, 2> elastic;
+
+    /** It is solved soon, in the step of @p chain. */
+    void prefetch(const unsigned int chain) const
+    {
+      nsfd::prefetch(groups);
+      nsfd::prefetch(problem.points);
+      nsfd::prefetch(problem.inverse_mass);
+      nsfd::prefetch(problem.velocity);
+      elastic[chain].node.prefetch();
+    }
   };
 
   /** The points of LeapfrogChains by the nodes that they are at. */

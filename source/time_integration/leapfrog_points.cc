@@ -15,6 +15,8 @@ namespace nsfd
 {
   namespace
   {
+    constexpr long ahead = 3; ///< nodes that are fetched before their turn
+
     /** False where a point of @p node is closed and rubs. */
     template <int dim>
     bool may_be_elastic(const LeapfrogChains<dim> &chains,
@@ -266,7 +268,11 @@ namespace nsfd
     counts_.clear();
     springs_.clear();
     parted_.clear();
-    for (Node &node : nodes_) {
+    for (auto at = nodes_.begin(); at != nodes_.end(); ++at) {
+      // what nodes have lies in many places: waiting for it is most of the time
+      if (nodes_.end() - at > ahead)
+        at[ahead].prefetch(chain_);
+      Node &node = *at;
       node.elastic[chain_].is_new |= is_new;
       if (node.is_new)
         nodes_.collect(node, prescribed, groups, chains_);
