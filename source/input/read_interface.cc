@@ -46,6 +46,24 @@ namespace nsfd
         "toughness scatter", "strength modulus", "toughness modulus",
         "unloading"};
 
+    /** Laws go by the names of their authors; other programs name their shapes.
+        Empty: it is none of them. */
+    std::string law_of_shape(const std::string &name)
+    {
+      if (name == "linear" || name == "linear softening")
+        return "softening along a line is `camacho-ortiz` without elasticity "
+               "before, `geubelle-baylor` with it (bilinear)";
+      if (name == "bilinear" || name == "triangular")
+        return "the bilinear law is `geubelle-baylor`";
+      if (name == "exponential")
+        return "the exponential law is `xu-needleman`";
+      if (name == "cohesive" || name == "czm" || name == "cohesive zone")
+        return "take for example `camacho-ortiz` where faces have no "
+               "compliance "
+               "before they break, `geubelle-baylor` where they are springs";
+      return "";
+    }
+
     /** The law of a block, checked; empty if nothing more can be read. */
     std::string read_law_name(SectionReader &reader)
     {
@@ -65,7 +83,9 @@ namespace nsfd
       if (std::find(known.begin(), known.end(), name) == known.end())
         reader.error(
             "law", fmt::format("law = {} is not a law", name),
-            advice_on_name(name, known, "`nsfd --list` prints all names"));
+            law_of_shape(name).empty()
+                ? advice_on_name(name, known, "`nsfd --list` prints all names")
+                : law_of_shape(name) + "; `nsfd --list` prints all names");
       else
         return name;
       reader.accept_everything();

@@ -1,4 +1,5 @@
 #include "leapfrog.h"
+#include "step_entry.h"
 #include "time_scheme.h"
 
 #include "nsfd/parameters/section_reader.h"
@@ -111,6 +112,14 @@ namespace nsfd
     std::vector<std::string> entries() const override
     {
       return {"front viscosity"};
+    }
+
+    void read_steps(SectionReader &reader, SceneInput &scene) const override
+    {
+      // cells of a mesh differ: a Courant number of the smallest one is either
+      // beyond the stable step or far below it
+      read_step(reader, "step", scene.time, "auto");
+      check_step(reader, scene);
     }
 
     void read(SectionReader &reader, SceneInput &scene) const override

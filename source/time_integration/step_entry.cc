@@ -25,10 +25,10 @@ namespace nsfd
   } // namespace
 
   void read_step(SectionReader &reader, const std::string &name,
-                 TimeInput &time)
+                 TimeInput &time, const std::string &default_text)
   {
     const auto value = reader.raw(
-        name, "0.5 courant",
+        name, default_text,
         "a time, a Courant number h c_p / L of the smallest cell, or auto");
     if (!value || value->text() == "auto") {
       time.step_kind = StepKind::automatic;

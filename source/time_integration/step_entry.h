@@ -10,7 +10,8 @@ namespace nsfd
 
   /** A time, a Courant number or `auto`: the step of time. */
   void read_step(SectionReader &reader, const std::string &name,
-                 TimeInput &time);
+                 TimeInput &time,
+                 const std::string &default_text = "0.5 courant");
 
   /** Where no wave crosses a cell the step must be a time. */
   void check_step(SectionReader &reader, const SceneInput &scene);

@@ -217,6 +217,35 @@ end
     EXPECT_EQ(step("2e-3 ns").step, 2e-12);
   }
 
+  TEST(Scene, ExplicitStepsAreAutomaticUnlessTheyAreGiven)
+  {
+    const std::string text = R"(
+set dimension = 2
+subsection Mesh
+  set type = rectangle
+  set cells = 2, 2
+end
+subsection Material: bulk
+  set Young modulus = 1e9
+  set Poisson ratio = 0.3
+  set density = 1000
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Time
+  set end = 1e-3
+  set scheme = moreau-jean
+end
+)";
+    EXPECT_EQ(read_good(text)->time.step_kind, StepKind::courant);
+    const std::vector<std::string> scheme = {"Time/scheme=explicit"};
+    EXPECT_EQ(read_good(text, scheme)->time.step_kind, StepKind::automatic);
+    EXPECT_EQ(
+        read_good(text, {scheme[0], "Time/step=0.1 courant"})->time.step_kind,
+        StepKind::courant);
+  }
+
   TEST(Scene, EveryRegisteredSolverCanBeNamed)
   {
     for (const std::string &name : SolverRegistry<2>::instance().names())
