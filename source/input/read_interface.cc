@@ -1,3 +1,4 @@
+#include "law_of_shape.h"
 #include "read_sections.h"
 
 #include <fmt/format.h>
@@ -45,24 +46,6 @@ namespace nsfd
         "toughness factor",  "scatter",          "strength scatter",
         "toughness scatter", "strength modulus", "toughness modulus",
         "unloading"};
-
-    /** Laws go by the names of their authors; other programs name their shapes.
-        Empty: it is none of them. */
-    std::string law_of_shape(const std::string &name)
-    {
-      if (name == "linear" || name == "linear softening")
-        return "softening along a line is `camacho-ortiz` without elasticity "
-               "before, `geubelle-baylor` with it (bilinear)";
-      if (name == "bilinear" || name == "triangular")
-        return "the bilinear law is `geubelle-baylor`";
-      if (name == "exponential")
-        return "the exponential law is `xu-needleman`";
-      if (name == "cohesive" || name == "czm" || name == "cohesive zone")
-        return "take for example `camacho-ortiz` where faces have no "
-               "compliance "
-               "before they break, `geubelle-baylor` where they are springs";
-      return "";
-    }
 
     /** The law of a block, checked; empty if nothing more can be read. */
     std::string read_law_name(SectionReader &reader)

@@ -201,6 +201,49 @@ namespace nsfd
     return possible;
   }
 
+  /**
+   * Springs close or open: of W + 1/(kappa s) one number of the diagonal
+   * changes, and its inverse by one product. False where that is not all.
+   */
+  template <int dim>
+  bool ElasticNode<dim>::change_map(const Step &step)
+  {
+    // of a number of the diagonal: less is left of it by others alone
+    constexpr double least = 1e-6;
+    bool same = true, can_change = n_changes_ < 100;
+    for (const Placed &point : points_) {
+      const std::size_t k = std::size_t(&point - points_.data());
+      if (point.is_inside)
+        continue;
+      if (point.own.closed != step.closed[k]) {
+        same = false;
+        can_change = can_change && !point.own.law.broken;
+      }
+      can_change = can_change && !point.follows;
+    }
+    if (same || !can_change)
+      return same;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      Placed &point = points_[k];
+      if (point.is_inside || point.own.closed == step.closed[k])
+        continue;
+      const auto row = std::size_t(point.rows[0]);
+      const double more =
+          step.closed[k] ? -point.own.flexibility[0] : point.own.flexibility[0];
+      const double left = 1. + more * inverse_[row * stride_ + row];
+      if (!(left > least))
+        return false;
+      Unknowns column;
+      std::copy_n(&inverse_[row * stride_], stride_, column.begin());
+      for (std::size_t j = 0; j < size_; ++j)
+        add<lanes>(-more / left * column[j], column.data(),
+                   &inverse_[j * stride_], stride_);
+      point.own.closed = step.closed[k];
+      ++n_changes_;
+    }
+    return true;
+  }
+
   /** What the normal spring of point @p k does in the step. */
   template <int dim>
   double ElasticNode<dim>::spring_impulse(const OneStepProblem<dim> &problem,
@@ -426,18 +469,25 @@ namespace nsfd
     Step step;
     if (!begin(problem, closed, node, step))
       return false;
+    // what the last step of this chain had comes first, since its map is there:
+    // @p closed are those of the other chain, which often differ in debris
+    for (std::size_t k = 0; has_map_ && k < points_.size(); ++k)
+      if (!points_[k].is_inside)
+        step.closed[k] = points_[k].own.closed;
     for (unsigned int change = 0; change < most_changes; ++change) {
-      bool same = has_map_;
-      for (std::size_t k = 0; k < points_.size(); ++k)
-        same = same && (points_[k].is_inside ||
-                        points_[k].own.closed == step.closed[k]);
-      if (!same)
+      if (!has_map_ || !change_map(step)) {
         has_map_ = set_map(node, frames, step);
+        n_changes_ = 0;
+      }
       if (!has_map_)
         return false;
       begin_impulses(problem, node, step);
-      if (!solve_map(node, frames, step))
-        return false;
+      if (!solve_map(node, frames, step)) {
+        if (n_changes_ == 0)
+          return false;
+        has_map_ = false; // what its changes have left
+        continue;
+      }
       const Found found = find_closed(problem, node, step);
       if (found == Found::impossible)
         return false;

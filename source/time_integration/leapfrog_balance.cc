@@ -44,16 +44,17 @@ namespace nsfd
       return h * p.time_step * p.weight[a] * p.majorant_normal[a] * softening >=
              2.;
     }
-  } // namespace
 
-  /** The one that comes some turns after the @p row th. */
-  template <int dim>
-  void LeapfrogPoints<dim>::fetch_spring(const std::size_t row) const
-  {
-    constexpr std::size_t ahead = 12;
-    if (row + ahead < springs_.size() && springs_[row + ahead])
-      prefetch(springs_[row + ahead], sizeof(*springs_[row + ahead]));
-  }
+    /** What comes some turns after the @p row th. */
+    template <typename Spring>
+    void fetch(const std::vector<const Spring *> &springs,
+               const std::size_t row)
+    {
+      constexpr std::size_t ahead = 12;
+      if (row + ahead < springs.size() && springs[row + ahead])
+        prefetch(springs[row + ahead], sizeof(Spring));
+    }
+  } // namespace
 
   /** account_point() of one that was a spring, held or apart: it took nothing.
    */
@@ -251,7 +252,7 @@ namespace nsfd
     energies_.resize(n);
     for (std::size_t k = 0; k < n; ++k) {
       const unsigned int active = balance.active;
-      fetch_spring(k);
+      fetch(springs_, k);
       if (springs_[k])
         account_spring(moved_[k], k, balance);
       else
@@ -309,7 +310,7 @@ namespace nsfd
     separates_ = false;
     for (std::size_t k = 0; k < moved_.size(); ++k) {
       const unsigned int a = moved_[k];
-      fetch_spring(k);
+      fetch(springs_, k);
       keep_jump(a, springs_[k] ? springs_[k]->law.holds
                                : chains_.problem.kind[a] == PointKind::rigid &&
                                      !chains_.solution[a].damages);

@@ -143,7 +143,6 @@ namespace nsfd
     void set_point(unsigned int a);
     bool solve_loose(Node &node);
     bool solve_elastic(Node &node);
-    void fetch_spring(std::size_t row) const;
     void account_point(unsigned int a, std::size_t row, Balance &balance);
     void account_spring(unsigned int a, std::size_t row, Balance &balance);
     void keep_jump(unsigned int a, bool held);

@@ -223,6 +223,7 @@ end
 set dimension = 2
 subsection Mesh
   set type = rectangle
+  set upper corner = 1, 1
   set cells = 2, 2
 end
 subsection Material: bulk
