@@ -2,9 +2,9 @@
 
 #include "core/gather.h"
 #include "discretization/body_shape.h"
+#include "discretization/body_thickness.h"
 #include "discretization/cells.h"
 #include "sharp_front.h"
-#include "thinnest_body.h"
 
 #include "discretization/cell_geometry.h"
 #include "nsfd/core/archive.h"
@@ -158,7 +158,9 @@ namespace nsfd
         for (unsigned int d = 0; d < dim; ++d)
           largest = std::max(largest, std::abs(corner[d]));
     extent_ = std::max(extent_, communicator_.max(largest));
-    has_stride_ = input_.large_motion && smallest_thickness() > 0.;
+    // implicit steps look for what they pass over, see SurfaceContacts
+    has_stride_ = input_.large_motion && input_.time.scheme.at_nodes &&
+                  smallest_thickness() > 0.;
   }
 
   /** Of all bodies and obstacles that something may fly through. 0: there is no
@@ -171,7 +173,8 @@ namespace nsfd
     for (const auto &obstacle : input_.obstacles)
       result = std::min(result, obstacle.shape->thickness(obstacle));
     if (!input_.contacts.empty())
-      result = std::min(result, thinnest_body(discretization_));
+      for (const auto &[body, thickness] : body_thickness(discretization_))
+        result = std::min(result, thickness);
     result = communicator_.min(result);
     return std::isfinite(result) ? result : 0.;
   }
@@ -348,6 +351,8 @@ namespace nsfd
   {
     if (!input_.large_motion)
       look_at_cells(state);
+    else if (has_stride_) // of explicit steps, whose motion is known now
+      look_at_stride(State(), state);
     return news();
   }
 
