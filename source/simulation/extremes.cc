@@ -314,10 +314,10 @@ namespace nsfd
     fastest = std::sqrt(communicator_.max(fastest));
     joints_ = fastest > 0. ? largest / fastest : 0.;
     std::vector<std::string> result;
-    if (joints_ > largest_joint_speed && input_.time.theta < 1.)
+    if (joints_ > largest_joint_speed)
       result.push_back(fmt::format(
-          "note: at t = 0 rigidly joined points differ in velocity by {}, "
-          "which changes its sign in every step",
+          "note: at t = 0 rigidly joined points differ in velocity by {}: they "
+          "meet in an impact of the first step",
           engineering(largest, "m/s")));
     if (front_)
       add_impacts(input_, discretization_, state, communicator_, *front_);
@@ -421,7 +421,6 @@ namespace nsfd
             input_.interfaces.begin(), input_.interfaces.end(),
             [](const auto &block) { return block.law_name == "rigid"; }))
       limits.joints = joints_;
-    limits.joint_theta = input_.time.theta;
     limits.front = front_;
     facts.extent = extent_;
   }
