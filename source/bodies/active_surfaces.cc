@@ -192,6 +192,28 @@ namespace nsfd
   }
 
   template <int dim>
+  std::vector<double> ActiveSurfaces<dim>::places_in(const State &state) const
+  {
+    std::vector<double> own;
+    own.reserve(own_moving_nodes_.size() * dim);
+    for (const std::size_t node : own_moving_nodes_) {
+      const Point<dim> x = bodies_.place(state, bodies_.own_node(node));
+      own.insert(own.end(), x.begin_raw(), x.end_raw());
+    }
+    const auto places = gather_all(all_, own);
+    std::vector<double> result(x_.size(), 0.);
+    const double *from = places.data();
+    for (const std::size_t node : moving_nodes_) {
+      std::copy_n(from, dim, result.data() + node * dim);
+      from += dim;
+    }
+    for (std::size_t r = 0; r < table_.n_rigid; ++r)
+      std::copy_n(state.rigid.data() + 13 * r, dim,
+                  result.data() + (cells_.n_nodes() + r) * dim);
+    return result;
+  }
+
+  template <int dim>
   bool ActiveSurfaces<dim>::is_corner(const unsigned int c,
                                       const unsigned int f,
                                       const unsigned int node) const

@@ -85,6 +85,8 @@ namespace nsfd
                    unsigned int node) const;
     /** Of vertices, dim each. */
     const double *positions() const { return x_.data(); }
+    /** Theirs in another state, say at the end of the step. Collective. */
+    std::vector<double> places_in(const State &state) const;
     Vector velocity(std::size_t node) const;
 
   private:

@@ -1,6 +1,7 @@
 #include "surface_contacts.h"
 
 #include "core/gather.h"
+#include "discretization/body_thickness.h"
 
 #include "nsfd/scene/scene_input.h"
 
@@ -21,6 +22,16 @@ namespace nsfd
         active_(input, discretization, bodies, communicator, cells_, places_,
                 blocks_)
   {
+    struct Thickness {
+      unsigned int body;
+      double value;
+    };
+    std::vector<Thickness> own;
+    for (const auto &[body, value] : body_thickness(discretization))
+      own.push_back({body, value});
+    thickness_.resize(table_.bodies.size());
+    for (const Thickness &of : gather_all(all_, own))
+      thickness_[of.body] = of.value;
     search_.share(communicator,
                   [this](const unsigned int b) { return bodies_.is_own(b); });
   }

@@ -3,11 +3,16 @@
 #include "active_surfaces.h"
 #include "moving_row.h"
 
+#include "contact_detection/missed_contacts.h"
+
 #include <unordered_map>
 #include <vector>
 
 namespace nsfd
 {
+  template <int dim>
+  class TurningBodies;
+
   /**
    * The surfaces of the moving bodies: sides of the mesh, crack faces of faces
    * that have broken between two bodies, balls. It says which of their places
@@ -61,6 +66,13 @@ namespace nsfd
     std::vector<MovingRow<dim>> rows(const State &old, double time_step,
                                      double largest_speed);
 
+    /**
+     * What the step of the last call of rows() to @p next passes over, see
+     * MissedContact; that of the shortest step. Collective.
+     */
+    std::optional<MissedContact<dim>> missed(const State &old,
+                                             const State &next) const;
+
     struct Counters {
       unsigned long long searches = 0, facets = 0, rows = 0;
       unsigned long long edge_rows = 0; ///< of these rows
@@ -90,6 +102,9 @@ namespace nsfd
                    Row &row) const;
     std::uint8_t mark_of(const State &old, unsigned int facet) const;
     Vector centre_velocity(const State &old, unsigned int body) const;
+    void look_at_obstacles(const State &old, const State &next,
+                           const TurningBodies<dim> &turning,
+                           std::optional<MissedContact<dim>> &first) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
@@ -100,6 +115,7 @@ namespace nsfd
     const ContactPlaces<dim> places_;
     const ContactBlocks blocks_;
     ActiveSurfaces<dim> active_;
+    std::vector<double> thickness_; ///< by body, at rest, m
     SurfaceSearch<dim> search_;
     NearPairs<dim> pairs_;
     /// normals of contacts between two corners, by own node and other one

@@ -431,4 +431,13 @@ namespace nsfd
     }
     return rows;
   }
+
+#define INSTANTIATE(dim)                                                       \
+  template std::vector<MovingRow<dim>> SurfaceContacts<dim>::rows(             \
+      const State &, double, double);                                          \
+  template void SurfaceContacts<dim>::store_facets(State &) const
+
+  INSTANTIATE(2);
+  INSTANTIATE(3);
+#undef INSTANTIATE
 } // namespace nsfd

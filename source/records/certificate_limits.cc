@@ -58,23 +58,16 @@ namespace nsfd
       return line;
     }
 
-    Line joints_of(const double speed, const double theta)
+    Line joints_of(const double speed)
     {
-      // theta U + (1 - theta) U_k = 0 in a row of a joint
-      const bool at_once = theta >= 1.;
       Line line = line_of("joints", speed, largest_joint_speed,
-                          within(speed <= largest_joint_speed || at_once));
+                          within(speed <= largest_joint_speed));
       print_both(line, "{:.3g} %", "at most ", 100.);
       if (line.verdict == Verdict::bad)
-        line.remark = fmt::format(
-            "rigidly joined points differ in velocity at t = 0: the "
-            "difference changes its sign in every step{}; give both sides the "
-            "same initial velocity, or the faces a law",
-            theta > 0.5 ? fmt::format(" and is {:.2g} times as large after it",
-                                      (1. - theta) / theta)
-                        : ", for ever");
-      else if (at_once && speed > largest_joint_speed)
-        line.remark = "theta = 1 takes it out in the first step";
+        line.remark =
+            "rigidly joined points differ in velocity at t = 0: they meet in "
+            "an impact of the first step, which takes energy; give both sides "
+            "the same initial velocity, or the faces a law";
       return line;
     }
 
@@ -121,7 +114,7 @@ namespace nsfd
     if (limits.stride)
       lines.push_back(stride_of(limits));
     if (limits.joints)
-      lines.push_back(joints_of(*limits.joints, limits.joint_theta));
+      lines.push_back(joints_of(*limits.joints));
     if (limits.front)
       lines.push_back(front_of(*limits.front, facts));
   }

@@ -55,7 +55,6 @@ namespace nsfd
     /// difference in velocity of rigidly joined points at t = 0, over the
     /// largest speed
     std::optional<double> joints;
-    double joint_theta = 0.;         ///< of the run: 1 takes it out at once
     std::optional<SharpFront> front; ///< the sharpest one, of faces that break
   };
 

@@ -2,9 +2,9 @@
 
 #include "core/gather.h"
 #include "discretization/body_shape.h"
+#include "discretization/body_thickness.h"
 #include "discretization/cells.h"
 #include "sharp_front.h"
-#include "thinnest_body.h"
 
 #include "discretization/cell_geometry.h"
 #include "nsfd/core/archive.h"
@@ -158,7 +158,9 @@ namespace nsfd
         for (unsigned int d = 0; d < dim; ++d)
           largest = std::max(largest, std::abs(corner[d]));
     extent_ = std::max(extent_, communicator_.max(largest));
-    has_stride_ = input_.large_motion && smallest_thickness() > 0.;
+    // implicit steps look for what they pass over, see SurfaceContacts
+    has_stride_ = input_.large_motion && input_.time.scheme.at_nodes &&
+                  smallest_thickness() > 0.;
   }
 
   /** Of all bodies and obstacles that something may fly through. 0: there is no
@@ -171,7 +173,8 @@ namespace nsfd
     for (const auto &obstacle : input_.obstacles)
       result = std::min(result, obstacle.shape->thickness(obstacle));
     if (!input_.contacts.empty())
-      result = std::min(result, thinnest_body(discretization_));
+      for (const auto &[body, thickness] : body_thickness(discretization_))
+        result = std::min(result, thickness);
     result = communicator_.min(result);
     return std::isfinite(result) ? result : 0.;
   }
@@ -311,10 +314,10 @@ namespace nsfd
     fastest = std::sqrt(communicator_.max(fastest));
     joints_ = fastest > 0. ? largest / fastest : 0.;
     std::vector<std::string> result;
-    if (joints_ > largest_joint_speed && input_.time.theta < 1.)
+    if (joints_ > largest_joint_speed)
       result.push_back(fmt::format(
-          "note: at t = 0 rigidly joined points differ in velocity by {}, "
-          "which changes its sign in every step",
+          "note: at t = 0 rigidly joined points differ in velocity by {}: they "
+          "meet in an impact of the first step",
           engineering(largest, "m/s")));
     if (front_)
       add_impacts(input_, discretization_, state, communicator_, *front_);
@@ -348,6 +351,8 @@ namespace nsfd
   {
     if (!input_.large_motion)
       look_at_cells(state);
+    else if (has_stride_) // of explicit steps, whose motion is known now
+      look_at_stride(State(), state);
     return news();
   }
 
@@ -416,7 +421,6 @@ namespace nsfd
             input_.interfaces.begin(), input_.interfaces.end(),
             [](const auto &block) { return block.law_name == "rigid"; }))
       limits.joints = joints_;
-    limits.joint_theta = input_.time.theta;
     limits.front = front_;
     facts.extent = extent_;
   }

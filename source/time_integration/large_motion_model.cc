@@ -5,9 +5,12 @@
 #include "core/gather.h"
 #include "initial_state.h"
 #include "point_name.h"
+#include "time_integrator.h"
 
 #include "core/stopwatch.h"
 #include "nsfd/scene/scene_input.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -377,6 +380,35 @@ namespace nsfd
       next.jump[k] = problem_.jump_free[k] +
                      time_step_ * problem_.theta * next.relative_velocity[k];
     bodies_.finish(next);
+    refuse_missed_contacts(next);
+  }
+
+  /** A step that would pass over a contact ends where this begins. */
+  template <int dim>
+  void LargeMotionModel<dim>::refuse_missed_contacts(const State &next) const
+  {
+    if (!contacts_)
+      return;
+    const auto missed = contacts_->missed(*start_, next);
+    if (!missed)
+      return;
+    const SceneInput &input = parts_.input;
+    const auto &table = parts_.discretization.body_table();
+    const auto name = [&](const unsigned int body) {
+      constexpr unsigned int first = MissedContact<dim>::first_obstacle;
+      return body >= first
+                 ? input.obstacles[body - first].name
+                 : "a body of " +
+                       input.materials[table.bodies[body].material].name;
+    };
+    throw StepRejected(
+        fmt::format("in the step of {:.4g} s at t = {:.6g} s {} would fly "
+                    "through {}, near ({:.4g}) m; a step of {:.2g} s would not "
+                    "miss it",
+                    time_step_, start_->time, name(missed->body_2),
+                    name(missed->body_1), fmt::join(missed->place, ", "),
+                    missed->share * time_step_),
+        StepRejected::Cure::shorter_step, missed->share);
   }
 
   template <int dim>

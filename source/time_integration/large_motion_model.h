@@ -63,6 +63,7 @@ namespace nsfd
     void set_problem();
     void set_tangents();
     void forecast(bool first);
+    void refuse_missed_contacts(const State &next) const;
 
     const StepParts<dim> parts_;
     MovingBodies<dim> &bodies_;

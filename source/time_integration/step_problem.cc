@@ -77,12 +77,71 @@ namespace nsfd
       else
         break;
     }
+    if (report.converged &&
+        rests(problem, control, energy_scale, old, evaluation))
+      settle(problem, control, energy_scale, impulse, evaluation, report);
     counters_.newton += report.newton;
     counters_.krylov += report.krylov;
     counters_.sweeps += report.sweeps;
     counters_.law_sweeps += evaluation.law_calls;
     counters_.line_searches += report.line_searches;
     return report;
+  }
+
+  /** Nothing moved, and nothing does by more than a solution may be off. */
+  template <int dim>
+  bool StepProblem<dim>::rests(const OneStepProblem<dim> &problem,
+                               const SolverControl &control,
+                               const double energy_scale, const State &old,
+                               const LawEvaluation<dim> &evaluation) const
+  {
+    const double still = 100. * control.tolerance;
+    if (2. * old.energy.kinetic > still * still * energy_scale)
+      return false;
+    // rows of joints that depend on each other have no last bit to settle to
+    const Communicator &all = delassus_.communicator();
+    const bool only_contacts =
+        problem.free_motion == FreeVelocity::known &&
+        std::all_of(problem.kind.begin(), problem.kind.end(),
+                    [](const auto kind) { return kind == PointKind::free; });
+    if (all.any(!only_contacts))
+      return false;
+    double largest = 0., free = 0.;
+    for (std::size_t k = 0; k < problem.n_owned * dim; ++k) {
+      largest = std::max(largest, std::abs(evaluation.velocity[k]));
+      free = std::max(free, std::abs(problem.free_velocity[k]));
+    }
+    return all.max(largest) <= still * all.max(free);
+  }
+
+  /**
+   * The next step begins with what this one leaves, and where nothing moves all
+   * that is left are errors, each on top of those before: bodies at rest would
+   * creep by the tolerance times g h^2 in every step. Some Newton steps more
+   * leave round-off.
+   */
+  template <int dim>
+  void
+  StepProblem<dim>::settle(const OneStepProblem<dim> &problem,
+                           SolverControl control, const double energy_scale,
+                           std::vector<double> &impulse,
+                           LawEvaluation<dim> &evaluation, SolverReport &report)
+  {
+    control.tolerance = 1e-14;
+    control.maximum_iterations = 6;
+    if (evaluation.error <= control.tolerance)
+      return;
+    if (!settling_)
+      settling_ = SolverRegistry<dim>::instance().create("dual newton");
+    const std::vector<double> before(impulse);
+    const double error = evaluation.error;
+    report.add_work(settling_->solve(problem, delassus_, energy_scale, control,
+                                     impulse, evaluation));
+    if (!(evaluation.error < error)) {
+      impulse = before;
+      evaluation.update(impulse);
+    }
+    report.residual = evaluation.error;
   }
 
   template <int dim>

@@ -43,7 +43,7 @@ namespace nsfd
     /**
      * Again as long as extrinsic points reach their strength (unless @p
      * keeps_joints), or friction gives energy; @p old as it was for set().
-     * Collective.
+     * Contacts of bodies at rest are solved to round-off. Collective.
      */
     SolverReport
     solve(NonsmoothSolver<dim> &solver, OneStepProblem<dim> &problem,
@@ -56,12 +56,20 @@ namespace nsfd
     const DrivenMotion<dim> &motion() const { return *motion_; }
 
   private:
+    bool rests(const OneStepProblem<dim> &problem, const SolverControl &control,
+               double energy_scale, const State &old,
+               const LawEvaluation<dim> &evaluation) const;
+    void settle(const OneStepProblem<dim> &problem, SolverControl control,
+                double energy_scale, std::vector<double> &impulse,
+                LawEvaluation<dim> &evaluation, SolverReport &report);
+
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
     DelassusOperator<dim> &delassus_;
     StepCounters &counters_;
     std::unique_ptr<DrivenMotion<dim>> motion_;
     EnergySafeSliding<dim> sliding_;
+    std::unique_ptr<NonsmoothSolver<dim>> settling_; ///< see settle()
     bool has_extrinsic_ = false;
   };
 

@@ -284,7 +284,7 @@ end
     }
   }
 
-  TEST(Certificates, OfBodiesThatFlyFartherThanTheyAreThick)
+  TEST(Certificates, OfBodiesThatFlyFartherThanTheyAreThickInAStep)
   {
     const Workspace workspace;
     const auto file = write(workspace, "fly.prm", R"(
@@ -295,8 +295,8 @@ subsection Mesh
 end
 subsection Body: shot
   set type         = rectangle
-  set lower corner = 0, 0
-  set upper corner = 0.1, 0.1
+  set lower corner = 0, -0.05
+  set upper corner = 0.1, 0.05
   set cells        = 1, 1
 end
 subsection Body: foil
@@ -327,12 +327,118 @@ subsection Time
   set step = 3 ms
 end
 )");
-    const Result far = run(workspace, "far", {file});
-    ASSERT_TRUE(far.completed()) << far.description();
-    EXPECT_EQ(verdict(far, "way of a step"), "not ok");
-    EXPECT_TRUE(has_note(workspace, file, "Time/step=3 ms"));
-    const Result near = run(workspace, "near", {file, {"Time/step=0.5 ms"}});
-    EXPECT_EQ(verdict(near, "way of a step"), "ok");
+    for (const char *const step : {"0.5 ms", "3 ms", "8.5 ms"}) {
+      const Result result =
+          good_run(workspace, std::string("fly ") + step,
+                   {file, {std::string("Time/step=") + step}});
+      ASSERT_TRUE(result.completed()) << result.description();
+      // both have 10 kg per metre: 5 m/s each
+      EXPECT_NEAR(result.history["kinetic"].back(), 250., 1e-6) << step;
+      EXPECT_EQ(verdict(result, "penetration"), "ok") << step;
+    }
+    // a step that may not be cut is no result
+    const Result failed =
+        run(workspace, "failed",
+            {file, {"Time/step=8.5 ms", "Time/maximum bisections=0"}});
+    EXPECT_EQ(failed.outcome.exit_code, 3) << failed.description();
+    EXPECT_NE(failed.outcome.err.find("would fly through a body of foil"),
+              std::string::npos)
+        << failed.outcome.err;
+  }
+
+  // explicit steps do not look for what they pass over: cells bound them, but
+  // an obstacle may be thinner
+  TEST(Certificates, OfExplicitStepsLongerThanAnObstacleIsThick)
+  {
+    const Workspace workspace;
+    const auto file = write(workspace, "wire.prm", R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set lower corner = 0, 0
+  set upper corner = 0.1, 0.1
+  set cells        = 1, 1
+end
+subsection Material: m
+  set model              = neo-hookean
+  set Young modulus      = 1 MPa
+  set Poisson ratio      = 0.3
+  set density            = 1000
+  set initial velocity x = 1
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Obstacle: wire
+  set where  = all
+  set shape  = sphere
+  set point  = 0.5, 0.2
+  set radius = 1 um
+end
+subsection Time
+  set scheme = explicit
+  set step   = auto
+  set end    = 10 ms
+end
+)");
+    const Result thin = run(workspace, "thin", {file});
+    ASSERT_TRUE(thin.completed()) << thin.description();
+    EXPECT_EQ(verdict(thin, "way of a step"), "not ok");
+    EXPECT_TRUE(has_note(workspace, file, "Time/end=10 ms"));
+    const Result thick =
+        run(workspace, "thick", {file, {"Obstacle: wire/radius=10 mm"}});
+    EXPECT_EQ(verdict(thick, "way of a step"), "ok");
+  }
+
+  // motion = small makes a body that turns by w longer by sqrt(1 + w^2), 3.3
+  // times at half a revolution, whatever the scheme
+  TEST(Certificates, OfBodiesThatTurnByHalfARevolution)
+  {
+    const Workspace workspace;
+    const auto file = write(workspace, "spin.prm", R"(
+set dimension = 2
+subsection Mesh
+  set type         = rectangle
+  set lower corner = -0.5, -0.5
+  set upper corner = 0.5, 0.5
+  set cells        = 2, 2
+end
+subsection Material: m
+  set model              = linear elastic
+  set Young modulus      = 1 GPa
+  set Poisson ratio      = 0.2
+  set density            = 1000
+  set initial velocity x = -10 * y
+  set initial velocity y = 10 * x
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Time
+  set end  = pi / 10
+  set step = 1 ms
+end
+)");
+    for (const auto &[scheme, step] :
+         std::vector<std::pair<std::string, std::string>>{
+             {"moreau-jean", "1 ms"},
+             {"explicit", "auto"},
+             {"symplectic", "auto"},
+             {"arkode", "1 ms"}}) {
+      const Result result =
+          run(workspace, "spin " + scheme,
+              {file, {"Time/scheme=" + scheme, "Time/step=" + step}});
+      ASSERT_TRUE(result.completed()) << result.description();
+      EXPECT_EQ(verdict(result, "rotation"), "not ok") << scheme;
+      EXPECT_EQ(verdict(result, "strain"), "ok") << scheme;
+      // at 0.1 rad it is within its bound
+      const Result half = run(
+          workspace, "less " + scheme,
+          {file,
+           {"Time/scheme=" + scheme, "Time/step=" + step, "Time/end=9.9 ms"}});
+      EXPECT_EQ(verdict(half, "rotation"), "ok") << scheme;
+    }
   }
 
   TEST(Certificates, OfAFailedRun)

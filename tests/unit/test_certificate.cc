@@ -41,7 +41,6 @@ namespace nsfd::test_certificate
           Peak{1e-3, 1e-4, {}};
       facts.limits.thickness = 0.1;
       facts.limits.joints = 1e-15;
-      facts.limits.joint_theta = 0.5;
       facts.limits.front =
           SharpFront{1e5, 0., 1e6, 1e-6, "Boundary: left", true, 1e10, 0.};
       return facts;
@@ -233,14 +232,6 @@ namespace nsfd::test_certificate
       EXPECT_EQ(remark.find("shorten Time/step"), std::string::npos) << remark;
       EXPECT_EQ(remark.find("moreau-jean"), std::string::npos) << remark;
     }
-  }
-
-  TEST(Certificate, TakesJointsOutAtOnceWithThetaOne)
-  {
-    RunFacts facts = good_facts();
-    facts.limits.joints = 1.;
-    facts.limits.joint_theta = 1.;
-    EXPECT_EQ(line(certify(facts), "joints").verdict, Verdict::ok);
   }
 
   // 0.016 / viscosity of 20 strengths

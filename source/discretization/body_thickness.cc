@@ -1,13 +1,12 @@
-#include "thinnest_body.h"
+#include "body_thickness.h"
 
-#include "discretization/cell_geometry.h"
-#include "discretization/cells.h"
+#include "cell_geometry.h"
+#include "cells.h"
 
 #include <deal.II/fe/fe.h>
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
 namespace nsfd
 {
@@ -77,15 +76,17 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  double thinnest_body(const Discretization<dim> &discretization)
+  std::map<unsigned int, double>
+  body_thickness(const Discretization<dim> &discretization)
   {
-    double result = std::numeric_limits<double>::infinity();
+    std::map<unsigned int, double> result;
     for (const auto &[body, whole] : measure_bodies(discretization))
-      result = std::min(
-          result, std::max(whole.width, 2. * whole.volume / whole.surface));
+      result[body] = std::max(whole.width, 2. * whole.volume / whole.surface);
     return result;
   }
 
-  template double thinnest_body(const Discretization<2> &);
-  template double thinnest_body(const Discretization<3> &);
+  template std::map<unsigned int, double>
+  body_thickness(const Discretization<2> &);
+  template std::map<unsigned int, double>
+  body_thickness(const Discretization<3> &);
 } // namespace nsfd
