@@ -66,7 +66,7 @@ namespace nsfd
                      "write scheme = moreau-jean");
       };
       for (const MaterialInput &material : scene.materials)
-        if (material.kind != MaterialKind::finite_strain)
+        if (material.rigid)
           refuse(fmt::format("model = {} yet, which material `{}` has",
                              material.model_name, material.name));
       for (const InterfaceInput &block : scene.interfaces)

@@ -46,8 +46,7 @@ namespace nsfd
         })
   {
     ghosts_.set_mesh(mesh_, hanging_);
-    if (const auto *finite =
-            dynamic_cast<const FiniteForces<dim> *>(forces_.get()))
+    if (auto *finite = dynamic_cast<FiniteForces<dim> *>(forces_.get()))
       large_ = std::make_unique<LeapfrogLarge<dim>>(
           input, discretization_, mesh_, all_, communicator, *finite);
     if (!hanging_.any() && !has_rigid_cells(input))
@@ -298,7 +297,7 @@ namespace nsfd
       hanging_.follow(g);
       forces_->front().begin_step(h, kick);
       if (large_)
-        large_->keep_front(forces_->front());
+        large_->begin_forces(h, forces_->front());
       hanging_.set_forces(*forces_, *groups_);
     }
     if (const std::string place = large_ ? large_->inverted() : "";
@@ -335,6 +334,8 @@ namespace nsfd
       // the state before it is what the run can still show
       before_.displacement.swap(g.displacement);
       go_back();
+      if (large_)
+        large_->go_back();
       throw StepRejected(rejected.what(), StepRejected::Cure::none);
     }
     report.separates = communicator_.any(points_.accept());

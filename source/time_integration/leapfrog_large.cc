@@ -26,7 +26,7 @@ namespace nsfd
                                     const JoinedMesh<dim> &mesh,
                                     const OneStepProblem<dim> &all,
                                     const Communicator &communicator,
-                                    const FiniteForces<dim> &forces)
+                                    FiniteForces<dim> &forces)
       : discretization_(discretization), mesh_(mesh),
         communicator_(communicator), forces_(forces)
   {
@@ -38,6 +38,7 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::set_initial(State &state) const
   {
+    state.material_history = forces_.histories().at_rest();
     if (contacts_)
       contacts_->set_initial(state);
   }
@@ -140,7 +141,8 @@ namespace nsfd
     // of elastic forces alone, where a step changes its length
     energies.numerical -= (h - last) / 4. * (front_after - front_before);
     energies.power -= front_after;
-    energies.viscous += std::max(0., taken);
+    energies.viscous += std::max(0., taken) + flow_[1];
+    energies.plastic = flow_[0];
     // steps that change their length are among it
     energies.large =
         energies.numerical + std::min(0., taken) + bulk_ - energies.turned;
@@ -167,6 +169,12 @@ namespace nsfd
     const double stored_now = stored();
     energies.power_after -= forces_.front_power(groups, groups.velocity);
     bulk_ = stored_ - stored_now - h / 2. * (power_ + energies.power_after);
+    if (!forces_.taken().empty()) {
+      const std::size_t n = forces_.taken().size() / 2;
+      const auto sums = communicator_.sums(forces_.taken().data(), 2, n);
+      std::copy_n(sums.begin(), 2, flow_.begin());
+      bulk_ -= flow_[0] + flow_[1];
+    }
     stored_ = stored_now;
     // a longer step later would take or give energy, as each change does
     if (step % steps_between_looks == 0)
@@ -212,6 +220,7 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::show(State &state) const
   {
+    state.material_history = forces_.histories().values();
     if (contacts_)
       contacts_->show(state);
   }
@@ -234,6 +243,8 @@ namespace nsfd
   void LeapfrogLarge<dim>::serialize(Archive &archive)
   {
     archive.numbers("large", bulk_, stiffening_, way_);
+    if (forces_.histories().any())
+      archive.numbers("flow", flow_[0], flow_[1]);
   }
 
   template class LeapfrogLarge<2>;

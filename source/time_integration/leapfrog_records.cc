@@ -48,6 +48,7 @@ namespace nsfd
     energy.friction += balance.friction + bodies.friction;
     energy.impact += balance.impact + bodies.impact;
     energy.viscous += balance.viscous + bodies.viscous;
+    energy.plastic += bodies.plastic;
     energy.numerical += balance.numerical + bodies.numerical;
     energy.work += bodies.work + bodies.pressure_work;
     next.broken_area = old.broken_area + balance.broken;
@@ -80,6 +81,7 @@ namespace nsfd
     report.changes.taken[std::size_t(WatchedLine::impact)] += bodies.impact;
     report.changes.taken[std::size_t(WatchedLine::viscous)] =
         energy.viscous - old.energy.viscous;
+    report.changes.taken[std::size_t(WatchedLine::plastic)] = bodies.plastic;
     close_balance(old, next, report);
     const double scale = 4. * std::abs(energy.kinetic);
     const TakenStep step{old, next, h, scale, 0};

@@ -63,6 +63,8 @@ namespace nsfd
   void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact,
                            const bool start)
   {
+    if (large_)
+      large_->take_histories(state);
     for (const unsigned int i :
          points_between_groups(discretization_, mesh_, hanging_, intact))
       points_.add(i, faces_.factors(i), state);
