@@ -1,7 +1,7 @@
 // A quarter of a bar of radius 3.2 and length 32.4, in millimetres, its foot at
 // z = 0. See prm/benchmarks/taylor_bar.prm.
 If (!Exists(n))
-  n = 3;  // cells along each half of the circle
+  n = 2;  // cells along each half of the circle
 EndIf
 r = 3.2;
 l = 32.4;

@@ -155,6 +155,8 @@ namespace nsfd
     double *f = &forces_[first];
     std::fill_n(f, n * dim, 0.);
     stored_[cell] = peaks_[cell] = 0.;
+    if (is_rigid(cell))
+      return;
     const auto [volume, now] = histories_.any() && histories_.of(cell)
                                    ? set_flowing_cell(cell, f)
                                    : set_elastic_cell(cell, f);
@@ -227,6 +229,8 @@ namespace nsfd
   auto FiniteForces<dim>::stress_at(const std::size_t cell,
                                     const unsigned int slot) const -> Matrix
   {
+    if (is_rigid(cell))
+      return {};
     const Matrix F = deformation(cell, at_slot(cell, slot));
     if (histories_.any() && histories_.of(cell))
       return flowing_stress(cell, tables(cell).slot_points[slot], F);
@@ -356,6 +360,8 @@ namespace nsfd
     double most = 1.;
     for (std::size_t cell = 0; cell < stored_.size(); ++cell) {
       const Tables &here = tables(cell);
+      if (is_rigid(cell))
+        continue;
       if (histories_.any() && histories_.of(cell)) {
         most = std::max(most, flowing_stiffening(cell));
         continue;

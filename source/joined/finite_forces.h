@@ -3,6 +3,7 @@
 #include "cell_forces.h"
 #include "cell_histories.h"
 
+#include "discretization/cells.h"
 #include "nsfd/materials/hyperelastic.h"
 
 namespace nsfd
@@ -79,6 +80,10 @@ namespace nsfd
     const Tables &tables(const std::size_t cell) const
     {
       return tables_[differ_ ? cell : discretization_.bodies().class_of[cell]];
+    }
+    bool is_rigid(const std::size_t cell) const
+    {
+      return discretization_.cells().body_class(cell).undeformed;
     }
     const Hyperelastic<dim> &material(std::size_t cell) const;
     Matrix deformation(std::size_t cell, const double *gradients) const;

@@ -1,5 +1,8 @@
 #include "leapfrog_large.h"
 
+#include "joined_start.h"
+
+#include "bodies/rigid_motions.h"
 #include "discretization/cells.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
@@ -27,10 +30,11 @@ namespace nsfd
                                     const OneStepProblem<dim> &all,
                                     const Communicator &communicator,
                                     FiniteForces<dim> &forces)
-      : discretization_(discretization), mesh_(mesh),
+      : input_(input), discretization_(discretization), mesh_(mesh),
         communicator_(communicator), forces_(forces)
   {
-    if (!input.contacts.empty() || !input.obstacles.empty())
+    if (!input.contacts.empty() || !input.obstacles.empty() ||
+        has_rigid_cells(input))
       contacts_ = std::make_unique<LeapfrogContacts<dim>>(input, discretization,
                                                           all, communicator);
   }
@@ -39,6 +43,11 @@ namespace nsfd
   void LeapfrogLarge<dim>::set_initial(State &state) const
   {
     state.material_history = forces_.histories().at_rest();
+    if (has_rigid_cells(input_)) {
+      const BodyLayout<dim> layout(input_, discretization_);
+      RigidMotions<dim>(input_, discretization_, layout, communicator_)
+          .set_nearest(state);
+    }
     if (contacts_)
       contacts_->set_initial(state);
   }
@@ -60,6 +69,7 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::begin(const double time, const double h,
                                  const std::vector<std::uint8_t> &prescribed,
+                                 const RigidGroups<dim> *rigid,
                                  const CornerGroups<dim> &groups,
                                  LeapfrogPoints<dim> &points,
                                  LeapfrogEnergies &energies)
@@ -68,7 +78,7 @@ namespace nsfd
         points.turn([this](const std::size_t i) { return forces_.frame(i); }));
     energies.turned = turned_;
     if (contacts_)
-      contacts_->find(time, h, prescribed, groups);
+      contacts_->find(time, h, prescribed, rigid, groups);
   }
 
   /** The node of a group that points hold; else no_node. */
@@ -92,18 +102,20 @@ namespace nsfd
   auto LeapfrogLarge<dim>::solve(const double h, const double last,
                                  const std::vector<std::uint8_t> &prescribed,
                                  const double tolerance,
+                                 RigidGroups<dim> *rigid,
                                  LeapfrogPoints<dim> &points,
                                  CornerGroups<dim> &groups) ->
       typename LeapfrogPoints<dim>::Outcome
   {
     constexpr unsigned int most_rounds = 30;
-    if (!contacts_ || !contacts_->any())
+    if (!rigid && (!contacts_ || !contacts_->any()))
       return points.solve(h, last, prescribed, tolerance, groups);
     const std::vector<double> free = groups.velocity;
     const auto node_of = nodes_of_groups(points, groups);
     typename LeapfrogPoints<dim>::Outcome outcome;
     for (unsigned int round = 0; round < most_rounds; ++round) {
       groups.velocity = free;
+      std::vector<double> of_bodies(rigid ? rigid->n_free() : 0, 0.);
       auto clusters = contacts_->clusters(node_of);
       std::vector<std::size_t> apart;
       for (const auto &cluster : clusters)
@@ -111,9 +123,12 @@ namespace nsfd
       std::sort(apart.begin(), apart.end());
       outcome = points.solve(h, last, prescribed, tolerance, groups, apart);
       for (auto &cluster : clusters)
-        points.solve_cluster(cluster, prescribed, tolerance, groups, outcome);
+        points.solve_cluster(cluster, prescribed, tolerance, rigid, of_bodies,
+                             groups, outcome);
       contacts_->take(clusters);
-      contacts_->solve_others(tolerance, groups);
+      contacts_->solve_others(tolerance, of_bodies, groups);
+      if (rigid)
+        rigid->move(of_bodies, groups);
       ++rounds_;
       if (!contacts_->improve(groups))
         break;

@@ -48,13 +48,14 @@ namespace nsfd
     /** Before the velocities change in a step of length @p h from @p time. */
     void begin(double time, double h,
                const std::vector<std::uint8_t> &prescribed,
-               const CornerGroups<dim> &groups, LeapfrogPoints<dim> &points,
-               LeapfrogEnergies &energies);
-    /** See LeapfrogPoints::solve(). */
+               const RigidGroups<dim> *rigid, const CornerGroups<dim> &groups,
+               LeapfrogPoints<dim> &points, LeapfrogEnergies &energies);
+    /** See LeapfrogPoints::solve(); with the @p rigid bodies, if not null, and
+        what meets these. */
     typename LeapfrogPoints<dim>::Outcome
     solve(double h, double last, const std::vector<std::uint8_t> &prescribed,
-          double tolerance, LeapfrogPoints<dim> &points,
-          CornerGroups<dim> &groups);
+          double tolerance, RigidGroups<dim> *rigid,
+          LeapfrogPoints<dim> &points, CornerGroups<dim> &groups);
     void add_impulses(const std::vector<int> &row_of_group,
                       std::vector<double> &rows) const;
     /** What bodies and contacts have, with the forces that acted in the step;
@@ -105,6 +106,7 @@ namespace nsfd
     nodes_of_groups(const LeapfrogPoints<dim> &points,
                     const CornerGroups<dim> &groups) const;
 
+    const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     const Communicator &communicator_;

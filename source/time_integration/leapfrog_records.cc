@@ -126,6 +126,8 @@ namespace nsfd
       loads_.cracks()->show(ghosts_.own_points(), state);
     if (large_)
       large_->show(state);
+    if (rigid_ && large_)
+      rigid_->show(state);
     const auto *layer = ghosts_.layer();
     if (!layer)
       return;

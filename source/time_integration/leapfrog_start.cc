@@ -76,6 +76,8 @@ namespace nsfd
           discretization_, mesh_, communicator_, ghosts_.cells(),
           rigid_clusters(discretization_, mesh_, communicator_, ghosts_.cells(),
                          intact));
+    if (rigid_ && large_)
+      rigid_->set_places(state);
     faces_.start(std::move(intact));
     groups_->gather(state.displacement, groups_->displacement);
     groups_->gather(state.velocity, groups_->velocity);
