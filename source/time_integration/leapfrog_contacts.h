@@ -68,9 +68,10 @@ namespace nsfd
     void take(const std::vector<Cluster> &clusters);
     /** The others that push: their impulses, and what these do to the
        velocities of @p groups, which have none of them, and @p of_bodies, see
-       RigidGroups::move(). */
-    void solve_others(double tolerance, std::vector<double> &of_bodies,
-                      CornerGroups<dim> &groups);
+       RigidGroups::move(). What is left over of a problem with rigid bodies,
+       0 without. */
+    double solve_others(double tolerance, std::vector<double> &of_bodies,
+                        CornerGroups<dim> &groups);
     /** With the velocities after all: those that overlap at the end push from
         now on, friction that works on the bodies opposes the mean velocity.
         False if there is nothing new. */

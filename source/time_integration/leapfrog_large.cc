@@ -126,7 +126,9 @@ namespace nsfd
         points.solve_cluster(cluster, prescribed, tolerance, rigid, of_bodies,
                              groups, outcome);
       contacts_->take(clusters);
-      contacts_->solve_others(tolerance, of_bodies, groups);
+      outcome.residual =
+          std::max(outcome.residual,
+                   contacts_->solve_others(tolerance, of_bodies, groups));
       if (rigid)
         rigid->move(of_bodies, groups);
       ++rounds_;

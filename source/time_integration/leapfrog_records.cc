@@ -83,7 +83,11 @@ namespace nsfd
         energy.viscous - old.energy.viscous;
     report.changes.taken[std::size_t(WatchedLine::plastic)] = bodies.plastic;
     close_balance(old, next, report);
-    const double scale = 4. * std::abs(energy.kinetic);
+    double scale = 4. * std::abs(energy.kinetic);
+    if (rigid_ && large_) { // bodies at rest have no other energy
+      scale = std::max(scale, 2. * rigid_->size_of_motion());
+      relate_defect(scale, next, report);
+    }
     const TakenStep step{old, next, h, scale, 0};
     check_.check_balance(step, report);
     check_.watch_energy(step, report);
