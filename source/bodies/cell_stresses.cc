@@ -1,14 +1,16 @@
 #include "cell_stresses.h"
 
-#include "deformable_cells.h"
 #include "discretization/body_shape.h"
 #include "discretization/cell_sampler.h"
 #include "discretization/cells.h"
+#include "discretization/material_histories.h"
+#include "materials/strain.h"
 
 #include "nsfd/materials/material_model.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace nsfd
 {
@@ -50,6 +52,50 @@ namespace nsfd
   }
 
   template <int dim>
+  double CellStresses<dim>::dilatation(const BodyShape<dim> &shape,
+                                       const double *u) const
+  {
+    const SceneInput &input = discretization_.input();
+    if (!input.large_motion || !input.time.scheme.at_nodes)
+      return 0.;
+    double now = 0., volume = 0.;
+    for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
+      double F[dim * dim] = {};
+      for (unsigned int c = 0; c < dim; ++c)
+        F[c * dim + c] = 1.;
+      for (unsigned int i = 0; i < shape.n_nodes; ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            F[c * dim + d] +=
+                u[i * dim + c] * shape.gradients[q * shape.n_nodes + i][d];
+      now += shape.JxW[q] * jacobian<dim>(F);
+      volume += shape.JxW[q];
+    }
+    return now / volume;
+  }
+
+  template <int dim>
+  typename CellStresses<dim>::Stress
+  CellStresses<dim>::stress(const unsigned int body, const unsigned int q,
+                            const double dilatation,
+                            const double *gradient) const
+  {
+    double F[dim * dim];
+    std::copy_n(gradient, dim * dim, F);
+    if (dilatation > 0.) {
+      for (unsigned int c = 0; c < dim; ++c)
+        F[c * dim + c] += 1.;
+      const double share = std::pow(dilatation / jacobian<dim>(F), 1. / dim);
+      for (double &x : F)
+        x *= share;
+      for (unsigned int c = 0; c < dim; ++c)
+        F[c * dim + c] -= 1.;
+    }
+    return materials_[discretization_.cells().body_class(body).material]
+        ->stress(F, history(body, q));
+  }
+
+  template <int dim>
   typename CellStresses<dim>::Stress
   CellStresses<dim>::visit(const unsigned int body, const dealii::Point<dim> &x,
                            const double *gradient)
@@ -59,11 +105,14 @@ namespace nsfd
     if (body != body_)
       point_ = 0;
     body_ = body;
+    if (point_ == 0)
+      dilatation_ = dilatation(
+          *discretization_.cells().shape(body),
+          &state_.displacement[discretization_.bodies().first_dof[body]]);
     const unsigned int q = point_++;
     if (point_ == discretization_.cells().class_shape(body).JxW.size())
       point_ = 0; // the next visit of all may begin here
-    return materials_[discretization_.cells().body_class(body).material]
-        ->stress(gradient, history(body, q));
+    return stress(body, q, dilatation_, gradient);
   }
 
   template <int dim>
@@ -105,6 +154,7 @@ namespace nsfd
     const unsigned int n = shape.n_nodes;
     const double *u =
         nodal.data() + discretization_.cells().first_node[body] * dim;
+    const double mean = dilatation(shape, u);
     Block mass(n, n), moments(n, width);
     for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
       double gradient[dim * dim] = {};
@@ -113,13 +163,13 @@ namespace nsfd
           for (unsigned int d = 0; d < dim; ++d)
             gradient[c * dim + d] +=
                 u[i * dim + c] * shape.gradients[q * n + i][d];
-      const Stress stress = material.stress(gradient, history(body, q));
+      const Stress sigma = stress(body, q, mean, gradient);
       for (unsigned int i = 0; i < n; ++i) {
         const double N = shape.JxW[q] * shape.values[q * n + i];
         for (unsigned int j = 0; j < n; ++j)
           mass(i, j) += N * shape.values[q * n + j];
         for (unsigned int k = 0; k < 6; ++k)
-          moments(i, k) += N * stress[k];
+          moments(i, k) += N * sigma[k];
         moments(i, 6) += N * material.equivalent_strain(history(body, q));
       }
     }

@@ -12,6 +12,8 @@
 namespace nsfd
 {
   template <int dim>
+  struct BodyShape;
+  template <int dim>
   class Sampler;
 
   /** Cauchy stresses of a state, also of history-dependent materials. */
@@ -62,12 +64,18 @@ namespace nsfd
                                  const std::vector<double> &nodal) const;
     Sample from_nodes(const Sampler<dim> &sampler, unsigned int q) const;
     const double *history(unsigned int body, unsigned int q) const;
+    /** What gradients of a history-dependent cell are strained by, from nodal
+        displacements @p u: see FiniteForces; 0: they stay what they are. */
+    double dilatation(const BodyShape<dim> &shape, const double *u) const;
+    Stress stress(unsigned int body, unsigned int q, double dilatation,
+                  const double *gradient) const;
 
     const Discretization<dim> &discretization_;
     const State &state_;
     std::vector<std::unique_ptr<const HistoryMaterial<dim>>> materials_;
     std::vector<std::size_t> first_;    ///< by cell; empty: nothing keeps
     unsigned int body_ = 0, point_ = 0; ///< visited next
+    double dilatation_ = 0.;            ///< there
     std::vector<double> nodes_;         ///< those of the body sampled last
     unsigned int sampled_ = 0;
   };

@@ -2,6 +2,7 @@
 
 #include "discretization/body_shape.h"
 #include "discretization/cells.h"
+#include "discretization/material_histories.h"
 
 #include "finite_cell.h"
 #include "history_cell.h"
@@ -34,33 +35,6 @@ namespace nsfd
       return nullptr;
     }
   } // namespace
-
-  unsigned int n_history(const SceneInput &input, const unsigned int material)
-  {
-    const MaterialInput &m = input.materials[material];
-    if (m.kind != MaterialKind::history_dependent)
-      return 0;
-    // the same in the plane and in space
-    return m.model->history_dependent<3>(m, input.large_motion, false)
-        ->n_history();
-  }
-
-  template <int dim>
-  std::vector<std::size_t>
-  first_histories(const Discretization<dim> &discretization)
-  {
-    const SceneInput &input = discretization.input();
-    std::vector<unsigned int> of_material;
-    for (unsigned int m = 0; m < input.materials.size(); ++m)
-      of_material.push_back(n_history(input, m));
-    std::vector<std::size_t> first = {0};
-    for (unsigned int c = 0; c < discretization.bodies().size(); ++c)
-      first.push_back(
-          first.back() +
-          of_material[discretization.cells().body_class(c).material] *
-              discretization.cells().class_shape(c).JxW.size());
-    return first;
-  }
 
   template <int dim>
   DeformableCells<dim>::DeformableCells(
@@ -96,10 +70,7 @@ namespace nsfd
     return history;
   }
 
-#define INSTANTIATE(dim)                                                       \
-  template std::vector<std::size_t> first_histories<dim>(                      \
-      const Discretization<dim> &);                                            \
-  template class DeformableCells<dim>
+#define INSTANTIATE(dim) template class DeformableCells<dim>
 
   INSTANTIATE(2);
   INSTANTIATE(3);

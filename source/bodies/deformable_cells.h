@@ -8,15 +8,6 @@
 
 namespace nsfd
 {
-  /** Numbers that a point of a material keeps; 0: none. */
-  unsigned int n_history(const SceneInput &input, unsigned int material);
-
-  /** Of the cells in State::material_history: where each begins, and the end.
-      Nothing but 0 for those whose materials have no history. */
-  template <int dim>
-  std::vector<std::size_t>
-  first_histories(const Discretization<dim> &discretization);
-
   /** The cells of a scene whose forces are not linear, shared by class. */
   template <int dim>
   class DeformableCells

@@ -1,9 +1,9 @@
 #include "checkpoint_archive.h"
 
-#include "bodies/deformable_cells.h"
 #include "core/gather.h"
 #include "core/mix_bits.h"
 #include "discretization/cells.h"
+#include "discretization/material_histories.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "finite_forces.h"
+#include "finite_algebra.h"
 
 #include "discretization/cells.h"
 #include "discretization/point_places.h"
@@ -17,60 +18,6 @@ namespace nsfd
     /// stresses at a face are at most this times those at the points of the
     /// cell quadrature, of cells whose strain is not constant
     constexpr double beyond_quadrature = 3.;
-
-    template <int dim>
-    using Matrix = std::array<double, dim * dim>;
-
-    /** F S. */
-    template <int dim>
-    Matrix<dim> first_piola(const Matrix<dim> &F, const Voigt<dim> &S)
-    {
-      Matrix<dim> P{};
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int e = 0; e < dim; ++e)
-            P[c * dim + d] += F[c * dim + e] * S[voigt_place<dim>(e, d)];
-      return P;
-    }
-
-    /** det F F^-T. */
-    template <int dim>
-    Matrix<dim> cofactors(const Matrix<dim> &F)
-    {
-      if constexpr (dim == 2)
-        return {F[3], -F[2], -F[1], F[0]};
-      else {
-        Matrix<dim> C;
-        for (unsigned int a = 0; a < 3; ++a)
-          for (unsigned int b = 0; b < 3; ++b) {
-            const unsigned int a1 = (a + 1) % 3, a2 = (a + 2) % 3,
-                               b1 = (b + 1) % 3, b2 = (b + 2) % 3;
-            C[a * 3 + b] = F[a1 * 3 + b1] * F[a2 * 3 + b2] -
-                           F[a1 * 3 + b2] * F[a2 * 3 + b1];
-          }
-        return C;
-      }
-    }
-
-    template <int dim>
-    double square(const Matrix<dim> &A)
-    {
-      double sum = 0.;
-      for (const double a : A)
-        sum += a * a;
-      return sum;
-    }
-
-    /** A x. */
-    template <int dim>
-    std::array<double, dim> multiply(const Matrix<dim> &A, const double *x)
-    {
-      std::array<double, dim> y{};
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d)
-          y[c] += A[c * dim + d] * x[d];
-      return y;
-    }
   } // namespace
 
   template <int dim>
@@ -82,7 +29,7 @@ namespace nsfd
         sides_(discretization.points().n_points),
         displacement_(mesh.n_corners() * dim), forces_(mesh.n_corners() * dim),
         stored_(discretization.bodies().size()),
-        peaks_(discretization.bodies().size())
+        peaks_(discretization.bodies().size()), histories_(discretization)
   {
     const Cells<dim> &cells = discretization.cells();
     const SceneInput &input = discretization.input();
@@ -109,6 +56,16 @@ namespace nsfd
           for (unsigned int d = 0; d < dim; ++d)
             here.gradients.push_back(shape.gradients[q * shape.n_nodes + i][d]);
       }
+      if (histories_.any())
+        for (const auto &place : shape.slot_positions) {
+          unsigned int nearest = 0;
+          for (unsigned int q = 1; !constant && q < shape.JxW.size(); ++q)
+            if (place.distance_square(shape.positions[q]) <
+                place.distance_square(shape.positions[nearest]))
+              nearest = q;
+          here.slot_points.push_back(nearest);
+        }
+      here.n_same = constant ? unsigned(shape.JxW.size()) - 1 : 0;
       if (constant)
         continue;
       for (const auto &g : slot_gradients(shape, *cells.element))
@@ -125,6 +82,10 @@ namespace nsfd
         --side.first; // -1: none
     if (this->front_.acts())
       front_forces_.assign(forces_.size(), 0.);
+    if (histories_.any()) {
+      dilatations_.resize(stored_.size());
+      taken_.resize(2 * stored_.size());
+    }
   }
 
   template <int dim>
@@ -154,14 +115,11 @@ namespace nsfd
   }
 
   template <int dim>
-  void FiniteForces<dim>::set_cell(const std::size_t cell)
+  std::array<double, 2>
+  FiniteForces<dim>::set_elastic_cell(const std::size_t cell, double *f)
   {
     const Tables &here = tables(cell);
-    const std::size_t first = discretization_.bodies().first_dof[cell];
     const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
-    double *f = &forces_[first];
-    std::fill_n(f, n * dim, 0.);
-    stored_[cell] = peaks_[cell] = 0.;
     double volume = 0., now = 0.;
     for (unsigned int q = 0; q < n_q; ++q) {
       const double *g = &here.gradients[std::size_t(q) * n * dim],
@@ -172,20 +130,37 @@ namespace nsfd
       Voigt<dim> S;
       if (!(J > 0.) || !material(cell).stress(C, S)) {
         inverted_ = int(cell);
-        return;
+        break;
       }
       volume += JxW;
       now += JxW * J;
       stored_[cell] += JxW * material(cell).energy(C);
-      const Matrix P = first_piola<dim>(F, S);
-      peaks_[cell] = std::max(peaks_[cell], square<dim>(P));
+      const Matrix P = finite::first_piola<dim>(F, S);
+      peaks_[cell] = std::max(peaks_[cell], finite::square<dim>(P));
       for (unsigned int i = 0; i < n; ++i) {
-        const auto of_node = multiply<dim>(P, g + i * dim);
+        const auto of_node = finite::multiply<dim>(P, g + i * dim);
         for (unsigned int c = 0; c < dim; ++c)
           f[i * dim + c] -= JxW * of_node[c];
       }
     }
-    if (!this->front_.acts())
+    return {volume, now};
+  }
+
+  template <int dim>
+  void FiniteForces<dim>::set_cell(const std::size_t cell)
+  {
+    const Tables &here = tables(cell);
+    const std::size_t first = discretization_.bodies().first_dof[cell];
+    const unsigned int n = here.n_nodes, n_q = unsigned(here.JxW.size());
+    double *f = &forces_[first];
+    std::fill_n(f, n * dim, 0.);
+    stored_[cell] = peaks_[cell] = 0.;
+    if (is_rigid(cell))
+      return;
+    const auto [volume, now] = histories_.any() && histories_.of(cell)
+                                   ? set_flowing_cell(cell, f)
+                                   : set_elastic_cell(cell, f);
+    if (!this->front_.acts() || inverted_ == int(cell))
       return;
     this->front_.update(cell, now / volume - 1., volume);
     const double tension = this->front_.tension[cell];
@@ -193,9 +168,9 @@ namespace nsfd
     std::fill_n(more, n * dim, 0.);
     for (unsigned int q = 0; q < n_q && tension != 0.; ++q) {
       const double *g = &here.gradients[std::size_t(q) * n * dim];
-      const Matrix C = cofactors<dim>(deformation(cell, g));
+      const Matrix C = finite::cofactors<dim>(deformation(cell, g));
       for (unsigned int i = 0; i < n; ++i) {
-        const auto of_node = multiply<dim>(C, g + i * dim);
+        const auto of_node = finite::multiply<dim>(C, g + i * dim);
         for (unsigned int c = 0; c < dim; ++c)
           more[i * dim + c] -= here.JxW[q] * tension * of_node[c];
       }
@@ -211,6 +186,7 @@ namespace nsfd
     groups.scatter(groups.displacement, displacement_);
     for (std::size_t cell = 0; cell < stored_.size(); ++cell)
       set_cell(cell);
+    histories_.end_step();
     std::fill(groups.force.begin(), groups.force.end(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
       for (unsigned int c = 0; c < dim; ++c)
@@ -251,14 +227,18 @@ namespace nsfd
 
   template <int dim>
   auto FiniteForces<dim>::stress_at(const std::size_t cell,
-                                    const double *gradients) const -> Matrix
+                                    const unsigned int slot) const -> Matrix
   {
-    const Matrix F = deformation(cell, gradients);
+    if (is_rigid(cell))
+      return {};
+    const Matrix F = deformation(cell, at_slot(cell, slot));
+    if (histories_.any() && histories_.of(cell))
+      return flowing_stress(cell, tables(cell).slot_points[slot], F);
     Voigt<dim> S;
     if (!(jacobian<dim>(F.data()) > 0.) ||
         !material(cell).stress(symmetric_product<dim>(F.data(), F.data()), S))
       return {};
-    return first_piola<dim>(F, S);
+    return finite::first_piola<dim>(F, S);
   }
 
   template <int dim>
@@ -292,9 +272,9 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         axes[row * dim + c] = x[c] / std::sqrt(length);
     };
-    put(0, multiply<dim>(cofactors<dim>(F), rest));
+    put(0, finite::multiply<dim>(finite::cofactors<dim>(F), rest));
     for (unsigned int row = 1; row < dim; ++row)
-      put(row, multiply<dim>(F, rest + row * dim));
+      put(row, finite::multiply<dim>(F, rest + row * dim));
     return axes;
   }
 
@@ -314,13 +294,12 @@ namespace nsfd
       const double *rest = points.axes(i);
       std::array<double, dim> t{};
       for (const auto &[cell, slot] : sides_[i]) {
-        const Matrix P =
-            stress_at(std::size_t(cell), at_slot(std::size_t(cell), slot));
-        const auto of_side = multiply<dim>(P, rest);
+        const Matrix P = stress_at(std::size_t(cell), slot);
+        const auto of_side = finite::multiply<dim>(P, rest);
         for (unsigned int c = 0; c < dim; ++c)
           t[c] += of_side[c] / 2.;
       }
-      const auto local = multiply<dim>(frame(i), t.data());
+      const auto local = finite::multiply<dim>(frame(i), t.data());
       for (unsigned int r = 0; r < dim; ++r)
         for (unsigned int c = 0; c < dim; ++c)
           result[c] += points.weight[i] / length * rest[r * dim + c] * local[r];
@@ -381,6 +360,12 @@ namespace nsfd
     double most = 1.;
     for (std::size_t cell = 0; cell < stored_.size(); ++cell) {
       const Tables &here = tables(cell);
+      if (is_rigid(cell))
+        continue;
+      if (histories_.any() && histories_.of(cell)) {
+        most = std::max(most, flowing_stiffening(cell));
+        continue;
+      }
       const double rest =
           at_rest[discretization_.cells().body_class(cell).material];
       for (std::size_t q = 0; q < here.JxW.size(); ++q) {
@@ -389,8 +374,9 @@ namespace nsfd
         if (!material(cell).stress(symmetric_product<dim>(F.data(), F.data()),
                                    S, &tangent))
           continue;
-        most = std::max(most, norm(tangent) / rest * square<dim>(F) / dim +
-                                  norm(S) / material(cell).modulus());
+        most =
+            std::max(most, norm(tangent) / rest * finite::square<dim>(F) / dim +
+                               norm(S) / material(cell).modulus());
       }
     }
     return most;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "cell_forces.h"
+#include "cell_histories.h"
 
+#include "discretization/cells.h"
 #include "nsfd/materials/hyperelastic.h"
 
 namespace nsfd
@@ -15,6 +17,12 @@ namespace nsfd
    * are nominal ones, P N, per area before deformation, with their parts along
    * and across the normal that the face has now. Frames of faces turn with the
    * mean motion of both sides.
+   *
+   * Cells of materials with a history have the mean dilatation of the cell
+   * everywhere, since flow keeps the volume:
+   *
+   *   U = sum_q JxW_q W(C), C = (theta/J)^(2/dim) F^T F,
+   *   theta = sum_q JxW_q J_q / sum_q JxW_q
    */
   template <int dim>
   class FiniteForces final : public CellForces<dim>
@@ -52,6 +60,10 @@ namespace nsfd
      * than at rest: an estimate that is 1 there.
      */
     double stiffening() const;
+    /** What flow took on the way to the places of the last forces, J: by cell
+        the plastic part, then the viscous one. Empty: nothing flows. */
+    const std::vector<double> &taken() const { return taken_; }
+    CellHistories<dim> &histories() { return histories_; }
 
   private:
     using Matrix = std::array<double, dim * dim>;
@@ -61,17 +73,28 @@ namespace nsfd
       std::vector<double> JxW, gradients; ///< point x node x dim, 1/m
       std::vector<double> slot_gradients; ///< slot x node x dim; empty: those
                                           ///< of the one point
+      std::vector<unsigned int> slot_points; ///< nearest points of quadrature
+      unsigned int n_same = 0; ///< points of quadrature beside the one point
     };
 
     const Tables &tables(const std::size_t cell) const
     {
       return tables_[differ_ ? cell : discretization_.bodies().class_of[cell]];
     }
+    bool is_rigid(const std::size_t cell) const
+    {
+      return discretization_.cells().body_class(cell).undeformed;
+    }
     const Hyperelastic<dim> &material(std::size_t cell) const;
     Matrix deformation(std::size_t cell, const double *gradients) const;
     const double *at_slot(std::size_t cell, unsigned int slot) const;
-    Matrix stress_at(std::size_t cell, const double *gradients) const;
+    Matrix stress_at(std::size_t cell, unsigned int slot) const;
+    Matrix flowing_stress(std::size_t cell, unsigned int q,
+                          const Matrix &F) const;
+    double flowing_stiffening(std::size_t cell) const;
     void set_cell(std::size_t cell);
+    std::array<double, 2> set_elastic_cell(std::size_t cell, double *f);
+    std::array<double, 2> set_flowing_cell(std::size_t cell, double *f);
 
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
@@ -82,6 +105,8 @@ namespace nsfd
     std::vector<std::array<std::pair<int, unsigned int>, 2>> sides_;
     std::vector<double> displacement_, forces_, front_forces_; ///< of corners
     std::vector<double> stored_, peaks_; ///< J; largest P:P of a cell
+    CellHistories<dim> histories_;
+    std::vector<double> dilatations_, taken_; ///< theta by cell; see taken()
     int inverted_ = -1;
   };
 } // namespace nsfd

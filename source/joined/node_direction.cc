@@ -10,6 +10,44 @@
 
 namespace nsfd
 {
+  namespace
+  {
+    /** B_g^T K B_f of all pairs of ends. */
+    template <int dim>
+    void add_with_matrices(
+        const PointEnds &ends, const std::array<double, dim * dim> &K,
+        const std::vector<int> &unknown,
+        const std::vector<std::array<double, dim>> &root_mass, DenseLU &matrix)
+    {
+      using Matrix = std::array<double, dim * dim>;
+      const auto for_blocks = [&ends](const auto &visit) {
+        for (unsigned int k = 0; k < ends.n_shares(); ++k) {
+          Matrix B{};
+          for (unsigned int c = 0; c < dim; ++c)
+            B[c * dim + c] = ends.shares[k];
+          visit(ends.groups[k], B.data());
+        }
+        for_matrices(&ends, visit);
+      };
+      for_blocks([&](const int g, const double *B_g) {
+        Matrix left{}; // B_g^T K
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int e = 0; e < dim; ++e)
+              left[r * dim + c] += B_g[e * dim + r] * K[e * dim + c];
+        for_blocks([&](const int f, const double *B_f) {
+          for (unsigned int r = 0; r < dim; ++r) {
+            double *row = matrix.row(unknown[g] + int(r)) + unknown[f];
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int e = 0; e < dim; ++e)
+                row[c] += root_mass[g][r] * left[r * dim + e] *
+                          B_f[e * dim + c] * root_mass[f][c];
+          }
+        });
+      });
+    }
+  } // namespace
+
   template <int dim>
   void NodeSystem<dim>::linearise()
   {
@@ -22,14 +60,16 @@ namespace nsfd
         continue;
       point_slopes<dim>(*problem_, point.index, point.local, point.R,
                         point.solution, point.slopes);
-      for_ends(point.groups, point.ends, [&](const int g, double) {
+      const auto number = [&](const int g, const auto &) {
         if (unknown_[g] >= 0)
           return;
         unknown_[g] = n_unknowns_;
         n_unknowns_ += dim;
         for (unsigned int c = 0; c < dim; ++c)
           root_mass_[g][c] = std::sqrt((*inverse_mass_)[g][c]);
-      });
+      };
+      for_ends(point.groups, point.ends, number);
+      for_matrices(point.ends, number);
     }
   }
 
@@ -95,6 +135,10 @@ namespace nsfd
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int j = 0; j < dim; ++j)
             K[r * dim + c] += point.frame[j * dim + r] * KF[j * dim + c];
+      if (point.ends && point.ends->n_matrices > 0) {
+        add_with_matrices<dim>(*point.ends, K, unknown_, root_mass_, matrix_);
+        continue;
+      }
       for_ends(point.groups, point.ends, [&](const int g, const double of_g) {
         for_ends(point.groups, point.ends, [&](const int f, const double of_f) {
           const double share = of_g * of_f;
@@ -144,6 +188,12 @@ namespace nsfd
           for (unsigned int c = 0; c < dim; ++c)
             right_side_[unknown_[g] + c] += share * root_mass_[g][c] * p[c];
       });
+      for_matrices(point.ends, [&](const int g, const double *B) {
+        for (unsigned int c = 0; unknown_[g] >= 0 && c < dim; ++c)
+          for (unsigned int e = 0; e < dim; ++e)
+            right_side_[unknown_[g] + c] +=
+                B[e * dim + c] * root_mass_[g][c] * p[e];
+      });
     }
     matrix_.solve(right_side_.data());
     double change = 0., size = 0.;
@@ -157,6 +207,12 @@ namespace nsfd
               for (unsigned int c = 0; c < dim; ++c)
                 v[c] += share * root_mass_[g][c] * right_side_[unknown_[g] + c];
             });
+        for_matrices(point.ends, [&](const int g, const double *B) {
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int e = 0; e < dim; ++e)
+              v[c] += B[c * dim + e] * root_mass_[g][e] *
+                      right_side_[unknown_[g] + e];
+        });
         double U[dim];
         stored::multiply_vector<dim>(point.frame, v.data(), U);
         stored::subtract_vector<dim>(point.stiffness.data(), U, step.data());

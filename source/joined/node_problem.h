@@ -9,13 +9,19 @@ namespace nsfd
   /** Groups and their shares in the velocity of body 2 less that of body 1, of
       a point that is not between two nodes: a contact of surfaces. */
   struct PointEnds {
-    std::array<int, 6> groups{};
-    std::array<double, 6> shares{};
+    std::array<int, 10> groups{};
+    std::array<double, 10> shares{};
     unsigned int size = 0;
+    /// of the last groups, unknowns of rigid bodies: what they have in it, in
+    /// place of shares, dim x dim
+    unsigned int n_matrices = 0;
+    std::array<std::array<double, 9>, 4> matrices{};
+
+    unsigned int n_shares() const { return size - n_matrices; }
   };
 
   /** @p visit (group, share) of a point: @p ends if there are some, else body 1
-      and body 2 (-1: none). */
+      and body 2 (-1: none). Those with matrices are left out. */
   template <typename Visit>
   void for_ends(const std::array<int, 2> &groups, const PointEnds *ends,
                 const Visit &visit)
@@ -27,8 +33,16 @@ namespace nsfd
         visit(groups[1], 1.);
       return;
     }
-    for (unsigned int k = 0; k < ends->size; ++k)
+    for (unsigned int k = 0; k < ends->n_shares(); ++k)
       visit(ends->groups[k], ends->shares[k]);
+  }
+
+  /** @p visit (group, matrix) of those that have one. */
+  template <typename Visit>
+  void for_matrices(const PointEnds *ends, const Visit &visit)
+  {
+    for (unsigned int k = 0; ends && k < ends->n_matrices; ++k)
+      visit(ends->groups[ends->n_shares() + k], ends->matrices[k].data());
   }
 
   /** The active points around one node, between groups of corners of cells. */
@@ -66,11 +80,16 @@ namespace nsfd
   {
     const auto [a, b] = groups;
     std::array<double, dim> v{}, U{};
-    if (ends)
-      for (unsigned int k = 0; k < ends->size; ++k)
+    if (ends) {
+      for (unsigned int k = 0; k < ends->n_shares(); ++k)
         for (unsigned int c = 0; c < dim; ++c)
           v[c] += ends->shares[k] * velocity[std::size_t(ends->groups[k])][c];
-    else {
+      for_matrices(ends, [&](const int g, const double *B) {
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < dim; ++d)
+            v[c] += B[c * dim + d] * velocity[std::size_t(g)][d];
+      });
+    } else {
       if (b >= 0)
         v = velocity[std::size_t(b)];
       if (a >= 0)
@@ -99,6 +118,12 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         velocity[std::size_t(g)][c] +=
             share * inverse_mass[std::size_t(g)][c] * P[c];
+    });
+    for_matrices(ends, [&](const int g, const double *B) {
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d)
+          velocity[std::size_t(g)][d] +=
+              B[c * dim + d] * inverse_mass[std::size_t(g)][d] * P[c];
     });
   }
 } // namespace nsfd

@@ -70,6 +70,18 @@ namespace nsfd
         speed += std::abs(free_[g][c]);
       }
     });
+    Vector beside{}; // what is not on the diagonal of W
+    for_matrices(point.ends, [&](const int g, const double *B) {
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d) {
+          sum[c] += B[c * dim + d] * B[c * dim + d] * (*inverse_mass_)[g][d];
+          speed += std::abs(B[c * dim + d] * free_[g][d]);
+          for (unsigned int e = 0; e < dim; ++e)
+            if (e != c)
+              beside[c] += std::abs(B[c * dim + d] * B[e * dim + d]) *
+                           (*inverse_mass_)[g][d];
+        }
+    });
     // springs compute velocities from jumps
     if (problem_->kind[i] != PointKind::free)
       for (unsigned int c = 0; c < dim; ++c)
@@ -79,6 +91,11 @@ namespace nsfd
     const auto range = std::minmax_element(sum.begin(), sum.end());
     added.R = *range.second;
     added.scalar = *range.first == added.R && added.R > 0.;
+    if (point.ends && point.ends->n_matrices > 0) {
+      added.scalar = false;
+      for (unsigned int c = 0; c < dim; ++c)
+        added.R = std::max(added.R, sum[c] + beside[c]);
+    }
     if (added.R == 0.) // prescribed on both sides: any number serves
       for (const auto &group : *inverse_mass_)
         added.R =

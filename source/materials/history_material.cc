@@ -100,6 +100,7 @@ namespace nsfd
         to.plastic = from.plastic;
         to.viscous = from.viscous;
         to.numerical = from.numerical;
+        to.added = from.added;
       }
 
       const J2Flow flow_;
@@ -147,6 +148,17 @@ namespace nsfd
         if (history)
           write_variables(variables, step, history);
         return true;
+      }
+
+      bool state(const Voigt<dim> &C, const double *history, Voigt<dim> &S,
+                 double &energy) const override
+      {
+        const auto variables = read_variables(history);
+        const Strain elastic =
+            sum(in_space<dim>(C, 0.5, 0.), -1., variables.alpha);
+        S = of_space<dim>(this->flow_.stress(elastic));
+        energy = this->flow_.energy(elastic, variables);
+        return std::isfinite(energy);
       }
 
       std::array<double, 6> stress(const double *gradient,
@@ -227,6 +239,20 @@ namespace nsfd
           write_variables(variables, step, history + 9);
         }
         return true;
+      }
+
+      bool state(const Voigt<dim> &C, const double *history, Voigt<dim> &S,
+                 double &energy) const override
+      {
+        const Mat3 G = read_matrix(history);
+        const Spectrum e = elastic(C, G);
+        if (!e.positive())
+          return false;
+        const Strain E = e.half_log();
+        S = of_space<dim>(
+            forward(G, LogSecant(e, e).pulled_back(this->flow_.stress(E))));
+        energy = this->flow_.energy(E, read_variables(history + 9));
+        return std::isfinite(energy);
       }
 
       std::array<double, 6> stress(const double *gradient,

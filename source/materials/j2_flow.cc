@@ -240,7 +240,7 @@ namespace nsfd
                       variables.equivalent, time_step, surface))
       return false;
     result.flow = surface.flow;
-    result.plastic = result.viscous = result.numerical = 0.;
+    result.plastic = result.viscous = result.numerical = result.added = 0.;
     result.plastic_strain = {};
     Strain elastic = trial;
     if (surface.flow > 0.) {
@@ -271,10 +271,12 @@ namespace nsfd
         result.numerical -= dp * chord;
       }
       const Strain direction = times_modulus(surface.normal);
-      if (missing != 0.)
+      if (missing != 0.) {
+        result.added = dp * missing;
         result.stress =
             combine(1., result.stress,
-                    dp * missing / contract<3>(direction, change), direction);
+                    result.added / contract<3>(direction, change), direction);
+      }
     }
     if (with_tangent) {
       if (surface.flow > 0.)

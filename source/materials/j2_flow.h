@@ -48,6 +48,7 @@ namespace nsfd
       double flow = 0.;        ///< increase of p
       /// J per volume
       double plastic = 0., viscous = 0., numerical = 0.;
+      double added = 0.; ///< work of the part of sigma* along C N
     };
 
     /**

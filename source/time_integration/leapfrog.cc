@@ -46,8 +46,7 @@ namespace nsfd
         })
   {
     ghosts_.set_mesh(mesh_, hanging_);
-    if (const auto *finite =
-            dynamic_cast<const FiniteForces<dim> *>(forces_.get()))
+    if (auto *finite = dynamic_cast<FiniteForces<dim> *>(forces_.get()))
       large_ = std::make_unique<LeapfrogLarge<dim>>(
           input, discretization_, mesh_, all_, communicator, *finite);
     if (!hanging_.any() && !has_rigid_cells(input))
@@ -65,6 +64,8 @@ namespace nsfd
                            ghosts_.cells(),
                            rigid_clusters(discretization_, mesh_, communicator,
                                           ghosts_.cells(), intact));
+    if (large_)
+      rigid.set_places(state);
     rigid.find(groups, supports_);
     rigid.check(input.time.end, groups, supports_);
   }
@@ -172,7 +173,8 @@ namespace nsfd
         cut_support |= groups_->of(corner) < supports_.mask().size() &&
                        supports_.mask()[groups_->of(corner)] != 0;
     }
-    if (rigid_ ? communicator_.any(cut_support) : cut_support)
+    // rigid bodies have turned
+    if (rigid_ ? large_ || communicator_.any(cut_support) : cut_support)
       find_supports();
     supports_.resize(groups_->size());
     return n_released;
@@ -251,7 +253,8 @@ namespace nsfd
     }
     Energies energies;
     if (large_)
-      large_->begin(old.time, h, supports_.mask(), g, points_, energies);
+      large_->begin(old.time, h, supports_.mask(), rigid_.get(), g, points_,
+                    energies);
     {
       const Charge charge(Cost::free_motion);
       loads_.move_to(old.time, g);
@@ -262,9 +265,9 @@ namespace nsfd
       const Charge charge(Cost::solver);
       const double tolerance = input_.solver.tolerance;
       outcome = large_ ? large_->solve(h, last, supports_.mask(), tolerance,
-                                       points_, g)
+                                       rigid_.get(), points_, g)
                        : points_.solve(h, last, supports_.mask(), tolerance, g);
-      if (rigid_)
+      if (rigid_ && !large_)
         points_.solve_rigid(input_.solver.tolerance, communicator_, *rigid_, g,
                             outcome);
       if (outcome.impossible) {
@@ -296,9 +299,16 @@ namespace nsfd
       for (std::size_t k = 0; k < g.force.size(); ++k)
         g.displacement[k] = before_.displacement[k] + h * g.velocity[k];
       hanging_.follow(g);
+      if (rigid_ && large_ && !rigid_->fly(h, g)) {
+        before_.displacement.swap(g.displacement);
+        go_back();
+        throw StepRejected(fmt::format("a rigid body turns too far in the step "
+                                       "of {:.4g} s at t = {:.6g} s",
+                                       h, old.time));
+      }
       forces_->front().begin_step(h, kick);
       if (large_)
-        large_->keep_front(forces_->front());
+        large_->begin_forces(h, forces_->front());
       hanging_.set_forces(*forces_, *groups_);
     }
     if (const std::string place = large_ ? large_->inverted() : "";
@@ -335,6 +345,8 @@ namespace nsfd
       // the state before it is what the run can still show
       before_.displacement.swap(g.displacement);
       go_back();
+      if (large_)
+        large_->go_back();
       throw StepRejected(rejected.what(), StepRejected::Cure::none);
     }
     report.separates = communicator_.any(points_.accept());

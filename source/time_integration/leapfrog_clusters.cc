@@ -97,7 +97,9 @@ namespace nsfd
   template <int dim>
   void LeapfrogPoints<dim>::solve_cluster(
       Cluster &cluster, const std::vector<std::uint8_t> &prescribed,
-      const double tolerance, CornerGroups<dim> &groups, Outcome &outcome)
+      const double tolerance, RigidGroups<dim> *rigid,
+      std::vector<double> &of_bodies, CornerGroups<dim> &groups,
+      Outcome &outcome)
   {
     const std::size_t first = moved_.size();
     for (const std::size_t node : cluster.nodes)
@@ -123,15 +125,65 @@ namespace nsfd
       }
       return entry->second;
     };
+    // unknowns of a body, as groups of mass 1
+    struct Unknowns {
+      int group;
+      std::size_t first, size;
+    };
+    std::vector<Unknowns> bodies;
+    const auto add_bodies = [&](const std::vector<RigidShare<dim>> &shares,
+                                PointEnds &to) {
+      for (const auto &[first, columns] : shares) {
+        auto body = std::find_if(bodies.begin(), bodies.end(),
+                                 [first = first](const Unknowns &one) {
+                                   return one.first == first;
+                                 });
+        if (body == bodies.end()) {
+          body =
+              bodies.insert(body, {int(of_all.size()), first, columns.size()});
+          for (std::size_t i = 0; i < columns.size(); i += dim) {
+            of_all.push_back(unsigned(-1));
+            auto &inverse = all.inverse_mass.emplace_back();
+            for (unsigned int c = 0; c < dim; ++c)
+              inverse[c] = i + c < columns.size() ? 1. : 0.;
+          }
+        }
+        for (std::size_t i = 0; i < columns.size(); i += dim) {
+          auto &matrix = to.matrices[to.n_matrices++];
+          to.groups[to.size++] = body->group + int(i / dim);
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = 0; d < dim && i + d < columns.size(); ++d)
+              matrix[c * dim + d] = columns[i + d][c];
+        }
+      }
+    };
     std::size_t k = 0;
+    std::vector<PointEnds> of_rigid;
+    of_rigid.reserve(n);
+    std::vector<RigidShare<dim>> shares;
     for (const std::size_t node : cluster.nodes) {
       const Node &here = nodes_.of(node);
       for (const auto &point : here.problem.points) {
         std::array<int, 2> sides = point.groups;
-        for (int &side : sides)
-          if (side >= 0)
-            side = local(here.groups[std::size_t(side)]);
+        shares.clear();
+        for (const int s : {0, 1})
+          if (int &side = sides[std::size_t(s)]; side >= 0) {
+            const unsigned int group = here.groups[std::size_t(side)];
+            if (rigid)
+              add_share(*rigid, group, 2. * s - 1., shares);
+            side = local(group);
+          }
         all.points.push_back({k, sides});
+        if (!shares.empty()) {
+          PointEnds &ends = of_rigid.emplace_back();
+          for (const int s : {0, 1})
+            if (sides[std::size_t(s)] >= 0) {
+              ends.groups[ends.size] = sides[std::size_t(s)];
+              ends.shares[ends.size++] = 2. * s - 1.;
+            }
+          add_bodies(shares, ends);
+          all.points.back().ends = &ends;
+        }
         const double *frame = &chains_.frame[point.point * dim * dim];
         frames.insert(frames.end(), frame, frame + dim * dim);
         ++k;
@@ -144,6 +196,7 @@ namespace nsfd
         ends[i].groups[ends[i].size] = local(group);
         ends[i].shares[ends[i].size++] = share;
       }
+      add_bodies(contact.bodies, ends[i]);
       all.points.push_back({n + i, {{-1, -1}}, &ends[i]});
       frames.insert(frames.end(), contact.frame.begin(), contact.frame.end());
     }
@@ -164,9 +217,11 @@ namespace nsfd
       }
     };
     std::vector<std::array<double, dim>> free;
-    for (const unsigned int group : of_all)
-      std::copy_n(&groups.velocity[group * dim], dim,
-                  free.emplace_back().begin());
+    for (const unsigned int group : of_all) {
+      free.emplace_back();
+      if (group != unsigned(-1))
+        std::copy_n(&groups.velocity[group * dim], dim, free.back().begin());
+    }
     std::optional<HeldNodes<dim>> held;
     NodeReport report;
     const auto solve = [&] {
@@ -192,8 +247,15 @@ namespace nsfd
         chains_.solution[a] = solutions[i];
       }
       for (std::size_t g = 0; g < of_all.size(); ++g)
-        std::copy_n(all.velocity[g].begin(), dim,
-                    &groups.velocity[of_all[g] * dim]);
+        if (of_all[g] != unsigned(-1))
+          std::copy_n(all.velocity[g].begin(), dim,
+                      &groups.velocity[of_all[g] * dim]);
+      for (const Unknowns &body : bodies)
+        for (std::size_t i = 0; i < body.size; ++i)
+          of_bodies[body.first + i] =
+              all.velocity[std::size_t(body.group) + i / dim][i % dim];
+      if (!bodies.empty())
+        rigid->move(of_bodies, groups);
       set_velocities(moved_, first, mesh_, groups, chains_);
       return solved;
     };
@@ -225,7 +287,8 @@ namespace nsfd
   template void LeapfrogPoints<dim>::part(unsigned int);                       \
   template void LeapfrogPoints<dim>::solve_cluster(                            \
       Cluster &, const std::vector<std::uint8_t> &, double,                    \
-      CornerGroups<dim> &, Outcome &)
+      RigidGroups<dim> *, std::vector<double> &, CornerGroups<dim> &,          \
+      Outcome &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);
 #undef NSFD_INSTANTIATE

@@ -25,24 +25,78 @@ namespace nsfd
     return result;
   }
 
+  /** Whether it can part, along its normal; false if nothing can move there. */
+  template <int dim>
+  bool LeapfrogContacts<dim>::set_yield(const dealii::Tensor<1, dim> &normal,
+                                        const CornerGroups<dim> &groups,
+                                        Contact &contact) const
+  {
+    bool moves = false;
+    double yields = 0., free = 0.;
+    for (const auto &[g, share] : contact.ends) {
+      if (rigid_)
+        add_share(*rigid_, g, share, contact.bodies);
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double along = share * normal[c];
+        moves = moves || inverse_mass_[g * dim + c] > 0.;
+        yields += along * along * inverse_mass_[g * dim + c];
+        free += along * along / groups.mass[g];
+      }
+    }
+    for (const auto &body : contact.bodies)
+      for (const auto &column : body.columns) {
+        double along = 0.;
+        for (unsigned int c = 0; c < dim; ++c)
+          along += normal[c] * column[c];
+        yields += along * along;
+        moves = true;
+      }
+    contact.can_part = yields > 1e-12 * free;
+    return moves;
+  }
+
   template <int dim>
   auto LeapfrogContacts<dim>::clusters(const std::vector<std::size_t> &node_of)
       -> std::vector<Cluster>
   {
-    // contacts, then nodes and other groups
+    // contacts, then nodes, other groups, and rigid bodies
     const std::size_t n = chosen_.size();
-    std::map<std::size_t, unsigned int> nodes;
+    std::map<std::size_t, unsigned int> nodes, bodies;
     std::map<unsigned int, unsigned int> groups;
+    const auto n_items = [&] {
+      return n + nodes.size() + groups.size() + bodies.size();
+    };
     for (const unsigned int k : chosen_)
       for (const auto &end : contacts_[k].ends) {
         const std::size_t node = node_of[end.first];
-        const auto next = unsigned(n + nodes.size() + groups.size());
+        const auto next = unsigned(n_items());
         if (node == no_node)
           groups.emplace(end.first, next);
         else
           nodes.emplace(node, next);
       }
-    DisjointSets sets(n + nodes.size() + groups.size());
+    for (const unsigned int k : chosen_)
+      for (const auto &body : contacts_[k].bodies)
+        bodies.emplace(body.first, unsigned(n_items()));
+    // nodes at rigid bodies have no problem of their own
+    std::vector<std::pair<std::size_t, std::size_t>> at_bodies;
+    std::vector<RigidShare<dim>> shares;
+    for (unsigned int g = 0; rigid_ && g < node_of.size(); ++g)
+      if (node_of[g] != no_node && rigid_->takes(g)) {
+        nodes.emplace(node_of[g], unsigned(n_items()));
+        shares.clear();
+        add_share(*rigid_, g, 1., shares);
+        for (const auto &body : shares) {
+          bodies.emplace(body.first, unsigned(n_items()));
+          at_bodies.emplace_back(node_of[g], body.first);
+        }
+      }
+    DisjointSets sets(n_items());
+    for (const auto &[node, body] : at_bodies)
+      sets.join(nodes[node], bodies[body]);
+    for (unsigned int i = 0; i < n; ++i)
+      for (const auto &body : contacts_[chosen_[i]].bodies)
+        sets.join(i, bodies[body.first]);
     for (unsigned int i = 0; i < n; ++i)
       for (const auto &end : contacts_[chosen_[i]].ends) {
         const std::size_t node = node_of[end.first];
@@ -64,7 +118,7 @@ namespace nsfd
       const Contact &one = contacts_[chosen_[i]];
       cluster_of_[i] = int(found->second);
       result[found->second].contacts.push_back(
-          {one.ends, one.frame, one.row.interaction,
+          {one.ends, one.bodies, one.frame, one.row.interaction,
            one.target + one.obstacle[0], offset(one), one.impulse});
     }
     return result;
@@ -82,8 +136,9 @@ namespace nsfd
   }
 
   template <int dim>
-  void LeapfrogContacts<dim>::solve_others(const double tolerance,
-                                           CornerGroups<dim> &groups)
+  double LeapfrogContacts<dim>::solve_others(const double tolerance,
+                                             std::vector<double> &of_bodies,
+                                             CornerGroups<dim> &groups)
   {
     std::vector<unsigned int> others;
     for (std::size_t i = 0; i < chosen_.size(); ++i)
@@ -91,12 +146,23 @@ namespace nsfd
         others.push_back(chosen_[i]);
     const std::size_t n = others.size();
     if (n == 0)
-      return;
+      return 0.;
     // contacts of the groups
     std::map<unsigned int, std::vector<std::pair<unsigned int, double>>> at;
     for (unsigned int i = 0; i < n; ++i)
       for (const auto &[group, share] : contacts_[others[i]].ends)
         at[group].emplace_back(i, share);
+    // their velocities along the free unknowns of rigid bodies, local
+    std::map<std::size_t,
+             std::vector<std::pair<unsigned int, std::vector<Vector>>>>
+        at_body;
+    for (unsigned int i = 0; i < n; ++i)
+      for (const auto &body : contacts_[others[i]].bodies) {
+        std::vector<Vector> local;
+        for (const auto &column : body.columns)
+          local.push_back(contacts_[others[i]].in_frame(column));
+        at_body[body.first].emplace_back(i, std::move(local));
+      }
     ContactProblem problem;
     problem.dimension = dim;
     problem.row_start = {0};
@@ -116,6 +182,20 @@ namespace nsfd
                     share * other * inverse_mass_[group * dim + c] *
                     one.frame[r * dim + c] * frame[s * dim + c];
         }
+      for (const auto &body : one.bodies) {
+        const auto &all = at_body[body.first];
+        const auto &own =
+            std::find_if(all.begin(), all.end(), [i](const auto &entry) {
+              return entry.first == i;
+            })->second;
+        for (const auto &[j, other] : all) {
+          auto &block = blocks[j];
+          for (std::size_t k = 0; k < own.size(); ++k)
+            for (unsigned int r = 0; r < dim; ++r)
+              for (unsigned int s = 0; s < dim; ++s)
+                block[r * dim + s] += own[k][r] * other[k][s];
+        }
+      }
       for (unsigned int r = 0; r < dim; ++r) {
         for (const auto &[j, block] : blocks)
           for (unsigned int s = 0; s < dim; ++s) {
@@ -142,7 +222,8 @@ namespace nsfd
       }
     }
     SolverControl control;
-    control.tolerance = tolerance;
+    // bodies at rest have no energy but what is left over
+    control.tolerance = at_body.empty() ? tolerance : 1e-4 * tolerance;
     control.attempts = 1; // what is left is bounded by its own books
     const auto report = solve_contact_problem(
         problem, AssembledMethod<ContactMethod::automatic>(), "automatic",
@@ -153,7 +234,12 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         one.impulse[c] = r[i * dim + c] / mean;
       add(one, one.impulse, groups.velocity);
+      for (const auto &body : one.bodies)
+        for (std::size_t k = 0; k < body.columns.size(); ++k)
+          of_bodies[body.first + k] +=
+              product<dim>(one.in_frame(body.columns[k]), one.impulse);
     }
+    return at_body.empty() ? 0. : report.residual;
   }
 
   /** Where the contact works on the bodies it asks for less; true if so. */
@@ -203,8 +289,11 @@ namespace nsfd
       const std::vector<std::size_t> &)                                        \
       ->std::vector<Cluster>;                                                  \
   template void LeapfrogContacts<dim>::take(const std::vector<Cluster> &);     \
-  template void LeapfrogContacts<dim>::solve_others(double,                    \
-                                                    CornerGroups<dim> &);      \
+  template double LeapfrogContacts<dim>::solve_others(                         \
+      double, std::vector<double> &, CornerGroups<dim> &);                     \
+  template bool LeapfrogContacts<dim>::set_yield(                              \
+      const dealii::Tensor<1, dim> &, const CornerGroups<dim> &, Contact &)    \
+      const;                                                                   \
   template bool LeapfrogContacts<dim>::improve(const CornerGroups<dim> &)
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);

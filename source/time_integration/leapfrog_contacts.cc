@@ -115,6 +115,8 @@ namespace nsfd
   {
     groups.scatter(groups.displacement, state_.displacement);
     groups.scatter(groups.velocity, state_.velocity);
+    if (rigid_)
+      rigid_->show(state_);
     if (groups.size() != n_groups_)
       set_wholes(groups);
   }
@@ -235,12 +237,6 @@ namespace nsfd
                                         return std::abs(end.second) < 1e-12;
                                       }),
                        contact.ends.end());
-    bool moves = false;
-    for (const auto &[g, share] : contact.ends)
-      for (unsigned int c = 0; c < dim; ++c)
-        moves = moves || inverse_mass_[g * dim + c] > 0.;
-    if (!moves)
-      return false;
     const auto normal =
         row_normal(input_, contact.row, ends, state_.obstacle_shift);
     const auto axes = local_frame<dim>(normal);
@@ -250,23 +246,17 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         contact.frame[r * dim + c] = axes[r][c];
     }
-    double yields = 0., free = 0.;
-    for (const auto &[g, share] : contact.ends)
-      for (unsigned int c = 0; c < dim; ++c) {
-        const double along = share * normal[c];
-        yields += along * along * inverse_mass_[g * dim + c];
-        free += along * along / groups.mass[g];
-      }
-    contact.can_part = yields > 1e-12 * free;
-    return true;
+    return set_yield(normal, groups, contact);
   }
 
   template <int dim>
   void LeapfrogContacts<dim>::find(const double time, const double h,
                                    const std::vector<std::uint8_t> &prescribed,
+                                   const RigidGroups<dim> *rigid,
                                    const CornerGroups<dim> &groups)
   {
     time_step_ = h;
+    rigid_ = rigid;
     state_.time = time;
     follow(groups);
     inverse_mass_.resize(groups.size() * dim);

@@ -54,7 +54,7 @@ namespace nsfd
      */
     void find(double time, double h,
               const std::vector<std::uint8_t> &prescribed,
-              const CornerGroups<dim> &groups);
+              const RigidGroups<dim> *rigid, const CornerGroups<dim> &groups);
     bool any() const { return !contacts_.empty(); }
 
     using Cluster = typename LeapfrogPoints<dim>::Cluster;
@@ -67,8 +67,11 @@ namespace nsfd
     /** The impulses of the last clusters(). */
     void take(const std::vector<Cluster> &clusters);
     /** The others that push: their impulses, and what these do to the
-       velocities of @p groups, which have none of them. */
-    void solve_others(double tolerance, CornerGroups<dim> &groups);
+       velocities of @p groups, which have none of them, and @p of_bodies, see
+       RigidGroups::move(). What is left over of a problem with rigid bodies,
+       0 without. */
+    double solve_others(double tolerance, std::vector<double> &of_bodies,
+                        CornerGroups<dim> &groups);
     /** With the velocities after all: those that overlap at the end push from
         now on, friction that works on the bodies opposes the mean velocity.
         False if there is nothing new. */
@@ -108,10 +111,20 @@ namespace nsfd
       /// groups and what they have in the velocity of body 2 less that of
       /// body 1
       std::vector<std::pair<unsigned int, double>> ends;
+      std::vector<RigidShare<dim>> bodies; ///< and what moves such groups
       Vector before{}, impulse{}, velocity{}, obstacle{}; ///< local
       double target = 0., least = 0., friction = 0.; ///< target without work
       bool turned = false, pushes = false; ///< friction opposes the mean
       bool can_part = true; ///< the motion along the normal is not prescribed
+
+      Vector in_frame(const Vector &v) const
+      {
+        Vector result{};
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c)
+            result[r] += frame[r * dim + c] * v[c];
+        return result;
+      }
     };
 
     void follow(const CornerGroups<dim> &groups);
@@ -124,6 +137,8 @@ namespace nsfd
              std::vector<double> &velocity) const;
     bool turn(Contact &contact) const;
     Vector offset(const Contact &contact) const;
+    bool set_yield(const dealii::Tensor<1, dim> &normal,
+                   const CornerGroups<dim> &groups, Contact &contact) const;
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
@@ -134,7 +149,8 @@ namespace nsfd
     std::vector<unsigned int> part_of_; ///< by body: of what was one
     std::size_t n_groups_ = 0; ///< of the wholes that the surfaces know
     double time_step_ = 0.;
-    std::vector<Contact> contacts_; ///< of the step
+    const RigidGroups<dim> *rigid_ = nullptr; ///< of the step; null: none
+    std::vector<Contact> contacts_;           ///< of the step
     /// of these, those that push or have pushed in the step; which cluster they
     /// are in, -1: none
     std::vector<unsigned int> chosen_;

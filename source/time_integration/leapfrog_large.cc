@@ -1,5 +1,8 @@
 #include "leapfrog_large.h"
 
+#include "joined_start.h"
+
+#include "bodies/rigid_motions.h"
 #include "discretization/cells.h"
 #include "nsfd/core/archive.h"
 #include "nsfd/scene/scene_input.h"
@@ -26,11 +29,12 @@ namespace nsfd
                                     const JoinedMesh<dim> &mesh,
                                     const OneStepProblem<dim> &all,
                                     const Communicator &communicator,
-                                    const FiniteForces<dim> &forces)
-      : discretization_(discretization), mesh_(mesh),
+                                    FiniteForces<dim> &forces)
+      : input_(input), discretization_(discretization), mesh_(mesh),
         communicator_(communicator), forces_(forces)
   {
-    if (!input.contacts.empty() || !input.obstacles.empty())
+    if (!input.contacts.empty() || !input.obstacles.empty() ||
+        has_rigid_cells(input))
       contacts_ = std::make_unique<LeapfrogContacts<dim>>(input, discretization,
                                                           all, communicator);
   }
@@ -38,6 +42,12 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::set_initial(State &state) const
   {
+    state.material_history = forces_.histories().at_rest();
+    if (has_rigid_cells(input_)) {
+      const BodyLayout<dim> layout(input_, discretization_);
+      RigidMotions<dim>(input_, discretization_, layout, communicator_)
+          .set_nearest(state);
+    }
     if (contacts_)
       contacts_->set_initial(state);
   }
@@ -59,6 +69,7 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::begin(const double time, const double h,
                                  const std::vector<std::uint8_t> &prescribed,
+                                 const RigidGroups<dim> *rigid,
                                  const CornerGroups<dim> &groups,
                                  LeapfrogPoints<dim> &points,
                                  LeapfrogEnergies &energies)
@@ -67,7 +78,7 @@ namespace nsfd
         points.turn([this](const std::size_t i) { return forces_.frame(i); }));
     energies.turned = turned_;
     if (contacts_)
-      contacts_->find(time, h, prescribed, groups);
+      contacts_->find(time, h, prescribed, rigid, groups);
   }
 
   /** The node of a group that points hold; else no_node. */
@@ -91,18 +102,20 @@ namespace nsfd
   auto LeapfrogLarge<dim>::solve(const double h, const double last,
                                  const std::vector<std::uint8_t> &prescribed,
                                  const double tolerance,
+                                 RigidGroups<dim> *rigid,
                                  LeapfrogPoints<dim> &points,
                                  CornerGroups<dim> &groups) ->
       typename LeapfrogPoints<dim>::Outcome
   {
     constexpr unsigned int most_rounds = 30;
-    if (!contacts_ || !contacts_->any())
+    if (!rigid && (!contacts_ || !contacts_->any()))
       return points.solve(h, last, prescribed, tolerance, groups);
     const std::vector<double> free = groups.velocity;
     const auto node_of = nodes_of_groups(points, groups);
     typename LeapfrogPoints<dim>::Outcome outcome;
     for (unsigned int round = 0; round < most_rounds; ++round) {
       groups.velocity = free;
+      std::vector<double> of_bodies(rigid ? rigid->n_free() : 0, 0.);
       auto clusters = contacts_->clusters(node_of);
       std::vector<std::size_t> apart;
       for (const auto &cluster : clusters)
@@ -110,9 +123,14 @@ namespace nsfd
       std::sort(apart.begin(), apart.end());
       outcome = points.solve(h, last, prescribed, tolerance, groups, apart);
       for (auto &cluster : clusters)
-        points.solve_cluster(cluster, prescribed, tolerance, groups, outcome);
+        points.solve_cluster(cluster, prescribed, tolerance, rigid, of_bodies,
+                             groups, outcome);
       contacts_->take(clusters);
-      contacts_->solve_others(tolerance, groups);
+      outcome.residual =
+          std::max(outcome.residual,
+                   contacts_->solve_others(tolerance, of_bodies, groups));
+      if (rigid)
+        rigid->move(of_bodies, groups);
       ++rounds_;
       if (!contacts_->improve(groups))
         break;
@@ -140,7 +158,8 @@ namespace nsfd
     // of elastic forces alone, where a step changes its length
     energies.numerical -= (h - last) / 4. * (front_after - front_before);
     energies.power -= front_after;
-    energies.viscous += std::max(0., taken);
+    energies.viscous += std::max(0., taken) + flow_[1];
+    energies.plastic = flow_[0];
     // steps that change their length are among it
     energies.large =
         energies.numerical + std::min(0., taken) + bulk_ - energies.turned;
@@ -167,6 +186,12 @@ namespace nsfd
     const double stored_now = stored();
     energies.power_after -= forces_.front_power(groups, groups.velocity);
     bulk_ = stored_ - stored_now - h / 2. * (power_ + energies.power_after);
+    if (!forces_.taken().empty()) {
+      const std::size_t n = forces_.taken().size() / 2;
+      const auto sums = communicator_.sums(forces_.taken().data(), 2, n);
+      std::copy_n(sums.begin(), 2, flow_.begin());
+      bulk_ -= flow_[0] + flow_[1];
+    }
     stored_ = stored_now;
     // a longer step later would take or give energy, as each change does
     if (step % steps_between_looks == 0)
@@ -212,6 +237,7 @@ namespace nsfd
   template <int dim>
   void LeapfrogLarge<dim>::show(State &state) const
   {
+    state.material_history = forces_.histories().values();
     if (contacts_)
       contacts_->show(state);
   }
@@ -234,6 +260,8 @@ namespace nsfd
   void LeapfrogLarge<dim>::serialize(Archive &archive)
   {
     archive.numbers("large", bulk_, stiffening_, way_);
+    if (forces_.histories().any())
+      archive.numbers("flow", flow_[0], flow_[1]);
   }
 
   template class LeapfrogLarge<2>;

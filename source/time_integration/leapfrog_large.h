@@ -31,10 +31,14 @@ namespace nsfd
     LeapfrogLarge(const SceneInput &input,
                   const Discretization<dim> &discretization,
                   const JoinedMesh<dim> &mesh, const OneStepProblem<dim> &all,
-                  const Communicator &communicator,
-                  const FiniteForces<dim> &forces);
+                  const Communicator &communicator, FiniteForces<dim> &forces);
 
     void set_initial(State &state) const;
+    /** What materials keep in @p state, before its forces. */
+    void take_histories(const State &state)
+    {
+      forces_.histories().set(state.material_history);
+    }
     /** From @p state, with the forces there. */
     void start(const State &state);
 
@@ -44,13 +48,14 @@ namespace nsfd
     /** Before the velocities change in a step of length @p h from @p time. */
     void begin(double time, double h,
                const std::vector<std::uint8_t> &prescribed,
-               const CornerGroups<dim> &groups, LeapfrogPoints<dim> &points,
-               LeapfrogEnergies &energies);
-    /** See LeapfrogPoints::solve(). */
+               const RigidGroups<dim> *rigid, const CornerGroups<dim> &groups,
+               LeapfrogPoints<dim> &points, LeapfrogEnergies &energies);
+    /** See LeapfrogPoints::solve(); with the @p rigid bodies, if not null, and
+        what meets these. */
     typename LeapfrogPoints<dim>::Outcome
     solve(double h, double last, const std::vector<std::uint8_t> &prescribed,
-          double tolerance, LeapfrogPoints<dim> &points,
-          CornerGroups<dim> &groups);
+          double tolerance, RigidGroups<dim> *rigid,
+          LeapfrogPoints<dim> &points, CornerGroups<dim> &groups);
     void add_impulses(const std::vector<int> &row_of_group,
                       std::vector<double> &rows) const;
     /** What bodies and contacts have, with the forces that acted in the step;
@@ -70,16 +75,21 @@ namespace nsfd
     bool accept(LeapfrogPoints<dim> &points);
 
     double stored() const { return communicator_.sum(forces_.stored()); }
-    /** Before the next forces, which may not be: see inverted(). */
-    void keep_front(const FrontViscosity &front)
+    /** Before the forces at the end of a step of length @p h, which may not be:
+        see inverted(). */
+    void begin_forces(const double h, const FrontViscosity &front)
     {
+      forces_.histories().begin_step(h);
       if (front.acts())
         front_ = front;
     }
+    /** The step is not taken. */
+    void go_back() { forces_.histories().go_back(); }
     /** No cell was well: the front is as it was, and holds for the forces of
        the step before; shorter steps come. */
     void go_back(FrontViscosity &front)
     {
+      go_back();
       if (front.acts())
         front = front_;
       front.holds = true;
@@ -96,14 +106,16 @@ namespace nsfd
     nodes_of_groups(const LeapfrogPoints<dim> &points,
                     const CornerGroups<dim> &groups) const;
 
+    const SceneInput &input_;
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     const Communicator &communicator_;
-    const FiniteForces<dim> &forces_;
+    FiniteForces<dim> &forces_;
     std::unique_ptr<LeapfrogContacts<dim>> contacts_; ///< null: none
     FrontViscosity front_; ///< of the forces that act in the step
     double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J
     double bulk_ = 0.;     ///< of the last way, which the next step takes, J
+    std::array<double, 2> flow_{};    ///< plastic and viscous, likewise, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;
     std::size_t n_open_ = 0; ///< points that hold less than they did

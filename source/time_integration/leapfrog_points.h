@@ -2,6 +2,7 @@
 
 #include "active_nodes.h"
 #include "common_balance.h"
+#include "rigid_groups.h"
 
 #include "joined/node_solver.h"
 #include "nonsmooth/one_step_problem.h"
@@ -81,6 +82,7 @@ namespace nsfd
     struct Cluster {
       struct Contact {
         std::vector<std::pair<unsigned int, double>> ends; ///< group, share
+        std::vector<RigidShare<dim>> bodies;
         std::array<double, dim * dim> frame;
         unsigned int interaction;
         double target; ///< of U_N
@@ -90,11 +92,14 @@ namespace nsfd
       std::vector<std::size_t> nodes; ///< of the mesh
       std::vector<Contact> contacts;
     };
-    /** One that solve() has left; velocities as there. Adds to @p outcome. */
+    /** One that solve() has left; velocities as there. Adds to @p outcome, and
+        to @p of_bodies, the free unknowns of the @p rigid bodies (null: there
+        are none), which are those of no other one. */
     void solve_cluster(Cluster &cluster,
                        const std::vector<std::uint8_t> &prescribed,
-                       double tolerance, CornerGroups<dim> &groups,
-                       Outcome &outcome);
+                       double tolerance, RigidGroups<dim> *rigid,
+                       std::vector<double> &of_bodies,
+                       CornerGroups<dim> &groups, Outcome &outcome);
     /** Then those at @p rigid bodies, which solve() leaves: if these are free,
         all in one, see CoupledNodes. Adds to @p outcome: two of them, or
         one and an obstacle, do not touch. Collective. */

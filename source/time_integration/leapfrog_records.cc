@@ -48,6 +48,7 @@ namespace nsfd
     energy.friction += balance.friction + bodies.friction;
     energy.impact += balance.impact + bodies.impact;
     energy.viscous += balance.viscous + bodies.viscous;
+    energy.plastic += bodies.plastic;
     energy.numerical += balance.numerical + bodies.numerical;
     energy.work += bodies.work + bodies.pressure_work;
     next.broken_area = old.broken_area + balance.broken;
@@ -80,8 +81,13 @@ namespace nsfd
     report.changes.taken[std::size_t(WatchedLine::impact)] += bodies.impact;
     report.changes.taken[std::size_t(WatchedLine::viscous)] =
         energy.viscous - old.energy.viscous;
+    report.changes.taken[std::size_t(WatchedLine::plastic)] = bodies.plastic;
     close_balance(old, next, report);
-    const double scale = 4. * std::abs(energy.kinetic);
+    double scale = 4. * std::abs(energy.kinetic);
+    if (rigid_ && large_) { // bodies at rest have no other energy
+      scale = std::max(scale, 2. * rigid_->size_of_motion());
+      relate_defect(scale, next, report);
+    }
     const TakenStep step{old, next, h, scale, 0};
     check_.check_balance(step, report);
     check_.watch_energy(step, report);
@@ -124,6 +130,8 @@ namespace nsfd
       loads_.cracks()->show(ghosts_.own_points(), state);
     if (large_)
       large_->show(state);
+    if (rigid_ && large_)
+      rigid_->show(state);
     const auto *layer = ghosts_.layer();
     if (!layer)
       return;

@@ -63,6 +63,8 @@ namespace nsfd
   void Leapfrog<dim>::take(const State &state, std::vector<std::uint8_t> intact,
                            const bool start)
   {
+    if (large_)
+      large_->take_histories(state);
     for (const unsigned int i :
          points_between_groups(discretization_, mesh_, hanging_, intact))
       points_.add(i, faces_.factors(i), state);
@@ -74,6 +76,8 @@ namespace nsfd
           discretization_, mesh_, communicator_, ghosts_.cells(),
           rigid_clusters(discretization_, mesh_, communicator_, ghosts_.cells(),
                          intact));
+    if (rigid_ && large_)
+      rigid_->set_places(state);
     faces_.start(std::move(intact));
     groups_->gather(state.displacement, groups_->displacement);
     groups_->gather(state.velocity, groups_->velocity);

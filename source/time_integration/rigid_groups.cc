@@ -2,6 +2,7 @@
 
 #include "rigid_algebra.h"
 
+#include "bodies/body_layout.h"
 #include "core/gather_sums.h"
 #include "nsfd/core/archive.h"
 
@@ -36,7 +37,17 @@ namespace nsfd
       if (!mesh_.counts(mesh_.node_of_point(row.point)))
         continue;
       const Member &member = members_[std::size_t(member_[row.group])];
-      const double g = supports.velocity(row, time, h, groups);
+      double g = supports.velocity(row, time, h, groups);
+      if (large_) { // what the turn adds on the way
+        using namespace space;
+        const Body &body = bodies_[member.body];
+        const Vec3 omega = body.spin(),
+                   r = in_space<dim>(
+                       member.rest +
+                       at_node<dim>(groups.displacement, member.group) -
+                       body.centre);
+        g -= h / 2. * cross(omega, cross(omega, r))[row.component];
+      }
       for (unsigned int i = 0; i < n_motions; ++i)
         own[member.body * n_motions + i].add(g * member.R[row.component][i]);
     }
@@ -73,6 +84,8 @@ namespace nsfd
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       Body &body = bodies_[b];
       body.before = body.velocity;
+      body.cells_before = body.cells;
+      body.centre_before = body.centre;
       body.given = given[b];
       Motion push = given[b];
       if (body.is_held) {
@@ -106,6 +119,28 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         result[k][c] = product(member.R[c], body.free[k]);
     return result;
+  }
+
+  template <int dim>
+  void add_share(const RigidGroups<dim> &rigid, const unsigned int group,
+                 const double share, std::vector<RigidShare<dim>> &shares)
+  {
+    if (!rigid.takes(group))
+      return;
+    std::size_t first = 0;
+    const auto of_group = rigid.columns(group, first);
+    if (of_group.empty())
+      return;
+    auto found =
+        std::find_if(shares.begin(), shares.end(), [first](const auto &known) {
+          return known.first == first;
+        });
+    if (found == shares.end())
+      found = shares.insert(found, {first, std::vector<std::array<double, dim>>(
+                                               of_group.size())});
+    for (std::size_t k = 0; k < of_group.size(); ++k)
+      for (unsigned int c = 0; c < dim; ++c)
+        found->columns[k][c] += share * of_group[k][c];
   }
 
   template <int dim>
@@ -187,8 +222,11 @@ namespace nsfd
   template <int dim>
   void RigidGroups<dim>::go_back()
   {
-    for (Body &body : bodies_)
+    for (Body &body : bodies_) {
       body.velocity = body.before;
+      body.cells = body.cells_before;
+      body.centre = body.centre_before;
+    }
   }
 
   template <int dim>
@@ -198,14 +236,34 @@ namespace nsfd
     for (const Body &body : bodies_)
       all.insert(all.end(), body.velocity.begin(), body.velocity.end());
     archive.common("rigid_bodies", all);
+    if (archive.reads() && all.size() != bodies_.size() * n_motions)
+      throw BadCheckpoint("rigid_bodies has another number of values");
+    std::vector<double> centres; // orientations are those of the state
+    for (const Body &body : bodies_) {
+      centres.insert(centres.end(), body.centre.begin_raw(),
+                     body.centre.end_raw());
+      centres.insert(centres.end(), body.cells.centre.begin(),
+                     body.cells.centre.end());
+    }
+    if (large_)
+      archive.common("rigid_centres", centres);
     if (!archive.reads())
       return;
-    if (all.size() != bodies_.size() * n_motions)
-      throw BadCheckpoint("rigid_bodies has another number of values");
+    if (centres.size() != bodies_.size() * (dim + 3))
+      throw BadCheckpoint("rigid_centres has another number of values");
+    for (std::size_t b = 0; b < bodies_.size() && large_; ++b) {
+      const double *from = &centres[b * (dim + 3)];
+      std::copy_n(from, dim, bodies_[b].centre.begin_raw());
+      std::copy_n(from + dim, 3, bodies_[b].cells.centre.begin());
+    }
     for (std::size_t k = 0; k < all.size(); ++k)
       bodies_[k / n_motions].velocity[k % n_motions] = all[k];
   }
 
+  template void add_share(const RigidGroups<2> &, unsigned int, double,
+                          std::vector<RigidShare<2>> &);
+  template void add_share(const RigidGroups<3> &, unsigned int, double,
+                          std::vector<RigidShare<3>> &);
   template class RigidGroups<2>;
   template class RigidGroups<3>;
 } // namespace nsfd

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "prescribed_groups.h"
+#include "rigid_share.h"
+#include "turning_body.h"
 
 #include "core/order_free_sum.h"
 #include "joined/ghost_cells.h"
@@ -22,6 +24,12 @@ namespace nsfd
    * corners in its groups. Supports ask for C V = g: V = G^+ C^T g + E y, G =
    * C^T C, C E = 0, E^T M E = 1, and y is free. All of it is the same on all
    * ranks.
+   *
+   * In motions of any size R is that of the places at the start of a step,
+   * about the centre of mass of all that moves with the body. The kick changes
+   * V there; on the way to the next places both momenta and the energy stay.
+   * A place moves by h (v + omega x r) + h^2/2 omega x (omega x r) then, to
+   * third order, which supports know.
    */
   template <int dim>
   class RigidGroups
@@ -51,6 +59,15 @@ namespace nsfd
 
     /** Velocities of the bodies are nearest to those of the groups. */
     void start(CornerGroups<dim> &groups);
+
+    // of motions of any size
+
+    /** They are where @p state has them, before find(). */
+    void set_places(const State &state);
+    /** To the end of a step of length @p h, with velocities there; false where
+        it turns a body too far. */
+    bool fly(double h, CornerGroups<dim> &groups);
+    void show(State &state) const;
 
     /**
      * Sets the velocities of the bodies and of their groups in a step as
@@ -101,6 +118,7 @@ namespace nsfd
     /** A group that a body takes along. */
     struct Member {
       unsigned int group, body;
+      dealii::Point<dim> rest;
       std::array<Motion, dim> R;
       double mass = 0.; ///< of corners of cells that deform
       bool counts;
@@ -116,11 +134,19 @@ namespace nsfd
       Motion velocity{}, before{}, without{}; ///< without: points
       Motion given{};                         ///< k R^T f, N s
       std::vector<Motion> rows; ///< sums of C by driven boundary and component
+      TurningBody cells{}, cells_before{}; ///< rigid ones; any size
+      dealii::Point<dim> centre_before;    ///< the step
+      /// in State::rigid: number, and centre at rest
+      std::vector<std::pair<std::size_t, Vec3>> parts;
+
+      /** R of a place: translation, and rotation times the size. */
+      std::array<Motion, dim> motions(const dealii::Point<dim> &x) const;
+      /** The angular velocity, axes of space. */
+      Vec3 spin() const;
     };
 
-    std::array<Motion, dim> motions(const Body &body,
-                                    const dealii::Point<dim> &x) const;
     void set_inertia();
+    void set_centres(const CornerGroups<dim> &groups);
     void find_members(const CornerGroups<dim> &groups);
     void set_masses();
     void hold(const PrescribedGroups<dim> &supports);
@@ -135,9 +161,16 @@ namespace nsfd
     const Communicator &communicator_;
     const GhostCells *ghosts_;
     const std::vector<int> body_of_corner_;
+    const bool large_; ///< motions of any size
     std::vector<Body> bodies_;
     std::vector<Member> members_;
     std::vector<int> member_; ///< by group, -1: none
     std::size_t n_free_ = 0;
   };
+
+  /** Adds @p share of the velocity of @p group to @p shares, if a body that can
+      move takes it. */
+  template <int dim>
+  void add_share(const RigidGroups<dim> &rigid, unsigned int group,
+                 double share, std::vector<RigidShare<dim>> &shares);
 } // namespace nsfd

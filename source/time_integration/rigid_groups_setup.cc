@@ -2,6 +2,7 @@
 
 #include "rigid_algebra.h"
 
+#include "bodies/body_layout.h"
 #include "core/gather_sums.h"
 #include "discretization/cells.h"
 #include "linear_algebra/dense_lu.h"
@@ -27,7 +28,8 @@ namespace nsfd
                                 std::vector<int> body_of_corner)
       : discretization_(discretization), mesh_(mesh),
         communicator_(communicator), ghosts_(ghosts),
-        body_of_corner_(std::move(body_of_corner))
+        body_of_corner_(std::move(body_of_corner)),
+        large_(discretization.input().large_motion)
   {
     int last = -1;
     for (const int body : body_of_corner_)
@@ -36,14 +38,12 @@ namespace nsfd
     set_inertia();
   }
 
-  /** R of a place: translation, and rotation times the size. */
   template <int dim>
-  auto RigidGroups<dim>::motions(const Body &body,
-                                 const dealii::Point<dim> &x) const
+  auto RigidGroups<dim>::Body::motions(const dealii::Point<dim> &x) const
       -> std::array<Motion, dim>
   {
     std::array<Motion, dim> R{};
-    const auto r = (x - body.centre) / body.size;
+    const auto r = (x - centre) / size;
     for (unsigned int c = 0; c < dim; ++c)
       R[c][c] = 1.;
     if constexpr (dim == 2) {
@@ -101,7 +101,7 @@ namespace nsfd
     own.assign(bodies_.size() * n * n, {});
     for_all_pairs([&](const std::size_t body, const double m, const Place &x,
                       const Place &y) {
-      const auto R = motions(bodies_[body], x), S = motions(bodies_[body], y);
+      const auto R = bodies_[body].motions(x), S = bodies_[body].motions(y);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
           for (unsigned int c = 0; c < dim; ++c)
@@ -110,6 +110,14 @@ namespace nsfd
     all = sums(own);
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       std::copy_n(&all[b * n], n, bodies_[b].rigid_mass.begin());
+    for (Body &body : bodies_) {
+      body.cells.mass = body.rigid_mass[0][0];
+      body.cells.rest = body.cells.centre = in_space<dim>(body.centre);
+      for (unsigned int i = dim; i < n; ++i)
+        for (unsigned int j = dim; j < n; ++j)
+          body.cells.inertia[dim == 2 ? 2 : i - dim][dim == 2 ? 2 : j - dim] =
+              body.rigid_mass[i][j] * body.size * body.size;
+    }
   }
 
   template <int dim>
@@ -128,11 +136,11 @@ namespace nsfd
         const unsigned int group = groups.of(i);
         if (member_[group] < 0) {
           member_[group] = int(members_.size());
-          const auto &node = cells.shape(b)->nodes[i - cells.first_node[b]];
-          members_.push_back(
-              {group, unsigned(body),
-               motions(bodies_[std::size_t(body)], cells.place(b, node)), 0.,
-               mesh_.counts(mesh_.node(i))});
+          const auto rest =
+              cells.place(b, cells.shape(b)->nodes[i - cells.first_node[b]]);
+          members_.push_back({group, unsigned(body), rest,
+                              bodies_[std::size_t(body)].motions(rest), 0.,
+                              mesh_.counts(mesh_.node(i))});
         } else
           meet |= members_[std::size_t(member_[group])].body != unsigned(body);
       }
@@ -221,6 +229,8 @@ namespace nsfd
                               PrescribedGroups<dim> &supports)
   {
     find_members(groups);
+    if (large_)
+      set_centres(groups);
     std::vector<std::uint8_t> rigid(groups.size(), 0);
     for (const Member &member : members_)
       rigid[member.group] = 1;
@@ -234,8 +244,12 @@ namespace nsfd
                                const CornerGroups<dim> &groups,
                                const PrescribedGroups<dim> &supports) const
   {
-    const double h = 1e-3 * end;
-    for (const double share : {0., 0.3, 0.7, 1.}) {
+    // what turns is where it is at the start only
+    const double h = (large_ ? 1e-9 : 1e-3) * end,
+                 allowed = large_ ? 1e-6 : 1e-9;
+    const std::vector<double> all_shares = {0., 0.3, 0.7, 1.};
+    for (std::size_t k = 0; k < (large_ ? 1 : all_shares.size()); ++k) {
+      const double share = all_shares[k];
       const auto all = asked(share * end, h, supports, groups);
       double size = 0., wrong = 0.;
       for (const PrescribedRow &row : supports.rigid_rows()) {
@@ -247,7 +261,7 @@ namespace nsfd
         wrong =
             std::max(wrong, std::abs(product(member.R[row.component], V) - g));
       }
-      if (communicator_.max(wrong) > 1e-9 * communicator_.max(size))
+      if (communicator_.max(wrong) > allowed * communicator_.max(size))
         throw std::runtime_error(
             "the motion that boundaries ask of a rigid body is not one of a "
             "rigid body: write the same motion wherever it is held");
@@ -259,6 +273,17 @@ namespace nsfd
   {
     constexpr unsigned int n = n_motions;
     const Cells<dim> &cells = discretization_.cells();
+    const auto place_of = [&](const Body &body, const std::size_t b,
+                              const dealii::Point<dim> &node) {
+      const auto rest = cells.place(b, node);
+      if (!large_)
+        return rest;
+      const Vec3 x = body.cells.place(in_space<dim>(rest));
+      dealii::Point<dim> now;
+      for (unsigned int c = 0; c < dim; ++c)
+        now[c] = x[c];
+      return now;
+    };
     std::vector<OrderFreeSum> own(bodies_.size() * n);
     const auto add = [&](const std::size_t body, const auto &R, const double m,
                          const double *v) {
@@ -274,7 +299,8 @@ namespace nsfd
       const auto shape = cells.shape(b);
       const Block &mass = cells.body_class(b).mass;
       for (unsigned int i = 0; i < shape->n_nodes; ++i) {
-        const auto R = motions(bodies_[body], cells.place(b, shape->nodes[i]));
+        const auto R =
+            bodies_[body].motions(place_of(bodies_[body], b, shape->nodes[i]));
         for (unsigned int j = 0; j < shape->n_nodes; ++j)
           add(body, R, mass(i * dim, j * dim),
               &groups.velocity[groups.of(first + j) * dim]);

@@ -110,6 +110,8 @@ namespace wall
 
   void add_pin(Draft &draft, Draw &draw)
   {
+    if (draft.integrator == "explicit")
+      return; // it has none yet
     for (const Body &body : draft.bodies)
       if (body.rigid) {
         Vector place = body.centre();

@@ -147,7 +147,8 @@ namespace wall
         entries.push_back("model = rigid");
         if (draft.large)
           entries.push_back("bodies = connected");
-        if (draft.large && body.shape == "ball")
+        if (draft.large && body.shape == "ball" &&
+            draft.integrator != "explicit")
           entries.push_back("surface = ball");
       } else {
         if (substance != body.substance.name)

@@ -177,7 +177,7 @@ namespace wall
       const bool smooth = draft.integrator == "arkode",
                  statics = draft.integrator == "quasi-static",
                  takes_rigid = draft.integrator == "moreau-jean" ||
-                               (draft.integrator == "auto" && draft.large);
+                               (draft.large && !statics && !smooth);
       draft.kind =
           Kind(draw.one_of({takes_rigid ? 1. : 0., 2., smooth ? 0. : 4.,
                             smooth        ? 0.

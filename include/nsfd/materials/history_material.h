@@ -36,6 +36,9 @@ namespace nsfd
       VoigtBlock<dim> tangent; ///< dS/dC1, if asked for
       /// what S:(C1 - C0) / 2 is more than the change of energy, J per volume
       double plastic = 0., viscous = 0., numerical = 0.;
+      /// of that work, what the mean of the stresses at both ends does not do:
+      /// with them alone a step takes as much less, theta = 1/2
+      double added = 0.;
     };
 
     /** Stored, J per volume; infinite where det C <= 0. */
@@ -45,6 +48,11 @@ namespace nsfd
         where det C <= 0 or numbers are not finite. */
     virtual bool step(const Way &way, bool with_tangent, Step &result,
                       double *history) const = 0;
+
+    /** @p S is the stress of @p C itself, twice the derivative of the
+        @p energy at this history; false as there. */
+    virtual bool state(const Voigt<dim> &C, const double *history,
+                       Voigt<dim> &S, double &energy) const = 0;
 
     /** dS/dC1 of a step at rest. */
     virtual VoigtBlock<dim> tangent_at_rest(double theta) const = 0;

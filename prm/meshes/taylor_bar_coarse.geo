@@ -1,0 +1,3 @@
+// The bar of prm/benchmarks/taylor_bar.prm with a ninth of its cells across.
+n = 1;
+Include "taylor_bar.geo";

@@ -1,0 +1,126 @@
+#include "cell_histories.h"
+
+#include "discretization/body_shape.h"
+#include "discretization/cells.h"
+#include "discretization/material_histories.h"
+#include "nsfd/materials/material_model.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
+
+namespace nsfd
+{
+  template <int dim>
+  CellHistories<dim>::CellHistories(const Discretization<dim> &discretization)
+      : discretization_(discretization), first_(first_histories(discretization))
+  {
+    const SceneInput &input = discretization.input();
+    for (const MaterialInput &m : input.materials)
+      materials_.push_back(m.kind == MaterialKind::history_dependent
+                               ? m.model->template history_dependent<dim>(
+                                     m, true, input.plane_stress)
+                               : nullptr);
+    std::size_t n_points = 0;
+    for (std::size_t cell = 0; any() && cell + 1 < first_.size(); ++cell) {
+      first_point_.push_back(n_points);
+      if (of(cell))
+        n_points += (first_[cell + 1] - first_[cell]) / of(cell)->n_history();
+    }
+    strains_.resize(n_points);
+    now_ = at_rest();
+  }
+
+  template <int dim>
+  CellHistories<dim>::~CellHistories() = default;
+
+  template <int dim>
+  const HistoryMaterial<dim> *
+  CellHistories<dim>::of(const std::size_t cell) const
+  {
+    return materials_[discretization_.cells().body_class(cell).material].get();
+  }
+
+  template <int dim>
+  std::size_t CellHistories<dim>::place(const std::size_t cell,
+                                        const unsigned int q) const
+  {
+    return first_[cell] + q * of(cell)->n_history();
+  }
+
+  template <int dim>
+  std::vector<double> CellHistories<dim>::at_rest() const
+  {
+    std::vector<double> values(first_.back());
+    for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell)
+      for (std::size_t k = first_[cell]; k < first_[cell + 1];
+           k += of(cell)->n_history())
+        of(cell)->begin(&values[k]);
+    return values;
+  }
+
+  template <int dim>
+  void CellHistories<dim>::begin_step(const double time_step)
+  {
+    time_step_ = time_step;
+    before_ = now_;
+    moves_ = true;
+  }
+
+  template <int dim>
+  void CellHistories<dim>::go_back()
+  {
+    now_ = before_;
+    moves_ = false;
+  }
+
+  template <int dim>
+  bool CellHistories<dim>::set_point(const std::size_t cell,
+                                     const unsigned int q,
+                                     const unsigned int n_same,
+                                     const Voigt<dim> &C, Stress &result)
+  {
+    const HistoryMaterial<dim> &material = *of(cell);
+    const unsigned int n = material.n_history();
+    const std::size_t at = place(cell, q);
+    Voigt<dim> &strain = strains_[first_point_[cell] + q];
+    result.plastic = result.viscous = 0.;
+    if (moves_) {
+      typename HistoryMaterial<dim>::Way way;
+      way.C0 = strain;
+      way.C1 = C;
+      way.history = &before_[at];
+      way.time_step = time_step_;
+      typename HistoryMaterial<dim>::Step step;
+      if (!material.step(way, false, step, &now_[at]))
+        return false;
+      // forces of both ends act along the way, and nothing beside them
+      result.plastic = std::max(0., step.plastic - step.added);
+      result.viscous = step.viscous;
+      for (unsigned int k = 1; k <= n_same; ++k)
+        std::copy_n(&now_[at], n, &now_[at + k * n]);
+    }
+    strain = C;
+    return material.state(C, &now_[at], result.S, result.energy);
+  }
+
+  template <int dim>
+  bool CellHistories<dim>::beside(const std::size_t cell, const unsigned int q,
+                                  const Voigt<dim> &C, Voigt<dim> &S) const
+  {
+    const HistoryMaterial<dim> &material = *of(cell);
+    const std::size_t at = place(cell, q);
+    typename HistoryMaterial<dim>::Way way;
+    way.C0 = strains_[first_point_[cell] + q];
+    way.C1 = C;
+    way.history = &now_[at];
+    way.time_step = time_step_;
+    typename HistoryMaterial<dim>::Step step;
+    std::vector<double> history(material.n_history());
+    double energy = 0.;
+    return material.step(way, false, step, history.data()) &&
+           material.state(C, history.data(), S, energy);
+  }
+
+  template class CellHistories<2>;
+  template class CellHistories<3>;
+} // namespace nsfd

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "discretization/discretization.h"
+#include "nsfd/materials/history_material.h"
+
+#include <memory>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * What the points of cells keep whose materials have a history, at the
+   * places of the last forces and a step before. The stress of a place is that
+   * of its strain and of what is kept there, so that forces at the same place
+   * are the same.
+   */
+  template <int dim>
+  class CellHistories
+  {
+  public:
+    explicit CellHistories(const Discretization<dim> &discretization);
+    ~CellHistories();
+
+    bool any() const { return first_.back() > 0; }
+    /** Null: its material has none. */
+    const HistoryMaterial<dim> *of(const std::size_t cell) const;
+
+    /** Cell by cell, point by point of the cell quadrature. */
+    const std::vector<double> &values() const { return now_; }
+    /** Of a scene that has never been strained. */
+    std::vector<double> at_rest() const;
+    void set(const std::vector<double> &values) { now_ = values; }
+
+    /** The next forces are those at the end of a step of this length; those
+        after them at the same place. */
+    void begin_step(double time_step);
+    /** They are set. */
+    void end_step() { moves_ = false; }
+    /** As it was before the step; forces at its start are to be set. */
+    void go_back();
+
+    struct Stress {
+      Voigt<dim> S;
+      double energy = 0.;                ///< J per volume
+      double plastic = 0., viscous = 0.; ///< of the step, never negative
+    };
+    /** Of point @p q at @p C. @p n_same points behind it keep the same. False
+        where there is no stress. */
+    bool set_point(std::size_t cell, unsigned int q, unsigned int n_same,
+                   const Voigt<dim> &C, Stress &result);
+    /** At a place with what point @p q keeps, which does not change. */
+    bool beside(std::size_t cell, unsigned int q, const Voigt<dim> &C,
+                Voigt<dim> &S) const;
+
+  private:
+    std::size_t place(std::size_t cell, unsigned int q) const;
+
+    const Discretization<dim> &discretization_;
+    std::vector<std::unique_ptr<const HistoryMaterial<dim>>> materials_;
+    std::vector<std::size_t> first_, first_point_; ///< by cell
+    std::vector<double> now_, before_;
+    std::vector<Voigt<dim>> strains_; ///< C of the last forces, by point
+    double time_step_ = 0.;
+    bool moves_ = false;
+  };
+} // namespace nsfd
