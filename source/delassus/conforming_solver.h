@@ -70,6 +70,8 @@ namespace nsfd
     void solve_columns(const double *B, double *X, std::size_t rows,
                        std::size_t n, double tolerance);
 
+    /** What was prepared last has a factor of the whole matrix. */
+    bool has_factor() const { return bool(factor_); }
     /** Of the factor, 0: there is none on this rank. */
     double n_factor_entries() const;
 

@@ -127,27 +127,34 @@ namespace nsfd
     width = std::size_t(communicator_.max(
         static_cast<double>(width))); // same stride everywhere
     const std::size_t row = width * dim, stride = dim * row;
+    const auto place = point_places(bodies_, points_.n_points);
+    const auto fill = [&](const auto &face, const unsigned int side,
+                          double *out) {
+      for (unsigned int p = 0; p < face.count; ++p) {
+        const PointPlace mine = place[side][face.first + p];
+        if (mine.body < 0)
+          continue;
+        const Block &W = blocks_[bodies_.class_of[mine.body]].delassus;
+        for (unsigned int q = 0; q < face.count; ++q) {
+          const PointPlace other = place[side][face.first + q];
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int d = 0; d < dim; ++d)
+              out[p * stride + c * row + q * dim + d] =
+                  W(mine.slot * dim + c, other.slot * dim + d);
+        }
+      }
+    };
+    // on one rank a face at a time: all of them take twice what is kept
+    const bool alone = communicator_.size() == 1;
     std::array<std::vector<double>, 2> sides;
     for (auto &side : sides)
-      side.assign(points_.n_points * stride, 0.);
-
-    const auto place = point_places(bodies_, points_.n_points);
-    for (const auto &face : points_.faces)
-      for (unsigned int side = 0; side < 2; ++side)
-        for (unsigned int p = 0; p < face.count; ++p) {
-          const PointPlace mine = place[side][face.first + p];
-          if (mine.body < 0)
-            continue;
-          const Block &W = blocks_[bodies_.class_of[mine.body]].delassus;
-          for (unsigned int q = 0; q < face.count; ++q) {
-            const PointPlace other = place[side][face.first + q];
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int d = 0; d < dim; ++d)
-                sides[side][(face.first + p) * stride + c * row + q * dim + d] =
-                    W(mine.slot * dim + c, other.slot * dim + d);
-          }
-        }
-    this->exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
+      side.assign((alone ? width : points_.n_points) * stride, 0.);
+    if (!alone) {
+      for (const auto &face : points_.faces)
+        for (unsigned int side = 0; side < 2; ++side)
+          fill(face, side, sides[side].data() + face.first * stride);
+      this->exchange({{sides[0].data(), sides[1].data()}}, unsigned(stride));
+    }
 
     face_offset_.assign(1, 0);
     for (const auto &face : points_.faces)
@@ -158,6 +165,11 @@ namespace nsfd
       const auto &face = points_.faces[f];
       const unsigned int n = face.count * dim;
       double *block = face_blocks_.data() + face_offset_[f];
+      for (unsigned int side = 0; side < 2 && alone; ++side) {
+        std::fill(sides[side].begin(), sides[side].end(), 0.);
+        fill(face, side, sides[side].data());
+      }
+      const std::size_t first = alone ? 0 : face.first;
       for (unsigned int p = 0; p < face.count; ++p)
         for (unsigned int q = 0; q < face.count; ++q) {
           const double *Qp = points_.axes(face.first + p);
@@ -168,7 +180,7 @@ namespace nsfd
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int d = 0; d < dim; ++d) {
                   const std::size_t k =
-                      (face.first + p) * stride + c * row + q * dim + d;
+                      (first + p) * stride + c * row + q * dim + d;
                   value += Qp[i * dim + c] * (sides[1][k] + sides[0][k]) *
                            Qq[j * dim + d];
                 }

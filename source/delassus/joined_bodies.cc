@@ -268,19 +268,19 @@ namespace nsfd
 
   /** From rows_ to columns_. */
   template <int dim>
-  bool JoinedBodies<dim>::solve(ConformingSolver &solver,
-                                const double tolerance) const
+  krylov::Outcome JoinedBodies<dim>::solve(ConformingSolver &solver,
+                                           const double tolerance) const
   {
     const bool rests = std::all_of(rows_.begin(), rows_.end(),
                                    [](const double r) { return r == 0.; });
     if (!this->communicator_.any(!rests)) {
       columns_.assign(rows_.size(), 0.);
-      return true;
+      return {0, true};
     }
     const auto outcome = solver.solve_own(rows_, columns_, tolerance);
     this->counters_.inner_iterations += outcome.iterations;
     ++this->counters_.global_solves;
-    return outcome.converged;
+    return outcome;
   }
 
   /** M_hat^{-1} of rows_; a step asks twice for that of its impulses. */
@@ -293,7 +293,7 @@ namespace nsfd
       return;
     }
     ++n_solves_;
-    if (!solve(factor_, tolerance) && iterates()) {
+    if (!solve(factor_, tolerance).converged && iterates()) {
       means_ = Means::factors_once;
       valid_ = false;
       return answer(tolerance);
@@ -364,7 +364,7 @@ namespace nsfd
                                   const double tolerance) const
   {
     matrix().impulse(impulse, rows_);
-    const bool solved = solve(solver, tolerance);
+    const bool solved = solve(solver, tolerance).converged;
     matrix().velocity(columns_, velocity);
     return solved;
   }
@@ -439,6 +439,9 @@ namespace nsfd
     std::size_t n_solves = n_solves_;
     archive.numbers("bodies", factored, condensed, general, means, n_solves);
     archive.points("tangents", tangent_.springs());
+    auto wear = tangent_.wear();
+    if (tangent_.has_cycles())
+      archive.numbers("cycles", wear.least, wear.excess);
     if (!archive.reads())
       return;
     valid_ = false;
@@ -452,6 +455,7 @@ namespace nsfd
     }
     if (!tangent_.springs().empty())
       factor_tangent(std::vector<double>(tangent_.springs()), general);
+    tangent_.wear() = wear;
     n_solves_ = n_solves;
   }
 

@@ -71,7 +71,8 @@ namespace nsfd
     bool factor_tangent(const std::vector<double> &springs, bool general);
     bool solve_tangent(const std::vector<double> &T, bool symmetric,
                        double tolerance);
-    bool solve(ConformingSolver &solver, double tolerance = tight) const;
+    krylov::Outcome solve(ConformingSolver &solver,
+                          double tolerance = tight) const;
     void answer(double tolerance = tight) const;
     void update() const;
 

@@ -17,6 +17,10 @@ namespace nsfd
     if (iterates())
       return tangent_.precondition(matrix(), springs, general);
     ++this->counters_.global_factorisations;
+    if (tangent_.has_cycles()) {
+      matrix().set_step(this->shares(this->time_step_, this->theta_));
+      return tangent_.precondition_by_cycles(matrix(), springs);
+    }
     return tangent_.factor(assemble(springs), springs);
   }
 
@@ -38,6 +42,7 @@ namespace nsfd
          k += dim * dim)
       take_positive_part<dim>(&springs[k]);
     using Fit = typename TangentFactor<dim>::Fit;
+    const bool cycles = !iterates && tangent_.has_cycles();
     const auto solved = [&](const bool exact) {
       const Charge charge(Cost::precondition);
       if (exact)
@@ -47,8 +52,23 @@ namespace nsfd
             [this, &T](const std::vector<double> &x, std::vector<double> &y) {
               matrix().apply_step(T.data(), x, y);
             });
-      return solve(tangent_.solver(), tolerance);
+      const auto outcome = solve(tangent_.solver(), tolerance);
+      if (cycles && exact && outcome.converged)
+        tangent_.note(outcome.iterations, tolerance);
+      return outcome.converged;
     };
+    if (cycles) {
+      matrix().set_step(this->shares(this->time_step_, this->theta_));
+      const bool old = tangent_.adjust_cycles(matrix(), springs);
+      // conjugate gradients end where tangents soften too much, minimal
+      // residuals need not; no other hierarchy does more there
+      const auto either = [&] {
+        return (symmetric && solved(true)) || solved(false);
+      };
+      return ((old || factor_tangent(springs, false)) && either()) ||
+             (old && tangent_.is_worn() && factor_tangent(springs, false) &&
+              either());
+    }
     // a point that changes costs about an iteration, a factor some five of
     // them, blocks on the diagonal some two or, vertex by vertex, none
     Fit fit = tangent_.fit(springs, !iterates             ? 5

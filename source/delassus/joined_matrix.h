@@ -15,6 +15,10 @@ namespace nsfd
 {
   template <int dim>
   class NodeJacobi;
+  template <int dim>
+  class PointNodes;
+  template <int dim>
+  class TangentMultigrid;
 
   /**
    * The rows of this rank of
@@ -70,8 +74,14 @@ namespace nsfd
      */
     void velocity(const std::vector<double> &x, double *U) const;
 
+    /** The blocks of M_hat + H^T T H at own nodes on its diagonal, row by row;
+        @p springs may be null. Collective. */
+    std::vector<double> diagonal_blocks(const double *springs = nullptr) const;
+
   private:
     friend class NodeJacobi<dim>;
+    friend class PointNodes<dim>;
+    friend class TangentMultigrid<dim>;
     /** Consecutive unknowns of the space that are coupled alike. */
     using Block = int;
     /** What a block of unknowns contributes to the jump at a point. */

@@ -147,6 +147,58 @@ namespace nsfd
     return_ghosts(y);
   }
 
+  template <int dim>
+  std::vector<double>
+  JoinedMatrix<dim>::diagonal_blocks(const double *springs) const
+  {
+    const std::size_t entries = size_ * size_, n_own = std::size_t(n_own_);
+    std::vector<double> all((n_own + ghosts_.size()) * entries, 0.);
+    if (by_bodies_.is_used())
+      for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const nsfd::Block &from = by_bodies_.step(bodies_.class_of[b]);
+        const std::size_t first = bodies_.first_dof[b],
+                          n = bodies_.first_dof[b + 1] - first;
+        for (unsigned int i = 0; i < n; i += size_)
+          for (unsigned int k = 0; k < size_; ++k)
+            for (unsigned int l = 0; l < size_; ++l)
+              all[std::size_t(block_.own[first + i]) * entries + k * size_ +
+                  l] += from(i + k, i + l);
+      }
+    else
+      for (std::size_t r = 0; r < n_own + ghosts_.size(); ++r) {
+        if (pattern_.first[r] == pattern_.first[r + 1])
+          continue; // a node of another rank that no body here has
+        const std::size_t first = place(int(r), int(r));
+        for (unsigned int k = 0; k < size_; ++k)
+          for (unsigned int l = 0; l < size_; ++l)
+            all[r * entries + k * size_ + l] =
+                operators_.step[first + k * width(int(r)) + l];
+      }
+    if (springs)
+      sights_.for_springs(
+          springs, size_,
+          [&](const Entry &row, const Entry &column, const double *product) {
+            if (row.block != column.block)
+              return;
+            double *out = &all[std::size_t(row.block) * entries];
+            for (unsigned int d = 0; d < dim; ++d)
+              for (unsigned int k = 0; k < size_; ++k)
+                for (unsigned int l = 0; l < size_; ++l)
+                  out[k * size_ + l] +=
+                      row.own[d * size_ + k] * product[d * size_ + l];
+          });
+    std::vector<double> own;
+    std::vector<double> blocks(n_own * entries);
+    for (unsigned int l = 0; l < size_; ++l) {
+      for (std::size_t k = 0; k < shared_.values.size(); ++k)
+        shared_.values[k] = all[k * size_ + l];
+      return_ghosts(own);
+      for (std::size_t k = 0; k < own.size(); ++k)
+        blocks[k * size_ + l] = own[k];
+    }
+    return blocks;
+  }
+
 #define INSTANTIATE(dim)                                                       \
   template void JoinedMatrix<dim>::impulse(const double *,                     \
                                            std::vector<double> &) const;       \
@@ -154,6 +206,8 @@ namespace nsfd
                                             double *) const;                   \
   template void JoinedMatrix<dim>::apply(                                      \
       Operator, const std::vector<double> &, std::vector<double> &) const;     \
+  template std::vector<double> JoinedMatrix<dim>::diagonal_blocks(             \
+      const double *) const;                                                   \
   template void JoinedMatrix<dim>::apply_step(const double *,                  \
                                               const std::vector<double> &,     \
                                               std::vector<double> &) const

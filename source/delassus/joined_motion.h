@@ -15,11 +15,19 @@ namespace nsfd
                const std::vector<double> &impulse,
                const std::vector<double> &start) override;
     bool is_on() const override { return is_on_; }
+    bool saves_by_rough_solutions() const override
+    {
+      return bodies_.tangent_.has_cycles();
+    }
     void cancel() override { is_on_ = false; }
     void balance(const std::vector<double> &P, double tolerance) override;
     bool solve(const std::vector<double> &T, bool symmetric,
                const std::vector<double> &c, const Accuracy &accuracy,
                std::vector<double> &dP, std::vector<double> &dU) override;
+    const std::vector<double> &factored() const override
+    {
+      return bodies_.tangent_.factored();
+    }
     void move(double length, const std::vector<double> &P,
               std::vector<double> &U) override;
     const std::vector<double> &motion() const override { return w_; }

@@ -1,5 +1,7 @@
 #include "node_jacobi.h"
 
+#include "point_nodes.h"
+
 #include "linear_algebra/dense_lu.h"
 #include "linear_algebra/small_inverse.h"
 #include "linear_algebra/sparse_rows.h"
@@ -8,42 +10,11 @@
 
 namespace nsfd
 {
-  /** Blocks of M_hat of own nodes. Collective. */
   template <int dim>
   void NodeJacobi<dim>::set_diagonal(const JoinedMatrix<dim> &matrix)
   {
-    const std::size_t width = size_ * size_, n_own = std::size_t(matrix.n_own_);
-    std::vector<double> all((n_own + matrix.ghosts_.size()) * width, 0.);
-    if (matrix.by_bodies_.is_used())
-      for (std::size_t b = 0; b < matrix.bodies_.size(); ++b) {
-        const Block &from = matrix.by_bodies_.step(matrix.bodies_.class_of[b]);
-        const std::size_t first = matrix.bodies_.first_dof[b],
-                          n = matrix.bodies_.first_dof[b + 1] - first;
-        for (unsigned int i = 0; i < n; i += size_)
-          for (unsigned int k = 0; k < size_; ++k)
-            for (unsigned int l = 0; l < size_; ++l)
-              all[std::size_t(matrix.block_.own[first + i]) * width +
-                  k * size_ + l] += from(i + k, i + l);
-      }
-    else
-      for (std::size_t r = 0; r < n_own + matrix.ghosts_.size(); ++r) {
-        if (matrix.pattern_.first[r] == matrix.pattern_.first[r + 1])
-          continue; // a node of another rank that no body here has
-        const std::size_t first = matrix.place(int(r), int(r));
-        for (unsigned int k = 0; k < size_; ++k)
-          for (unsigned int l = 0; l < size_; ++l)
-            all[r * width + k * size_ + l] =
-                matrix.operators_.step[first + k * matrix.width(int(r)) + l];
-      }
-    std::vector<double> own;
-    diagonal_.resize(n_own * width);
-    for (unsigned int l = 0; l < size_; ++l) {
-      for (std::size_t k = 0; k < matrix.shared_.values.size(); ++k)
-        matrix.shared_.values[k] = all[k * size_ + l];
-      matrix.return_ghosts(own);
-      for (std::size_t k = 0; k < own.size(); ++k)
-        diagonal_[k * size_ + l] = own[k];
-    }
+    const std::size_t width = size_ * size_;
+    diagonal_ = matrix.diagonal_blocks();
     inverse_ = diagonal_;
     for (std::size_t first = 0; first < inverse_.size(); first += width)
       invert_in_place<dim>(&inverse_[first], size_, size_, 0.,
@@ -147,70 +118,6 @@ namespace nsfd
     return positive;
   }
 
-  /**
-   * Nodes at points with @p springs, numbered by themselves in @p space: the
-   * place of their first unknown in it, -1 for others, by own node. rows_ is B
-   * of these nodes. Collective.
-   */
-  template <int dim>
-  std::vector<long long>
-  NodeJacobi<dim>::number_stiffened(const JoinedMatrix<dim> &matrix,
-                                    const double *springs, CoarseSpace &space)
-  {
-    const auto &communicator = matrix.delassus_.communicator();
-    auto &at_nodes = matrix.shared_.values;
-    std::fill(at_nodes.begin(), at_nodes.end(), 0.);
-    matrix.sights_.for_springs(
-        springs, size_, [&](const auto &row, const auto &, const double *) {
-          at_nodes[std::size_t(row.block) * size_] = 1.;
-        });
-    std::vector<double> own;
-    matrix.return_ghosts(own);
-
-    space = CoarseSpace();
-    space.per_node = size_;
-    std::vector<long long> place(std::size_t(matrix.n_own_), -1);
-    for (std::size_t r = 0; r < place.size(); ++r)
-      if (own[r * size_] > 0.) {
-        place[r] = space.n_own;
-        space.n_own += size_;
-      }
-    MPI_Scan(&space.n_own, &space.first, 1, MPI_LONG_LONG, MPI_SUM,
-             communicator.mpi());
-    space.first -= space.n_own;
-    space.n_global =
-        static_cast<long long>(communicator.sum_integer(space.n_own));
-    if (space.n_global == 0)
-      return place;
-    // numbers are exact in a double
-    for (std::size_t r = 0; r < place.size(); ++r)
-      own[r * size_] = double(space.first + place[r]);
-    matrix.fetch_ghosts(own);
-    const auto number = [&](const int block, const unsigned int c) {
-      return static_cast<long long>(at_nodes[std::size_t(block) * size_]) + c;
-    };
-    std::vector<SparseEntry> entries;
-    for (std::size_t r = 0; r < place.size(); ++r)
-      for (unsigned int k = 0; place[r] >= 0 && k < size_; ++k)
-        for (unsigned int l = 0; l < size_; ++l)
-          entries.push_back({number(int(r), k), number(int(r), l),
-                             diagonal_[(r * size_ + k) * size_ + l]});
-    matrix.sights_.for_springs(
-        springs, size_,
-        [&](const auto &row, const auto &column, const double *product) {
-          for (unsigned int k = 0; k < size_; ++k)
-            for (unsigned int l = 0; l < size_; ++l) {
-              double value = 0.;
-              for (unsigned int d = 0; d < dim; ++d)
-                value += row.own[d * size_ + k] * product[d * size_ + l];
-              entries.push_back(
-                  {number(row.block, k), number(column.block, l), value});
-            }
-        });
-    rows_ = sum_at_owners(communicator, space, std::move(entries));
-    return place;
-  }
-
   template <int dim>
   bool NodeJacobi<dim>::prepare(const JoinedMatrix<dim> &matrix,
                                 const double *springs, const bool general)
@@ -262,16 +169,14 @@ namespace nsfd
           others[(i * dim + c) * dim + d] =
               springs[general ? (i * dim + d) * dim + c
                               : (i * dim + c) * dim + d];
-    CoarseSpace space;
-    const auto place = number_stiffened(matrix, others.data(), space);
-    for (std::size_t r = 0; r < place.size(); ++r)
-      if (place[r] >= 0)
-        for (unsigned int c = 0; c < size_; ++c)
-          stiffened_.push_back(r * size_ + c);
+    PointNodes<dim> nodes;
+    nodes.number(matrix, others);
+    stiffened_ = nodes.unknowns();
     b_.resize(stiffened_.size());
     x_.resize(stiffened_.size());
-    if (space.n_global == 0)
+    if (nodes.none())
       return true;
+    rows_ = nodes.rows(matrix, diagonal_, others);
     if (general) {
       general_ = std::make_unique<SparseLU>();
       return general_->factorise(rows_, true);

@@ -49,9 +49,6 @@ namespace nsfd
   private:
     void set_diagonal(const JoinedMatrix<dim> &matrix);
     NodeClusters clusters_of(const JoinedMatrix<dim> &matrix);
-    std::vector<long long> number_stiffened(const JoinedMatrix<dim> &matrix,
-                                            const double *springs,
-                                            CoarseSpace &space);
     bool invert_clusters(const JoinedMatrix<dim> &matrix,
                          const std::vector<double> &springs, bool general);
     bool factorise(const JoinedMatrix<dim> &matrix,

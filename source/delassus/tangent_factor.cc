@@ -1,5 +1,7 @@
 #include "tangent_factor.h"
 
+#include "core/cost.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,7 @@ namespace nsfd
   template <int dim>
   void TangentFactor<dim>::set_space(const CoarseSpace &space)
   {
+    space_ = &space;
     solver_.set_space(space);
     clear();
   }
@@ -77,6 +80,58 @@ namespace nsfd
           jacobi_.apply(r, z);
         });
     return true;
+  }
+
+  template <int dim>
+  bool
+  TangentFactor<dim>::precondition_by_cycles(JoinedMatrix<dim> &matrix,
+                                             const std::vector<double> &springs)
+  {
+    clear();
+    if (!cycles_.prepare(matrix, springs))
+      return false;
+    springs_ = springs;
+    present_ = springs;
+    wear_ = Wear();
+    solver_.iterate_with(
+        [this](const std::vector<double> &x, std::vector<double> &y) {
+          cycles_.multiply(x, y);
+        },
+        [this](const std::vector<double> &r, std::vector<double> &z) {
+          cycles_.apply(r, z);
+        });
+    return true;
+  }
+
+  template <int dim>
+  bool TangentFactor<dim>::adjust_cycles(const JoinedMatrix<dim> &matrix,
+                                         const std::vector<double> &springs)
+  {
+    const bool fits = springs.size() == springs_.size() && wear_.excess < worth;
+    if (communicator_.any(!fits))
+      return false;
+    if (!communicator_.any(springs != present_))
+      return true;
+    present_ = springs;
+    const Charge charge(Cost::preconditioner);
+    return cycles_.adjust(matrix, springs);
+  }
+
+  template <int dim>
+  void TangentFactor<dim>::note(const unsigned int iterations,
+                                const double tolerance)
+  {
+    const double digits = std::max(1., -std::log10(tolerance));
+    const double rate = iterations / digits;
+    wear_.least = wear_.least > 0. ? std::min(wear_.least, rate) : rate;
+    wear_.excess += iterations - wear_.least * digits;
+  }
+
+  template <int dim>
+  const std::vector<double> &TangentFactor<dim>::factored() const
+  {
+    static const std::vector<double> none;
+    return solver_.has_factor() ? springs_ : none;
   }
 
   template class TangentFactor<2>;

@@ -3,13 +3,15 @@
 #include "conforming_solver.h"
 #include "delassus_operator.h"
 #include "node_jacobi.h"
+#include "tangent_multigrid.h"
 
 namespace nsfd
 {
   /**
    * Solves with M_hat + H^T T H of bodies that share nodes, T a block of
    * dim x dim per point. Where few points have changed since it was made, an
-   * old factor preconditions the present matrix.
+   * old factor preconditions the present matrix; beyond the unknowns of a
+   * factor, a hierarchy for as long as it does its work.
    */
   template <int dim>
   class TangentFactor
@@ -18,7 +20,9 @@ namespace nsfd
     TangentFactor(const DelassusOperator<dim> &delassus,
                   const Communicator &communicator, long long largest_factor)
         : delassus_(delassus), communicator_(communicator),
-          solver_(communicator, largest_factor), jacobi_(communicator)
+          largest_factor_(largest_factor),
+          solver_(communicator, largest_factor), jacobi_(communicator),
+          cycles_(communicator)
     {
     }
 
@@ -47,6 +51,30 @@ namespace nsfd
     bool precondition(const JoinedMatrix<dim> &matrix,
                       const std::vector<double> &springs, bool general);
 
+    /** Multigrid takes the place of factors. */
+    bool has_cycles() const
+    {
+      return space_->n_global > largest_factor_ && space_->ties.empty();
+    }
+    /** Conjugate gradients with a new hierarchy from now on; @p springs, T,
+        symmetric. False as factor(). Collective. */
+    bool precondition_by_cycles(JoinedMatrix<dim> &matrix,
+                                const std::vector<double> &springs);
+    /** The same with the hierarchy that there is: false where there is none,
+        or it has worn out. Collective. */
+    bool adjust_cycles(const JoinedMatrix<dim> &matrix,
+                       const std::vector<double> &springs);
+    /** Iterations with the present hierarchy. */
+    struct Wear {
+      double least = 0.;  ///< per digit, or 0: there are none
+      double excess = 0.; ///< what all have taken beyond that
+    };
+    Wear &wear() { return wear_; }
+    /** A new one would do more. */
+    bool is_worn() const { return wear_.excess > worth / 4.; }
+    /** What conjugate gradients by cycles have taken to @p tolerance. */
+    void note(unsigned int iterations, double tolerance);
+
     /** Iterations are on the matrix of these springs, symmetric ones, with the
         preconditioner that there is. */
     void iterate_on(const std::vector<double> &springs) { present_ = springs; }
@@ -54,16 +82,25 @@ namespace nsfd
     ConformingSolver &solver() { return solver_; }
     /** Those that were factored; empty: none. */
     std::vector<double> &springs() { return springs_; }
+    /** The same of a factor of the whole matrix, else empty. */
+    const std::vector<double> &factored() const;
     /** The preconditioner is made anew at little cost. */
     bool is_cheap() const { return jacobi_.is_by_vertex(); }
     /** These need not be symmetric, and the preconditioner is not. */
     bool is_general() const { return is_general_; }
 
   private:
+    /// iterations that a hierarchy costs
+    static constexpr double worth = 50.;
+
     const DelassusOperator<dim> &delassus_;
     const Communicator &communicator_;
+    const long long largest_factor_;
+    const CoarseSpace *space_ = nullptr;
     ConformingSolver solver_;
     NodeJacobi<dim> jacobi_;
+    TangentMultigrid<dim> cycles_;
+    Wear wear_;
     std::vector<double> springs_, present_;
     bool is_general_ = false;
   };

@@ -42,6 +42,8 @@ namespace nsfd
                        const std::vector<double> &impulse,
                        const std::vector<double> &start) = 0;
     virtual bool is_on() const = 0;
+    /** Solutions that need not be exact are cheaper, as iterations are. */
+    virtual bool saves_by_rough_solutions() const = 0;
     virtual void cancel() = 0;
     /**
      * w without any compliance of points, M_hat w = p + H^T P, to @p tolerance
@@ -61,6 +63,8 @@ namespace nsfd
     virtual bool solve(const std::vector<double> &T, bool symmetric,
                        const std::vector<double> &c, const Accuracy &accuracy,
                        std::vector<double> &dP, std::vector<double> &dU) = 0;
+    /** The tangents T that there is a factor for, or empty. */
+    virtual const std::vector<double> &factored() const = 0;
     /** w += @p length dw, of the last Newton step, under @p P from now on; U.
         Collective. */
     virtual void move(double length, const std::vector<double> &P,

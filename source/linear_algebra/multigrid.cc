@@ -28,7 +28,8 @@ namespace nsfd
 
   void Multigrid::prepare(const SparseRows &matrix,
                           const std::vector<std::vector<double>> &modes,
-                          const unsigned int equations_per_node)
+                          const unsigned int equations_per_node,
+                          const Finest finest)
   {
     library_ = std::make_unique<Library>();
     auto &lib = *library_;
@@ -63,6 +64,8 @@ namespace nsfd
     list.set("aggregation: threshold", 0.);
     list.set("smoother: type", "Chebyshev");
     list.set("smoother: sweeps", 2);
+    if (finest == Finest::left)
+      list.set("smoother: type (level 0)", "do-nothing");
     list.set("smoother: pre or post", "both");
     list.set("coarse: type", "Amesos-KLU");
     list.set("coarse: max size", 1000);

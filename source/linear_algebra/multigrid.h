@@ -13,10 +13,15 @@ namespace nsfd
     explicit Multigrid(const Communicator &communicator);
     ~Multigrid();
 
+    /// who smooths on the finest level: without, a cycle is the correction of
+    /// the coarser ones alone
+    enum class Finest { smoothed, left };
+
     /** @p modes: the near null space, one value per own row each. */
     void prepare(const SparseRows &matrix,
                  const std::vector<std::vector<double>> &modes,
-                 unsigned int equations_per_node);
+                 unsigned int equations_per_node,
+                 Finest finest = Finest::smoothed);
     void apply(const double *b, double *x);
 
   private:

@@ -142,7 +142,7 @@ namespace nsfd
         given.share = share(watch.given[k]);
         given.bound = energy_round_off;
         if (line == WatchedLine::joints || line == WatchedLine::supports)
-          given.bound += share(watch.noise);
+          given.bound += share(watch.of_rows);
         if (line == WatchedLine::scheme)
           // that of the leapfrog only gives where its steps change their length
           given.bound = never_gives(line, input) || input.time.scheme.at_nodes

@@ -181,6 +181,7 @@ namespace nsfd
     report.beyond_unique = communicator.any(points.beyond_unique);
 
     report.changes.impulses = sums[Points::impulses];
+    report.changes.impulses_of_rows = sums[Points::of_rows];
     const auto set = [&](const WatchedLine line, const double taken,
                          const std::size_t worst) {
       report.changes.taken[std::size_t(line)] = taken;

@@ -97,6 +97,7 @@ namespace nsfd
   void EnergyWatch::add(const LineChanges &step)
   {
     noise += step.noise;
+    of_rows += step.of_rows;
     scale = std::max(scale, step.scale);
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
@@ -114,14 +115,14 @@ namespace nsfd
   {
     std::vector<double> sums(fallen.begin(), fallen.end());
     sums.insert(sums.end(), given.begin(), given.end());
-    sums.push_back(noise);
-    sums.push_back(scale);
+    sums.insert(sums.end(), {noise, of_rows, scale});
     archive.common("energy_watch", sums);
-    if (sums.size() != 2 * n_watched_lines + 2)
+    if (sums.size() != 2 * n_watched_lines + 3)
       throw BadCheckpoint("energy_watch has another number of values");
     std::copy_n(sums.begin(), n_watched_lines, fallen.begin());
     std::copy_n(sums.begin() + n_watched_lines, n_watched_lines, given.begin());
     noise = sums[2 * n_watched_lines];
+    of_rows = sums[2 * n_watched_lines + 1];
     scale = sums.back();
   }
 } // namespace nsfd

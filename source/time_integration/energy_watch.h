@@ -50,7 +50,11 @@ namespace nsfd
     std::array<double, n_watched_lines> taken{};
     std::array<std::size_t, n_watched_lines> worst{};
     double impulses = 0.; ///< sum R P^2 over the points, see LawEvaluation, J
-    double noise = 0.;    ///< what the residual of the solver leaves open, J
+    double impulses_of_rows = 0.; ///< where velocities are prescribed
+    double noise = 0.; ///< what the residual of the solver leaves open, J
+    /// the same of rows with a prescribed velocity, whose impulses work with
+    /// what is left of it
+    double of_rows = 0.;
     double scale = 0.; ///< the largest energy so far, or what the loads would
                        ///< give in this step without impulses, J
   };
@@ -65,8 +69,8 @@ namespace nsfd
    */
   struct EnergyWatch {
     std::array<double, n_watched_lines> fallen{}, given{};
-    double noise = 0.; ///< sum over the steps
-    double scale = 0.; ///< the largest one
+    double noise = 0., of_rows = 0.; ///< sums over the steps
+    double scale = 0.;               ///< the largest one
 
     void add(const LineChanges &step);
     void serialize(Archive &archive);

@@ -76,9 +76,12 @@ namespace nsfd
     Vector U, U_theta;
     for (unsigned int c = 0; c < dim; ++c) {
       const double P = next_.impulse[i * dim + c];
-      put(impulses, (c == 0 ? problem_.majorant_normal
-                            : problem_.majorant_tangential)[i] *
-                        P * P);
+      const double square = (c == 0 ? problem_.majorant_normal
+                                    : problem_.majorant_tangential)[i] *
+                            P * P;
+      put(impulses, square);
+      if (problem_.kind[i] == PointKind::prescribed)
+        put(of_rows, square);
       U[c] = next_.relative_velocity[i * dim + c];
       U_theta[c] = work_theta_ * U[c] +
                    (1. - work_theta_) * old_.relative_velocity[i * dim + c];

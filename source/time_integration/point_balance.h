@@ -40,6 +40,7 @@ namespace nsfd
       joint,    ///< work of rows of joints, a part of impact or numerical
       support,  ///< of supports beyond their prescribed velocity, of the work
       impulses, ///< sum R P^2, R the majorants: what the residual relates to
+      of_rows,  ///< the same where velocities are prescribed
       viscous   ///< only where a point of the scene has_rates()
     };
 

@@ -60,6 +60,12 @@ namespace nsfd
     changes.noise = report.solver.residual *
                     std::max(step.energy_scale,
                              std::sqrt(step.energy_scale * changes.impulses));
+    // |P|_R of these rows times |U - given|_(1/R), which is |P - P*|_R there
+    changes.of_rows =
+        std::max(changes.noise,
+                 report.solver.residual *
+                     std::sqrt(changes.impulses_of_rows *
+                               std::max(changes.impulses, step.energy_scale)));
     const double bound = energy_round_off * changes.scale + changes.noise +
                          // no line is known better than the balance closes
                          10. * report.balance_residual * next.largest_energy;

@@ -287,6 +287,11 @@ end
       };
       check(break_bar<2>(breaking_bar<2>(2500.)), 4e-3);
       check(break_bar<3>(breaking_bar<3>(2500.)), 16e-6);
+      // points of a plane as stiff as any, soft ones and none, by multigrid
+      const std::string cycles =
+          "subsection Solver\n  set linear solver = cg\nend\n";
+      check(break_bar<2>(breaking_bar<2>(2500.) + cycles), 4e-3);
+      check(break_bar<3>(breaking_bar<3>(2500.) + cycles), 16e-6);
     }
 
     // R^2 L / (2 E G) = 5: at the strength the bar stores 5 G, takes one, and

@@ -32,19 +32,26 @@ namespace nsfd
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
-    /// of the momenta, what a step may lose of them
-    constexpr double lost = 1e-15;
-    /// of the tolerance, what the momenta of the nodes may lack
-    constexpr double of_momenta = 1e-2;
+    /// of the momenta, what a step may lose of them; of the tolerance, what
+    /// those of the nodes may lack
+    constexpr double lost = 1e-15, of_momenta = 1e-2, of_equilibria = 0.1;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
   } // namespace
 
+  /** A step from rest does not ask for all digits of each solution. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::may_be_rough(const Work &work) const
+  {
+    return from_rest_ && work.motion.saves_by_rough_solutions();
+  }
+
   /** See NodeMotion::solve(). */
   template <int dim>
-  double AugmentedLagrangian<dim>::enough(const Work &work)
+  double AugmentedLagrangian<dim>::enough(const Work &work) const
   {
-    return of_momenta * work.tolerance;
+    // momenta of equilibria do not add up over steps
+    return (may_be_rough(work) ? of_equilibria : of_momenta) * work.tolerance;
   }
 
   template <int dim>
@@ -116,7 +123,7 @@ namespace nsfd
 
   /** |P - S|_R, and |P - P_0|_R, over |P|_R. */
   template <int dim>
-  auto AugmentedLagrangian<dim>::errors(const Work &work) const -> Errors
+  auto AugmentedLagrangian<dim>::errors(const Work &work) -> Errors
   {
     const std::size_t n = owned_acting(work.problem);
     Vector terms(3 * n, 0.);
@@ -132,9 +139,9 @@ namespace nsfd
         terms[2 * n + a] += R * shift * shift;
       }
     const auto sums = work.delassus.communicator().sums(terms.data(), 3, n);
-    const double scale = std::sqrt(sums[0]) + work.evaluation.floor();
-    return {relative_natural_map(std::sqrt(sums[1]), scale),
-            relative_natural_map(std::sqrt(sums[2]), scale)};
+    scale_ = std::sqrt(sums[0]) + work.evaluation.floor();
+    return {relative_natural_map(std::sqrt(sums[1]), scale_),
+            relative_natural_map(std::sqrt(sums[2]), scale_)};
   }
 
   /** T of all points; false if it is not symmetric. Collective. */
@@ -246,6 +253,39 @@ namespace nsfd
     }
   }
 
+  /** What a point carries and how it moves is lost in the error of a step. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::rests(const Work &work,
+                                       const std::size_t i) const
+  {
+    double moves = 0., carries = 0.;
+    for (std::size_t k = i * dim; k < (i + 1) * dim; ++k) {
+      const double R = work.evaluation.majorant(i, unsigned(k - i * dim));
+      moves += velocity_[k] * velocity_[k] / R;
+      carries +=
+          R * std::max(impulse_[k] * impulse_[k], defect_[k] * defect_[k]);
+    }
+    const double lost = 0.1 * work.tolerance * scale_;
+    return std::max(moves, carries) <= lost * lost;
+  }
+
+  /** Points at rest that carry nothing are open or closed by the last digits:
+      they stay as they are in the factor. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::keep_tangents_at_rest(const Work &work)
+  {
+    const Vector &factored = work.motion.factored();
+    if (from_rest_ || factored.size() != tangents_.size())
+      return;
+    for (const std::size_t i : work.problem.acting)
+      if (rests(work, i)) {
+        std::copy_n(factored.begin() + long(i * dim * dim), dim * dim,
+                    tangents_.begin() + long(i * dim * dim));
+        std::copy_n(defect_.begin() + long(i * dim), dim,
+                    right_side_.begin() + long(i * dim));
+      }
+  }
+
   /**
    * Full steps of Newton's method for the natural map, from which the method of
    * multipliers takes over where they lead nowhere: true if they have solved
@@ -270,17 +310,18 @@ namespace nsfd
         polished = true;
         continue;
       }
-      // a step from rest balances from its first iteration on
-      const bool balances = from_rest_ ? work.report.newton > 0
-                                       : work.motion.balances(enough(work));
-      const double error = balances || from_rest_
+      // a step from rest balances from its first iteration on, if that is exact
+      const bool exact = from_rest_ && !may_be_rough(work);
+      const bool balances =
+          exact ? work.report.newton > 0 : work.motion.balances(enough(work));
+      const double error = balances || exact
                                ? defect
                                : std::max(defect, work.motion.imbalance());
       if (balances &&
           error <= (work.report.newton == 0 ? untouched : 1.) * work.tolerance)
         return true;
       idle = error < 0.5 * least ? 0 : idle + 1;
-      if (error < least && (balances || !from_rest_)) {
+      if (error < least && (balances || !exact)) {
         least = error;
         best = iterate(work);
       }
@@ -295,9 +336,10 @@ namespace nsfd
       remove_springs(work);
       if (symmetric)
         symmetrise(work, false);
+      keep_tangents_at_rest(work);
       // as far as a step of Newton's method is right; the next one makes good
       // what is left
-      const double share = from_rest_ ? 0. : std::min(1e-2, 0.1 * defect);
+      const double share = exact ? 0. : std::min(1e-2, 0.1 * defect);
       if (!solve_system(work, symmetric, enough(work), share))
         break;
       for (std::size_t k = 0; k < impulse_.size(); ++k)

@@ -58,18 +58,21 @@ namespace nsfd
       double defect, shift;
     };
 
-    static double enough(const Work &work);
+    bool may_be_rough(const Work &work) const;
+    double enough(const Work &work) const;
     void begin(const Work &work, const Vector &impulse);
     void polish(const Work &work);
     Iterate iterate(const Work &work) const;
     void return_to(const Work &work, const Iterate &iterate);
     void soften(const Work &work, double share);
     void answer(const Work &work, const Vector &U);
-    Errors errors(const Work &work) const;
+    Errors errors(const Work &work);
     bool differentiate(const Work &work);
     void symmetrise(const Work &work, bool convex);
     double slope(const Work &work, double length) const;
     void set_right_side(const Work &work);
+    bool rests(const Work &work, std::size_t i) const;
+    void keep_tangents_at_rest(const Work &work);
     void remove_springs(const Work &work);
     bool jump(const Work &work);
     bool solve_system(const Work &work, bool symmetric, double tolerance,
@@ -81,6 +84,7 @@ namespace nsfd
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
     bool from_rest_ = false;           ///< a round of statics
+    double scale_ = 0.;                ///< of errors, with the last impulses
     std::vector<LocalSolution<dim>> solutions_;
     Vector tangents_; ///< T, dim x dim per point
     Vector right_side_, defect_, dP_, dU_;
