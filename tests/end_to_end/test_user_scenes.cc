@@ -46,8 +46,9 @@ namespace end_to_end::test_user_scenes
     for (const char *const line :
          {"balance residual", "given by friction", "given by impact",
           "given by time scheme", "given by large motion", "penetration"})
-      if (lines.contains(line))
+      if (lines.contains(line)) {
         EXPECT_EQ(lines.at(line).at("verdict").get<std::string>(), "ok")
             << line;
+      }
   }
 } // namespace end_to_end::test_user_scenes
