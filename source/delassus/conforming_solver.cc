@@ -53,15 +53,10 @@ namespace nsfd
     private:
       double of_rank(const Vector &a, const Vector &b) const
       {
-        // four at a time: one sum alone waits for its last addition
-        double sums[4] = {};
-        const std::size_t whole = n_ / 4 * 4;
-        for (std::size_t i = 0; i < whole; i += 4)
-          for (std::size_t k = 0; k < 4; ++k)
-            sums[k] += a[i + k] * b[i + k];
-        for (std::size_t i = whole; i < n_; ++i)
-          sums[0] += a[i] * b[i];
-        return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        double sum = 0.;
+        for (std::size_t i = 0; i < n_; ++i)
+          sum += a[i] * b[i];
+        return sum;
       }
 
       Vector add(Vector sums) const

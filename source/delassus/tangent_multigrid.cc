@@ -145,7 +145,7 @@ namespace nsfd
     const std::size_t n = inverse_.size() / matrix_->size_;
     change_.resize(n);
     product_.resize(n);
-    // high frequencies, alike on any ranks
+    // high frequencies
     for (std::size_t k = 0; k < n; ++k)
       change_[k] =
           std::sin(1. + double((matrix_->space_->first + long(k)) % 1009));

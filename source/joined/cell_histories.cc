@@ -61,6 +61,7 @@ namespace nsfd
   template <int dim>
   void CellHistories<dim>::begin_step(const double time_step)
   {
+    time_step_before_ = time_step_;
     time_step_ = time_step;
     before_ = now_;
     moves_ = true;
@@ -70,6 +71,7 @@ namespace nsfd
   void CellHistories<dim>::go_back()
   {
     now_ = before_;
+    time_step_ = time_step_before_;
     moves_ = false;
   }
 
@@ -117,6 +119,9 @@ namespace nsfd
     typename HistoryMaterial<dim>::Step step;
     std::vector<double> history(material.n_history());
     double energy = 0.;
+    // at the point itself nothing flows: a step of no way is round-off alone
+    if (C == way.C0)
+      return material.state(C, &now_[at], S, energy);
     return material.step(way, false, step, history.data()) &&
            material.state(C, history.data(), S, energy);
   }

@@ -29,7 +29,13 @@ namespace nsfd
     const std::vector<double> &values() const { return now_; }
     /** Of a scene that has never been strained. */
     std::vector<double> at_rest() const;
-    void set(const std::vector<double> &values) { now_ = values; }
+    /** Of a state that a step of length @p last has led to: places beside the
+        points flow as in that step. */
+    void set(const std::vector<double> &values, const double last)
+    {
+      now_ = values;
+      time_step_ = last;
+    }
 
     /** The next forces are those at the end of a step of this length; those
         after them at the same place. */
@@ -60,7 +66,7 @@ namespace nsfd
     std::vector<std::size_t> first_, first_point_; ///< by cell
     std::vector<double> now_, before_;
     std::vector<Voigt<dim>> strains_; ///< C of the last forces, by point
-    double time_step_ = 0.;
+    double time_step_ = 0., time_step_before_ = 0.; ///< s
     bool moves_ = false;
   };
 } // namespace nsfd

@@ -1,5 +1,6 @@
 #include "elastic_node.h"
 
+#include "linear_algebra/small_inverse.h"
 #include "nonsmooth/springs.h"
 
 #include <algorithm>
@@ -9,6 +10,8 @@ namespace nsfd
 {
   namespace
   {
+    /// of a row: less is left only where closed points hold each other
+    constexpr double independent = 1e-10;
     constexpr unsigned int most_changes = 6, most_refinements = 3;
 
     /** y += factor x, of a multiple of @p lanes numbers. */
@@ -116,6 +119,86 @@ namespace nsfd
     }
     step.speed = std::max(step.speed, way / h_theta);
     return true;
+  }
+
+  /** Rows of closed points last: of these some may follow from others. @return
+      their number, with @p row_of dim times the point plus the direction. */
+  template <int dim>
+  std::size_t ElasticNode<dim>::number_rows(const Step &step,
+                                            std::array<int, most> &row_of)
+  {
+    std::size_t n = 0;
+    for (const bool contact : {false, true})
+      for (std::size_t k = 0; k < points_.size(); ++k) {
+        Placed &point = points_[k];
+        if (!contact) {
+          point.rows.fill(-1);
+          point.follows = false;
+          point.own.closed = step.closed[k];
+        }
+        if (point.held >= 0 || point.is_inside)
+          continue;
+        for (unsigned int c = 0; c < dim; ++c) {
+          const bool is_contact = c == 0 && step.closed[k];
+          if (is_contact != contact || (!is_contact && point.own.law.broken))
+            continue;
+          if (n < most)
+            row_of[n] = int(k * dim + c);
+          point.rows[c] = int(n++);
+        }
+      }
+    return n;
+  }
+
+  /** The inverse of W + 1/(kappa s), of W alone where a point is closed. */
+  template <int dim>
+  bool ElasticNode<dim>::set_map(const NodeProblem<dim> &node,
+                                 const std::vector<double> &frames,
+                                 const Step &step)
+  {
+    std::array<int, most> row_of;
+    const std::size_t n = number_rows(step, row_of);
+    if (n > most)
+      return false;
+    size_ = n;
+    stride_ = (n + lanes - 1) / lanes * lanes;
+    inverse_.assign(n * stride_, 0.);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t k = std::size_t(row_of[i]) / dim;
+      const unsigned int c = unsigned(row_of[i]) % dim;
+      const Placed &one = points_[k];
+      const double *normal = &frames[(node.points[k].point * dim + c) * dim];
+      for (std::size_t j = 0; j <= i; ++j) {
+        const std::size_t l = std::size_t(row_of[j]) / dim;
+        const double *other =
+            &frames[(node.points[l].point * dim + unsigned(row_of[j]) % dim) *
+                    dim];
+        double sum = 0.;
+        for (unsigned int s = 0; s < 2; ++s)
+          for (unsigned int t = 0; t < 2; ++t) {
+            const int g = one.groups[s];
+            if (g < 0 || g != points_[l].groups[t])
+              continue;
+            const Vector &inverse = merged_.inverse_mass()[std::size_t(g)];
+            double part = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              part += normal[d] * inverse[d] * other[d];
+            sum += s == t ? part : -part;
+          }
+        inverse_[i * stride_ + j] = inverse_[j * stride_ + i] = sum;
+      }
+      if (c > 0 || !one.own.closed)
+        inverse_[i * stride_ + i] += one.own.flexibility[c];
+    }
+    bool possible = true;
+    invert_in_place<most>(
+        inverse_.data(), n, stride_, independent, [&](const std::size_t i) {
+          Placed &point = points_[std::size_t(row_of[i]) / dim];
+          possible = possible && row_of[i] % dim == 0 && point.own.closed;
+          point.rows[0] = -1;
+          point.follows = true;
+        });
+    return possible;
   }
 
   /** What the normal spring of point @p k does in the step. */
@@ -343,25 +426,18 @@ namespace nsfd
     Step step;
     if (!begin(problem, closed, node, step))
       return false;
-    // what the last step of this chain had comes first, since its map is there:
-    // @p closed are those of the other chain, which often differ in debris
-    for (std::size_t k = 0; has_map_ && k < points_.size(); ++k)
-      if (!points_[k].is_inside)
-        step.closed[k] = points_[k].own.closed;
     for (unsigned int change = 0; change < most_changes; ++change) {
-      if (!has_map_ || !change_map(step)) {
+      bool same = has_map_;
+      for (std::size_t k = 0; k < points_.size(); ++k)
+        same = same && (points_[k].is_inside ||
+                        points_[k].own.closed == step.closed[k]);
+      if (!same)
         has_map_ = set_map(node, frames, step);
-        n_changes_ = 0;
-      }
       if (!has_map_)
         return false;
       begin_impulses(problem, node, step);
-      if (!solve_map(node, frames, step)) {
-        if (n_changes_ == 0)
-          return false;
-        has_map_ = false; // what its changes have left
-        continue;
-      }
+      if (!solve_map(node, frames, step))
+        return false;
       const Found found = find_closed(problem, node, step);
       if (found == Found::impossible)
         return false;

@@ -108,7 +108,6 @@ namespace nsfd
                const NodeProblem<dim> &node, Step &step) const;
     bool set_map(const NodeProblem<dim> &node,
                  const std::vector<double> &frames, const Step &step);
-    bool change_map(const Step &step);
     std::size_t number_rows(const Step &step, std::array<int, most> &row_of);
     void begin_impulses(const OneStepProblem<dim> &problem,
                         const NodeProblem<dim> &node, Step &step) const;
@@ -132,6 +131,5 @@ namespace nsfd
     bool has_map_ = false, any_held_ = false, is_loose_ = false;
     std::vector<double> inverse_;       ///< of the map, symmetric
     std::size_t size_ = 0, stride_ = 0; ///< of it and of a row
-    unsigned int n_changes_ = 0;        ///< since it was made
   };
 } // namespace nsfd

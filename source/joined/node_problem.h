@@ -9,13 +9,15 @@ namespace nsfd
   /** Groups and their shares in the velocity of body 2 less that of body 1, of
       a point that is not between two nodes: a contact of surfaces. */
   struct PointEnds {
-    std::array<int, 10> groups{};
-    std::array<double, 10> shares{};
+    // six ends at most: two edges of two corners, or a corner and a facet;
+    // each may be at a rigid body of its own, which has two matrices
+    std::array<int, 18> groups{};
+    std::array<double, 18> shares{};
     unsigned int size = 0;
     /// of the last groups, unknowns of rigid bodies: what they have in it, in
     /// place of shares, dim x dim
     unsigned int n_matrices = 0;
-    std::array<std::array<double, 9>, 4> matrices{};
+    std::array<std::array<double, 9>, 12> matrices{};
 
     unsigned int n_shares() const { return size - n_matrices; }
   };

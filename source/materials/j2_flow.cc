@@ -271,11 +271,11 @@ namespace nsfd
         result.numerical -= dp * chord;
       }
       const Strain direction = times_modulus(surface.normal);
-      if (missing != 0.) {
+      const double along = contract<3>(direction, change);
+      if (missing != 0. && along != 0.) { // else round-off of a step of no way
         result.added = dp * missing;
         result.stress =
-            combine(1., result.stress,
-                    result.added / contract<3>(direction, change), direction);
+            combine(1., result.stress, result.added / along, direction);
       }
     }
     if (with_tangent) {

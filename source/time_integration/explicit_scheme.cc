@@ -45,16 +45,16 @@ namespace nsfd
                              block.law_name, block.name));
     }
 
-    /** What explicit steps do not know yet. */
+    /** What explicit steps of small motions do not know yet. */
     void refuse_history(SectionReader &reader, const SceneInput &scene)
     {
       for (const MaterialInput &material : scene.materials)
         if (material.kind == MaterialKind::history_dependent)
           reader.error("scheme",
-                       fmt::format("scheme = explicit is not available for "
-                                   "model = {}",
+                       fmt::format("scheme = explicit with motion = small has "
+                                   "no model = {}",
                                    material.model_name),
-                       "write scheme = moreau-jean");
+                       "write motion = large, or scheme = moreau-jean");
     }
 
     /** What those of large motions do not know yet. */

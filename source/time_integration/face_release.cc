@@ -34,6 +34,7 @@ namespace nsfd
       sites_.reserve(points.faces.size());
       factors_.reserve(points.faces.size());
     }
+    bool any_share = false;
     for (std::size_t f = 0; f < points.faces.size(); ++f) {
       const auto &face = points.faces[f];
       const PointOrigin &origin = discretization.origins()[face.first];
@@ -46,8 +47,10 @@ namespace nsfd
       for (const int b : face.bodies)
         sides -= cells.body_class(std::size_t(b)).undeformed;
       const double share = sides > 0. ? 2. / sides : 1.;
-      if (share != 1. && share_.empty())
+      if (share != 1. && !any_share) {
+        any_share = true;
         share_.assign(sites_.size(), 1.);
+      }
       const bool whole = cells.class_shape(std::size_t(face.bodies[0]))
                              .reference.is_simplex() ||
                          input.discretization.degree == 1;
@@ -76,7 +79,7 @@ namespace nsfd
         site.shear_weight = of_shear * of_shear;
         // the surface of two scalars is within the norm of its two ends only
         // between two of them points are held by their law from the start
-        if (!share_.empty())
+        if (any_share)
           share_.push_back(share);
         const double strength = here.strength() / share;
         site.limit = (block.law->mixed() ? 0.5 : 1.) * strength * strength;

@@ -37,7 +37,7 @@ namespace nsfd
     /** What materials keep in @p state, before its forces. */
     void take_histories(const State &state)
     {
-      forces_.histories().set(state.material_history);
+      forces_.histories().set(state.material_history, state.last_step);
     }
     /** From @p state, with the forces there. */
     void start(const State &state);

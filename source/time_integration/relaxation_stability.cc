@@ -192,11 +192,9 @@ namespace nsfd
       const double scale = 1. / std::sqrt(sums[0]);
       for (std::size_t i = 0; i < problem.n_points; ++i)
         share[i] = next[i] * scale;
-      // what is asked is on which side of 1 it is
-      const bool settled = std::abs(value - largest) <
-                           std::max(1e-4 * value, 1e-2 * std::abs(1. - value));
+      const bool settled = std::abs(value - largest) < 1e-4 * value;
       largest = value;
-      if (settled && round > 1)
+      if (settled && round > 3)
         break;
     }
     return largest;

@@ -265,8 +265,8 @@ namespace nsfd
       carries +=
           R * std::max(impulse_[k] * impulse_[k], defect_[k] * defect_[k]);
     }
-    const double lost = 0.1 * work.tolerance * scale_;
-    return std::max(moves, carries) <= lost * lost;
+    const double little = 0.1 * work.tolerance * scale_;
+    return std::max(moves, carries) <= little * little;
   }
 
   /** Points at rest that carry nothing are open or closed by the last digits:
