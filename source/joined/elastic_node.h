@@ -57,11 +57,12 @@ namespace nsfd
     void prefetch() const
     {
       merged_.prefetch();
-      if (is_loose_)
+      if (is_loose_) {
         loose_.prefetch();
+        return;
+      }
       nsfd::prefetch(points_);
-      if (!is_loose_)
-        nsfd::prefetch(inverse_);
+      nsfd::prefetch(inverse_);
     }
 
     /** LooseNode may solve it. */

@@ -318,17 +318,13 @@ namespace nsfd
       const StrengthSites<dim> &sites,
       typename StrengthSites<dim>::Near &near) const
   {
-    constexpr unsigned int width = StrengthSites<dim>::cells_of_block;
     constexpr double quiet = sites.looked_at * sites.looked_at;
     const auto bound = [this](const std::size_t cell) {
       const bool constant = tables(cell).slot_gradients.empty();
       return peaks_[cell] *
              (constant ? 1. : beyond_quadrature * beyond_quadrature);
     };
-    std::vector<double> bounds((peaks_.size() + width - 1) / width, 0.);
-    for (std::size_t cell = 0; cell < peaks_.size(); ++cell)
-      bounds[cell / width] = std::max(bounds[cell / width], bound(cell));
-    sites.find(bounds, near);
+    sites.find_by_cell(peaks_.size(), bound, near);
     for (std::size_t n = 0; n < near.site.size(); ++n) {
       const std::size_t k = near.site[n];
       const auto &cells = sites[k].cells;

@@ -2,6 +2,7 @@
 
 #include "discretization/bodies.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -66,16 +67,27 @@ namespace nsfd
      * 0 to begin with.
      */
     void find(const std::vector<double> &bounds, Near &near) const;
+    /** The same where @p bound is of each of @p n_cells cells. */
+    template <typename Bound>
+    void find_by_cell(const std::size_t n_cells, const Bound &bound,
+                      Near &near) const
+    {
+      std::vector<double> bounds(least_.size(), 0.);
+      for (std::size_t cell = 0; cell < n_cells; ++cell)
+        bounds[cell / cells_of_block] =
+            std::max(bounds[cell / cells_of_block], bound(cell));
+      find(bounds, near);
+    }
 
     /** <t_N>_+^2 + shear_weight |t_T|^2 of a traction @p t at a site, Pa^2. */
     double square(const std::size_t site,
                   const std::array<double, dim> &t) const
     {
-      const double *const normal = points_.axes(sites_[site].first_point);
+      const double *const n = normal(site);
       double sum = 0., pull = 0.;
       for (unsigned int c = 0; c < dim; ++c) {
         sum += t[c] * t[c];
-        pull += t[c] * normal[c];
+        pull += t[c] * n[c];
       }
       return (pull > 0. ? pull * pull : 0.) +
              sites_[site].shear_weight * (sum - pull * pull);

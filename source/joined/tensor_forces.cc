@@ -351,13 +351,11 @@ namespace nsfd
       const StrengthSites<dim> &sites,
       typename StrengthSites<dim>::Near &near) const
   {
-    constexpr unsigned int width = StrengthSites<dim>::cells_of_block;
     constexpr double quiet = sites.looked_at * sites.looked_at;
-    std::vector<double> bounds((bound_.size() + width - 1) / width, 0.);
-    for (std::size_t cell = 0; cell < bound_.size(); ++cell)
-      bounds[cell / width] =
-          std::max(bounds[cell / width], bound_[cell] * bound_[cell]);
-    sites.find(bounds, near);
+    sites.find_by_cell(
+        n_cells_,
+        [this](const std::size_t cell) { return bound_[cell] * bound_[cell]; },
+        near);
     for (std::size_t n = 0; n < near.site.size(); ++n) {
       const std::size_t k = near.site[n];
       const auto &cells = sites[k].cells;
