@@ -360,7 +360,7 @@ that it does not use.
 
 - Bare numbers are SI, or any consistent set of units. With a suffix they are
   checked: `135 GPa`, `0.2 um`, `0.5 J/m^2`, `-9.81 m/s^2`. Units: `m s g Pa N J
-  Hz` with the prefixes `n u m c k M G`, and `min`, `h`; products with `*`,
+  Hz` with the prefixes `f p n u m c k M G T`, and `min`, `h`; products with `*`,
   quotients with `/`, powers with `^`.
 - Wherever a number stands, a formula may stand: `+ - * / ^`, comparisons,
   `&&`, `||`, `pi`, `true`, `false`, the names of section `Constants`, and

@@ -82,9 +82,10 @@ namespace nsfd::formula
       fail(begin, end, fmt::format("an operator is missing before `{}`", word),
            "write for example: 2 * " + word);
     fail(begin, end, fmt::format("`{}` is not a unit", word),
-         did_you_mean(word, unit_symbols(),
-                      "units are m, s, g, Pa, N, J, Hz, min, h with the "
-                      "prefixes n u m c k M G, and their products: J/m^2"));
+         did_you_mean(
+             word, unit_symbols(),
+             "units are m, s, g, Pa, N, J, Hz, min, h with the "
+             "prefixes f p n u m c k M G T, and their products: J/m^2"));
   }
 
   /** What follows a number: `J/m^2`, `m/s`, `1/s`, or nothing. */

@@ -35,9 +35,11 @@ namespace nsfd
       int exponent;
     };
 
-    const Prefix prefixes[] = {{"n", -9},      {"u", -6}, {"\u00b5", -6},
-                               {"\u03bc", -6}, {"m", -3}, {"c", -2},
-                               {"k", 3},       {"M", 6},  {"G", 9}};
+    // those that reports print, and centi
+    const Prefix prefixes[] = {{"f", -15}, {"p", -12},     {"n", -9},
+                               {"u", -6},  {"\u00b5", -6}, {"\u03bc", -6},
+                               {"m", -3},  {"c", -2},      {"k", 3},
+                               {"M", 6},   {"G", 9},       {"T", 12}};
 
     const std::map<std::string, UnitScale> &unit_table()
     {

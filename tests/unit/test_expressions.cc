@@ -169,6 +169,12 @@ namespace nsfd::test_expressions
     EXPECT_EQ(pulse(0., 0., 0., 6e-9), 0.);
     EXPECT_TRUE(pulse.depends_on_time());
 
+    // reports print the step in picoseconds
+    EXPECT_DOUBLE_EQ(read_expression("30.5 ps", units::time)(0., 0., 0.),
+                     30.5e-12);
+    EXPECT_DOUBLE_EQ(read_expression("1.05 TPa", units::pressure)(0., 0., 0.),
+                     1.05e12);
+
     // a file without any unit stays free in its choice
     EXPECT_DOUBLE_EQ(read_expression("3 * x", units::velocity)(2., 0., 0.), 6.);
     EXPECT_DOUBLE_EQ(read_expression("x", units::velocity)(2., 0., 0.), 2.);
