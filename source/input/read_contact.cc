@@ -33,17 +33,22 @@ namespace nsfd
       return {};
     }
 
-    /** `all`, `[a, b]`; brackets optional. */
+    constexpr const char *nothing = "none";
+
+    /** `all`, `[a, b]`, brackets optional; or `none`. */
     std::array<std::string, 2> read_pair(SectionReader &reader,
                                          const SceneInput &scene)
     {
       const auto value = reader.raw(
           "between", "all",
-          "all, or two materials: [a, b], in any order; the first block that "
-          "holds for two bodies is theirs, without one they do not touch");
+          "all, none, or two materials: [a, b], in any order; the first block "
+          "that holds for two bodies is theirs, beside others they do not "
+          "touch");
       const std::string text = value ? collapse_blanks(value->text()) : "all";
       if (text == "all")
         return {};
+      if (text == nothing)
+        return {nothing, nothing};
       return read_two_materials(reader, "between", text, text, "[a, b]", scene);
     }
 
@@ -97,6 +102,49 @@ namespace nsfd
       return contact;
     }
 
+    /** A face may open, or there are several bodies. */
+    bool may_part(const SceneInput &scene)
+    {
+      return scene.bodies.size() > 1 ||
+             std::any_of(
+                 scene.interfaces.begin(), scene.interfaces.end(),
+                 [](const InterfaceInput &block) { return block.may_open(); });
+    }
+
+    /**
+     * What touches where no block says so: all surfaces, with what the faces
+     * that may open have in common.
+     */
+    void touch_by_default(ParameterFile &file, InputErrors &errors,
+                          SceneInput &scene)
+    {
+      ContactInput contact;
+      contact.name = "all";
+      contact.is_default = true;
+      const InterfaceInput *first = nullptr;
+      for (const InterfaceInput &block : scene.interfaces) {
+        if (!block.may_open())
+          continue;
+        if (!first) {
+          first = &block;
+          contact.friction = block.friction;
+          contact.restitution = block.restitution;
+        }
+        if (block.friction == first->friction &&
+            block.restitution == first->restitution)
+          continue;
+        errors.error(
+            file.find("Interface: " + block.name)->location(),
+            fmt::format("surfaces that meet later have no friction: Interface "
+                        "`{}` has another one than `{}` (or another "
+                        "restitution), and no Contact block decides",
+                        block.name, first->name),
+            "add `subsection Contact: all` with `set friction = ...`");
+        return;
+      }
+      scene.contacts.push_back(std::move(contact));
+    }
+
     PinInput read_pin(SectionReader &reader, const SceneInput &scene)
     {
       PinInput pin;
@@ -126,16 +174,23 @@ namespace nsfd
                      SceneInput &scene)
   {
     std::map<Pair, std::string> owners;
+    bool says_something = false;
     for (ParameterSection *block :
          open_large(file, "Contact",
                     "say in Interface and Obstacle blocks what touches", errors,
                     scene)) {
       SectionReader reader(*block, errors);
       const unsigned int n_before = errors.n_errors();
-      scene.contacts.push_back(read_contact(reader, scene));
+      const ContactInput contact = read_contact(reader, scene);
+      says_something = true;
+      if (contact.materials[0] == nothing)
+        continue;
+      scene.contacts.push_back(contact);
       if (errors.n_errors() == n_before)
         claim_pairs(reader, scene.contacts.back(), scene, owners);
     }
+    if (scene.large_motion && !says_something && may_part(scene))
+      touch_by_default(file, errors, scene);
   }
 
   void read_pins(ParameterFile &file, InputErrors &errors, SceneInput &scene)

@@ -193,6 +193,29 @@ namespace nsfd
     using Parse = std::function<bool(ParameterFile &, InputErrors &)>;
     using Entries = std::vector<std::pair<std::string, std::string>>;
 
+    std::unique_ptr<SceneInput> read_with(const Entries &chosen,
+                                          const Parse &parse,
+                                          const std::string &name,
+                                          InputErrors &errors)
+    {
+      ParameterFile parsed;
+      parse(parsed, errors);
+      for (const auto &[entry, value] : chosen)
+        put(*parsed.find("Time"), entry, value);
+      return read_parsed(parsed, name, errors);
+    }
+
+    /** A scene that names no scheme, with explicit steps; null if it cannot. */
+    std::shared_ptr<const AutomaticScheme>
+    read_alternative(const Parse &parse, const std::string &name)
+    {
+      InputErrors ignored;
+      auto choice = std::make_shared<AutomaticScheme>();
+      choice->longest_steps = read_with(
+          {{"scheme", "explicit"}, {"step", "auto"}}, parse, name, ignored);
+      return choice->longest_steps ? choice : nullptr;
+    }
+
     /**
      * A scene with `scheme = auto`, with implicit steps and with explicit ones:
      * which of them is predicted to cost less is known with the mesh.
@@ -203,11 +226,7 @@ namespace nsfd
                                                InputErrors &errors)
     {
       const auto read = [&](const Entries &chosen, InputErrors &found) {
-        ParameterFile parsed;
-        parse(parsed, found);
-        for (const auto &[entry, value] : chosen)
-          put(*parsed.find("Time"), entry, value);
-        return read_parsed(parsed, name, found);
+        return read_with(chosen, parse, name, found);
       };
       InputErrors of_implicit, of_explicit, of_given;
       auto scene = read({{"scheme", "moreau-jean"}}, of_implicit);
@@ -251,7 +270,14 @@ namespace nsfd
                               errors);
       for (const Diagnostic &one : found.diagnostics())
         errors.add(one);
-      return can_be_read ? read_parsed(parsed, name, errors) : nullptr;
+      if (!can_be_read)
+        return nullptr;
+      const bool is_default =
+          parsed.find("Time") && !has_entry(parsed, "Time", "scheme");
+      auto scene = read_parsed(parsed, name, errors);
+      if (scene && is_default)
+        scene->alternative = read_alternative(parse, name);
+      return scene;
     }
 
     void override_entries(ParameterFile &file,

@@ -37,12 +37,19 @@ namespace nsfd
       return scene;
     }
 
+    /** The steps of both schemes. */
+    struct Comparison {
+      const SceneInput *cheaper = nullptr; ///< with explicit steps, if they are
+      std::string text;
+    };
+
     template <int dim>
-    SceneInput choose(const SceneInput &input, const Communicator &communicator)
+    Comparison compare(const SceneInput &input,
+                       const AutomaticScheme &automatic,
+                       const Communicator &communicator)
     {
-      const AutomaticScheme &automatic = *input.automatic;
       if (!automatic.longest_steps)
-        return implicit(input, automatic.refused);
+        return {nullptr, automatic.refused};
       Model<dim> model;
       std::vector<std::string> problems;
       {
@@ -50,7 +57,7 @@ namespace nsfd
         problems = model.build(*automatic.longest_steps, communicator);
       }
       if (!problems.empty())
-        return implicit(input, problems.front());
+        return {nullptr, problems.front()};
 
       const double longest = model.dynamic_step(*automatic.longest_steps),
                    step = model.dynamic_step(input);
@@ -60,26 +67,56 @@ namespace nsfd
       const double n_explicit = std::ceil(input.time.end / explicit_step),
                    n_implicit = std::ceil(input.time.end / step),
                    ratio = implicit_over_explicit(dim);
-      const std::string comparison = fmt::format(
-          "{:.3g} explicit steps of {} or {:.3g} implicit ones of {}, each at "
-          "the cost of some {:g} explicit ones",
-          n_explicit, engineering(explicit_step, "s"), n_implicit,
-          engineering(step, "s"), ratio);
-      if (n_explicit > ratio * n_implicit)
-        return implicit(input, comparison);
-      SceneInput scene =
+      const auto &scene =
           as_given ? *automatic.given_steps : *automatic.longest_steps;
-      scene.scheme_choice = "explicit: " + comparison;
-      return scene;
+      return {
+          n_explicit > ratio * n_implicit ? nullptr : &scene,
+          fmt::format("{:.3g} explicit steps of {} or {:.3g} implicit ones of "
+                      "{}, each at the cost of some {:g} explicit ones",
+                      n_explicit, engineering(explicit_step, "s"), n_implicit,
+                      engineering(step, "s"), ratio)};
+    }
+
+    Comparison compare(const SceneInput &input,
+                       const AutomaticScheme &automatic,
+                       const Communicator &communicator)
+    {
+      return input.dimension == 2 ? compare<2>(input, automatic, communicator)
+                                  : compare<3>(input, automatic, communicator);
+    }
+
+    /** Of a scene that names no scheme, where explicit steps cost less. */
+    std::string advice(const SceneInput &input, const bool check,
+                       const Communicator &communicator)
+    {
+      const std::string text = "moreau-jean, the default; scheme = auto would "
+                               "take explicit steps, which cost less here";
+      if (check) {
+        const Comparison found =
+            compare(input, *input.alternative, communicator);
+        return found.cheaper ? text + ": " + found.text : "";
+      }
+      // the mesh is not built a second time for this
+      return input.time.step_kind == StepKind::courant && input.time.step <= 1.
+                 ? text
+                 : "";
     }
   } // namespace
 
-  SceneInput choose_scheme(const SceneInput &input,
+  SceneInput choose_scheme(const SceneInput &input, const bool check,
                            const Communicator &communicator)
   {
-    if (!input.automatic)
-      return input;
-    return input.dimension == 2 ? choose<2>(input, communicator)
-                                : choose<3>(input, communicator);
+    if (input.automatic) {
+      const Comparison found = compare(input, *input.automatic, communicator);
+      if (!found.cheaper)
+        return implicit(input, found.text);
+      SceneInput scene = *found.cheaper;
+      scene.scheme_choice = "explicit: " + found.text;
+      return scene;
+    }
+    SceneInput scene = input;
+    if (scene.alternative)
+      scene.scheme_choice = advice(input, check, communicator);
+    return scene;
   }
 } // namespace nsfd

@@ -7,15 +7,17 @@ namespace nsfd
 {
   /**
    * The scene that `scheme = auto` stands for, with a sentence in
-   * SceneInput::scheme_choice; @p input itself if it names its scheme.
+   * SceneInput::scheme_choice; @p input itself if it does not say so, with a
+   * sentence there if it names no scheme and explicit steps would cost less.
    *
    * Explicit steps of joined cells are as accurate as implicit ones of the same
    * length and far cheaper, but not longer than a wave needs through a cell.
    * They are taken as long as n of them cost less than the implicit steps of
    * the scene: one of these costs what implicit_over_explicit() explicit ones
-   * cost. Builds the mesh and the explicit integrator once more. Collective.
+   * cost. Builds the mesh and the explicit integrator once more,
+   * without `scheme = auto` only to @p check. Collective.
    */
-  SceneInput choose_scheme(const SceneInput &input,
+  SceneInput choose_scheme(const SceneInput &input, bool check,
                            const Communicator &communicator);
 
   /**

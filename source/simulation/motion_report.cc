@@ -31,7 +31,8 @@ namespace nsfd
     std::string describe_contact(const ContactInput &contact)
     {
       std::string text = fmt::format(
-          "{}: {}, friction {:g}, restitution {:g}", contact.name,
+          "{}: {}, friction {:g}, restitution {:g}",
+          contact.is_default ? "no Contact block" : contact.name,
           contact.materials[0].empty()
               ? "all surfaces"
               : contact.materials[0] + " and " + contact.materials[1],
@@ -68,9 +69,8 @@ namespace nsfd
     for (const ContactInput &contact : input.contacts)
       lines.push_back({"contact search", describe_contact(contact)});
     if (input.contacts.empty())
-      lines.push_back({"contact search",
-                       "no Contact block: surfaces pass through "
-                       "each other"});
+      lines.push_back(
+          {"contact search", "none: surfaces pass through each other"});
     for (const PinInput &pin : input.pins)
       lines.push_back({"pin", pin.name + ": of " + pin.material});
     return lines;

@@ -313,7 +313,7 @@ namespace nsfd
                 const MPI_Comm mpi)
   {
     const Communicator communicator(mpi);
-    const SceneInput scene = choose_scheme(input, communicator);
+    const SceneInput scene = choose_scheme(input, options.check, communicator);
     if (scene.dimension == 2)
       return Simulation<2>(scene, options, communicator).run();
     return Simulation<3>(scene, options, communicator).run();

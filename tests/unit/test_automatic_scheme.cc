@@ -44,7 +44,7 @@ subsection Time
     SceneInput chosen(const std::string &text)
     {
       const auto scene = read(text);
-      return choose_scheme(*scene, Communicator(MPI_COMM_SELF));
+      return choose_scheme(*scene, false, Communicator(MPI_COMM_SELF));
     }
   } // namespace
 
@@ -105,6 +105,28 @@ subsection Time
     const auto scene = read(plate("", "  set end = 1 s\n"));
     EXPECT_NE(scene->echo.find("= auto # moreau-jean"), std::string::npos)
         << scene->echo;
+  }
+
+  // Who names no scheme has implicit steps, and is told what others cost.
+  TEST(AutomaticScheme, IsAdvisedWhereNoSchemeIsNamed)
+  {
+    const auto advice = [](const std::string &time, const bool check) {
+      std::string text = plate("", time);
+      text.erase(text.find("  set scheme = auto\n"),
+                 std::string("  set scheme = auto\n").size());
+      const SceneInput scene =
+          choose_scheme(*read(text), check, Communicator(MPI_COMM_SELF));
+      EXPECT_EQ(scene.time.scheme_name, "moreau-jean");
+      return scene.scheme_choice;
+    };
+    const std::string start = "moreau-jean, the default; scheme = auto would ";
+    EXPECT_EQ(advice("  set end = 10 s\n", false).find(start), 0u);
+    const std::string checked = advice("  set end = 10 s\n", true);
+    EXPECT_EQ(checked.find(start), 0u);
+    EXPECT_NE(checked.find("explicit steps of"), std::string::npos);
+    const std::string steps = "  set end = 20000 s\n  set step = 100 s\n";
+    EXPECT_EQ(advice(steps, true), "");
+    EXPECT_EQ(advice(steps, false), "");
   }
 
   TEST(AutomaticScheme, ErrorsAreSaidOnce)

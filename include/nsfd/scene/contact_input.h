@@ -14,7 +14,8 @@ namespace nsfd
     /// holds for two materials is theirs; without one they do not touch
     std::array<std::string, 2> materials;
     double friction = 0., restitution = 0.;
-    SlidingInput sliding; ///< wear only
+    SlidingInput sliding;    ///< wear only
+    bool is_default = false; ///< the scene has no block
   };
 
   /** A place of a rigid body that stays where it is, in large motions. */

@@ -48,6 +48,8 @@ namespace nsfd
     /// Pa, of x, y, z, t: on the crack faces of points with beta <= threshold
     std::optional<Expression> crack_pressure;
     double pressure_threshold = 0.;
+    /** Its two sides may part. */
+    bool may_open() const { return law || law_name == "contact"; }
     /// beta up to which a point is broken: above 0 for laws with a tail
     double broken_beta() const
     {

@@ -26,7 +26,7 @@ namespace nsfd
 
   struct SceneInput;
 
-  /** `scheme = auto`: the same scene with explicit steps, where it can be. */
+  /** The same scene with explicit steps, where it can be. */
   struct AutomaticScheme {
     std::shared_ptr<const SceneInput> longest_steps; ///< with step = auto
     /// with the step of the scene, if it names one
@@ -73,6 +73,8 @@ namespace nsfd
     std::vector<ObservableInput> observables;
     /// what `scheme = auto` says besides the scene with implicit steps; or null
     std::shared_ptr<const AutomaticScheme> automatic;
+    /// with explicit steps, of a scene that names no scheme; or null
+    std::shared_ptr<const AutomaticScheme> alternative;
     std::string scheme_choice; ///< what `scheme = auto` has found; or empty
     /** In the run; joined cells of explicit steps are refined before it. */
     bool mesh_changes() const { return adaptivity && !time.scheme.at_nodes; }
