@@ -19,6 +19,24 @@ namespace nsfd
   {
     constexpr double pi = 3.14159265358979323846;
     constexpr unsigned int none = ~0u;
+
+    /**
+     * Of a node of a shape, whose corners are rounded, see RoundedCorners: that
+     * of the corner where it is one, so that bodies which stand on each other
+     * touch without a gap.
+     */
+    template <int dim>
+    Point<dim> node_place(const Point<dim> &node,
+                          const std::vector<Point<dim>> &rounded,
+                          const std::vector<Point<dim>> &corners)
+    {
+      constexpr double same = 1e-10;
+      for (std::size_t v = 0; v < corners.size(); ++v)
+        if (node.distance(rounded[v]) <=
+            same * corners[v].distance(corners[v == 0 ? 1 : 0]))
+          return corners[v];
+      return corners[0] + Tensor<1, dim>(node);
+    }
   } // namespace
 
   template <int dim>
@@ -30,10 +48,12 @@ namespace nsfd
     for (unsigned int c = 0; c < discretization.bodies().size(); ++c) {
       const auto of_body = discretization.cells().shape(c);
       const BodyShape<dim> &shape = *of_body;
-      const Place corner = discretization.cells().corners[c][0];
-      for (const Place &node : shape.nodes)
+      const auto &corners = discretization.cells().corners[c];
+      for (const Place &node : shape.nodes) {
+        const Place place = node_place<dim>(node, shape.corners, corners);
         for (unsigned int d = 0; d < dim; ++d)
-          rest_.push_back(corner[d] + node[d]);
+          rest_.push_back(place[d]);
+      }
     }
     make_bodies();
     make_slots();

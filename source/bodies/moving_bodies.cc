@@ -324,6 +324,16 @@ namespace nsfd
   }
 
   template <int dim>
+  void MovingBodies<dim>::stay()
+  {
+    for (std::size_t b = 0; b < layout_.size(); ++b) {
+      motion_.rigid[std::size_t(layout_[b].rigid)].stay();
+      take_rigid_velocity(b);
+      set_step_end(b);
+    }
+  }
+
+  template <int dim>
   void MovingBodies<dim>::finish(State &next) const
   {
     next.displacement = motion_.u_new;

@@ -84,6 +84,9 @@ namespace nsfd
      * @p v: velocity() and the motion. False if one of them has no solution.
      */
     bool move(const std::vector<double> &r, const std::vector<double> &v);
+    /** In place of move(), if all bodies are rigid: they stay where they are,
+        without a velocity. */
+    void stay();
     /** The motion of the step into @p next. Collective. */
     void finish(State &next) const;
     /** Energies at the end of the step, losses, work of the loads, by body. */

@@ -120,6 +120,13 @@ namespace nsfd
     return false;
   }
 
+  void RigidStep::stay()
+  {
+    start_.velocity = start_.spin = {};
+    end_ = start_;
+    lambda_end_ = lambda_start_;
+  }
+
   Vec3 RigidStep::half_turn(const Vec3 &W) const
   {
     return (time_step_ / 2.) * (theta_ * W + (1. - theta_) * start_.spin);

@@ -295,8 +295,9 @@ namespace nsfd
         rows.push_back(row);
         continue;
       }
-      // the deeper one is the contact
-      if (row.gap < rows[other].gap)
+      // the deeper one is the contact; of equal ones the first, or round-off
+      // would give it another history in every step
+      if (row.gap < rows[other].gap - 1e-12 * discretization_.extent())
         std::swap(rows[other], row);
       rows[other].twin = row.place;
     }
@@ -346,8 +347,11 @@ namespace nsfd
     return row;
   }
 
-  /** One row per node and obstacle: that of its largest face. Their indices
-      are in the order of the faces of all ranks. */
+  /**
+   * One row per node and obstacle: that of the face which lies nearest to it,
+   * so that what the other faces of a corner touch has a history of its own.
+   * Their indices are in the order of the faces of all ranks.
+   */
   template <int dim>
   std::vector<MovingRow<dim>>
   SurfaceContacts<dim>::own_obstacle_rows(const State &old,
@@ -375,6 +379,7 @@ namespace nsfd
           old.obstacle_shift.empty() ? nullptr : &old.obstacle_shift[3 * o]);
     };
     std::map<std::pair<std::size_t, unsigned int>, std::size_t> known;
+    std::vector<double> heights; // of the faces of rows
     const auto add = [&](Row row, const unsigned int o) {
       const bool is_ball = row.node == Row::nowhere;
       Vector away =
@@ -404,6 +409,10 @@ namespace nsfd
         continue;
       }
       const FaceNodes<dim> &face = cells_.faces(c)[f];
+      double height = 0.;
+      for (const unsigned int node : face.nodes)
+        height += geometry(o).gap(node_place(cells_.first_node(c) + node)) /
+                  double(face.nodes.size());
       for (unsigned int j = 0; j < face.nodes.size(); ++j) {
         if (!active_.is_corner(c, f, face.nodes[j]))
           continue;
@@ -419,13 +428,16 @@ namespace nsfd
         row.weight = face.weights[j];
         const auto [entry, is_new] = known.emplace(
             std::pair(std::size_t(active_.merged(row.node)), o), rows.size());
-        if (is_new)
+        if (is_new) {
           add(row, o);
-        else if (row.weight > rows[entry->second].weight) {
+          heights.resize(rows.size());
+          heights.back() = height;
+        } else if (height < heights[entry->second]) {
           rows[entry->second].place = row.place; // the rest is that of the node
           rows[entry->second].weight = row.weight;
           rows[entry->second].cell = row.cell;
           rows[entry->second].node = row.node;
+          heights[entry->second] = height;
         }
       }
     }

@@ -28,6 +28,8 @@ namespace nsfd
   /** How far a solve came, and what it has cost. */
   struct SolverReport {
     bool converged = false;
+    /// of a step: nothing moves by more than a solution may be off
+    bool rests = false;
     double residual = 0.; ///< relative natural map, see natural_map.h
     unsigned int newton = 0, krylov = 0, sweeps = 0, line_searches = 0;
     unsigned int law_calls = 0;  ///< sweeps of the point law over all points

@@ -35,6 +35,7 @@ namespace nsfd
             bodies)),
         solver_name_(solver_name(input.solver.method, "frictional contact"))
   {
+    this->step_problem_.let_stay(bodies_->may_stay());
   }
 
   template <int dim>
@@ -112,6 +113,10 @@ namespace nsfd
       total.go_on_with(part);
       if (!part.converged)
         return total;
+      if (part.rests && round == 0) {
+        bodies_->stay();
+        return total;
+      }
       std::vector<double> v = v_free_;
       delassus.add_velocity_change(impulse_.data(), v.data());
       if (!bodies_->move(impulse_, v))

@@ -32,6 +32,9 @@ namespace nsfd
     /** What the input asks of the solver of a step. */
     SolverControl control(unsigned int idle_rounds) const;
 
+    /** Bodies that rest will be left where they are: see BodyModel::stay(). */
+    void let_stay(const bool may) { may_stay_ = may; }
+
     /** A step begins: friction opposes the velocity at its end everywhere. */
     void begin() { sliding_.begin(); }
 
@@ -43,7 +46,8 @@ namespace nsfd
     /**
      * Again as long as extrinsic points reach their strength (unless @p
      * keeps_joints), or friction gives energy; @p old as it was for set().
-     * Contacts of bodies at rest are solved to round-off. Collective.
+     * Contacts of bodies at rest are solved to round-off, unless these stay
+     * where they are: then the report says that they rest. Collective.
      */
     SolverReport
     solve(NonsmoothSolver<dim> &solver, OneStepProblem<dim> &problem,
@@ -56,7 +60,7 @@ namespace nsfd
     const DrivenMotion<dim> &motion() const { return *motion_; }
 
   private:
-    bool rests(const OneStepProblem<dim> &problem, const SolverControl &control,
+    bool rests(double still, const OneStepProblem<dim> &problem,
                double energy_scale, const State &old,
                const LawEvaluation<dim> &evaluation) const;
     void settle(const OneStepProblem<dim> &problem, SolverControl control,
@@ -70,7 +74,7 @@ namespace nsfd
     std::unique_ptr<DrivenMotion<dim>> motion_;
     EnergySafeSliding<dim> sliding_;
     std::unique_ptr<NonsmoothSolver<dim>> settling_; ///< see settle()
-    bool has_extrinsic_ = false;
+    bool has_extrinsic_ = false, may_stay_ = false;
   };
 
   /**

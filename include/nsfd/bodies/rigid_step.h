@@ -78,6 +78,9 @@ namespace nsfd
     /** Begins at a = @p spin, say that of the last solution. */
     bool solve(const RigidLoad &load, const Vec3 &spin);
 
+    /** As if it had been without a velocity, and went on so. */
+    void stay();
+
     const RigidState &state() const { return end_; }
 
     /** (V, a) and, theta-weighted, what moves points in the step. */
