@@ -42,11 +42,6 @@ namespace nsfd
     {
       return FacetOnTheWay<dim>(surfaces_.facets[f], part(k), s);
     }
-    /** At the end of the step. */
-    FacetOnTheWay<dim> last(const unsigned int f) const
-    {
-      return facet(f, n_parts() - 1, 1.);
-    }
     const Plane<dim> &first_plane(const unsigned int f) const
     {
       return planes_[f];
