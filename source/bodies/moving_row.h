@@ -50,4 +50,13 @@ namespace nsfd
     double share = 1.;              ///< of the impulse that its place keeps
     std::array<double, dim> jump{}; ///< of a pin: how far it is off, m
   };
+
+  /** Body 2 is a ball. */
+  template <int dim>
+  bool is_ball(const MovingRow<dim> &row)
+  {
+    using Partner = typename MovingRow<dim>::Partner;
+    return row.node == row.nowhere && row.partner != Partner::edge &&
+           row.partner != Partner::pin;
+  }
 } // namespace nsfd

@@ -142,7 +142,9 @@ namespace nsfd
   std::optional<MissedContact<dim>>
   SurfaceContacts<dim>::missed(const State &old, const State &next) const
   {
-    const TurningBodies<dim> turning(table_, old.rigid, next.rigid);
+    const TurningBodies<dim> turning(
+        table_, old.rigid, next.rigid,
+        [this](const unsigned int b) { return cells_.ball_radius(b) > 0.; });
     std::optional<MissedContact<dim>> first;
     look_at_obstacles(old, next, turning, first);
     if (!input_.contacts.empty()) {

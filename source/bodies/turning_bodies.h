@@ -19,17 +19,24 @@ namespace nsfd
   class TurningBodies
   {
   public:
-    /** @p from and @p to as State::rigid. */
+    /** @p from and @p to as State::rigid; what @p is_round of a body says is
+        where it is, however it turns. */
+    template <typename IsRound>
     TurningBodies(const BodyTable &table, const std::vector<double> &from,
-                  const std::vector<double> &to)
+                  const std::vector<double> &to, const IsRound &is_round)
         : table_(table), turns_(table.n_rigid)
     {
       using namespace space;
-      for (std::size_t r = 0; r < turns_.size(); ++r) {
+      for (unsigned int body = 0; body < table.bodies.size(); ++body) {
+        if (!table.is_rigid(body))
+          continue;
+        const auto r = std::size_t(table.bodies[body].rigid);
         const double *a = from.data() + 13 * r, *b = to.data() + 13 * r;
         Turn &turn = turns_[r];
         std::copy_n(a, 3, turn.from.begin());
         std::copy_n(b, 3, turn.to.begin());
+        if (is_round(body))
+          continue;
         // the shorter way round: a step turns by less than half of it
         Quaternion q =
             product({b[6], b[7], b[8], b[9]}, {a[6], -a[7], -a[8], -a[9]});

@@ -155,7 +155,57 @@ namespace nsfd
         return surfaces_.facets[facet].whole;
       }
 
-      /** Hardly inside between in and out, or found at the end. */
+      /** When it is deepest below facet @p f between two times. */
+      double deepest_at(const unsigned int f, const double begin,
+                        const double end) const
+      {
+        const double n = double(swept_.n_parts());
+        double result = end, deepest_there = depth(f, end);
+        for (std::size_t k = swept_.part_of(begin).first;
+             k <= swept_.part_of(end).first; ++k) {
+          const double first = std::max(begin, double(k) / n),
+                       last = std::min(end, double(k + 1) / n);
+          // below the plane between two zeros a cubic has one lowest place
+          const auto height = [&](const double share) {
+            return -depth(f, first + share * (last - first));
+          };
+          const double share = smallest_at(height);
+          if (-height(share) > deepest_there) {
+            deepest_there = -height(share);
+            result = first + share * (last - first);
+          }
+        }
+        return result;
+      }
+
+      /** Whether a search at that @p time would find it below facet @p f or
+          what is next to this. */
+      bool is_found(const unsigned int f, const double time) const
+      {
+        const auto [k, s] = swept_.part_of(time);
+        const FacetOnTheWay<dim> entered = swept_.facet(f, k, s);
+        const Place<dim> y = at(time), y_inside = inside(k, s);
+        if (entered.height(y) >= -safe(f))
+          return true;
+        return std::any_of(
+            others_.begin(), others_.end(), [&, k = k, s = s](const auto g) {
+              const FacetOnTheWay<dim> next = swept_.facet(g, k, s);
+              return whole(g) == whole(f) &&
+                     dot(next.plane.normal, entered.plane.normal) > 0. &&
+                     next.height(y) >= -safe(g) && next.is_over(y_inside) &&
+                     std::any_of(own_.begin(), own_.end(), [&](const auto own) {
+                       return dot(next.plane.normal,
+                                  swept_.facet(own, k, s).plane.normal) <
+                              opposed_below;
+                     });
+            });
+      }
+
+      /**
+       * Hardly inside between in and out, or never deeper than a search finds
+       * it: what is deeper on its way only would have been held before, and a
+       * step that something else cuts may end there.
+       */
       bool
       is_harmless(const typename std::vector<Passage>::const_iterator in) const
       {
@@ -164,33 +214,31 @@ namespace nsfd
             std::find_if(in, passages_.cend(), [&](const Passage &next) {
               return !next.inward && whole(next.facet) == whole(f);
             });
-        if (out != passages_.cend()) {
-          if (out->facet == f)
+        const auto is_found_until = [&](const double end) {
+          // what was inside at the start is held, as it was found then
+          if (in->time == 0.)
             return true;
-          const double middle = 0.5 * (in->time + out->time);
-          const auto [k, s] = swept_.part_of(middle);
-          // a corner, no passage from one side to the other
-          return dot(swept_.facet(f, k, s).plane.normal,
-                     swept_.facet(out->facet, k, s).plane.normal) >
-                     opposed_below &&
-                 std::min(depth(f, middle), depth(out->facet, middle)) <
-                     unseen * size(f);
-        }
-        const std::size_t last = swept_.n_parts() - 1;
-        const FacetOnTheWay<dim> entered = swept_.last(f);
-        const Place<dim> y = at(1.), y_inside = inside(last, 1.);
-        if (entered.height(y) >= -safe(f))
+          if (!is_found(f, deepest_at(f, in->time, end)))
+            return false;
+          // deepest below f it may be next to the facet that it goes on to
+          constexpr unsigned int looks = 16;
+          for (unsigned int k = 1; k < looks; ++k)
+            if (!is_found(f, in->time + (end - in->time) * k / looks))
+              return false;
           return true;
-        return std::any_of(others_.begin(), others_.end(), [&](const auto g) {
-          const FacetOnTheWay<dim> next = swept_.last(g);
-          return whole(g) == whole(f) &&
-                 dot(next.plane.normal, entered.plane.normal) > 0. &&
-                 next.height(y) >= -safe(g) && next.is_over(y_inside) &&
-                 std::any_of(own_.begin(), own_.end(), [&](const auto own) {
-                   return dot(next.plane.normal,
-                              swept_.last(own).plane.normal) < opposed_below;
-                 });
-        });
+        };
+        if (out == passages_.cend())
+          return is_found(f, 1.) && is_found_until(1.);
+        if (out->facet == f)
+          return is_found_until(out->time);
+        const double middle = 0.5 * (in->time + out->time);
+        const auto [k, s] = swept_.part_of(middle);
+        // a corner, no passage from one side to the other
+        return dot(swept_.facet(f, k, s).plane.normal,
+                   swept_.facet(out->facet, k, s).plane.normal) >
+                   opposed_below &&
+               std::min(depth(f, middle), depth(out->facet, middle)) <
+                   unseen * size(f);
       }
 
       const Surfaces<dim> &surfaces_;

@@ -21,8 +21,9 @@ namespace nsfd
 
     Place<dim> at(const unsigned int vertex, const double s) const
     {
-      const Place<dim> a = place<dim>(from, vertex);
-      return sum(a, s, difference(place<dim>(to, vertex), a));
+      const Place<dim> a = place<dim>(from, vertex), b = place<dim>(to, vertex);
+      // a + 1 (b - a) need not be b, and what only just touches would differ
+      return s == 1. ? b : sum(a, s, difference(b, a));
     }
   };
 

@@ -42,11 +42,6 @@ namespace nsfd
     {
       return FacetOnTheWay<dim>(surfaces_.facets[f], part(k), s);
     }
-    /** At the end of the step. */
-    FacetOnTheWay<dim> last(const unsigned int f) const
-    {
-      return facet(f, n_parts() - 1, 1.);
-    }
     const Plane<dim> &first_plane(const unsigned int f) const
     {
       return planes_[f];
@@ -112,34 +107,42 @@ namespace nsfd
     bool all_slow() const
     {
       constexpr double none = std::numeric_limits<double>::infinity();
+      double least = none;
+      for (unsigned int f = 0; f < planes_.size(); ++f)
+        least = std::min(least, safe(f));
+      for (const auto &ball : surfaces_.balls)
+        least = std::min(least, safe(ball));
+      // no two pass each other by more than the sum over the parts
+      double way = 0.;
+      for (std::size_t k = 0; k < n_parts() && !(way > least); ++k)
+        way += largest_way(k);
+      return !(way > least);
+    }
+
+  private:
+    /** No two vertices pass each other by more in a part; nothing: 0. */
+    double largest_way(const std::size_t k) const
+    {
+      constexpr double none = std::numeric_limits<double>::infinity();
       Place<dim> low, high;
       low.fill(none);
       high.fill(-none);
-      double least = none;
       const auto look_at = [&](const unsigned int vertex) {
-        const Place<dim> u = difference(place<dim>(path_.back(), vertex),
-                                        place<dim>(path_.front(), vertex));
+        const Place<dim> u = difference(place<dim>(path_[k + 1], vertex),
+                                        place<dim>(path_[k], vertex));
         for (int d = 0; d < dim; ++d) {
           low[d] = std::min(low[d], u[d]);
           high[d] = std::max(high[d], u[d]);
         }
       };
-      for (unsigned int f = 0; f < planes_.size(); ++f) {
-        const auto &facet = surfaces_.facets[f];
+      for (const auto &facet : surfaces_.facets)
         for (unsigned int v = 0; v < facet.n_vertices; ++v)
           look_at(facet.vertex[v]);
-        least = std::min(least, safe(f));
-      }
-      for (const auto &ball : surfaces_.balls) {
+      for (const auto &ball : surfaces_.balls)
         look_at(ball.vertex);
-        least = std::min(least, safe(ball));
-      }
-      // bodies that turn pass places that they do not end at
-      return n_parts() == 1 &&
-             !(norm(difference(high, low)) > least); // nothing: -infinity
+      return low[0] > high[0] ? 0. : norm(difference(high, low));
     }
 
-  private:
     const Surfaces<dim> &surfaces_;
     const StepPath &path_;
     const std::vector<double> &thickness_;

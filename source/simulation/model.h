@@ -28,6 +28,7 @@ namespace nsfd
     std::unique_ptr<Discretization<dim>> discretization;
     std::unique_ptr<StepControl> control;
     double explicit_limit = 0.; ///< of explicit steps, s
+    double compression = 0.;    ///< of the impact with which a scene begins
     std::string path;           ///< of the linear algebra: local or assembled
     std::unique_ptr<DelassusOperator<dim>> delassus;
     JoinedDelassus<dim> *bonded = nullptr; ///< the same, if faces are bonded

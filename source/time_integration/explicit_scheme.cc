@@ -65,20 +65,6 @@ namespace nsfd
                      "scheme = explicit with motion = large has no " + what,
                      "write scheme = moreau-jean");
       };
-      for (const MaterialInput &material : scene.materials) {
-        const RigidInput &given = material.rigid_bodies;
-        const auto refuse_entry = [&](const bool there, const char *entry) {
-          if (there)
-            refuse(fmt::format("{} of rigid bodies yet, which material `{}` "
-                               "has",
-                               entry, material.name));
-        };
-        refuse_entry(given.ball, "surface = ball");
-        refuse_entry(given.mass.has_value(), "mass");
-        refuse_entry(given.inertia.has_value(), "principal inertia");
-      }
-      if (!scene.pins.empty())
-        refuse("pins yet");
       for (const InterfaceInput &block : scene.interfaces)
         if (block.crack_pressure)
           refuse(fmt::format("pressure in cracks yet, and `{}` has one",

@@ -4,8 +4,8 @@
 #include "contact_fields.h"
 #include "core/gather.h"
 #include "initial_state.h"
+#include "passing_bodies.h"
 #include "point_name.h"
-#include "time_integrator.h"
 
 #include "core/stopwatch.h"
 #include "nsfd/scene/scene_input.h"
@@ -404,23 +404,8 @@ namespace nsfd
     const auto missed = contacts_->missed(*start_, next);
     if (!missed)
       return;
-    const SceneInput &input = parts_.input;
-    const auto &table = parts_.discretization.body_table();
-    const auto name = [&](const unsigned int body) {
-      constexpr unsigned int first = MissedContact<dim>::first_obstacle;
-      return body >= first
-                 ? input.obstacles[body - first].name
-                 : "a body of " +
-                       input.materials[table.bodies[body].material].name;
-    };
-    throw StepRejected(
-        fmt::format("in the step of {:.4g} s at t = {:.6g} s {} would fly "
-                    "through {}, near ({:.4g}) m; a step of {:.2g} s would not "
-                    "miss it",
-                    time_step_, start_->time, name(missed->body_2),
-                    name(missed->body_1), fmt::join(missed->place, ", "),
-                    missed->share * time_step_),
-        StepRejected::Cure::shorter_step, missed->share);
+    throw passing_bodies(parts_.input, parts_.discretization.body_table(),
+                         *missed, start_->time, time_step_);
   }
 
   template <int dim>

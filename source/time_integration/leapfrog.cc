@@ -247,6 +247,19 @@ namespace nsfd
       if (rigid_)
         rigid_->go_back();
     };
+    // steps of small motions have one length
+    const auto cure =
+        large_ ? StepRejected::Cure::shorter_step : StepRejected::Cure::none;
+    // with the displacements before it, too
+    const auto forces_before = [&] {
+      before_.displacement.swap(g.displacement);
+      go_back();
+      if (large_)
+        large_->go_back(forces_->front());
+      forces_->front().holds = true; // what it has is not found again
+      hanging_.set_forces(*forces_, g);
+      forces_->front().holds = false;
+    };
     {
       const Charge charge(Cost::laws);
       report.released = let_go();
@@ -280,8 +293,7 @@ namespace nsfd
     ghosts_.finish(g);
     if (!report.solver.converged) {
       go_back();
-      check_.check_solution(h, old.time, report.solver, outcome.worst,
-                            StepRejected::Cure::none);
+      check_.check_solution(h, old.time, report.solver, outcome.worst, cure);
     }
     const Charge charge(Cost::energy_balance);
     set_energies(kick, h, last, energies);
@@ -299,13 +311,19 @@ namespace nsfd
       for (std::size_t k = 0; k < g.force.size(); ++k)
         g.displacement[k] = before_.displacement[k] + h * g.velocity[k];
       hanging_.follow(g);
-      if (rigid_ && large_ && !rigid_->fly(h, g)) {
+      const auto refuse = [&](const StepRejected &rejected) {
         before_.displacement.swap(g.displacement);
         go_back();
-        throw StepRejected(fmt::format("a rigid body turns too far in the step "
-                                       "of {:.4g} s at t = {:.6g} s",
-                                       h, old.time));
-      }
+        throw rejected;
+      };
+      if (rigid_ && large_)
+        if (const std::string body = rigid_->fly(h, g); !body.empty())
+          refuse(StepRejected(
+              fmt::format("in the step of {:.4g} s at t = {:.6g} s a rigid "
+                          "body turns too far: {}",
+                          h, old.time, body)));
+      if (const auto missed = large_ ? large_->missed(g) : std::nullopt)
+        refuse(*missed);
       forces_->front().begin_step(h, kick);
       if (large_)
         large_->begin_forces(h, forces_->front());
@@ -313,11 +331,8 @@ namespace nsfd
     }
     if (const std::string place = large_ ? large_->inverted() : "";
         !place.empty()) {
-      before_.displacement.swap(g.displacement);
-      go_back();
-      large_->go_back(forces_->front());
-      hanging_.set_forces(*forces_, *groups_);
-      forces_->front().holds = false;
+      forces_before();
+      large_->ask_for_shorter_steps();
       throw StepRejected(fmt::format(
           "the cell at {} (before the motion) would be turned inside out in "
           "the step of {:.4g} s at t = {:.6g} s: smaller cells there, or a law "
@@ -343,11 +358,8 @@ namespace nsfd
       account(old, h, energies, next, report);
     } catch (const StepRejected &rejected) {
       // the state before it is what the run can still show
-      before_.displacement.swap(g.displacement);
-      go_back();
-      if (large_)
-        large_->go_back();
-      throw StepRejected(rejected.what(), StepRejected::Cure::none);
+      forces_before();
+      throw StepRejected(rejected.what(), cure);
     }
     report.separates = communicator_.any(points_.accept());
     if (large_)

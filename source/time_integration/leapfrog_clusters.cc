@@ -56,7 +56,10 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  std::vector<double> LeapfrogPoints<dim>::turn(const AxesOf &axes_of)
+  std::vector<double>
+  LeapfrogPoints<dim>::turn(const AxesOf &axes_of,
+                            const RigidGroups<dim> *const rigid,
+                            const CornerGroups<dim> &groups)
   {
     // by less than this what a point does is the same to four digits
     constexpr double least_angle = 1e-4;
@@ -77,6 +80,12 @@ namespace nsfd
         for (auto &elastic : node.elastic)
           elastic.is_new = true;
       }
+    if (rigid)
+      for (unsigned int a = 0; a < chains_.size(); ++a)
+        for (const unsigned int corner : mesh_.corners(chains_.point[a]))
+          if (corner != JoinedMesh<dim>::none &&
+              rigid->takes(groups.of(corner)))
+            set_old_velocity(a, mesh_, groups, chains_);
     return more;
   }
 
@@ -283,7 +292,8 @@ namespace nsfd
   }
 
 #define NSFD_INSTANTIATE(dim)                                                  \
-  template std::vector<double> LeapfrogPoints<dim>::turn(const AxesOf &);      \
+  template std::vector<double> LeapfrogPoints<dim>::turn(                      \
+      const AxesOf &, const RigidGroups<dim> *, const CornerGroups<dim> &);    \
   template void LeapfrogPoints<dim>::part(unsigned int);                       \
   template void LeapfrogPoints<dim>::solve_cluster(                            \
       Cluster &, const std::vector<std::uint8_t> &, double,                    \

@@ -14,17 +14,6 @@
 
 namespace nsfd
 {
-  /** Of U_T where friction opposes the sum. */
-  template <int dim>
-  auto LeapfrogContacts<dim>::offset(const Contact &contact) const -> Vector
-  {
-    Vector result{};
-    for (unsigned int c = 1; c < dim; ++c)
-      result[c] =
-          -contact.obstacle[c] + (contact.turned ? contact.before[c] : 0.);
-    return result;
-  }
-
   /** Whether it can part, along its normal; false if nothing can move there. */
   template <int dim>
   bool LeapfrogContacts<dim>::set_yield(const dealii::Tensor<1, dim> &normal,
@@ -119,7 +108,7 @@ namespace nsfd
       cluster_of_[i] = int(found->second);
       result[found->second].contacts.push_back(
           {one.ends, one.bodies, one.frame, one.row.interaction,
-           one.target + one.obstacle[0], offset(one), one.impulse});
+           one.target + one.obstacle[0], one.offset(), one.impulse});
     }
     return result;
   }

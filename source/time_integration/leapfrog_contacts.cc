@@ -66,7 +66,7 @@ namespace nsfd
       const SceneInput &input, const Discretization<dim> &discretization,
       const OneStepProblem<dim> &all, const Communicator &communicator)
       : input_(input), discretization_(discretization), all_(all),
-        layout_(input, discretization),
+        layout_(input, discretization), balls_(layout_, discretization.cells()),
         surfaces_(input, discretization, layout_, communicator)
   {
     DisjointSets parts(discretization.bodies().size());
@@ -190,8 +190,7 @@ namespace nsfd
     const auto group = [&](const std::size_t node) {
       return groups.of(layout_.own_node(node));
     };
-    const auto add_end = [&](const std::size_t node, const double share) {
-      const unsigned int g = group(node);
+    const auto add_group = [&](const unsigned int g, const double share) {
       for (auto &end : contact.ends)
         if (end.first == g) {
           end.second += share;
@@ -199,14 +198,31 @@ namespace nsfd
         }
       contact.ends.emplace_back(g, share);
     };
-    // where they are in the middle of the step
+    const auto add_end = [&](const std::size_t node, const double share) {
+      add_group(group(node), share);
+    };
+    // where they are in the middle of the step; balls where they touch at the
+    // latest: behind each other's centres they would be pushed on
+    const bool of_ball = is_ball(row);
+    double ahead = time_step_ / 2.;
+    if (of_ball && row.rate < 0.)
+      ahead = std::min(ahead, std::max(0., row.gap) / -row.rate);
     RowEnds<dim> ends;
-    const auto place = [&](const std::size_t node) {
-      const std::size_t corner = layout_.own_node(node), g = group(node);
+    const auto place_of_corner = [&](const std::size_t corner) {
+      const std::size_t g = groups.of(corner);
       Point<dim> x = at_node<dim>(layout_.rest(), corner);
       for (unsigned int c = 0; c < dim; ++c)
         x[c] += groups.displacement[g * dim + c] +
-                time_step_ / 2. * groups.velocity[g * dim + c];
+                ahead * groups.velocity[g * dim + c];
+      return x;
+    };
+    const auto place = [&](const std::size_t node) {
+      return place_of_corner(layout_.own_node(node));
+    };
+    const auto centre = [&](const unsigned int ball) {
+      Point<dim> x;
+      for (const auto &[corner, share] : balls_.centre(ball))
+        x += share * Tensor<1, dim>(place_of_corner(corner));
       return x;
     };
     std::vector<unsigned int> of_2;
@@ -215,11 +231,15 @@ namespace nsfd
         ends.of_2[v] = place(row.edge[v]);
         of_2.push_back(group(row.edge[v]));
       }
+    else if (of_ball)
+      ends.of_2[0] = centre(row.body_2);
     else {
       ends.of_2[0] = place(row.node);
       of_2.push_back(group(row.node));
       add_end(row.node, 1.);
     }
+    if (row.partner == Partner::ball)
+      ends.of_1[0] = centre(unsigned(row.body_1));
     for (unsigned int v = 0; v < row.n_facet; ++v) {
       ends.of_1[v] = place(row.facet[v]);
       if (std::find(of_2.begin(), of_2.end(), group(row.facet[v])) !=
@@ -232,15 +252,24 @@ namespace nsfd
         add_end(row.edge[v], contact.row.edge_weights[v]);
     for (unsigned int v = 0; v < row.n_facet; ++v)
       add_end(row.facet[v], -contact.row.weights[v]);
+    const auto normal =
+        row_normal(input_, contact.row, ends, state_.obstacle_shift);
+    const auto axes = local_frame<dim>(normal);
+    const auto x = row_place(contact.row, ends, normal);
+    // both balls are pushed at one place, whatever is between them
+    const auto add_ball = [&](const unsigned int ball, const double sign) {
+      for (const auto &[corner, share] : balls_.at(ball, place_of_corner, x))
+        add_group(groups.of(corner), sign * share);
+    };
+    if (of_ball)
+      add_ball(row.body_2, 1.);
+    if (row.partner == Partner::ball)
+      add_ball(unsigned(row.body_1), -1.);
     contact.ends.erase(std::remove_if(contact.ends.begin(), contact.ends.end(),
                                       [](const auto &end) {
                                         return std::abs(end.second) < 1e-12;
                                       }),
                        contact.ends.end());
-    const auto normal =
-        row_normal(input_, contact.row, ends, state_.obstacle_shift);
-    const auto axes = local_frame<dim>(normal);
-    const auto x = row_place(contact.row, ends, normal);
     for (unsigned int r = 0; r < dim; ++r) {
       contact.place[r] = x[r];
       for (unsigned int c = 0; c < dim; ++c)
@@ -269,6 +298,13 @@ namespace nsfd
         const double v = groups.velocity[g * dim + c];
         square += v * v;
       }
+      speed = std::max(speed, square);
+    }
+    for (const auto &obstacle : input_.obstacles) {
+      double square = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        if (const auto &v = obstacle.velocity[c])
+          square += std::pow(v->at(Point<dim>(), time + h / 2.), 2);
       speed = std::max(speed, square);
     }
     contacts_.clear();
@@ -357,118 +393,6 @@ namespace nsfd
       }
       contacts_.push_back(std::move(contact));
     }
-  }
-
-  // -------------------------------------------------------- end of the step
-
-  template <int dim>
-  auto LeapfrogContacts<dim>::account(const CornerGroups<dim> &groups)
-      -> Balance
-  {
-    Balance balance;
-    for (Contact &contact : contacts_) {
-      contact.velocity = relative_velocity(contact, groups.velocity);
-      const auto &row = contact.row;
-      const Vector &P = contact.impulse;
-      Vector mean;
-      for (unsigned int c = 0; c < dim; ++c)
-        mean[c] = (contact.velocity[c] + contact.before[c]) / 2.;
-      const double rubbing = tangential_dot<dim>(P, mean);
-      // to push apart what slides is a part of what friction takes
-      const double pushing = P[0] * mean[0];
-      balance.impact += std::max(0., -pushing);
-      balance.friction -= rubbing + std::max(0., pushing);
-      balance.positive_friction += std::max(0., rubbing);
-      balance.work += product<dim>(P, contact.obstacle);
-      balance.active += P[0] > 0.;
-      balance.penetration = std::max(balance.penetration, -row.gap);
-      balance.excess =
-          std::max(balance.excess, -row.gap - 1.001 * contact.known);
-    }
-    return balance;
-  }
-
-  template <int dim>
-  void LeapfrogContacts<dim>::accept()
-  {
-    surfaces_.store_facets(state_);
-    std::fill(state_.surface_impulse.begin(), state_.surface_impulse.end(), 0.);
-    std::fill(state_.surface_contact.begin(), state_.surface_contact.end(), 0);
-    state_.touches.clear();
-    for (const Contact &contact : contacts_) {
-      const auto &row = contact.row;
-      const std::size_t place = row.place;
-      const Vector &U = contact.velocity;
-      // facets that turn take any motion to a part across them
-      const double way =
-          time_step_ *
-          std::sqrt(std::max(product<dim>(U, U),
-                             product<dim>(contact.before, contact.before)));
-      for (const std::size_t one : contact.places) {
-        double &approach = state_.surface_approach[one],
-               &overlap = state_.surface_overlap[one];
-        approach = std::max({approach, row.approach, way});
-        overlap =
-            std::max({overlap, row.overlap, row.released ? -row.gap : 0.});
-      }
-      if (contact.impulse[0] <= 0.)
-        continue;
-      state_.surface_contact[place] |= SurfaceContacts<dim>::touches;
-      state_.surface_slip[place] +=
-          time_step_ * std::sqrt(tangential_dot<dim>(U, U));
-      SurfaceTouch touch;
-      touch.obstacle = row.partner == MovingRow<dim>::Partner::obstacle;
-      touch.block = row.block;
-      touch.material_2 =
-          discretization_.body_table().bodies[row.body_2].material;
-      touch.weight = row.weight;
-      touch.opening = row.gap + time_step_ * U[0];
-      for (unsigned int c = 0; c < dim; ++c) {
-        touch.position[c] = contact.place[c];
-        touch.normal[c] = contact.frame[c];
-        for (unsigned int r = 0; r < dim; ++r)
-          touch.impulse[c] += contact.frame[r * dim + c] * contact.impulse[r];
-        state_.surface_impulse[place * dim + c] += touch.impulse[c];
-      }
-      state_.touches.push_back(touch);
-    }
-    for (std::size_t k = 0; k < state_.obstacle_shift.size(); ++k)
-      if (const auto &v = input_.obstacles[k / 3].velocity[k % 3])
-        state_.obstacle_shift[k] +=
-            time_step_ * v->at(Point<dim>(), state_.time + time_step_ / 2.);
-    state_.last_step = time_step_;
-  }
-
-  template <int dim>
-  void LeapfrogContacts<dim>::add_impulses(const std::vector<int> &row_of_group,
-                                           std::vector<double> &rows) const
-  {
-    for (const Contact &contact : contacts_)
-      for (const auto &[group, share] : contact.ends) {
-        const int row = group < row_of_group.size() ? row_of_group[group] : -1;
-        if (row < 0)
-          continue;
-        for (unsigned int r = 0; r < dim; ++r)
-          for (unsigned int c = 0; c < dim; ++c)
-            rows[std::size_t(row) * dim + c] +=
-                share * contact.frame[r * dim + c] * contact.impulse[r];
-      }
-  }
-
-  template <int dim>
-  void LeapfrogContacts<dim>::show(State &state) const
-  {
-    state.obstacle_shift = state_.obstacle_shift;
-    state.surface_impulse = state_.surface_impulse;
-    state.surface_slip = state_.surface_slip;
-    state.surface_worn = state_.surface_worn;
-    state.surface_wear_speed = state_.surface_wear_speed;
-    state.surface_overlap = state_.surface_overlap;
-    state.surface_approach = state_.surface_approach;
-    state.surface_contact = state_.surface_contact;
-    state.surface_facet = state_.surface_facet;
-    state.surface_gap = state_.surface_gap;
-    state.touches = state_.touches;
   }
 
   template class LeapfrogContacts<2>;

@@ -1,12 +1,17 @@
 #pragma once
 
 #include "leapfrog_points.h"
+#include "time_integrator.h"
 
+#include "bodies/rigid_places.h"
 #include "bodies/row_geometry.h"
 #include "bodies/surface_contacts.h"
 #include "joined/corner_groups.h"
 #include "nonsmooth/one_step_problem.h"
 
+#include <map>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -83,6 +88,9 @@ namespace nsfd
       double penetration = 0., excess = 0.; ///< m
       unsigned int active = 0;
     };
+    /** What the step passes over, with @p groups and rigid bodies at its end.
+     */
+    std::optional<StepRejected> missed(const CornerGroups<dim> &groups);
     /** Of the step, with the velocities of the groups after it. */
     Balance account(const CornerGroups<dim> &groups);
     /** The balanced step is taken. */
@@ -93,12 +101,7 @@ namespace nsfd
 
     /** Places of the surfaces, and what touched in the last step. */
     void show(State &state) const;
-    const typename SurfaceContacts<dim>::Counters &counters() const
-    {
-      return surfaces_.counters();
-    }
-    /** Contacts that were not solved to the tolerance. */
-    unsigned long long inexact() const { return inexact_; }
+    void fill_counters(std::map<std::string, double> &counters) const;
 
   private:
     using Vector = std::array<double, dim>;
@@ -117,6 +120,14 @@ namespace nsfd
       bool turned = false, pushes = false; ///< friction opposes the mean
       bool can_part = true; ///< the motion along the normal is not prescribed
 
+      /** Of U_T where friction opposes the sum. */
+      Vector offset() const
+      {
+        Vector result{};
+        for (unsigned int c = 1; c < dim; ++c)
+          result[c] = -obstacle[c] + (turned ? before[c] : 0.);
+        return result;
+      }
       Vector in_frame(const Vector &v) const
       {
         Vector result{};
@@ -136,7 +147,6 @@ namespace nsfd
     void add(const Contact &contact, const Vector &impulse,
              std::vector<double> &velocity) const;
     bool turn(Contact &contact) const;
-    Vector offset(const Contact &contact) const;
     bool set_yield(const dealii::Tensor<1, dim> &normal,
                    const CornerGroups<dim> &groups, Contact &contact) const;
 
@@ -144,8 +154,10 @@ namespace nsfd
     const Discretization<dim> &discretization_;
     const OneStepProblem<dim> &all_;
     const BodyLayout<dim> layout_;
+    const RigidPlaces<dim> balls_;
     SurfaceContacts<dim> surfaces_;
-    State state_;                       ///< of the surfaces
+    State state_; ///< of the surfaces
+    State after_; ///< where they are at the end of the step
     std::vector<unsigned int> part_of_; ///< by body: of what was one
     std::size_t n_groups_ = 0; ///< of the wholes that the surfaces know
     double time_step_ = 0.;
@@ -156,6 +168,6 @@ namespace nsfd
     std::vector<unsigned int> chosen_;
     std::vector<int> cluster_of_;
     std::vector<double> inverse_mass_; ///< dim per group, 1/kg
-    unsigned long long inexact_ = 0;
+    unsigned long long inexact_ = 0;   ///< not solved to the tolerance
   };
 } // namespace nsfd

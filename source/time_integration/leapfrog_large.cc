@@ -75,7 +75,8 @@ namespace nsfd
                                  LeapfrogEnergies &energies)
   {
     turned_ += communicator_.sum(
-        points.turn([this](const std::size_t i) { return forces_.frame(i); }));
+        points.turn([this](const std::size_t i) { return forces_.frame(i); },
+                    rigid, groups));
     energies.turned = turned_;
     if (contacts_)
       contacts_->find(time, h, prescribed, rigid, groups);
@@ -247,13 +248,8 @@ namespace nsfd
   {
     if (!contacts_)
       return;
-    const auto &contacts = contacts_->counters();
-    c["contact_searches"] = double(contacts.searches);
-    c["contact_facets"] = double(contacts.facets);
-    c["contact_rows"] = double(contacts.rows);
-    c["contact_overlap"] = contacts.largest_overlap;
+    contacts_->fill_counters(c);
     c["contact_rounds"] = double(rounds_);
-    c["contact_problems_above_tolerance"] = double(contacts_->inexact());
   }
 
   template <int dim>

@@ -74,6 +74,12 @@ namespace nsfd
     /** The step is taken; true if points have been left to the search. */
     bool accept(LeapfrogPoints<dim> &points);
 
+    /** See LeapfrogContacts. */
+    std::optional<StepRejected> missed(const CornerGroups<dim> &groups)
+    {
+      return contacts_ ? contacts_->missed(groups) : std::nullopt;
+    }
+
     double stored() const { return communicator_.sum(forces_.stored()); }
     /** Before the forces at the end of a step of length @p h, which may not be:
         see inverted(). */
@@ -83,18 +89,16 @@ namespace nsfd
       if (front.acts())
         front_ = front;
     }
-    /** The step is not taken. */
-    void go_back() { forces_.histories().go_back(); }
-    /** No cell was well: the front is as it was, and holds for the forces of
-       the step before; shorter steps come. */
+    /** The step is not taken: before the forces are those at its start again,
+        with the @p front that they had. */
     void go_back(FrontViscosity &front)
     {
-      go_back();
+      forces_.histories().go_back();
       if (front.acts())
         front = front_;
-      front.holds = true;
-      stiffening_ *= 4.;
     }
+    /** No cell was well in a step of this length. */
+    void ask_for_shorter_steps() { stiffening_ *= 4.; }
     /** Where a cell is turned inside out; empty: nowhere. */
     std::string inverted() const;
     void show(State &state) const;

@@ -1,9 +1,37 @@
 #include "leapfrog_loads.h"
 
+#include "bodies/rigid_places.h"
 #include "discretization/loads.h"
+#include "nsfd/scene/scene_input.h"
+
+#include <algorithm>
 
 namespace nsfd
 {
+  template <int dim>
+  auto
+  LeapfrogLoads<dim>::extra_weights(const SceneInput &input,
+                                    const Discretization<dim> &discretization)
+      -> Forces
+  {
+    Forces result;
+    if (!input.large_motion ||
+        std::none_of(input.materials.begin(), input.materials.end(),
+                     [](const auto &material) { return material.rigid; }))
+      return result;
+    const BodyLayout<dim> layout(input, discretization);
+    const RigidPlaces<dim> places(layout, discretization.cells());
+    for (const MovingBody &body : layout.bodies())
+      if (body.extra_weight != 0.)
+        for (const auto &[corner, share] : places.centre(body.number)) {
+          auto &force =
+              result.emplace_back(corner, std::array<double, dim>()).second;
+          for (unsigned int c = 0; c < dim; ++c)
+            force[c] = share * body.extra_weight * input.gravity[c];
+        }
+    return result;
+  }
+
   template <int dim>
   void LeapfrogLoads<dim>::start(const double time,
                                  const CornerGroups<dim> &groups)
@@ -27,6 +55,9 @@ namespace nsfd
     time_ = time;
     of_corners_.assign(mesh_.n_corners() * dim, 0.);
     discretization_.add_loads(time, of_corners_);
+    for (const auto &[corner, force] : extra_weights_)
+      for (unsigned int c = 0; c < dim; ++c)
+        of_corners_[corner * dim + c] += force[c];
     of_groups_.assign(groups.force.size(), 0.);
     for (std::size_t i = 0; i < mesh_.n_corners(); ++i)
       for (unsigned int c = 0; c < dim; ++c)

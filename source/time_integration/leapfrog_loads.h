@@ -5,6 +5,9 @@
 #include "joined/hanging_nodes.h"
 #include "joined/viscous_forces.h"
 
+#include <array>
+#include <utility>
+
 namespace nsfd
 {
   /**
@@ -19,7 +22,8 @@ namespace nsfd
                   const Discretization<dim> &discretization,
                   const JoinedMesh<dim> &mesh, const HangingNodes<dim> &hanging)
         : discretization_(discretization), mesh_(mesh), hanging_(hanging),
-          cracks_(LeapfrogPressure<dim>::make(input, discretization, mesh))
+          cracks_(LeapfrogPressure<dim>::make(input, discretization, mesh)),
+          extra_weights_(extra_weights(input, discretization))
     {
     }
 
@@ -42,12 +46,18 @@ namespace nsfd
     const LeapfrogPressure<dim> *cracks() const { return cracks_.get(); }
 
   private:
+    /// of rigid bodies heavier than their cells: by corner, N
+    using Forces = std::vector<std::pair<std::size_t, std::array<double, dim>>>;
+
+    static Forces extra_weights(const SceneInput &input,
+                                const Discretization<dim> &discretization);
     void set(double time, const CornerGroups<dim> &groups);
 
     const Discretization<dim> &discretization_;
     const JoinedMesh<dim> &mesh_;
     const HangingNodes<dim> &hanging_;
     const std::unique_ptr<LeapfrogPressure<dim>> cracks_;
+    const Forces extra_weights_;
     std::vector<double> of_corners_, of_groups_; ///< empty: none
     std::vector<double> shares_;                 ///< see HangingNodes
     std::vector<double> sum_; ///< where there are several kinds

@@ -48,8 +48,12 @@ namespace nsfd
     using AxesOf =
         std::function<std::array<double, dim * dim>(std::size_t point)>;
     /** The faces have turned: rows n, t1, t2 of points of the mesh. Returns how
-        much more energy each stores along them, J, see LeapfrogChains. */
-    std::vector<double> turn(const AxesOf &axes_of);
+        much more energy each stores along them, J, see LeapfrogChains. Where
+        @p rigid bodies have turned (null: there are none), velocities are those
+        of other places. */
+    std::vector<double> turn(const AxesOf &axes_of,
+                             const RigidGroups<dim> *rigid,
+                             const CornerGroups<dim> &groups);
     /** A point of the mesh is separated: others look for what it touches. */
     void part(unsigned int point);
 

@@ -7,14 +7,14 @@
 
 namespace nsfd
 {
-  template <int dim>
-  void set_velocities(const std::vector<unsigned int> &moved,
-                      const std::size_t first, const JoinedMesh<dim> &mesh,
-                      const CornerGroups<dim> &groups,
-                      LeapfrogChains<dim> &chains)
+  namespace
   {
-    for (std::size_t k = first; k < moved.size(); ++k) {
-      const unsigned int a = moved[k];
+    template <int dim>
+    std::array<double, dim> relative_velocity(const unsigned int a,
+                                              const JoinedMesh<dim> &mesh,
+                                              const CornerGroups<dim> &groups,
+                                              const LeapfrogChains<dim> &chains)
+    {
       const auto &corners = mesh.corners(chains.point[a]);
       std::array<double, dim> v{}, U{};
       for (unsigned int side = 0; side < 2; ++side)
@@ -26,8 +26,30 @@ namespace nsfd
       for (unsigned int r = 0; r < dim; ++r)
         for (unsigned int c = 0; c < dim; ++c)
           U[r] += frame[r * dim + c] * v[c];
-      std::copy(U.begin(), U.end(), &chains.velocity[std::size_t(a) * dim]);
+      return U;
     }
+  } // namespace
+
+  template <int dim>
+  void set_velocities(const std::vector<unsigned int> &moved,
+                      const std::size_t first, const JoinedMesh<dim> &mesh,
+                      const CornerGroups<dim> &groups,
+                      LeapfrogChains<dim> &chains)
+  {
+    for (std::size_t k = first; k < moved.size(); ++k) {
+      const auto U = relative_velocity<dim>(moved[k], mesh, groups, chains);
+      std::copy(U.begin(), U.end(),
+                &chains.velocity[std::size_t(moved[k]) * dim]);
+    }
+  }
+
+  template <int dim>
+  void set_old_velocity(const unsigned int a, const JoinedMesh<dim> &mesh,
+                        const CornerGroups<dim> &groups,
+                        LeapfrogChains<dim> &chains)
+  {
+    const auto U = relative_velocity<dim>(a, mesh, groups, chains);
+    std::copy(U.begin(), U.end(), &chains.old_velocity[std::size_t(a) * dim]);
   }
 
   template <int dim>
@@ -63,6 +85,9 @@ namespace nsfd
   template void set_velocities(                                                \
       const std::vector<unsigned int> &, std::size_t, const JoinedMesh<dim> &, \
       const CornerGroups<dim> &, LeapfrogChains<dim> &);                       \
+  template void set_old_velocity(unsigned int, const JoinedMesh<dim> &,        \
+                                 const CornerGroups<dim> &,                    \
+                                 LeapfrogChains<dim> &);                       \
   template bool turn_friction(const std::vector<unsigned int> &, std::size_t,  \
                               bool, LeapfrogChains<dim> &)
   NSFD_INSTANTIATE(2);

@@ -15,6 +15,12 @@ namespace nsfd
                       const CornerGroups<dim> &groups,
                       LeapfrogChains<dim> &chains);
 
+  /** The U before the step of a point: that of its groups now. */
+  template <int dim>
+  void set_old_velocity(unsigned int point, const JoinedMesh<dim> &mesh,
+                        const CornerGroups<dim> &groups,
+                        LeapfrogChains<dim> &chains);
+
   /**
    * Friction that opposes the velocity of the end of a step gives energy where
    * sliding turns round in it: such points oppose the mean from then on, which

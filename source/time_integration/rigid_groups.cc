@@ -2,7 +2,6 @@
 
 #include "rigid_algebra.h"
 
-#include "bodies/body_layout.h"
 #include "core/gather_sums.h"
 #include "nsfd/core/archive.h"
 
@@ -38,18 +37,24 @@ namespace nsfd
         continue;
       const Member &member = members_[std::size_t(member_[row.group])];
       double g = supports.velocity(row, time, h, groups);
-      if (large_) { // what the turn adds on the way
-        using namespace space;
-        const Body &body = bodies_[member.body];
-        const Vec3 omega = body.spin(),
-                   r = in_space<dim>(
-                       member.rest +
-                       at_node<dim>(groups.displacement, member.group) -
-                       body.centre);
-        g -= h / 2. * cross(omega, cross(omega, r))[row.component];
-      }
+      if (large_)
+        g -= bodies_[member.body].beside_chord(
+            member.rest + at_node<dim>(groups.displacement, member.group),
+            h)[row.component];
       for (unsigned int i = 0; i < n_motions; ++i)
         own[member.body * n_motions + i].add(g * member.R[row.component][i]);
+    }
+    for (const Pin &pin : pins_) {
+      if (!communicator_.is_root())
+        break; // all ranks know all of them
+      const Body &body = bodies_[pin.body];
+      const auto x = body.place(pin.at);
+      const auto R = body.motions(x);
+      const Vec3 turn = body.beside_chord(x, h);
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int i = 0; i < n_motions; ++i)
+          own[pin.body * n_motions + i].add(((pin.at[c] - x[c]) / h - turn[c]) *
+                                            R[c][i]);
     }
     return sums(own);
   }

@@ -4,10 +4,12 @@
 #include "rigid_share.h"
 #include "turning_body.h"
 
+#include "bodies/body_layout.h"
 #include "core/order_free_sum.h"
 #include "joined/ghost_cells.h"
 
 #include <array>
+#include <string>
 
 namespace nsfd
 {
@@ -64,9 +66,9 @@ namespace nsfd
 
     /** They are where @p state has them, before find(). */
     void set_places(const State &state);
-    /** To the end of a step of length @p h, with velocities there; false where
-        it turns a body too far. */
-    bool fly(double h, CornerGroups<dim> &groups);
+    /** To the end of a step of length @p h, with velocities there. The name of
+        the fastest of the bodies that it turns too far; empty: none. */
+    std::string fly(double h, CornerGroups<dim> &groups);
     void show(State &state) const;
 
     /**
@@ -130,6 +132,7 @@ namespace nsfd
       Matrix inverse_of_rows{}; ///< G^+
       std::vector<Motion> free; ///< columns of E
       bool is_held = false;     ///< there are rows
+      bool is_given = false;    ///< mass or inertia are not those of its cells
       std::size_t first_free = 0;
       Motion velocity{}, before{}, without{}; ///< without: points
       Motion given{};                         ///< k R^T f, N s
@@ -143,6 +146,22 @@ namespace nsfd
       std::array<Motion, dim> motions(const dealii::Point<dim> &x) const;
       /** The angular velocity, axes of space. */
       Vec3 spin() const;
+      /** Where a place at rest is now. */
+      dealii::Point<dim> place(const Vec3 &at_rest) const;
+      /** What a turn adds to the velocity of a place @p x on its way through a
+          step of length @p h. */
+      Vec3 beside_chord(const dealii::Point<dim> &x, const double h) const
+      {
+        using namespace space;
+        const Vec3 omega = spin();
+        return (h / 2.) * cross(omega, cross(omega, in_space<dim>(x - centre)));
+      }
+    };
+
+    /** A place that does not move: at rest, and in space. */
+    struct Pin {
+      std::size_t body;
+      Vec3 at;
     };
 
     void set_inertia();
@@ -163,6 +182,7 @@ namespace nsfd
     const std::vector<int> body_of_corner_;
     const bool large_; ///< motions of any size
     std::vector<Body> bodies_;
+    std::vector<Pin> pins_;
     std::vector<Member> members_;
     std::vector<int> member_; ///< by group, -1: none
     std::size_t n_free_ = 0;

@@ -1,8 +1,8 @@
 #include "rigid_groups.h"
 
+#include "given_inertia.h"
 #include "rigid_algebra.h"
 
-#include "bodies/body_layout.h"
 #include "core/gather_sums.h"
 #include "discretization/cells.h"
 #include "linear_algebra/dense_lu.h"
@@ -55,6 +55,16 @@ namespace nsfd
         R[(a + 2) % 3][3 + a] = r[(a + 1) % 3];
       }
     return R;
+  }
+
+  template <int dim>
+  dealii::Point<dim> RigidGroups<dim>::Body::place(const Vec3 &at_rest) const
+  {
+    const Vec3 x = cells.place(at_rest);
+    dealii::Point<dim> result;
+    for (unsigned int c = 0; c < dim; ++c)
+      result[c] = x[c];
+    return result;
   }
 
   /** Centre, length and inertia of the rigid cells. */
@@ -110,6 +120,28 @@ namespace nsfd
     all = sums(own);
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       std::copy_n(&all[b * n], n, bodies_[b].rigid_mass.begin());
+    const auto given = given_inertia(discretization_, communicator_,
+                                     body_of_corner_, bodies_.size());
+    for (std::size_t b = 0; b < given.size(); ++b) {
+      Body &body = bodies_[b];
+      body.is_given = given[b].is_given;
+      if (!body.is_given)
+        continue;
+      const auto &[mass, I] = given[b].inertia;
+      for (unsigned int c = 0; c < dim; ++c)
+        body.centre[c] = given[b].centre[c];
+      // half the trace is polar, in the plane all of it
+      body.size = std::sqrt(
+          (dim == 2 ? I[2][2] : (I[0][0] + I[1][1] + I[2][2]) / 2.) / mass);
+      body.rigid_mass = {};
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          if (i < dim || j < dim)
+            body.rigid_mass[i][j] = i == j ? mass : 0.;
+          else
+            body.rigid_mass[i][j] = (dim == 2 ? I[2][2] : I[i - dim][j - dim]) /
+                                    (body.size * body.size);
+    }
     for (Body &body : bodies_) {
       body.cells.mass = body.rigid_mass[0][0];
       body.cells.rest = body.cells.centre = in_space<dim>(body.centre);
@@ -193,6 +225,15 @@ namespace nsfd
         own[(first + n + boundary) * n + i].add(C[i]);
       }
     }
+    for (const Pin &pin : pins_) {
+      if (!communicator_.is_root())
+        break; // all ranks know all of them
+      const Body &body = bodies_[pin.body];
+      for (const Motion &C : body.motions(body.place(pin.at)))
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            own[(pin.body * (n + n_rows) + i) * n + j].add(C[i] * C[j]);
+    }
     const auto all = sums(own);
     for (std::size_t b = 0; b < n_bodies; ++b) {
       Body &body = bodies_[b];
@@ -244,9 +285,24 @@ namespace nsfd
                                const CornerGroups<dim> &groups,
                                const PrescribedGroups<dim> &supports) const
   {
-    // what turns is where it is at the start only
-    const double h = (large_ ? 1e-9 : 1e-3) * end,
-                 allowed = large_ ? 1e-6 : 1e-9;
+    // what turns is where it is at the start only: in a time in which nothing
+    // turns by more than an angle p the chord of a turn leaves the velocity by
+    // p/2 of it, the round-off of places, epsilon of a radius, is epsilon/p
+    constexpr double angle = 1e-7;
+    double h = (large_ ? 1e-9 : 1e-3) * end;
+    for (unsigned int k = 0; large_ && k < 4; ++k) {
+      const auto all = asked(0., h, supports, groups);
+      double turn = 0.;
+      for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        Body body = bodies_[b];
+        body.velocity = times(body.inverse_of_rows, all[b]);
+        turn = std::max(turn, h * space::norm(body.spin()));
+      }
+      if (!(turn > 0.) || (turn > 0.5 * angle && turn < 2. * angle))
+        break;
+      h = std::min(1e-3 * end, h * angle / turn);
+    }
+    const double allowed = large_ ? 1e-6 : 1e-9;
     const std::vector<double> all_shares = {0., 0.3, 0.7, 1.};
     for (std::size_t k = 0; k < (large_ ? 1 : all_shares.size()); ++k) {
       const double share = all_shares[k];
@@ -276,20 +332,23 @@ namespace nsfd
     const auto place_of = [&](const Body &body, const std::size_t b,
                               const dealii::Point<dim> &node) {
       const auto rest = cells.place(b, node);
-      if (!large_)
-        return rest;
-      const Vec3 x = body.cells.place(in_space<dim>(rest));
-      dealii::Point<dim> now;
-      for (unsigned int c = 0; c < dim; ++c)
-        now[c] = x[c];
-      return now;
+      return large_ ? body.place(in_space<dim>(rest)) : rest;
     };
     std::vector<OrderFreeSum> own(bodies_.size() * n);
+    // of bodies whose mass is not that of their cells: of the cells
+    std::vector<OrderFreeSum> fit(bodies_.size() * n * n);
     const auto add = [&](const std::size_t body, const auto &R, const double m,
                          const double *v) {
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int c = 0; c < dim; ++c)
           own[body * n + i].add(m * R[c][i] * v[c]);
+    };
+    const auto add_mass = [&](const std::size_t body, const auto &R,
+                              const auto &S, const double m) {
+      for (unsigned int i = 0; i < n && bodies_[body].is_given; ++i)
+        for (unsigned int j = 0; j < n; ++j)
+          for (unsigned int c = 0; c < dim; ++c)
+            fit[(body * n + i) * n + j].add(m * R[c][i] * S[c][j]);
     };
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
       const std::size_t first = cells.first_node[b];
@@ -301,22 +360,32 @@ namespace nsfd
       for (unsigned int i = 0; i < shape->n_nodes; ++i) {
         const auto R =
             bodies_[body].motions(place_of(bodies_[body], b, shape->nodes[i]));
-        for (unsigned int j = 0; j < shape->n_nodes; ++j)
+        for (unsigned int j = 0; j < shape->n_nodes; ++j) {
           add(body, R, mass(i * dim, j * dim),
               &groups.velocity[groups.of(first + j) * dim]);
+          if (bodies_[body].is_given)
+            add_mass(body, R,
+                     bodies_[body].motions(
+                         place_of(bodies_[body], b, shape->nodes[j])),
+                     mass(i * dim, j * dim));
+        }
       }
     }
     for (const Member &member : members_)
-      if (member.counts)
+      if (member.counts) {
         add(member.body, member.R, member.mass,
             &groups.velocity[std::size_t(member.group) * dim]);
-    const auto momentum = sums(own);
+        add_mass(member.body, member.R, member.R, member.mass);
+      }
+    const auto momentum = sums(own), of_cells = sums(fit);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       Body &body = bodies_[b];
       DenseLU M;
       M.reinit(n);
       for (unsigned int i = 0; i < n; ++i)
-        std::copy_n(body.mass[i].begin(), n, M.row(int(i)));
+        std::copy_n(
+            (body.is_given ? of_cells[b * n + i] : body.mass[i]).begin(), n,
+            M.row(int(i)));
       body.velocity = momentum[b];
       M.factorise();
       M.solve(body.velocity.data());
@@ -329,6 +398,8 @@ namespace nsfd
   template RigidGroups<dim>::RigidGroups(                                      \
       const Discretization<dim> &, const JoinedMesh<dim> &,                    \
       const Communicator &, const GhostCells *, std::vector<int>);             \
+  template dealii::Point<dim> RigidGroups<dim>::Body::place(const Vec3 &)      \
+      const;                                                                   \
   template void RigidGroups<dim>::find(const CornerGroups<dim> &,              \
                                        PrescribedGroups<dim> &);               \
   template void RigidGroups<dim>::check(double, const CornerGroups<dim> &,     \

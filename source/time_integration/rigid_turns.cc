@@ -1,7 +1,12 @@
 #include "rigid_groups.h"
 
-#include "bodies/body_layout.h"
+#include "nsfd/scene/scene_input.h"
 #include "state/state.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 // RigidGroups in motions of any size.
 
@@ -69,6 +74,16 @@ namespace nsfd
           given.centre + rotation(given.orientation) * (body.cells.rest - rest);
       body.centre = point_of<dim>(body.cells.centre);
     }
+    pins_.clear();
+    const SceneInput &input = discretization_.input();
+    for (const PinInput &pin : input.pins)
+      for (const auto &whole : table.bodies)
+        if (whole.rigid >= 0 &&
+            input.materials[whole.material].name == pin.material) {
+          pins_.push_back(
+              {std::size_t(owner[std::size_t(whole.rigid)]), pin.at});
+          break;
+        }
   }
 
   /** Where places and centres of mass are; velocities become those of these. */
@@ -121,8 +136,9 @@ namespace nsfd
   }
 
   template <int dim>
-  bool RigidGroups<dim>::fly(const double h, CornerGroups<dim> &groups)
+  std::string RigidGroups<dim>::fly(const double h, CornerGroups<dim> &groups)
   {
+    const Body *fastest = nullptr; // of those that turn too far
     for (Body &body : bodies_) {
       Mat3 I{};
       for (unsigned int i = dim; i < n_motions; ++i)
@@ -133,11 +149,29 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         velocity[c] = body.velocity[c];
       if (!body.cells.fly(h, body.mass[0][0], I, dim == 2, centre, velocity,
-                          omega))
-        return false;
+                          omega)) {
+        // not to be a number is to be fastest
+        if (!fastest || !(norm(omega) <= norm(fastest->spin())))
+          fastest = &body;
+        continue;
+      }
       body.centre = point_of<dim>(centre);
       for (unsigned int k = dim; k < n_motions; ++k)
         body.velocity[k] = omega[dim == 2 ? 2 : k - dim] * body.size;
+    }
+    if (fastest) {
+      const auto &table = discretization_.body_table();
+      const auto &input = discretization_.input();
+      const auto of_part = std::find_if(
+          table.bodies.begin(), table.bodies.end(),
+          [number = fastest->parts.front().first](const auto &one) {
+            return one.rigid == int(number);
+          });
+      std::vector<double> place(dim);
+      std::copy_n(fastest->centre.begin_raw(), dim, place.begin());
+      return fmt::format("the rigid body of {} at ({:.4g}) m, by {:.2g} rad",
+                         input.materials[of_part->material].name,
+                         fmt::join(place, ", "), h * norm(fastest->spin()));
     }
     for (Member &member : members_) {
       const Vec3 x =
@@ -148,7 +182,7 @@ namespace nsfd
       member.R = bodies_[member.body].motions(point_of<dim>(x));
     }
     scatter(groups);
-    return true;
+    return {};
   }
 
   template <int dim>
@@ -176,7 +210,7 @@ namespace nsfd
   template Vec3 RigidGroups<dim>::Body::spin() const;                          \
   template void RigidGroups<dim>::set_places(const State &);                   \
   template void RigidGroups<dim>::set_centres(const CornerGroups<dim> &);      \
-  template bool RigidGroups<dim>::fly(double, CornerGroups<dim> &);            \
+  template std::string RigidGroups<dim>::fly(double, CornerGroups<dim> &);     \
   template void RigidGroups<dim>::show(State &) const
   NSFD_INSTANTIATE(2);
   NSFD_INSTANTIATE(3);

@@ -38,6 +38,9 @@ namespace nsfd
       reactions.assign(discretization.driven_boundaries().size() * dim, 0.);
     }
 
+    /** Driven boundaries move as they are told from the start on: what @p state
+        lacks of that comes by a blow, with the work P.(U- + U+)/2. */
+    void start(State &state);
     StepReport advance(const State &old, double h, State &next);
 
     Values reactions;
@@ -45,6 +48,15 @@ namespace nsfd
   private:
     void integrate(double t, double h, Vector &y);
     void read_off(const State &old, double h, const Vector &y, State &next);
+    double kinetic_energy(const Values &v) { return half(Operator::mass, v); }
+    /** x.A x / 2. */
+    double half(const Operator op, const Values &x)
+    {
+      this->delassus_.apply(op, x.data(), this->work_.body.data());
+      return this->communicator_.dot(x.data(), this->work_.body.data(),
+                                     this->n_) /
+             2.;
+    }
   };
 
   template <int dim>
@@ -118,6 +130,20 @@ namespace nsfd
     ARKStepGetNumSteps(memory, &steps);
     counters.steps += static_cast<unsigned long long>(steps);
     ARKStepGetCurrentStep(memory, &this->scales_.inner_step);
+  }
+
+  template <int dim>
+  void SmoothMotion<dim>::Equations::start(State &state)
+  {
+    Values after;
+    this->project(state.time, state.velocity.data(), after);
+    const double work = kinetic_energy(after) - kinetic_energy(state.velocity);
+    state.velocity = after;
+    state.relative_velocity.resize(this->n_rows_);
+    this->free_->relative_velocity(state.velocity.data(),
+                                   state.relative_velocity.data());
+    state.energy.kinetic += work;
+    state.energy.work += work;
   }
 
   template <int dim>
@@ -204,14 +230,8 @@ namespace nsfd
     next.rigid_drift =
         std::max(old.rigid_drift, this->communicator_.max(drift));
 
-    const auto half = [&](const Operator op, const Values &x) {
-      this->delassus_.apply(op, x.data(), this->work_.body.data());
-      return this->communicator_.dot(x.data(), this->work_.body.data(),
-                                     this->n_) /
-             2.;
-    };
     next.energy = old.energy;
-    next.energy.kinetic = half(Operator::mass, next.velocity);
+    next.energy.kinetic = kinetic_energy(next.velocity);
     next.energy.elastic = half(Operator::stiffness, next.displacement);
     next.energy.cohesive = this->communicator_.sum(stored);
     next.initial_energy = old.initial_energy;
@@ -253,6 +273,7 @@ namespace nsfd
   State SmoothMotion<dim>::start_from(State given)
   {
     resume_from(given);
+    equations_->start(given);
     return given;
   }
 

@@ -1,5 +1,6 @@
 // Implicit steps in which bodies pass each other by many times their
 // thickness: what touches on the way is not missed.
+#include "fast_scenes.h"
 #include "make_scene.h"
 
 #include "time_integration/time_integrator.h"
@@ -12,6 +13,7 @@
 
 using namespace nsfd;
 using namespace nsfd::test;
+using namespace nsfd::test::fast;
 
 namespace test_fast_bodies
 {
@@ -35,48 +37,6 @@ namespace test_fast_bodies
     while (scene.state.time < end)
       scene.advance_bisecting();
   }
-
-  /** Both have 10 kg per metre, 50 mm between them. */
-  const std::string shot_and_foil = R"(
-set dimension = 2
-set motion    = large
-subsection Mesh
-  set type = bodies
-end
-subsection Body: shot
-  set type         = rectangle
-  set lower corner = 0, -0.05
-  set upper corner = 0.1, 0.05
-  set cells        = 1, 1
-end
-subsection Body: foil
-  set type         = rectangle
-  set lower corner = 0.15, -0.5
-  set upper corner = 0.16, 0.5
-  set cells        = 1, 1
-end
-subsection Material: shot
-  set where              = shot
-  set model              = rigid
-  set density            = 1000
-  set initial velocity x = 10
-end
-subsection Material: foil
-  set where   = foil
-  set model   = rigid
-  set density = 1000
-end
-subsection Interface: all
-  set law = rigid
-end
-subsection Contact: all
-  set friction = 0
-end
-subsection Time
-  set end  = 1
-  set step = 1 ms
-end
-)";
 
   // up to 40 times the thickness in a step; 8 to 9.5 ms flew through, others
   // were caught by luck of where their steps ended
@@ -146,53 +106,6 @@ end
     }
   }
 
-  const std::string balls = R"(
-set dimension = 3
-set motion    = large
-subsection Mesh
-  set type = bodies
-end
-subsection Body: one
-  set type         = brick
-  set lower corner = -0.5, -0.5, -0.5
-  set upper corner = 0.5, 0.5, 0.5
-  set cells        = 1, 1, 1
-end
-subsection Body: two
-  set type         = brick
-  set lower corner = 4.5, -0.5, -0.5
-  set upper corner = 5.5, 0.5, 0.5
-  set cells        = 1, 1, 1
-end
-subsection Material: one
-  set where              = one
-  set model              = rigid
-  set bodies             = connected
-  set surface            = ball
-  set mass               = 1
-  set density            = 1
-  set initial velocity x = 1
-end
-subsection Material: two
-  set where   = two
-  set model   = rigid
-  set bodies  = connected
-  set surface = ball
-  set mass    = 3
-  set density = 1
-end
-subsection Interface: all
-  set law = rigid
-end
-subsection Contact: all
-  set friction = 0
-end
-subsection Time
-  set end  = 100
-  set step = 1
-end
-)";
-
   TEST(FastBodies, BallsMeet)
   {
     for (const double step : {0.3, 4., 7., 20., 60.}) {
@@ -204,38 +117,6 @@ end
       EXPECT_LT(centre(scene, 0), centre(scene, 1));
     }
   }
-
-  const std::string wire = R"(
-set dimension = 2
-set motion    = large
-subsection Mesh
-  set type         = rectangle
-  set lower corner = -0.1, -0.1
-  set upper corner = 0.1, 0.1
-  set cells        = 1, 1
-end
-subsection Material: m
-  set model              = rigid
-  set bodies             = connected
-  set surface            = ball
-  set density            = 1000
-  set initial velocity x = 10
-end
-subsection Interface: all
-  set law = rigid
-end
-subsection Obstacle: wire
-  set shape    = sphere
-  set where    = all
-  set point    = 0.8, 0
-  set radius   = 5 mm
-  set friction = 0
-end
-subsection Time
-  set end  = 1
-  set step = 1 ms
-end
-)";
 
   TEST(FastBodies, ThinObstacleIsNotPassed)
   {
@@ -254,51 +135,6 @@ end
       EXPECT_LT(centre(swept, 0), 0.8 - 10. * swept.state.time);
     }
   }
-
-  const std::string rod_and_disc = R"(
-set dimension = 2
-set motion    = large
-subsection Mesh
-  set type = bodies
-end
-subsection Body: rod
-  set type         = rectangle
-  set lower corner = -1, -0.02
-  set upper corner = 1, 0.02
-  set cells        = 1, 1
-end
-subsection Body: disc
-  set type         = rectangle
-  set lower corner = -0.05, 0.65
-  set upper corner = 0.05, 0.75
-  set cells        = 1, 1
-end
-subsection Material: rod
-  set where              = rod
-  set model              = rigid
-  set density            = 1000
-  set initial velocity x = -y
-  set initial velocity y = x
-end
-subsection Material: disc
-  set where   = disc
-  set model   = rigid
-  set bodies  = connected
-  set surface = ball
-  set mass    = 20
-  set density = 1000
-end
-subsection Interface: all
-  set law = rigid
-end
-subsection Contact: all
-  set friction = 0
-end
-subsection Time
-  set end  = 10
-  set step = 1
-end
-)";
 
   // its ends are on chords that do not come near the disc
   TEST(FastBodies, TurningRodHitsADisc)

@@ -395,5 +395,104 @@ end
                       scene.state.velocity[cells.bodies.first_dof[b] + 2 * i];
       EXPECT_NEAR(momentum, mass * 50., 1e-10 * mass * 50.);
     }
+    /** A rod of 2 m, pinned at its end, is let go where it is level: it passes
+        below the pin with I w^2 / 2 = m g l / 2, and the pin holds. */
+    TEST(LargeRigid, PinnedRodSwings)
+    {
+      for (const double step : {2., 1.}) {
+        Steps<2> scene(R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set lower corner = 0, -0.05
+  set upper corner = 2, 0.05
+  set cells        = 4, 1
+end
+subsection Material: rod
+  set model             = rigid
+  set bodies            = connected
+  set density           = 1000 kg/m^3
+  set mass              = 300
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Pin: end
+  set material = rod
+  set at       = 0, 0
+end
+subsection Loads
+  set gravity = 0, -10 m/s^2
+end
+subsection Time
+  set scheme = explicit
+  set step   = 2 ms
+  set end    = 3
+end
+)",
+                       {fmt::format("Time/step={} ms", step)});
+        const double m = 300., I = m / 12. * (4. + 0.01) + m;
+        double largest = 0., at_most = 0.;
+        while (scene.state.time < 1.2) {
+          ASSERT_LT(scene.step().balance_residual, 1e-12);
+          scene.leapfrog->show(scene.state);
+          const RigidState rod = body(scene.state, 0);
+          const Vec3 pin =
+              rod.centre + rotation(rod.orientation) * Vec3{-1., 0., 0.};
+          at_most = std::max(at_most, norm(pin));
+          largest = std::max(largest, std::abs(rod.spin[2]));
+        }
+        EXPECT_LT(at_most, 1e-5);
+        // it falls by 1 m; its weight acts at the centre
+        EXPECT_NEAR(largest / std::sqrt(2. * m * 10. / I), 1.,
+                    1e-4 * step * step / 4.);
+      }
+    }
+    /** A side that turns is one of a rigid body however fast and long it
+        does, and one that also becomes longer by a thousandth is not. */
+    TEST(LargeRigid, MotionsOfSidesAreCompared)
+    {
+      for (const double rate : {1e-6, 1., 1e4})
+        for (const double longer : {1., 1.001}) {
+          SCOPED_TRACE(rate * longer);
+          const auto build = [&] {
+            Steps<2> scene(fmt::format(R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type         = rectangle
+  set lower corner = 0, -0.05
+  set upper corner = 1, 0.05
+  set cells        = 5, 2
+end
+subsection Material: rod
+  set model   = rigid
+  set bodies  = connected
+  set density = 1000 kg/m^3
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Boundary: axle
+  set where          = left
+  set displacement x = -(y + 0.05) * sin({0:g} * t)
+  set displacement y = (y + 0.05) * (cos({0:g} * t) - 1 + ({1:g} - 1) * t * {0:g})
+end
+subsection Time
+  set scheme = explicit
+  set step   = 1e-4
+  set end    = 1e3
+end
+)",
+                                       rate, longer));
+          };
+          if (longer > 1.)
+            EXPECT_ANY_THROW(build());
+          else
+            EXPECT_NO_THROW(build());
+        }
+    }
+
   } // namespace
 } // namespace nsfd

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 
 namespace wall
 {
@@ -110,11 +112,24 @@ namespace wall
       return block;
     }
 
+    /** Of all blocks in @p text. */
+    double largest_restitution(const std::string &text)
+    {
+      const std::string entry = "set restitution = ";
+      double largest = 0.;
+      for (auto at = text.find(entry); at != std::string::npos;
+           at = text.find(entry, at + 1))
+        largest = std::max(
+            largest, std::strtod(text.c_str() + at + entry.size(), nullptr));
+      return largest;
+    }
+
     /**
      * Until bodies have met and waves have crossed them a few times, within
      * what ten seconds allow: cells times steps.
      */
-    Block times(const Draft &draft, Draw &draw, double &end)
+    Block times(const Draft &draft, const double restitution, Draw &draw,
+                double &end)
     {
       const bool statics = draft.integrator == "quasi-static",
                  is_explicit = draft.integrator == "explicit" ||
@@ -155,8 +170,13 @@ namespace wall
         block.entries.push_back("scheme = " + draft.integrator);
       block.entries.push_back("step = " + step);
       if (draft.integrator == "moreau-jean" && draw.chance(0.3))
-        block.entries.push_back(
-            fmt::format("theta = {:.2g}", draw.between(0.5, 1.)));
+        // above it the program warns that impacts give energy
+        block.entries.push_back(fmt::format(
+            "theta = {:.2f}",
+            std::max(
+                50.,
+                std::floor(100. * draw.between(0.5, 1. / (1. + restitution)))) /
+                100.));
       if (statics)
         block.entries.push_back(draw.chance(0.5)
                                     ? "at solution jump = relax"
@@ -248,7 +268,7 @@ namespace wall
     }
     if (!draft.large && draft.integrator == "moreau-jean" && draw.chance(0.15))
       add_block(text, {"Discretization", {"degree = 2"}});
-    add_block(text, times(draft, draw, scene.end));
+    add_block(text, times(draft, largest_restitution(text), draw, scene.end));
     add_block(text, {"Output", {"fields = false", "report = false"}});
     scene.keeps_momentum = draft.keeps_momentum;
     return scene;

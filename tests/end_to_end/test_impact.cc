@@ -1,0 +1,156 @@
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+// The benchmarks of doc/impact.md, coarser, against formulas.
+
+namespace end_to_end
+{
+  namespace
+  {
+    constexpr double pi = 3.14159265358979323846;
+
+    struct Impact {
+      double force = 0., duration = 0.; ///< largest, N or N/m; s
+    };
+
+    /**
+     * An elastic disc of radius R against a wall at the speed that presses it
+     * to a half width a, per thickness in plane strain: see doc/impact.md.
+     */
+    Impact hertz_disc(const double E, const double nu, const double R,
+                      const double a, const double rho, double &speed)
+    {
+      const double stiffness = E / (1. - nu * nu);
+      const auto force = [&](const double half_width) {
+        return pi * stiffness * half_width * half_width / (4. * R);
+      };
+      const auto approach = [&](const double half_width) {
+        return half_width > 0. ? force(half_width) / (pi * stiffness) *
+                                     (2. * std::log(2. * R / half_width) -
+                                      1. / (4. * (1. - nu)))
+                               : 0.;
+      };
+      constexpr unsigned int n = 20000;
+      std::vector<double> work = {0.};
+      for (unsigned int i = 1; i <= n; ++i) {
+        const double a_0 = a * (i - 1) / n, a_1 = a * i / n;
+        work.push_back(work.back() + (force(a_0) + force(a_1)) / 2. *
+                                         (approach(a_1) - approach(a_0)));
+      }
+      speed = std::sqrt(2. * work.back() / (pi * R * R * rho));
+      Impact impact;
+      impact.force = force(a);
+      // dt = dW / (P v), v = v_0 cos(phi) with W = W_max sin^2(phi)
+      double last = 0.;
+      for (unsigned int i = 1; i <= n; ++i) {
+        const double phi =
+            std::asin(std::min(1., std::sqrt(work[i] / work.back())));
+        impact.duration += 4. * work.back() * std::sin((phi + last) / 2.) *
+                           (phi - last) / speed / force(a * (i - 0.5) / n);
+        last = phi;
+      }
+      return impact;
+    }
+
+    /** Of the rows of a force: the largest mean over a thirtieth of the
+        @p duration, and from the first contact to the last one. */
+    Impact measured(const std::vector<double> &time,
+                    const std::vector<double> &force, const double duration)
+    {
+      std::vector<double> impulse = {0.};
+      for (std::size_t i = 1; i < time.size(); ++i)
+        impulse.push_back(impulse.back() +
+                          std::abs(force[i]) * (time[i] - time[i - 1]));
+      Impact impact;
+      double first = -1.;
+      for (std::size_t i = 0, k = 0; i < time.size(); ++i) {
+        while (time[i] - time[k] > duration / 30.)
+          ++k;
+        if (k > 0)
+          impact.force = std::max(impact.force, (impulse[i] - impulse[k]) /
+                                                    (time[i] - time[k]));
+        if (force[i] != 0.) {
+          if (first < 0.)
+            first = time[i];
+          impact.duration = time[i] - first;
+        }
+      }
+      return impact;
+    }
+  } // namespace
+
+  /** Halves of two discs; a sixth of the triangles of the benchmark. */
+  TEST(Impact, DiscsAsByHertz)
+  {
+    Launch launch{benchmark("hertz_discs"), {}};
+    launch.set = {"Mesh/file=" + (benchmark("hertz_discs").parent_path() /
+                                  "../meshes/hertz_discs_coarse.geo")
+                                     .string()};
+    const Workspace workspace;
+    const Result result = good_run(workspace, "discs", launch);
+    ASSERT_TRUE(result.completed()) << result.description();
+    double speed = 0.;
+    const Impact wanted = hertz_disc(70e9, 0.2, 1e-3, 2e-5, 2500., speed);
+    EXPECT_NEAR(speed, 1.56505, 1e-4); // as the scene says
+    const History history(
+        read_text(result.directory / "observables" / "force.csv"));
+    const Impact impact =
+        measured(history["time"], history["force_y"], wanted.duration);
+    expect_below("largest force",
+                 std::abs(2. * impact.force / wanted.force - 1.), 0.02,
+                 "demanded");
+    expect_below("duration", std::abs(impact.duration / wanted.duration - 1.),
+                 0.02, "demanded");
+  }
+  /**
+   * A plug driven out of a plate, by Recht and Ipson with the speed that just
+   * drives it out here.
+   */
+  TEST(Impact, PlugLeavesAsByRechtAndIpson)
+  {
+    const Workspace workspace;
+    const auto speed_after = [&](const double speed) {
+      Launch launch{benchmark("plug"), {}};
+      launch.set = {"Constants/speed=" + std::to_string(speed) + " m/s"};
+      const Result result =
+          good_run(workspace, "plug " + std::to_string(speed), launch);
+      EXPECT_TRUE(result.completed()) << result.description();
+      const auto last = [&](const char *name) {
+        return -History(read_text(result.directory / "observables" /
+                                  (std::string(name) + ".csv")))["velocity_y"]
+                    .back();
+      };
+      // what holds the plug sends both back
+      return std::min(last("plug"), last("projectile"));
+    };
+    double low = 30., high = 40.;
+    while (high - low > 0.5) {
+      const double middle = (low + high) / 2.;
+      (speed_after(middle) > 0. ? high : low) = middle;
+    }
+    const double limit = (low + high) / 2., share = 10. / 16.; // of 10 + 6 mm
+    for (const double speed : {60., 120.}) {
+      const double wanted = share * std::sqrt(speed * speed - limit * limit);
+      expect_below("speed after the plate at " + std::to_string(speed),
+                   std::abs(speed_after(speed) / wanted - 1.), 0.05,
+                   "demanded");
+    }
+  }
+
+  /** A rigid disc on a beam that breaks: no step of such an impact is taken
+      again. */
+  TEST(Impact, BallOnBeam)
+  {
+    const Workspace workspace;
+    const Result result =
+        good_run(workspace, "ball", {benchmark("ball_on_beam"), {}});
+    ASSERT_TRUE(result.completed()) << result.description();
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+  }
+} // namespace end_to_end
