@@ -265,20 +265,6 @@ namespace nsfd
   }
 
   template <int dim>
-  void MovingBodies<dim>::take_rigid_velocity(const std::size_t b)
-  {
-    const RigidVelocity now =
-        motion_.rigid[std::size_t(layout_[b].rigid)].velocity();
-    double *v = motion_.v.data() + bodies_.first_dof[b];
-    for (unsigned int d = 0; d < dim; ++d)
-      v[d] = now.centre[d];
-    if (dim == 2)
-      v[2] = now.spin[2];
-    else
-      std::copy_n(now.spin.begin(), 3, v + dim);
-  }
-
-  template <int dim>
   bool MovingBodies<dim>::move(const std::vector<double> &r,
                                const std::vector<double> &v)
   {
@@ -314,9 +300,17 @@ namespace nsfd
           std::copy_n(impulse + dim, 3, load.angular_impulse.begin());
           std::copy_n(start + dim, 3, spin.begin());
         }
-        if (!motion_.rigid[std::size_t(mover.rigid)].solve(load, spin))
+        RigidStep &step = motion_.rigid[std::size_t(mover.rigid)];
+        if (!step.solve(load, spin))
           return false;
-        take_rigid_velocity(b);
+        const RigidVelocity now = step.velocity();
+        double *end = motion_.v.data() + bodies_.first_dof[b];
+        for (unsigned int d = 0; d < dim; ++d)
+          end[d] = now.centre[d];
+        if (dim == 2)
+          end[2] = now.spin[2];
+        else
+          std::copy_n(now.spin.begin(), 3, end + dim);
       }
       set_step_end(b);
     }
@@ -326,9 +320,9 @@ namespace nsfd
   template <int dim>
   void MovingBodies<dim>::stay()
   {
+    std::fill(motion_.v.begin(), motion_.v.end(), 0.);
     for (std::size_t b = 0; b < layout_.size(); ++b) {
       motion_.rigid[std::size_t(layout_[b].rigid)].stay();
-      take_rigid_velocity(b);
       set_step_end(b);
     }
   }

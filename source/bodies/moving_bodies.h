@@ -101,7 +101,6 @@ namespace nsfd
 
     void make_bodies();
     RigidLoad load_of(const MovingBody &mover) const;
-    void take_rigid_velocity(std::size_t b);
     void set_step_end(std::size_t b);
     void set_body(std::size_t b);
     CellMotion motion_of(unsigned int cell) const;

@@ -56,10 +56,10 @@ namespace nsfd
     void apply_step(const double *springs, const std::vector<double> &x,
                     std::vector<double> &y) const;
 
-    /** A point sees motions of the space. */
-    bool parts(const std::size_t point) const
+    /** Points that see motions of the space, ascending. */
+    const std::vector<unsigned int> &parting_points() const
     {
-      return sights_.first[point] != sights_.first[point + 1];
+      return sights_.points;
     }
 
     /**
@@ -105,6 +105,8 @@ namespace nsfd
     void add_bodies(const Select &select, std::vector<double> &values) const;
     void add_springs(const double *springs, std::vector<double> &values) const;
     void multiply(const std::vector<double> &values, const double *x) const;
+    template <unsigned int size>
+    void multiply_springs(const double *springs, const double *x) const;
     void fetch_ghosts(const std::vector<double> &own) const;
     void return_ghosts(std::vector<double> &own) const;
 
@@ -130,6 +132,7 @@ namespace nsfd
     struct Sights {
       std::vector<std::size_t> first; ///< by point, and the end
       std::vector<Entry> entries;
+      std::vector<unsigned int> points; ///< that see anything, ascending
 
       /**
        * For all pairs (row, column) of what a point with the spring @p T sees:
@@ -160,7 +163,7 @@ namespace nsfd
       void for_springs(const double *springs, const unsigned int size,
                        const Work &work) const
       {
-        for (std::size_t i = 0; i + 1 < first.size(); ++i)
+        for (const std::size_t i : points)
           for_spring(i, springs + i * dim * dim, size, work);
       }
     } sights_; ///< what points see of the blocks

@@ -61,10 +61,6 @@ namespace nsfd
      */
     virtual bool move(const std::vector<double> &impulse,
                       const std::vector<double> &v) = 0;
-    /** All bodies are rigid, and what they may touch stands still. */
-    virtual bool may_stay() const { return false; }
-    /** In place of move(): they stay where they are, without a velocity. */
-    virtual void stay() {}
     /** v.M v of how far the motion is off what the last solve took it for. */
     virtual double error() const = 0;
     /** The motion of the step into @p next, whose impulses are known. */

@@ -360,16 +360,6 @@ namespace nsfd
   }
 
   template <int dim>
-  bool LargeMotionModel<dim>::may_stay() const
-  {
-    const SceneInput &input = parts_.input;
-    return std::all_of(input.materials.begin(), input.materials.end(),
-                       [](const auto &material) { return material.rigid; }) &&
-           std::none_of(input.obstacles.begin(), input.obstacles.end(),
-                        [](const auto &obstacle) { return obstacle.moves(); });
-  }
-
-  template <int dim>
   double LargeMotionModel<dim>::error() const
   {
     std::vector<double> change(bodies_.velocity());

@@ -39,8 +39,6 @@ namespace nsfd
     void linearise() override;
     bool move(const std::vector<double> &impulse,
               const std::vector<double> &v) override;
-    bool may_stay() const override;
-    void stay() override { bodies_.stay(); }
     double error() const override;
     void finish(const LawEvaluation<dim> &evaluation,
                 State &next) const override;

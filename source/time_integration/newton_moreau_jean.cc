@@ -21,6 +21,16 @@ namespace nsfd
   namespace
   {
     constexpr unsigned int most_iterations = 40;
+
+    /** All bodies are rigid, and what they may touch stands still. */
+    bool may_rest(const SceneInput &input)
+    {
+      return std::all_of(input.materials.begin(), input.materials.end(),
+                         [](const auto &material) { return material.rigid; }) &&
+             std::none_of(
+                 input.obstacles.begin(), input.obstacles.end(),
+                 [](const auto &obstacle) { return obstacle.moves(); });
+    }
   } // namespace
 
   template <int dim>
@@ -35,7 +45,10 @@ namespace nsfd
             bodies)),
         solver_name_(solver_name(input.solver.method, "frictional contact"))
   {
-    this->step_problem_.let_stay(bodies_->may_stay());
+    if (!may_rest(input))
+      return;
+    this->step_problem_.let_stay(true);
+    stay_ = [&bodies] { bodies.stay(); };
   }
 
   template <int dim>
@@ -114,7 +127,7 @@ namespace nsfd
       if (!part.converged)
         return total;
       if (part.rests && round == 0) {
-        bodies_->stay();
+        stay_();
         return total;
       }
       std::vector<double> v = v_free_;

@@ -3,6 +3,8 @@
 #include "body_model.h"
 #include "moreau_jean.h"
 
+#include <functional>
+
 namespace nsfd
 {
   template <int dim>
@@ -56,6 +58,7 @@ namespace nsfd
                      const SolverControl &control, unsigned int round);
 
     std::unique_ptr<BodyModel<dim>> bodies_;
+    std::function<void()> stay_; ///< in place of their motion
     const std::string solver_name_;
     unsigned long long iterations_ = 0, most_iterations_ = 0;
 

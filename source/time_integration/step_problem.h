@@ -32,7 +32,8 @@ namespace nsfd
     /** What the input asks of the solver of a step. */
     SolverControl control(unsigned int idle_rounds) const;
 
-    /** Bodies that rest will be left where they are: see BodyModel::stay(). */
+    /** Bodies that rest will be left where they are: see MovingBodies::stay().
+     */
     void let_stay(const bool may) { may_stay_ = may; }
 
     /** A step begins: friction opposes the velocity at its end everywhere. */
