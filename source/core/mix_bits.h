@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -13,6 +14,12 @@ namespace nsfd
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
+  }
+
+  /** Random in [0, 1), the same on every machine. */
+  inline double uniform(const std::uint64_t seed, const std::uint64_t number)
+  {
+    return std::ldexp(double(mixed(mixed(seed) + number) >> 11), -53);
   }
 
   /** @p sum mixed with @p size bytes, eight by eight: a checksum. */

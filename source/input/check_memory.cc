@@ -20,7 +20,7 @@ namespace nsfd
       if (mesh.split_simplices)
         n *= dimension + 1;
       if (mesh.split_barycentric)
-        n *= 6.;
+        n *= dimension == 2 ? 6. : 24.;
       return n * refined;
     }
 

@@ -19,8 +19,8 @@ namespace nsfd
       const auto value = reader.raw(
           "type", dimension == 2 ? "rectangle" : "brick",
           "rectangle, brick, notched plate, crossed triangles, diagonal "
-          "triangles, tetrahedra, bodies, file, voronoi, or a generator of "
-          "deal.II");
+          "triangles, tetrahedra, bodies, file, voronoi, isotropic, or a "
+          "generator of deal.II");
       if (!value)
         return "";
       const std::string type = collapse_blanks(value->text());
@@ -64,9 +64,9 @@ namespace nsfd
       return type && type->has_simplices(mesh);
     }
 
-    /** Why there are no triangles to cut, and what to write; empty: there are.
+    /** Why there are no simplices to cut, and what to write; empty: there are.
      */
-    std::array<std::string, 2> no_triangles(const MeshInput &mesh,
+    std::array<std::string, 2> no_simplices(const MeshInput &mesh,
                                             const unsigned int dimension)
     {
       if (mesh.type == "bodies")
@@ -75,15 +75,12 @@ namespace nsfd
       if (mesh.split_simplices)
         return {{"`split simplices = true` has made quads and hexes of them",
                  "write one of the two"}};
-      if (dimension == 3)
-        return {{has_simplex_cells(mesh) ? "the cells are tetrahedra"
-                                         : "the cells are hexahedra",
-                 has_simplex_cells(mesh)
-                     ? "write split simplices = true, for hexes, or "
-                       "refinements = 1"
-                     : "write refinements = 1"}};
       if (has_simplex_cells(mesh))
         return {};
+      if (dimension == 3)
+        return {{"the cells are hexahedra",
+                 "take type = tetrahedra or isotropic, or write refinements = "
+                 "1"}};
       return {{"the cells are quads",
                mesh.type == "file"
                    ? "mesh the file with triangles (geometries: cell shape = "
@@ -91,28 +88,36 @@ namespace nsfd
                : mesh.type == "voronoi"
                    ? "mesh the grains with triangles in a file "
                      "(prm/meshes/polycrystal.geo), or remove this line"
-                   : "take type = crossed triangles or diagonal triangles, or "
+                   : "take type = isotropic, crossed triangles or diagonal "
+                     "triangles, or "
                      "remove this line"}};
     }
 
-    /** Entry `split`: of meshes of triangles. */
+    /** Entry `split`: of meshes of triangles and tetrahedra. */
     bool read_barycentric(SectionReader &reader, const MeshInput &mesh,
                           const unsigned int dimension)
     {
+      const auto type = find_mesh_type(mesh.type);
       // a file that cannot be read has its own error
-      const bool is_unread = (mesh.type == "file" || mesh.type == "voronoi") &&
+      const bool is_unread = type->is_one_mesh() && !type->is_for_bodies() &&
                              mesh.named == nullptr;
       const auto [reason, advice] = is_unread ? std::array<std::string, 2>()
-                                              : no_triangles(mesh, dimension);
+                                              : no_simplices(mesh, dimension);
       if (!reason.empty() && !reader.has("split"))
         return false;
       const bool is_wanted =
-          reader.choice("split", "none", {"none", "barycentric"},
-                        "none, or barycentric: every triangle into six, at "
-                        "its midpoints and centroid") == "barycentric";
+          reader.choice("split", type->split(mesh), {"none", "barycentric"},
+                        dimension == 2
+                            ? "none, or barycentric: every triangle into six, "
+                              "at its midpoints and centroid"
+                            : "none, or barycentric: every tetrahedron into "
+                              "twenty-four, at midpoints and centroids") ==
+          "barycentric";
       if (is_wanted && !reason.empty())
         reader.error("split",
-                     "split = barycentric cuts triangles, but " + reason,
+                     std::string("split = barycentric cuts ") +
+                         (dimension == 2 ? "triangles" : "tetrahedra") +
+                         ", but " + reason,
                      advice);
       return is_wanted;
     }

@@ -1,6 +1,7 @@
 #include "read_sections.h"
 
 #include "mesh/named_mesh.h"
+#include "nsfd/mesh/mesh_type.h"
 #include "parameters/formula.h"
 
 #include <fmt/format.h>
@@ -56,9 +57,10 @@ namespace nsfd
     /** The file of the mesh could not be read: its groups are unknown. */
     bool lacks_its_mesh(const SceneInput &scene)
     {
+      const auto type = find_mesh_type(scene.mesh.type);
       return !scene.mesh.named &&
-             (scene.mesh.type == "file" || scene.mesh.type == "voronoi" ||
-              scene.mesh.type.empty());
+             (scene.mesh.type.empty() ||
+              (type && type->is_one_mesh() && !type->is_for_bodies()));
     }
 
     std::vector<std::string> body_names(const SceneInput &scene)

@@ -63,8 +63,19 @@ namespace nsfd
   /**
    * Cut every triangle into six, by the lines from its centroid to its corners
    * and to the midpoints of its edges; ids of cells and faces are inherited.
+   * If it @p is_straight, an edge is cut where the line between the centroids
+   * of its two triangles crosses it, as of Powell and Sabin: a crack may then
+   * run from one to the other without a bend.
    */
-  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh);
+  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh,
+                                   bool is_straight = false);
+
+  /**
+   * The same of tetrahedra: into twenty-four, by planes through centroid, an
+   * edge and its opposite middle; from centroid to centroid through the face.
+   */
+  CoarseMesh<3> split_at_centroids(const CoarseMesh<3> &mesh,
+                                   bool is_straight = false);
 
   /** Empty mesh, stray values, inverted and degenerate cells, doubly joined
    * faces. */

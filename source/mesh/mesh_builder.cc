@@ -51,9 +51,8 @@ namespace nsfd
       // a mesh of one shape without simplices has been split, or need not be
       if (problems.empty() && input.split_simplices && has_simplices(mesh))
         mesh = split_at_midpoints(mesh);
-      if constexpr (dim == 2)
-        if (problems.empty() && input.split_barycentric)
-          mesh = split_at_centroids(mesh);
+      if (problems.empty() && input.split_barycentric)
+        mesh = split_at_centroids(mesh, type->is_cut_straight());
       return mesh;
     }
 

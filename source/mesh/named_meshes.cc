@@ -2,21 +2,16 @@
 #include "level_mesh.h"
 #include "mesh_entries.h"
 #include "mesh_file.h"
-#include "named_mesh.h"
+#include "named_mesh_type.h"
 #include "voronoi.h"
 
 #include "nsfd/parameters/section_reader.h"
 #include "parameters/input_errors.h"
-#include "parameters/parameter_file.h"
-#include "parameters/quantity.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <map>
 
 namespace nsfd
 {
@@ -24,90 +19,6 @@ namespace nsfd
 
   namespace
   {
-    const std::map<std::string, MeshFormat> formats = {
-        {"gmsh", MeshFormat::gmsh_mesh}, {"geo", MeshFormat::gmsh_geometry},
-        {"cad", MeshFormat::cad},        {"abaqus", MeshFormat::abaqus},
-        {"ucd", MeshFormat::ucd},        {"vtk", MeshFormat::vtk},
-        {"vtu", MeshFormat::vtu}};
-
-    MeshFormat read_format(SectionReader &reader, const std::string &file,
-                           const bool exists)
-    {
-      std::vector<std::string> names = {"auto"};
-      for (const auto &[name, format] : formats)
-        names.push_back(name);
-      const std::string name = reader.choice(
-          "format", "auto", names,
-          "auto (by the name of the file), gmsh, geo (script of Gmsh), cad "
-          "(STEP, IGES, BREP), abaqus, ucd, vtk, vtu");
-      const auto found = formats.find(name);
-      if (found != formats.end())
-        return found->second;
-      const auto guessed = guess_format(file);
-      if (!guessed && exists)
-        reader.error("file",
-                     fmt::format("`{}`: no mesh is read from a file of this "
-                                 "name",
-                                 file),
-                     fmt::format("its name must end in one of {}, or `format` "
-                                 "must say what it is",
-                                 listed_mesh_extensions()));
-      return guessed.value_or(MeshFormat::gmsh_mesh);
-    }
-
-    /** `mm`, or a number of scene units. */
-    double read_unit(SectionReader &reader)
-    {
-      const std::string text = "of the coordinates in the file: m, mm, um, ... "
-                               "or a number";
-      const auto raw = reader.raw("length unit", "m", text);
-      if (!raw)
-        return 1.;
-      const std::string word = collapse_blanks(raw->text());
-      if (const auto unit = find_unit(word)) {
-        if (unit->unit == units::length)
-          return *scaled_number("1", *unit);
-        reader.error("length unit",
-                     fmt::format("length unit = {} is no length", word),
-                     "write for example: mm");
-        return 1.;
-      }
-      return reader.number_in(*raw, "length unit", "mm", units::length,
-                              Range::positive());
-    }
-
-    bool can_be_opened(SectionReader &reader, const std::string &file)
-    {
-      if (file.empty())
-        return false;
-      if (std::filesystem::is_directory(file)) {
-        reader.error("file", fmt::format("`{}` is a folder", file),
-                     "write the name of a mesh in it");
-        return false;
-      }
-      if (std::filesystem::exists(file) &&
-          !std::filesystem::is_regular_file(file)) {
-        reader.error("file", fmt::format("`{}` is no ordinary file", file),
-                     "write the name of a mesh");
-        return false;
-      }
-      if (!std::ifstream(file)) {
-        reader.error("file", fmt::format("there is no file `{}`", file),
-                     "paths are relative to the folder of the parameter file");
-        return false;
-      }
-      return true;
-    }
-
-    /** What runs away ends by it; what is large may ask for more. */
-    double read_meshing_time(SectionReader &reader)
-    {
-      constexpr double one_day = 86400.;
-      return reader.number("meshing time", "20", units::none,
-                           {0., one_day, true, false},
-                           "s of CPU that Gmsh may take");
-    }
-
     double read_element_size(SectionReader &reader, const bool is_geometry)
     {
       if (!is_geometry) {
@@ -154,29 +65,13 @@ namespace nsfd
                          "them into quads; or mesh with one shape");
     }
 
-    void store(SectionReader &reader, const std::string &entry,
-               NamedMesh &&named, const std::vector<std::string> &problems,
-               MeshInput &mesh)
-    {
-      for (const std::string &problem : problems)
-        reader.error(entry, problem);
-      if (problems.empty())
-        mesh.named = std::make_shared<NamedMesh>(std::move(named));
-    }
-
     void read_mesh_from_file(SectionReader &reader,
                              const unsigned int dimension, MeshInput &mesh)
     {
       const unsigned int n_before = reader.errors().n_errors();
       MeshFileRequest request;
       request.dimension = dimension;
-      request.file = reader.file("file", "mesh or geometry", "plate.msh");
-      const bool exists = can_be_opened(reader, request.file);
-      request.format = read_format(reader, request.file, exists);
-      if (request.format == MeshFormat::cad)
-        reader.refuse({"length unit"}, "CAD files name their own unit");
-      else
-        request.unit = read_unit(reader);
+      const bool exists = read_file_entries(reader, request);
       const bool is_geometry = request.format == MeshFormat::cad ||
                                request.format == MeshFormat::gmsh_geometry;
       request.element_size = read_element_size(reader, is_geometry);
@@ -194,7 +89,7 @@ namespace nsfd
         problem.insert(0, fmt::format("`{}`: ", request.file));
       if (problems.empty())
         check_shapes(reader, named, mesh.split_simplices);
-      store(reader, "file", std::move(named), problems, mesh);
+      store_named_mesh(reader, "file", std::move(named), problems, mesh);
     }
 
     void read_voronoi(SectionReader &reader, MeshInput &mesh)
@@ -243,7 +138,8 @@ namespace nsfd
       NamedMesh named = voronoi_mesh(request, problems);
       if (problems.empty())
         put_in_order(named, 1., false, problems);
-      store(reader, "element size", std::move(named), problems, mesh);
+      store_named_mesh(reader, "element size", std::move(named), problems,
+                       mesh);
     }
 
     template <int dim>
@@ -282,35 +178,36 @@ namespace nsfd
       }
     }
 
-    /** Brings its own cells and groups: MeshInput::named. */
-    class NamedMeshType : public MeshType
-    {
-    public:
-      bool is_for_bodies() const override { return false; }
-      bool has_simplices(const MeshInput &mesh) const override
-      {
-        return mesh.named && all_simplices(*mesh.named);
-      }
-      double n_cells(const MeshInput &mesh, unsigned int) const override
-      {
-        return mesh.named ? double(mesh.named->cells.size()) : 1.;
-      }
+  } // namespace
 
-    private:
-      void make(const MeshInput &input, const unsigned int refinements,
-                std::vector<std::string> &problems,
-                CoarseMesh<2> &mesh) const override
-      {
-        mesh = named_mesh<2>(input, refinements, problems);
-      }
-      void make(const MeshInput &input, const unsigned int refinements,
-                std::vector<std::string> &problems,
-                CoarseMesh<3> &mesh) const override
-      {
-        mesh = named_mesh<3>(input, refinements, problems);
-      }
-    };
+  bool NamedMeshType::has_simplices(const MeshInput &mesh) const
+  {
+    return mesh.named && all_simplices(*mesh.named);
+  }
 
+  double NamedMeshType::n_cells(const MeshInput &mesh, unsigned int) const
+  {
+    return mesh.named ? double(mesh.named->cells.size()) : 1.;
+  }
+
+  void NamedMeshType::make(const MeshInput &input,
+                           const unsigned int refinements,
+                           std::vector<std::string> &problems,
+                           CoarseMesh<2> &mesh) const
+  {
+    mesh = named_mesh<2>(input, refinements, problems);
+  }
+
+  void NamedMeshType::make(const MeshInput &input,
+                           const unsigned int refinements,
+                           std::vector<std::string> &problems,
+                           CoarseMesh<3> &mesh) const
+  {
+    mesh = named_mesh<3>(input, refinements, problems);
+  }
+
+  namespace
+  {
     class FileMesh final : public NamedMeshType
     {
     public:
@@ -341,11 +238,4 @@ namespace nsfd
     NSFD_REGISTER(MeshTypeRegistry, VoronoiMesh, "voronoi",
                   "quadrilaterals in the grains of a polycrystal");
   } // namespace
-
-  bool read_split(SectionReader &reader)
-  {
-    return reader.boolean("split simplices", false,
-                          "cut triangles into three quads, tetrahedra into "
-                          "four hexes: opens every degree");
-  }
 } // namespace nsfd

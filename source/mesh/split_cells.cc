@@ -179,16 +179,45 @@ namespace nsfd
     return result;
   }
 
-  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh)
+  namespace
+  {
+    /** An edge that is cut, and the centroids on its two sides. */
+    struct CutEdge {
+      std::array<unsigned int, 2> ends;
+      std::array<unsigned int, 2> centres = {{no_vertex, no_vertex}};
+    };
+
+    /** Of the line between the centroids with the edge. */
+    Point<2> crossing(const CutEdge &edge,
+                      const std::vector<Point<2>> &vertices)
+    {
+      const Point<2> &a = vertices[edge.ends[0]], &b = vertices[edge.ends[1]],
+                     &g = vertices[edge.centres[0]];
+      const Tensor<1, 2> along = b - a, across = vertices[edge.centres[1]] - g,
+                         to = g - a;
+      const double t = (to[0] * across[1] - to[1] * across[0]) /
+                       (along[0] * across[1] - along[1] * across[0]);
+      // no third of an edge is cut off: cells would be low
+      return a + std::clamp(t, 1. / 3., 2. / 3.) * along;
+    }
+  } // namespace
+
+  CoarseMesh<2> split_at_centroids(const CoarseMesh<2> &mesh,
+                                   const bool is_straight)
   {
     CoarseMesh<2> result;
     result.vertices = mesh.vertices;
     Middles<2> middles(result.vertices);
+    std::map<unsigned int, CutEdge> edges; // by middle
     for (const auto &cell : mesh.cells) {
       const unsigned int centre = middles.of_cell(cell.vertices);
       for (unsigned int v = 0; v < 3; ++v) {
         const unsigned int a = cell.vertices[v], b = cell.vertices[(v + 1) % 3];
         const unsigned int middle = middles.of({a, b});
+        if (is_straight) {
+          const auto [entry, is_new] = edges.emplace(middle, CutEdge{{{a, b}}});
+          entry->second.centres[is_new ? 0 : 1] = centre;
+        }
         CellData<2> part = cell;
         for (const auto &corners :
              {std::array{a, middle, centre}, std::array{middle, b, centre}}) {
@@ -197,8 +226,107 @@ namespace nsfd
         }
       }
     }
+    for (const auto &[middle, edge] : edges)
+      if (edge.centres[1] != no_vertex)
+        result.vertices[middle] = crossing(edge, result.vertices);
     split_faces(mesh.boundary.boundary_lines, middles,
                 result.boundary.boundary_lines);
+    return result;
+  }
+
+  namespace
+  {
+    /** A face that is cut, and the centroids on its two sides. */
+    struct CutFace {
+      std::array<unsigned int, 3> corners;
+      std::array<unsigned int, 2> centres = {{no_vertex, no_vertex}};
+    };
+
+    /** Of the line between the centroids with the face. */
+    Point<3> crossing(const CutFace &face,
+                      const std::vector<Point<3>> &vertices)
+    {
+      const Point<3> &a = vertices[face.corners[0]],
+                     &b = vertices[face.corners[1]],
+                     &c = vertices[face.corners[2]],
+                     &g = vertices[face.centres[0]];
+      const Tensor<1, 3> normal = cross_product_3d(b - a, c - a),
+                         across = vertices[face.centres[1]] - g;
+      const Point<3> p = g + ((a - g) * normal) / (across * normal) * across;
+      std::array<double, 3> shares;
+      shares[0] = cross_product_3d(b - p, c - p) * normal;
+      shares[1] = cross_product_3d(c - p, a - p) * normal;
+      shares[2] = cross_product_3d(a - p, b - p) * normal;
+      const double least = *std::min_element(shares.begin(), shares.end()) /
+                           normal.norm_square();
+      // not near an edge, or behind it: cells would be low
+      constexpr double enough = .1, third = 1. / 3.;
+      const Point<3> middle = a + third * ((b - a) + (c - a));
+      const double way =
+          least < enough ? (third - enough) / (third - least) : 1.;
+      return middle + way * (p - middle);
+    }
+
+    /** The corners of a tetrahedron of positive volume. */
+    std::vector<unsigned int> positive(std::vector<unsigned int> corners,
+                                       const std::vector<Point<3>> &vertices)
+    {
+      const Point<3> &a = vertices[corners[0]];
+      if (cross_product_3d(vertices[corners[1]] - a, vertices[corners[2]] - a) *
+              (vertices[corners[3]] - a) <
+          0.)
+        std::swap(corners[2], corners[3]);
+      return corners;
+    }
+  } // namespace
+
+  CoarseMesh<3> split_at_centroids(const CoarseMesh<3> &mesh,
+                                   const bool is_straight)
+  {
+    CoarseMesh<3> result;
+    result.vertices = mesh.vertices;
+    Middles<3> middles(result.vertices);
+    std::map<unsigned int, CutFace> faces; // by middle
+    for (const auto &cell : mesh.cells) {
+      const unsigned int centre = middles.of_cell(cell.vertices);
+      for (const auto &local : cell_faces<3>(4)) {
+        const unsigned int a = cell.vertices[local[0]],
+                           b = cell.vertices[local[1]],
+                           c = cell.vertices[local[2]];
+        const unsigned int middle = middles.of({a, b, c});
+        if (is_straight) {
+          const auto [entry, is_new] =
+              faces.emplace(middle, CutFace{{{a, b, c}}});
+          entry->second.centres[is_new ? 0 : 1] = centre;
+        }
+        CellData<3> part = cell;
+        for (const auto &[from, to] :
+             {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+          const unsigned int half = middles.of({from, to});
+          for (const unsigned int end : {from, to}) {
+            part.vertices =
+                positive({end, half, middle, centre}, result.vertices);
+            result.cells.push_back(part);
+          }
+        }
+      }
+    }
+    for (const auto &[middle, face] : faces)
+      if (face.centres[1] != no_vertex)
+        result.vertices[middle] = crossing(face, result.vertices);
+    for (const auto &face : mesh.boundary.boundary_quads) {
+      const unsigned int middle = middles.of(face.vertices);
+      for (unsigned int v = 0; v < 3; ++v) {
+        const unsigned int from = face.vertices[v],
+                           to = face.vertices[(v + 1) % 3],
+                           half = middles.of({from, to});
+        for (const unsigned int end : {from, to}) {
+          CellData<2> part = face;
+          part.vertices = {end, half, middle};
+          result.boundary.boundary_quads.push_back(part);
+        }
+      }
+    }
     return result;
   }
 

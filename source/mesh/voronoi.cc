@@ -242,12 +242,6 @@ namespace nsfd
       std::vector<std::vector<unsigned int>> corners_; ///< of every grain
     };
 
-    /** In [0, 1), the same on every machine. */
-    double random(const std::uint64_t seed, const std::uint64_t number)
-    {
-      return std::ldexp(double(mixed(mixed(seed) + number) >> 11), -53);
-    }
-
     /** The mean size of a grain: the diagram is made for grains of size 1. */
     double grain_size(const VoronoiRequest &request)
     {
@@ -264,8 +258,8 @@ namespace nsfd
       const Polygon box = {{0., 0.}, {size.x, 0.}, size, {0., size.y}};
       std::vector<PlaneVector> seeds;
       for (unsigned int s = 0; s < request.grains; ++s)
-        seeds.push_back({random(request.seed, 2 * s) * size.x,
-                         random(request.seed, 2 * s + 1) * size.y});
+        seeds.push_back({uniform(request.seed, 2 * s) * size.x,
+                         uniform(request.seed, 2 * s + 1) * size.y});
       std::vector<Polygon> grains = diagram(seeds, box);
       for (unsigned int i = 0; i < request.relaxation; ++i) {
         for (std::size_t s = 0; s < seeds.size(); ++s)

@@ -95,9 +95,9 @@ namespace nsfd
     std::size_t begin = 0;
     int depth = 0;
     for (std::size_t i = 0; i <= text_.size(); ++i) {
-      if (i < text_.size() && text_[i] == '(')
+      if (i < text_.size() && (text_[i] == '(' || text_[i] == '['))
         ++depth;
-      if (i < text_.size() && text_[i] == ')')
+      if (i < text_.size() && (text_[i] == ')' || text_[i] == ']'))
         --depth;
       if (i == text_.size() || (text_[i] == separator && depth <= 0)) {
         result.push_back(part(begin, i - begin));

@@ -102,10 +102,13 @@ namespace nsfd
       return lines;
     const NamedMesh &mesh = *input.mesh.named;
     lines.push_back(
-        {"cells", count_of_shapes(mesh) +
-                      (input.mesh.split_simplices ? ", split at their midpoints"
-                       : input.mesh.split_barycentric ? ", each cut into six"
-                                                      : "")});
+        {"cells",
+         count_of_shapes(mesh) +
+             (input.mesh.split_simplices ? ", split at their midpoints"
+              : input.mesh.split_barycentric
+                  ? (input.dimension == 2 ? ", each cut into six"
+                                          : ", each cut into twenty-four")
+                  : "")});
     const std::vector<Use> uses = all_uses(input);
     constexpr unsigned int n_shown = 12; // of those that nothing names
     unsigned int n_unused = 0;

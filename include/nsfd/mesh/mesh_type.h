@@ -45,6 +45,16 @@ namespace nsfd
     /** The cells are triangles or tetrahedra, unless they are split. */
     virtual bool has_simplices(const MeshInput &) const { return false; }
 
+    /** Entry `split` where the file does not say it. */
+    virtual const char *split(const MeshInput &) const { return "none"; }
+
+    /**
+     * What `split = barycentric` makes of two neighbouring triangles: a
+     * straight line from centroid to centroid, or one by the middle of their
+     * edge.
+     */
+    virtual bool is_cut_straight() const { return false; }
+
     /** Cells before they are refined or split, as far as the entries tell. */
     virtual double n_cells(const MeshInput &, unsigned int) const { return 1.; }
 
