@@ -276,8 +276,8 @@ namespace nsfd
 
       CLI::App nsfd_;
       const std::vector<NamedSubcommand> subcommands_ = {
-          run_subcommand(), study_subcommand(), law_subcommand(),
-          solve_subcommand(), compare_subcommand()};
+          run_subcommand(),   study_subcommand(),   law_subcommand(),
+          solve_subcommand(), compare_subcommand(), mesh_subcommand()};
     };
   } // namespace
 

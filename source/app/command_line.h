@@ -13,9 +13,9 @@ namespace nsfd
   class Subcommand;
 
   /**
-   * What was asked for: `nsfd [run|study|law|solve|compare] ...`. Options that
-   * several subcommands have stand here, see common_options.h; those of one
-   * alone stand in it.
+   * What was asked for: `nsfd [run|study|law|solve|compare|mesh] ...`. Options
+   * that several subcommands have stand here, see common_options.h; those of
+   * one alone stand in it.
    */
   struct CommandLine {
     std::vector<std::string> words; ///< all of it, the program first

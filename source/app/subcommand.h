@@ -56,4 +56,5 @@ namespace nsfd
   NamedSubcommand law_subcommand();
   NamedSubcommand solve_subcommand();
   NamedSubcommand compare_subcommand();
+  NamedSubcommand mesh_subcommand();
 } // namespace nsfd

@@ -32,8 +32,8 @@ namespace nsfd::test_command_line
       return result;
     }
 
-    const std::vector<std::string> subcommands = {"run", "study", "law",
-                                                  "solve", "compare"};
+    const std::vector<std::string> subcommands = {"run",   "study",   "law",
+                                                  "solve", "compare", "mesh"};
   } // namespace
 
   TEST(CommandLineTest, Options)
