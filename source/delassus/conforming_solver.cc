@@ -1,6 +1,5 @@
 #include "conforming_solver.h"
 
-#include "linear_algebra/block_kernels.h"
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/multigrid.h"
 #include "linear_algebra/sparse_rows.h"
@@ -25,65 +24,39 @@ namespace nsfd
     class OwnSums
     {
     public:
-      /** @p wide: of short steps, whose iterations are many and need few
-          digits. */
-      OwnSums(const Communicator &communicator, const std::size_t n,
-              const bool wide)
-          : communicator_(communicator), n_(n), wide_(wide)
+      OwnSums(const Communicator &communicator, const std::size_t n)
+          : communicator_(communicator), n_(n)
       {
       }
 
       double operator()(const Vector &a, const Vector &b) const
       {
-        return add(of_rank(a, {b.data()}))[0];
+        return add({of_rank(a, b)})[0];
       }
       std::array<double, 2> operator()(const Vector &a, const Vector &b,
                                        const Vector &c) const
       {
-        const auto both = add(of_rank(b, {a.data(), c.data()}));
+        const auto both = add({of_rank(a, b), of_rank(b, c)});
         return {both[0], both[1]};
       }
       /** With the first @p n of @p v, and with itself. */
       Vector operator()(const Vector &a, const std::vector<Vector> &v,
                         const unsigned int n) const
       {
-        std::vector<const double *> all;
+        Vector all;
         for (unsigned int j = 0; j < n; ++j)
-          all.push_back(v[j].data());
-        all.push_back(a.data());
-        return add(of_rank(a, all));
+          all.push_back(of_rank(a, v[j]));
+        all.push_back(of_rank(a, a));
+        return add(std::move(all));
       }
 
     private:
-      /** Each of them from its first term to its last, four of them side by
-          side: a sum alone waits for its last addition. */
-      Vector of_rank(const Vector &a,
-                     const std::vector<const double *> &others) const
+      double of_rank(const Vector &a, const Vector &b) const
       {
-        Vector sums(others.size(), 0.);
-        if (wide_) {
-          products_of(a.data(), others.data(), sums.size(), n_, sums.data());
-          return sums;
-        }
-        std::size_t j = 0;
-        for (; j + 4 <= sums.size(); j += 4)
-          add_products<4>(a, &others[j], &sums[j]);
-        for (; j + 2 <= sums.size(); j += 2)
-          add_products<2>(a, &others[j], &sums[j]);
-        for (; j < sums.size(); ++j)
-          add_products<1>(a, &others[j], &sums[j]);
-        return sums;
-      }
-
-      template <unsigned int n>
-      void add_products(const Vector &a, const double *const *others,
-                        double *sums) const
-      {
-        double s[n] = {};
+        double sum = 0.;
         for (std::size_t i = 0; i < n_; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            s[j] += a[i] * others[j][i];
-        std::copy_n(s, n, sums);
+          sum += a[i] * b[i];
+        return sum;
       }
 
       Vector add(Vector sums) const
@@ -101,7 +74,6 @@ namespace nsfd
 
       const Communicator &communicator_;
       const std::size_t n_;
-      const bool wide_;
     };
   } // namespace
 
@@ -216,7 +188,7 @@ namespace nsfd
 
   krylov::Outcome ConformingSolver::iterate(const double tolerance)
   {
-    const OwnSums sums(communicator_, n_own_, bool(given_.product));
+    const OwnSums sums(communicator_, n_own_);
     const auto preconditioner = [&](const Vector &r, Vector &z) {
       precondition(r, z);
     };

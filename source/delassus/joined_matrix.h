@@ -56,10 +56,10 @@ namespace nsfd
     void apply_step(const double *springs, const std::vector<double> &x,
                     std::vector<double> &y) const;
 
-    /** Points that see motions of the space, ascending. */
-    const std::vector<unsigned int> &parting_points() const
+    /** A point sees motions of the space. */
+    bool parts(const std::size_t point) const
     {
-      return sights_.points;
+      return sights_.first[point] != sights_.first[point + 1];
     }
 
     /**
@@ -105,8 +105,6 @@ namespace nsfd
     void add_bodies(const Select &select, std::vector<double> &values) const;
     void add_springs(const double *springs, std::vector<double> &values) const;
     void multiply(const std::vector<double> &values, const double *x) const;
-    template <unsigned int size>
-    void multiply_springs(const double *springs, const double *x) const;
     void fetch_ghosts(const std::vector<double> &own) const;
     void return_ghosts(std::vector<double> &own) const;
 
@@ -132,7 +130,6 @@ namespace nsfd
     struct Sights {
       std::vector<std::size_t> first; ///< by point, and the end
       std::vector<Entry> entries;
-      std::vector<unsigned int> points; ///< that see anything, ascending
 
       /**
        * For all pairs (row, column) of what a point with the spring @p T sees:
@@ -163,7 +160,7 @@ namespace nsfd
       void for_springs(const double *springs, const unsigned int size,
                        const Work &work) const
       {
-        for (const std::size_t i : points)
+        for (std::size_t i = 0; i + 1 < first.size(); ++i)
           for_spring(i, springs + i * dim * dim, size, work);
       }
     } sights_; ///< what points see of the blocks

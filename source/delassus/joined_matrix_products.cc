@@ -26,7 +26,7 @@ namespace nsfd
                                   std::vector<double> &own) const
   {
     std::fill(shared_.values.begin(), shared_.values.end(), 0.);
-    for (const std::size_t i : sights_.points)
+    for (std::size_t i = 0; i < points_.n_points; ++i)
       for (std::size_t k = sights_.first[i]; k < sights_.first[i + 1]; ++k) {
         const Entry &entry = sights_.entries[k];
         double *out = &shared_.values[std::size_t(entry.block) * size_];
@@ -43,7 +43,7 @@ namespace nsfd
   {
     fetch_ghosts(x);
     std::fill(U, U + points_.n_points * dim, 0.);
-    for (const std::size_t i : sights_.points)
+    for (std::size_t i = 0; i < points_.n_points; ++i)
       for (std::size_t k = sights_.first[i]; k < sights_.first[i + 1]; ++k) {
         const Entry &entry = sights_.entries[k];
         const double *in = &shared_.values[std::size_t(entry.block) * size_];
@@ -114,36 +114,6 @@ namespace nsfd
                            shared_.values.data());
   }
 
-  /** shared_.values += H^T T H x. */
-  template <int dim>
-  template <unsigned int size>
-  void JoinedMatrix<dim>::multiply_springs(const double *springs,
-                                           const double *x) const
-  {
-    for (const std::size_t i : sights_.points) {
-      const Entry *const first = &sights_.entries[sights_.first[i]],
-                         *const end =
-                             first + (sights_.first[i + 1] - sights_.first[i]);
-      double U[dim] = {}, P[dim] = {};
-      for (const Entry *entry = first; entry != end; ++entry) {
-        const double *in = x + std::size_t(entry->block) * size;
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int c = 0; c < size; ++c)
-            U[d] += entry->all[d * size + c] * in[c];
-      }
-      const double *T = springs + i * dim * dim;
-      for (unsigned int d = 0; d < dim; ++d)
-        for (unsigned int e = 0; e < dim; ++e)
-          P[d] += T[d * dim + e] * U[e];
-      for (const Entry *entry = first; entry != end; ++entry) {
-        double *out = &shared_.values[std::size_t(entry->block) * size];
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int c = 0; c < size; ++c)
-            out[c] += entry->own[d * size + c] * P[d];
-      }
-    }
-  }
-
   template <int dim>
   void JoinedMatrix<dim>::apply_step(const double *springs,
                                      const std::vector<double> &x,
@@ -155,10 +125,25 @@ namespace nsfd
       by_bodies_.apply_step(in, shared_.values);
     else
       multiply(operators_.step, in.data());
-    if (springs && size_ == 1)
-      multiply_springs<1>(springs, in.data());
-    else if (springs)
-      multiply_springs<dim>(springs, in.data());
+    for (std::size_t i = 0; springs && i < points_.n_points; ++i) {
+      const std::size_t first = sights_.first[i], end = sights_.first[i + 1];
+      if (first == end)
+        continue;
+      double U[dim] = {}, P[dim] = {};
+      for (std::size_t k = first; k < end; ++k)
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int c = 0; c < size_; ++c)
+            U[d] += sights_.entries[k].all[d * size_ + c] *
+                    in[std::size_t(sights_.entries[k].block) * size_ + c];
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int e = 0; e < dim; ++e)
+          P[d] += springs[(i * dim + d) * dim + e] * U[e];
+      for (std::size_t k = first; k < end; ++k)
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int c = 0; c < size_; ++c)
+            shared_.values[std::size_t(sights_.entries[k].block) * size_ + c] +=
+                sights_.entries[k].own[d * size_ + c] * P[d];
+    }
     return_ghosts(y);
   }
 

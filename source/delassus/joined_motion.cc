@@ -14,7 +14,6 @@ namespace nsfd
                                 const std::vector<double> &start)
   {
     is_on_ = true;
-    known_ = false;
     start_ = start;
     const std::size_t n = bodies_.representative_.size();
     momentum_.assign(n, 0.);
@@ -38,11 +37,6 @@ namespace nsfd
   template <int dim>
   void JoinedMotion<dim>::set_residual(const std::vector<double> &P)
   {
-    is_done_ = false;
-    if (!bodies_.communicator_.any(!known_ || P != of_))
-      return;
-    known_ = true;
-    of_ = P;
     auto &matrix = bodies_.matrix();
     std::vector<double> of_points, of_bodies;
     matrix.impulse(P.data(), of_points);
@@ -62,6 +56,7 @@ namespace nsfd
     left_ = std::sqrt(sums[0]);
     const double size = std::sqrt(sums[1]) + std::sqrt(sums[2]);
     scale_ = size > 0. ? size : 1.;
+    is_done_ = false;
   }
 
   template <int dim>
@@ -83,7 +78,6 @@ namespace nsfd
     bodies_.answer(std::clamp(tolerance * scale_ / left_, bodies_.tight, 0.1));
     for (std::size_t k = 0; k < w_.size(); ++k)
       w_[k] += bodies_.columns_[k];
-    known_ = false;
     set_residual(P);
   }
 
@@ -122,7 +116,7 @@ namespace nsfd
     dw_ = bodies_.columns_;
     dU.resize(c.size());
     bodies_.matrix().velocity(dw_, dU.data());
-    answer_of_points<dim>(bodies_.matrix().parting_points(), T, c, dU, dP);
+    answer_of_points<dim>(T, c, dU, dP);
     return true;
   }
 
@@ -133,7 +127,6 @@ namespace nsfd
   {
     for (std::size_t k = 0; k < w_.size(); ++k)
       w_[k] += length * dw_[k];
-    known_ = false;
     set_residual(P);
     is_done_ = asks_all_ && length == 1.;
     set_velocity(U);
@@ -144,10 +137,7 @@ namespace nsfd
                                      const std::vector<double> &P,
                                      std::vector<double> &U)
   {
-    if (w != w_) {
-      w_ = w;
-      known_ = false;
-    }
+    w_ = w;
     set_residual(P);
     set_velocity(U);
   }

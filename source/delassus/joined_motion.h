@@ -55,7 +55,5 @@ namespace nsfd
     /// own values of the space: p, w, dw and p - M_hat w + H^T P
     std::vector<double> momentum_, w_, dw_, residual_;
     double left_ = 0., scale_ = 1.; ///< sizes of the residual, and of its terms
-    bool known_ = false;            ///< the residual is that of w and of_
-    std::vector<double> of_;        ///< P
   };
 } // namespace nsfd

@@ -353,7 +353,9 @@ namespace nsfd::krylov
     {
       Vector sum(x_.size(), 0.);
       const auto &terms = options_.flexible ? z_ : v_;
-      add_vectors(terms, y.data(), y.size(), sum);
+      for (std::size_t j = 0; j < y.size(); ++j)
+        for (std::size_t i = 0; i < sum.size(); ++i)
+          sum[i] += y[j] * terms[j][i];
       if (options_.flexible)
         x_ = std::move(sum);
       else
@@ -361,24 +363,6 @@ namespace nsfd::krylov
     }
 
   private:
-    /** @p sum += y_j v_j one after the other, four to a pass over it. */
-    static void add_vectors(const std::vector<Vector> &v, const double *y,
-                            const std::size_t n, Vector &sum)
-    {
-      std::size_t j = 0;
-      for (; j + 4 <= n; j += 4) {
-        const double *a = v[j].data(), *b = v[j + 1].data(),
-                     *c = v[j + 2].data(), *d = v[j + 3].data();
-        for (std::size_t i = 0; i < sum.size(); ++i)
-          sum[i] =
-              (((sum[i] + y[j] * a[i]) + y[j + 1] * b[i]) + y[j + 2] * c[i]) +
-              y[j + 3] * d[i];
-      }
-      for (; j < n; ++j)
-        for (std::size_t i = 0; i < sum.size(); ++i)
-          sum[i] += y[j] * v[j][i];
-    }
-
     static void normalise(Vector &v, const double length)
     {
       if (length > 0.)
@@ -397,13 +381,12 @@ namespace nsfd::krylov
       for (unsigned int pass = 0; pass < 2; ++pass) {
         const std::vector<double> products = dot_(next, v_, k + 1);
         double left = products[k + 1];
-        Vector shares(k + 1);
         for (unsigned int j = 0; j <= k; ++j) {
           h[j] += products[j];
           left -= products[j] * products[j];
-          shares[j] = -products[j];
+          for (std::size_t i = 0; i < next.size(); ++i)
+            next[i] -= products[j] * v_[j][i];
         }
-        add_vectors(v_, shares.data(), k + 1, next);
         length = std::sqrt(std::max(0., left));
         if (length > 0.1 * std::sqrt(products[k + 1]))
           return length;

@@ -28,9 +28,6 @@ namespace nsfd
                   const DelassusOperator<dim> &delassus, double energy_scale,
                   double tolerance);
 
-    /** As a new one of what the problem is now. */
-    void renew(double energy_scale, double tolerance);
-
     /** Recompute U = U_free + W P and everything that follows. */
     void update(const std::vector<double> &impulse);
 
@@ -80,8 +77,7 @@ namespace nsfd
   private:
     const OneStepProblem<dim> &problem_;
     const DelassusOperator<dim> &delassus_;
-    double floor_ = 0.;
-    std::vector<unsigned int> points_; ///< that acted at the last renew()
+    double floor_;
     std::vector<LinearPoint<dim>> linear_;
     std::vector<double> terms_;
     const std::vector<FrozenPoint> *frozen_ = nullptr;
@@ -101,18 +97,6 @@ namespace nsfd
     solve(const OneStepProblem<dim> &problem, DelassusOperator<dim> &delassus,
           double energy_scale, const SolverControl &control,
           std::vector<double> &impulse, LawEvaluation<dim> &evaluation) = 0;
-
-    /**
-     * After solves with `finishes_later`: momenta to round-off, which would add
-     * up over steps. False if the error is beyond the tolerance then.
-     * Collective.
-     */
-    virtual bool finish(const OneStepProblem<dim> &, DelassusOperator<dim> &,
-                        const SolverControl &, std::vector<double> &,
-                        LawEvaluation<dim> &)
-    {
-      return true;
-    }
 
     /**
      * The same solver for problems of contact and friction alone whose W is

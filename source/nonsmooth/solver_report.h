@@ -14,9 +14,6 @@ namespace nsfd
     unsigned int maximum_iterations = 0;
     unsigned int idle_rounds = 2; ///< line searches that did not halve the
                                   ///< error before the solve is given up
-    /// the caller asks for NonsmoothSolver::finish() after the last of several
-    /// rounds
-    bool finishes_later = false;
 
     /// of the cascade for problems whose W is assembled: the first one and
     /// restarts. In a run a step that is not solved has other cures.

@@ -59,11 +59,9 @@ namespace nsfd
       LawEvaluation<dim> &evaluation, const bool keeps_joints)
   {
     SolverReport report;
-    SolverControl of_round = control;
-    of_round.finishes_later = true;
     for (unsigned int round = 0;; ++round) {
       const SolverReport part = solver.solve(problem, delassus_, energy_scale,
-                                             of_round, impulse, evaluation);
+                                             control, impulse, evaluation);
       report.go_on_with(part);
       ++counters_.solves;
       if (!part.converged || round > 30)
@@ -79,14 +77,6 @@ namespace nsfd
       else
         break;
     }
-    if (report.converged &&
-        !solver.finish(problem, delassus_, control, impulse, evaluation)) {
-      report.go_on_with(solver.solve(problem, delassus_, energy_scale, control,
-                                     impulse, evaluation));
-      ++counters_.solves;
-    }
-    if (report.converged)
-      report.residual = std::max(report.residual, evaluation.error);
     const auto slower_than = [&](const double still) {
       return report.converged &&
              rests(still, problem, energy_scale, old, evaluation);

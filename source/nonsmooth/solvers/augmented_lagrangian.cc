@@ -1,7 +1,9 @@
 #include "augmented_lagrangian.h"
 
 #include "core/cost.h"
+#include "linear_algebra/positive_part.h"
 #include "nonsmooth/natural_map.h"
+#include "nonsmooth/point_tangent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,21 +14,27 @@ namespace nsfd
   namespace
   {
     /// A over R: of what a point carries beyond P_0 so much is left as an error
-    constexpr double first_share = 1e-2;
+    constexpr double first_share = 1e-2, last_share = 1e-7;
     /// round-off of P - S, which a spring of A = share R makes larger by
     /// 1/share
     constexpr double round_off = 1e-15;
+    /// the same, where U is that of the nodes and not a difference of large
+    /// numbers: what is rigid is so beside laws that have just begun to open
+    constexpr double of_nodes = 1e-11;
+    /// over A: a law that gives way by less is rigid to machine precision
+    constexpr double own_compliance = 1e-11;
     /// a step of Newton's method is long enough
     constexpr double flat = 0.5;
+    /// what difference quotients leave of their digits
+    constexpr double left_to_differences = 1e-5;
     /// of the tolerance, of impulses that may stay without any iteration: what
     /// they lack is the same in every step of bodies at rest, and adds up
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
     /// of the momenta, what a step may lose of them; of the tolerance, what
-    /// those of the nodes may lack before they are brought to that, and where
-    /// nothing is done after the last Newton step
-    constexpr double lost = 1e-15, of_momenta = 0.1, of_equilibria = 1e-2;
+    /// those of the nodes may lack
+    constexpr double lost = 1e-15, of_momenta = 1e-2, of_equilibria = 0.1;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
   } // namespace
@@ -42,8 +50,8 @@ namespace nsfd
   template <int dim>
   double AugmentedLagrangian<dim>::enough(const Work &work) const
   {
-    const bool last = from_rest_ && !may_be_rough(work);
-    return (last ? of_equilibria : of_momenta) * work.tolerance;
+    // momenta of equilibria do not add up over steps
+    return (may_be_rough(work) ? of_equilibria : of_momenta) * work.tolerance;
   }
 
   template <int dim>
@@ -59,11 +67,6 @@ namespace nsfd
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
     dU_.assign(n, 0.);
-    // of points that do not act they stay so
-    rest_.assign(n, 0.);
-    right_side_.assign(n, 0.);
-    defect_.assign(n, 0.);
-    tangents_.assign(n * dim, 0.);
     if (!from_rest_)
       work.motion.balance(impulse_, NodeMotion::rough);
     return_to(work, iterate(work));
@@ -95,11 +98,10 @@ namespace nsfd
   template <int dim>
   void AugmentedLagrangian<dim>::soften(const Work &work, const double share)
   {
+    rest_ = impulse_;
     for (const std::size_t i : work.problem.acting)
-      for (unsigned int c = 0; c < dim; ++c) {
-        rest_[i * dim + c] = impulse_[i * dim + c];
+      for (unsigned int c = 0; c < dim; ++c)
         compliance_[i * dim + c] = share * work.evaluation.majorant(i, c);
-      }
   }
 
   /** S of all points. */
@@ -142,6 +144,44 @@ namespace nsfd
             relative_natural_map(std::sqrt(sums[2]), scale_)};
   }
 
+  /** T of all points; false if it is not symmetric. Collective. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::differentiate(const Work &work)
+  {
+    const Charge charge(Cost::laws);
+    const auto &problem = work.problem;
+    tangents_.assign(problem.n_points * dim * dim, 0.);
+    bool symmetric = true;
+    for (const std::size_t i : work.problem.acting) {
+      const auto &solution = solutions_[i];
+      const double A_N = compliance_[i * dim], A_T = compliance_[i * dim + 1];
+      double *T = &tangents_[i * dim * dim];
+      std::array<double, dim> local;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t k = i * dim + c;
+        local[c] = velocity_[k] - compliance_[k] * rest_[k];
+      }
+      symmetric &= point_tangent<dim>(problem, i, solution, local, A_N, A_T, T);
+    }
+    return !work.delassus.communicator().any(!symmetric);
+  }
+
+  /** The symmetric part of T, without its negative eigenvalues on request. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::symmetrise(const Work &work, const bool convex)
+  {
+    for (const std::size_t i : work.problem.acting) {
+      double *T = &tangents_[i * dim * dim];
+      if (convex && solutions_[i].coupled)
+        take_positive_part<dim>(T);
+      else
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int d = 0; d < c; ++d)
+            T[c * dim + d] = T[d * dim + c] =
+                (T[c * dim + d] + T[d * dim + c]) / 2.;
+    }
+  }
+
   /** dU . (P + length dP - S), at the last answers. */
   template <int dim>
   double AugmentedLagrangian<dim>::slope(const Work &work,
@@ -161,10 +201,89 @@ namespace nsfd
   template <int dim>
   void AugmentedLagrangian<dim>::set_right_side(const Work &work)
   {
+    right_side_.assign(impulse_.size(), 0.);
     for (const std::size_t i : work.problem.acting)
-      for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
-        defect_[k] = right_side_[k] =
-            solutions_[i].impulse[k - i * dim] - impulse_[k];
+      for (unsigned int c = 0; c < dim; ++c)
+        right_side_[i * dim + c] =
+            solutions_[i].impulse[c] - impulse_[i * dim + c];
+  }
+
+  /**
+   * T and the right-hand side without the springs, where they are slack: P + dP
+   * = S + J (dU - A dP). What sticks has 1 + J A = 0; it gives way by a small
+   * share of A.
+   */
+  template <int dim>
+  void AugmentedLagrangian<dim>::remove_springs(const Work &work)
+  {
+    for (const std::size_t i : work.problem.acting) {
+      double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
+      const bool differences =
+          has_difference_quotients(work.problem, i, solutions_[i]);
+      double left = differences  ? left_to_differences
+                    : from_rest_ ? of_nodes
+                                 : last_share;
+      // Points that are more than motions: what each of them carries is known
+      // from its own compliance alone, as small as that may be.
+      bool gives_way = from_rest_ && !differences;
+      for (unsigned int c = 0; c < dim; ++c)
+        gives_way =
+            gives_way &&
+            1. - T[c * dim + c] * compliance_[i * dim + c] > own_compliance;
+      if (gives_way)
+        left = 0.;
+      dealii::Tensor<2, dim> block, own;
+      dealii::Tensor<1, dim> right;
+      for (unsigned int c = 0; c < dim; ++c) {
+        right[c] = r[c];
+        for (unsigned int d = 0; d < dim; ++d) {
+          block[c][d] = (1. - left) * T[c * dim + d];
+          own[c][d] =
+              (c == d ? 1. : 0.) - block[c][d] * compliance_[i * dim + d];
+        }
+      }
+      const auto inverse = invert(own);
+      block = inverse * block;
+      right = inverse * right;
+      for (unsigned int c = 0; c < dim; ++c) {
+        r[c] = right[c];
+        for (unsigned int d = 0; d < dim; ++d)
+          T[c * dim + d] = block[c][d];
+      }
+    }
+  }
+
+  /** What a point carries and how it moves is lost in the error of a step. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::rests(const Work &work,
+                                       const std::size_t i) const
+  {
+    double moves = 0., carries = 0.;
+    for (std::size_t k = i * dim; k < (i + 1) * dim; ++k) {
+      const double R = work.evaluation.majorant(i, unsigned(k - i * dim));
+      moves += velocity_[k] * velocity_[k] / R;
+      carries +=
+          R * std::max(impulse_[k] * impulse_[k], defect_[k] * defect_[k]);
+    }
+    const double little = 0.1 * work.tolerance * scale_;
+    return std::max(moves, carries) <= little * little;
+  }
+
+  /** Points at rest that carry nothing are open or closed by the last digits:
+      they stay as they are in the factor. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::keep_tangents_at_rest(const Work &work)
+  {
+    const Vector &factored = work.motion.factored();
+    if (from_rest_ || factored.size() != tangents_.size())
+      return;
+    for (const std::size_t i : work.problem.acting)
+      if (rests(work, i)) {
+        std::copy_n(factored.begin() + long(i * dim * dim), dim * dim,
+                    tangents_.begin() + long(i * dim * dim));
+        std::copy_n(defect_.begin() + long(i * dim), dim,
+                    right_side_.begin() + long(i * dim));
+      }
   }
 
   /**
@@ -212,6 +331,7 @@ namespace nsfd
         break;
       ++work.report.newton;
       set_right_side(work);
+      defect_ = right_side_;
       const bool symmetric = differentiate(work);
       remove_springs(work);
       if (symmetric)
@@ -222,9 +342,8 @@ namespace nsfd
       const double share = exact ? 0. : std::min(1e-2, 0.1 * defect);
       if (!solve_system(work, symmetric, enough(work), share))
         break;
-      for (const std::size_t i : work.problem.acting)
-        for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
-          impulse_[k] += dP_[k];
+      for (std::size_t k = 0; k < impulse_.size(); ++k)
+        impulse_[k] += dP_[k];
       work.motion.move(1., impulse_, velocity_);
     }
     if (least == none)
@@ -250,6 +369,7 @@ namespace nsfd
   {
     ++work.report.newton;
     set_right_side(work);
+    defect_ = right_side_;
     const auto solved = [&](const bool symmetric) {
       return solve_system(work, symmetric, 0., 0.) && slope(work, 0.) <= 0.;
     };
@@ -293,9 +413,8 @@ namespace nsfd
       (value < 0. ? low : high) = length;
       (value < 0. ? at_low : at_high) = value;
     }
-    for (const std::size_t i : work.problem.acting)
-      for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
-        impulse_[k] += length * dP_[k];
+    for (std::size_t k = 0; k < impulse_.size(); ++k)
+      impulse_[k] += length * dP_[k];
     work.motion.move(length, impulse_, velocity_);
   }
 
@@ -320,7 +439,7 @@ namespace nsfd
     const auto judge = [&] {
       for (const std::size_t i : work.problem.acting)
         evaluation.solutions[i].reach = solutions_[i].reach;
-      if (!from_rest_ && (own || !control.finishes_later))
+      if (!from_rest_)
         polish(work); // momenta that are lost add up over steps
       evaluation.velocity = velocity_;
       evaluation.update_laws(impulse_);
@@ -373,24 +492,6 @@ namespace nsfd
     if (own)
       motion.cancel();
     return report;
-  }
-
-  template <int dim>
-  bool AugmentedLagrangian<dim>::finish(const OneStepProblem<dim> &problem,
-                                        DelassusOperator<dim> &delassus,
-                                        const SolverControl &control,
-                                        Vector &impulse,
-                                        LawEvaluation<dim> &evaluation)
-  {
-    NodeMotion &motion = dynamic_cast<VelocitySolver &>(delassus).motion();
-    if (problem.free_motion != FreeVelocity::estimated || !motion.is_on() ||
-        motion.imbalance() <= lost)
-      return true;
-    motion.balance(impulse, lost);
-    motion.set_motion(std::vector<double>(motion.motion()), impulse,
-                      evaluation.velocity);
-    evaluation.update_laws(impulse);
-    return evaluation.error <= control.tolerance;
   }
 
   template class AugmentedLagrangian<2>;

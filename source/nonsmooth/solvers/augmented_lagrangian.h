@@ -38,10 +38,6 @@ namespace nsfd
                        const SolverControl &control,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation) override;
-    bool finish(const OneStepProblem<dim> &problem,
-                DelassusOperator<dim> &delassus, const SolverControl &control,
-                std::vector<double> &impulse,
-                LawEvaluation<dim> &evaluation) override;
 
   private:
     using Vector = std::vector<double>;
@@ -61,9 +57,6 @@ namespace nsfd
     struct Errors {
       double defect, shift;
     };
-
-    /// of R, the least A
-    static constexpr double last_share = 1e-7;
 
     bool may_be_rough(const Work &work) const;
     double enough(const Work &work) const;

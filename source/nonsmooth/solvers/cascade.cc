@@ -93,15 +93,6 @@ namespace nsfd
         return report;
       }
 
-      bool finish(const OneStepProblem<dim> &problem,
-                  DelassusOperator<dim> &delassus, const SolverControl &control,
-                  std::vector<double> &impulse,
-                  LawEvaluation<dim> &evaluation) override
-      {
-        return !dynamic_cast<VelocitySolver *>(&delassus) ||
-               joined_.finish(problem, delassus, control, impulse, evaluation);
-      }
-
       void serialize(Archive &archive) override
       {
         if (!path_)
