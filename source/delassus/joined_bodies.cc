@@ -145,20 +145,17 @@ namespace nsfd
     return *matrix_;
   }
 
-  namespace
+  double stiffness_over_mass(const Bodies &bodies, const StepShares &shares,
+                             const Communicator &communicator)
   {
-    /** The largest entry of f K over that of M on the diagonals of bodies. */
-    double stiffest_entry(const Bodies &bodies, const StepShares &shares)
-    {
-      double ratio = 0.;
-      for (const BodyClass &body : bodies.classes)
-        for (unsigned int i = 0; i < body.n_dofs && !body.rigid; ++i)
-          if (body.mass(i, i) > 0.)
-            ratio = std::max(ratio, shares.stiffness * body.stiffness(i, i) /
-                                        body.mass(i, i));
-      return ratio;
-    }
-  } // namespace
+    double ratio = 0.;
+    for (const BodyClass &body : bodies.classes)
+      for (unsigned int i = 0; i < body.n_dofs && !body.rigid; ++i)
+        if (body.mass(i, i) > 0.)
+          ratio = std::max(ratio, shares.stiffness * body.stiffness(i, i) /
+                                      body.mass(i, i));
+    return communicator.max(ratio);
+  }
 
   /**
    * Conjugate gradients with blocks on the diagonal are cheaper than factors
@@ -177,9 +174,9 @@ namespace nsfd
                                   : stiffest_of_iterations;
       const bool does =
           n > smallest_of_iterations<dim> && space.ties.empty() &&
-          this->communicator_.max(stiffest_entry(
-              this->bodies_, this->shares(this->time_step_, this->theta_))) <
-              stiffest;
+          stiffness_over_mass(this->bodies_,
+                              this->shares(this->time_step_, this->theta_),
+                              this->communicator_) < stiffest;
       means_ = does ? Means::iterations : Means::factors;
     }
     return means_ == Means::iterations;

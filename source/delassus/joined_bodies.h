@@ -16,6 +16,11 @@ namespace nsfd
   template <int dim>
   class JoinedMotion;
 
+  /** The largest entry of f K over that of M on the diagonals of bodies, f the
+      share of K in a step. Collective. */
+  double stiffness_over_mass(const Bodies &bodies, const StepShares &shares,
+                             const Communicator &communicator);
+
   /**
    * Implicit bodies that share nodes: W = H P (P^T M_hat P)^-1 P^T H^T, P the
    * motions of the bodies that the space of the nodes allows.

@@ -35,6 +35,18 @@ namespace nsfd
   }
 
   template <int dim>
+  double JoinedMotion<dim>::stiffness_over_mass()
+  {
+    const StepShares shares =
+        bodies_.shares(bodies_.time_step_, bodies_.theta_);
+    if (stiffness_over_mass_.share != shares.stiffness)
+      stiffness_over_mass_ = {shares.stiffness,
+                              nsfd::stiffness_over_mass(bodies_.bodies_, shares,
+                                                        bodies_.communicator_)};
+    return stiffness_over_mass_.value;
+  }
+
+  template <int dim>
   void JoinedMotion<dim>::set_residual(const std::vector<double> &P)
   {
     auto &matrix = bodies_.matrix();

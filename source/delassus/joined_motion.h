@@ -15,6 +15,7 @@ namespace nsfd
                const std::vector<double> &impulse,
                const std::vector<double> &start) override;
     bool is_on() const override { return is_on_; }
+    double stiffness_over_mass() override;
     bool saves_by_rough_solutions() const override
     {
       return bodies_.tangent_.has_cycles();
@@ -54,6 +55,9 @@ namespace nsfd
     std::vector<double> start_; ///< U_0
     /// own values of the space: p, w, dw and p - M_hat w + H^T P
     std::vector<double> momentum_, w_, dw_, residual_;
+    struct {
+      double share = -1., value = 0.;
+    } stiffness_over_mass_;         ///< of steps with this share of K
     double left_ = 0., scale_ = 1.; ///< sizes of the residual, and of its terms
   };
 } // namespace nsfd

@@ -42,6 +42,8 @@ namespace nsfd
                        const std::vector<double> &impulse,
                        const std::vector<double> &start) = 0;
     virtual bool is_on() const = 0;
+    /** The largest h^2 theta^2 K_ii / M_ii of the bodies. Collective. */
+    virtual double stiffness_over_mass() = 0;
     /** Solutions that need not be exact are cheaper, as iterations are. */
     virtual bool saves_by_rough_solutions() const = 0;
     virtual void cancel() = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace nsfd
     unsigned int maximum_iterations = 0;
     unsigned int idle_rounds = 2; ///< line searches that did not halve the
                                   ///< error before the solve is given up
+    /// what rows with a prescribed velocity may give or take by what is left of
+    /// it, see RowWork, J: of bodies that share nodes
+    double row_energy = std::numeric_limits<double>::infinity();
 
     /// of the cascade for problems whose W is assembled: the first one and
     /// restarts. In a run a step that is not solved has other cures.

@@ -128,26 +128,36 @@ namespace nsfd
       // read
       constexpr double of_pure_rules = 1e-2, of_large_motion = 1e-3;
       const double scale = std::max(watch.scale, state.largest_energy);
-      const auto share = [scale](const double energy) {
-        return energy == 0. ? 0. : energy / scale;
-      };
       std::vector<GivenEnergy> result;
       for (std::size_t k = 0; k < n_watched_lines; ++k) {
         const auto line = WatchedLine(k);
         if (!has_line(line, input, state))
           continue;
+        const bool of_rows =
+            line == WatchedLine::joints || line == WatchedLine::supports;
+        // Contacts at rest have no energy but what loads would give in a step.
+        // In long steps that is far more than all energies: what supports hold
+        // is not related to it.
+        const bool over_present = (of_rows || line == WatchedLine::scheme) &&
+                                  state.largest_energy > 0.;
+        const auto share = [&](const double energy) {
+          return energy == 0.
+                     ? 0.
+                     : energy / (over_present ? state.largest_energy : scale);
+        };
         GivenEnergy given;
         given.line =
             line == WatchedLine::scheme ? "time scheme" : name_of(line);
         given.share = share(watch.given[k]);
         given.bound = energy_round_off;
-        if (line == WatchedLine::joints || line == WatchedLine::supports)
+        if (of_rows)
           given.bound += share(watch.of_rows);
         if (line == WatchedLine::scheme)
           // that of the leapfrog only gives where its steps change their length
-          given.bound = never_gives(line, input) || input.time.scheme.at_nodes
-                            ? energy_round_off + share(watch.noise)
-                            : of_pure_rules;
+          given.bound = (never_gives(line, input) || input.time.scheme.at_nodes
+                             ? energy_round_off
+                             : of_pure_rules) +
+                        share(watch.noise);
         if (line == WatchedLine::large_motion)
           given.bound = of_large_motion;
         if (line == WatchedLine::load_steps) // as much as a single step may

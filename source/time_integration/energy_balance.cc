@@ -181,7 +181,9 @@ namespace nsfd
     report.beyond_unique = communicator.any(points.beyond_unique);
 
     report.changes.impulses = sums[Points::impulses];
-    report.changes.impulses_of_rows = sums[Points::of_rows];
+    // a motion of nodes knows U itself
+    if (problem.free_motion == FreeVelocity::known)
+      report.changes.impulses_of_rows = sums[Points::of_rows];
     const auto set = [&](const WatchedLine line, const double taken,
                          const std::size_t worst) {
       report.changes.taken[std::size_t(line)] = taken;

@@ -50,10 +50,10 @@ namespace nsfd
     std::array<double, n_watched_lines> taken{};
     std::array<std::size_t, n_watched_lines> worst{};
     double impulses = 0.; ///< sum R P^2 over the points, see LawEvaluation, J
-    double impulses_of_rows = 0.; ///< where velocities are prescribed
+    /// where velocities are prescribed and U = U_free + W P, else 0
+    double impulses_of_rows = 0.;
     double noise = 0.; ///< what the residual of the solver leaves open, J
-    /// the same of rows with a prescribed velocity, whose impulses work with
-    /// what is left of it
+    /// round-off of rows with a prescribed velocity, see RowWork, J
     double of_rows = 0.;
     double scale = 0.; ///< the largest energy so far, or what the loads would
                        ///< give in this step without impulses, J

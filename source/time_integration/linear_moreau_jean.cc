@@ -130,7 +130,7 @@ namespace nsfd
       const auto solve = [&] {
         report.solver.go_on_with(this->step_problem_.solve(
             solver_, this->problem_, origins,
-            this->step_problem_.control(idle_rounds), energy_scale, old,
+            this->step_problem_.control(idle_rounds, h, old), energy_scale, old,
             next.impulse, evaluation));
       };
       solve();

@@ -1,5 +1,6 @@
 #include "step_check.h"
 
+#include "nonsmooth/row_work.h"
 #include "nsfd/scene/scene_input.h"
 
 #include <fmt/format.h>
@@ -60,12 +61,16 @@ namespace nsfd
     changes.noise = report.solver.residual *
                     std::max(step.energy_scale,
                              std::sqrt(step.energy_scale * changes.impulses));
-    // |P|_R of these rows times |U - given|_(1/R), which is |P - P*|_R there
-    changes.of_rows =
-        std::max(changes.noise,
-                 report.solver.residual *
-                     std::sqrt(changes.impulses_of_rows *
-                               std::max(changes.impulses, step.energy_scale)));
+    changes.of_rows = round_off_of_rows(changes.impulses_of_rows,
+                                        changes.impulses, step.energy_scale);
+    // Rows of large motions turn with the bodies: Newton's iteration leaves
+    // |P|_R of them times |U - given|_(1/R), which is |P - P*|_R there.
+    if (input_.large_motion)
+      changes.of_rows = std::max(
+          changes.noise,
+          report.solver.residual *
+              std::sqrt(changes.impulses_of_rows *
+                        std::max(changes.impulses, step.energy_scale)));
     const double bound = energy_round_off * changes.scale + changes.noise +
                          // no line is known better than the balance closes
                          10. * report.balance_residual * next.largest_energy;

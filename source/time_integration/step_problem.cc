@@ -2,13 +2,16 @@
 
 #include "activation.h"
 #include "driven_motion.h"
+#include "energy_watch.h"
 #include "nonsmooth/linear_spring.h"
+#include "nonsmooth/row_work.h"
 #include "step_data.h"
 
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace nsfd
@@ -38,6 +41,21 @@ namespace nsfd
     control.tolerance = input_.solver.tolerance;
     control.maximum_iterations = input_.solver.maximum_iterations;
     control.idle_rounds = idle_rounds;
+    return control;
+  }
+
+  /**
+   * A tenth of the share that a step has of what the certificate allows the
+   * rows of the whole run.
+   */
+  template <int dim>
+  SolverControl StepProblem<dim>::control(const unsigned int idle_rounds,
+                                          const double time_step,
+                                          const State &old) const
+  {
+    SolverControl control = this->control(idle_rounds);
+    const double share = std::min(1., time_step / input_.time.end);
+    control.row_energy = 0.1 * energy_round_off * share * old.largest_energy;
     return control;
   }
 
@@ -89,6 +107,9 @@ namespace nsfd
       settle(problem, control, energy_scale, impulse, evaluation, report);
       report.rests = stays();
     }
+    if (report.converged && problem.free_motion == FreeVelocity::known &&
+        gives_by_rows(problem, control, energy_scale, impulse, evaluation))
+      hold_rows(problem, control, energy_scale, impulse, evaluation, report);
     counters_.newton += report.newton;
     counters_.krylov += report.krylov;
     counters_.sweeps += report.sweeps;
@@ -138,25 +159,86 @@ namespace nsfd
                            LawEvaluation<dim> &evaluation, SolverReport &report)
   {
     control.tolerance = 1e-14;
-    if (evaluation.error <= control.tolerance)
-      return;
-    if (!settling_)
-      settling_ = SolverRegistry<dim>::instance().create("dual newton");
     for (const unsigned int steps : {2u, 4u}) {
-      control.maximum_iterations = steps;
-      const std::vector<double> before(impulse);
       const double error = evaluation.error;
-      report.add_work(settling_->solve(problem, delassus_, energy_scale,
-                                       control, impulse, evaluation));
-      if (!(evaluation.error < error)) {
-        impulse = before;
-        evaluation.update(impulse);
-      }
-      if (evaluation.error <= control.tolerance ||
-          evaluation.error > 0.1 * error)
-        break;
+      if (error <= control.tolerance)
+        return;
+      control.maximum_iterations = steps;
+      go_on(problem, control, energy_scale, impulse, evaluation, report);
+      if (evaluation.error > 0.1 * error)
+        return;
+    }
+  }
+
+  template <int dim>
+  bool StepProblem<dim>::gives_by_rows(
+      const OneStepProblem<dim> &problem, const SolverControl &control,
+      const double energy_scale, const std::vector<double> &impulse,
+      const LawEvaluation<dim> &evaluation) const
+  {
+    if (!std::isfinite(control.row_energy)) // statics
+      return false;
+    const RowWork rows = row_work(problem, delassus_.communicator(),
+                                  evaluation.velocity, impulse);
+    return rows.energy >
+           std::max(control.row_energy, rows.round_off(energy_scale));
+  }
+
+  /**
+   * The tolerance is one of impulses, and impulses of long steps are far larger
+   * than what moves: what is left of the velocity of a support times its
+   * impulse may be as large as all energies. Rows are linear, and a Newton step
+   * more leaves round-off of them.
+   */
+  template <int dim>
+  void StepProblem<dim>::hold_rows(const OneStepProblem<dim> &problem,
+                                   SolverControl control,
+                                   const double energy_scale,
+                                   std::vector<double> &impulse,
+                                   LawEvaluation<dim> &evaluation,
+                                   SolverReport &report)
+  {
+    const auto present = [&] {
+      return row_work(problem, delassus_.communicator(), evaluation.velocity,
+                      impulse);
+    };
+    const RowWork rows = present();
+    const double most =
+        std::max(control.row_energy, rows.round_off(energy_scale));
+    const std::vector<double> before(impulse);
+    const double error = evaluation.error;
+    control.tolerance =
+        std::max(1e-15, 0.5 * evaluation.error * most / rows.energy);
+    control.maximum_iterations = 3;
+    if (go_on(problem, control, energy_scale, impulse, evaluation, report) &&
+        !(present().energy < rows.energy)) {
+      impulse = before;
+      evaluation.update(impulse);
+      report.residual = error;
+    }
+  }
+
+  /** By Newton's method, if it comes closer. */
+  template <int dim>
+  bool StepProblem<dim>::go_on(const OneStepProblem<dim> &problem,
+                               const SolverControl &control,
+                               const double energy_scale,
+                               std::vector<double> &impulse,
+                               LawEvaluation<dim> &evaluation,
+                               SolverReport &report)
+  {
+    const auto newton = SolverRegistry<dim>::instance().create("dual newton");
+    const std::vector<double> before(impulse);
+    const double error = evaluation.error;
+    report.add_work(newton->solve(problem, delassus_, energy_scale, control,
+                                  impulse, evaluation));
+    const bool closer = evaluation.error < error;
+    if (!closer) {
+      impulse = before;
+      evaluation.update(impulse);
     }
     report.residual = evaluation.error;
+    return closer;
   }
 
   template <int dim>

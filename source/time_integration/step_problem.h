@@ -29,8 +29,11 @@ namespace nsfd
                 DelassusOperator<dim> &delassus, StepCounters &counters);
     ~StepProblem();
 
-    /** What the input asks of the solver of a step. */
+    /** What the input asks of the solver of a round of statics. */
     SolverControl control(unsigned int idle_rounds) const;
+    /** Of a step from @p old: what rows may give as well. */
+    SolverControl control(unsigned int idle_rounds, double time_step,
+                          const State &old) const;
 
     /** Bodies that rest will be left where they are: see MovingBodies::stay().
      */
@@ -48,13 +51,22 @@ namespace nsfd
      * Again as long as extrinsic points reach their strength (unless @p
      * keeps_joints), or friction gives energy; @p old as it was for set().
      * Contacts of bodies at rest are solved to round-off, unless these stay
-     * where they are: then the report says that they rest. Collective.
+     * where they are: then the report says that they rest. Rows with a
+     * prescribed velocity are solved to a share of what the run may give by
+     * them. Collective.
      */
     SolverReport
     solve(NonsmoothSolver<dim> &solver, OneStepProblem<dim> &problem,
           const std::vector<PointOrigin> &origins, const SolverControl &control,
           double energy_scale, const State &old, std::vector<double> &impulse,
           LawEvaluation<dim> &evaluation, bool keeps_joints = false);
+
+    /** Rows of this solution give more than @p control allows, and than
+        round-off of their velocities does. Collective. */
+    bool gives_by_rows(const OneStepProblem<dim> &problem,
+                       const SolverControl &control, double energy_scale,
+                       const std::vector<double> &impulse,
+                       const LawEvaluation<dim> &evaluation) const;
 
     /** Some points are rigid until they reach the strength of their law. */
     bool has_extrinsic() const { return has_extrinsic_; }
@@ -67,6 +79,12 @@ namespace nsfd
     void settle(const OneStepProblem<dim> &problem, SolverControl control,
                 double energy_scale, std::vector<double> &impulse,
                 LawEvaluation<dim> &evaluation, SolverReport &report);
+    void hold_rows(const OneStepProblem<dim> &problem, SolverControl control,
+                   double energy_scale, std::vector<double> &impulse,
+                   LawEvaluation<dim> &evaluation, SolverReport &report);
+    bool go_on(const OneStepProblem<dim> &problem, const SolverControl &control,
+               double energy_scale, std::vector<double> &impulse,
+               LawEvaluation<dim> &evaluation, SolverReport &report);
 
     const SceneInput &input_;
     const Discretization<dim> &discretization_;
@@ -74,7 +92,6 @@ namespace nsfd
     StepCounters &counters_;
     std::unique_ptr<DrivenMotion<dim>> motion_;
     EnergySafeSliding<dim> sliding_;
-    std::unique_ptr<NonsmoothSolver<dim>> settling_; ///< see settle()
     bool has_extrinsic_ = false, may_stay_ = false;
   };
 

@@ -14,27 +14,19 @@ namespace nsfd
   namespace
   {
     /// A over R: of what a point carries beyond P_0 so much is left as an error
-    constexpr double first_share = 1e-2, last_share = 1e-7;
+    constexpr double first_share = 1e-2;
     /// round-off of P - S, which a spring of A = share R makes larger by
     /// 1/share
     constexpr double round_off = 1e-15;
-    /// the same, where U is that of the nodes and not a difference of large
-    /// numbers: what is rigid is so beside laws that have just begun to open
-    constexpr double of_nodes = 1e-11;
-    /// over A: a law that gives way by less is rigid to machine precision
-    constexpr double own_compliance = 1e-11;
     /// a step of Newton's method is long enough
     constexpr double flat = 0.5;
-    /// what difference quotients leave of their digits
-    constexpr double left_to_differences = 1e-5;
     /// of the tolerance, of impulses that may stay without any iteration: what
     /// they lack is the same in every step of bodies at rest, and adds up
     constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error
     constexpr unsigned int patience = 4;
-    /// of the momenta, what a step may lose of them; of the tolerance, what
-    /// those of the nodes may lack
-    constexpr double lost = 1e-15, of_momenta = 1e-2, of_equilibria = 0.1;
+    /// of the tolerance, what the momenta of the nodes may lack
+    constexpr double of_momenta = 1e-2, of_equilibria = 0.1;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
   } // namespace
@@ -67,8 +59,15 @@ namespace nsfd
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
     dU_.assign(n, 0.);
-    if (!from_rest_)
+    rigid_ = of_nodes;
+    if (!from_rest_) {
+      // what is rigid is so beside the stiffness of the bodies as well, which
+      // in long steps is far more than the mass that R knows
+      rigid_ = std::max(of_nodes,
+                        last_share /
+                            std::max(1., work.motion.stiffness_over_mass()));
       work.motion.balance(impulse_, NodeMotion::rough);
+    }
     return_to(work, iterate(work));
   }
 
@@ -209,84 +208,6 @@ namespace nsfd
   }
 
   /**
-   * T and the right-hand side without the springs, where they are slack: P + dP
-   * = S + J (dU - A dP). What sticks has 1 + J A = 0; it gives way by a small
-   * share of A.
-   */
-  template <int dim>
-  void AugmentedLagrangian<dim>::remove_springs(const Work &work)
-  {
-    for (const std::size_t i : work.problem.acting) {
-      double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
-      const bool differences =
-          has_difference_quotients(work.problem, i, solutions_[i]);
-      double left = differences  ? left_to_differences
-                    : from_rest_ ? of_nodes
-                                 : last_share;
-      // Points that are more than motions: what each of them carries is known
-      // from its own compliance alone, as small as that may be.
-      bool gives_way = from_rest_ && !differences;
-      for (unsigned int c = 0; c < dim; ++c)
-        gives_way =
-            gives_way &&
-            1. - T[c * dim + c] * compliance_[i * dim + c] > own_compliance;
-      if (gives_way)
-        left = 0.;
-      dealii::Tensor<2, dim> block, own;
-      dealii::Tensor<1, dim> right;
-      for (unsigned int c = 0; c < dim; ++c) {
-        right[c] = r[c];
-        for (unsigned int d = 0; d < dim; ++d) {
-          block[c][d] = (1. - left) * T[c * dim + d];
-          own[c][d] =
-              (c == d ? 1. : 0.) - block[c][d] * compliance_[i * dim + d];
-        }
-      }
-      const auto inverse = invert(own);
-      block = inverse * block;
-      right = inverse * right;
-      for (unsigned int c = 0; c < dim; ++c) {
-        r[c] = right[c];
-        for (unsigned int d = 0; d < dim; ++d)
-          T[c * dim + d] = block[c][d];
-      }
-    }
-  }
-
-  /** What a point carries and how it moves is lost in the error of a step. */
-  template <int dim>
-  bool AugmentedLagrangian<dim>::rests(const Work &work,
-                                       const std::size_t i) const
-  {
-    double moves = 0., carries = 0.;
-    for (std::size_t k = i * dim; k < (i + 1) * dim; ++k) {
-      const double R = work.evaluation.majorant(i, unsigned(k - i * dim));
-      moves += velocity_[k] * velocity_[k] / R;
-      carries +=
-          R * std::max(impulse_[k] * impulse_[k], defect_[k] * defect_[k]);
-    }
-    const double little = 0.1 * work.tolerance * scale_;
-    return std::max(moves, carries) <= little * little;
-  }
-
-  /** Points at rest that carry nothing are open or closed by the last digits:
-      they stay as they are in the factor. */
-  template <int dim>
-  void AugmentedLagrangian<dim>::keep_tangents_at_rest(const Work &work)
-  {
-    const Vector &factored = work.motion.factored();
-    if (from_rest_ || factored.size() != tangents_.size())
-      return;
-    for (const std::size_t i : work.problem.acting)
-      if (rests(work, i)) {
-        std::copy_n(factored.begin() + long(i * dim * dim), dim * dim,
-                    tangents_.begin() + long(i * dim * dim));
-        std::copy_n(defect_.begin() + long(i * dim), dim,
-                    right_side_.begin() + long(i * dim));
-      }
-  }
-
-  /**
    * Full steps of Newton's method for the natural map, from which the method of
    * multipliers takes over where they lead nowhere: true if they have solved
    * the problem.
@@ -329,22 +250,12 @@ namespace nsfd
       before = {error, before[0]};
       if (idle > patience || comes_back || !std::isfinite(error))
         break;
-      ++work.report.newton;
       set_right_side(work);
-      defect_ = right_side_;
-      const bool symmetric = differentiate(work);
-      remove_springs(work);
-      if (symmetric)
-        symmetrise(work, false);
-      keep_tangents_at_rest(work);
       // as far as a step of Newton's method is right; the next one makes good
       // what is left
-      const double share = exact ? 0. : std::min(1e-2, 0.1 * defect);
-      if (!solve_system(work, symmetric, enough(work), share))
+      if (!take_step(work, enough(work),
+                     exact ? 0. : std::min(1e-2, 0.1 * defect)))
         break;
-      for (std::size_t k = 0; k < impulse_.size(); ++k)
-        impulse_[k] += dP_[k];
-      work.motion.move(1., impulse_, velocity_);
     }
     if (least == none)
       return false;
@@ -437,12 +348,9 @@ namespace nsfd
     const unsigned int most = control.iterations_or(80);
     double share = first_share;
     const auto judge = [&] {
-      for (const std::size_t i : work.problem.acting)
-        evaluation.solutions[i].reach = solutions_[i].reach;
       if (!from_rest_)
         polish(work); // momenta that are lost add up over steps
-      evaluation.velocity = velocity_;
-      evaluation.update_laws(impulse_);
+      judge_velocities(work);
       return evaluation.error <= tolerance;
     };
     bool solved = false;
@@ -486,8 +394,10 @@ namespace nsfd
       soften(work, share);
       answer(work, velocity_);
     }
-    impulse = impulse_;
     report.converged = solved || judge();
+    if (report.converged && !from_rest_)
+      hold_rows(work, control.row_energy);
+    impulse = impulse_;
     report.residual = evaluation.error;
     if (own)
       motion.cancel();

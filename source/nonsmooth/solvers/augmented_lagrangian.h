@@ -27,6 +27,10 @@ namespace nsfd
    * springs carry no more than the tolerance. Springs that are too stiff for
    * the method to get on are replaced by softer ones.
    *
+   * Rows with a prescribed velocity are linear, and what is left of them works
+   * with their impulses, which in long steps are far larger than what moves:
+   * further Newton steps solve them to SolverControl::row_energy.
+   *
    * The operator has to be a VelocitySolver.
    */
   template <int dim>
@@ -58,6 +62,14 @@ namespace nsfd
       double defect, shift;
     };
 
+    /// A over R of the last springs, and what is left of those of what is rigid
+    static constexpr double last_share = 1e-7;
+    /// the latter where U is that of the nodes and not a difference of large
+    /// numbers: what is rigid is so beside laws that have just begun to open
+    static constexpr double of_nodes = 1e-11;
+    /// of the momenta, what a step may lose of them
+    static constexpr double lost = 1e-15;
+
     bool may_be_rough(const Work &work) const;
     double enough(const Work &work) const;
     void begin(const Work &work, const Vector &impulse);
@@ -74,7 +86,10 @@ namespace nsfd
     bool rests(const Work &work, std::size_t i) const;
     void keep_tangents_at_rest(const Work &work);
     void remove_springs(const Work &work);
+    bool take_step(const Work &work, double tolerance, double share);
     bool jump(const Work &work);
+    void judge_velocities(const Work &work);
+    void hold_rows(const Work &work, double most);
     bool solve_system(const Work &work, bool symmetric, double tolerance,
                       double share);
     bool find_direction(const Work &work);
@@ -84,7 +99,8 @@ namespace nsfd
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
     bool from_rest_ = false;           ///< a round of statics
-    double scale_ = 0.;                ///< of errors, with the last impulses
+    double rigid_ = last_share; ///< what rigid points give way by, over A
+    double scale_ = 0.;         ///< of errors, with the last impulses
     std::vector<LocalSolution<dim>> solutions_;
     Vector tangents_; ///< T, dim x dim per point
     Vector right_side_, defect_, dP_, dU_;

@@ -1,0 +1,199 @@
+#include "augmented_lagrangian.h"
+
+#include <deal.II/base/tensor.h>
+
+#include "nonsmooth/point_tangent.h"
+#include "nonsmooth/row_work.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nsfd
+{
+  namespace
+  {
+    /// over A: a law that gives way by less is rigid to machine precision
+    constexpr double own_compliance = 1e-11;
+    /// what difference quotients leave of their digits
+    constexpr double left_to_differences = 1e-5;
+    /// of the momenta, as imbalance() measures it
+    constexpr double digits_of_momenta = 1e-14;
+    /// each one leaves little of the one before, until round-off is left
+    constexpr unsigned int most_row_steps = 6;
+  } // namespace
+
+  /**
+   * T and the right-hand side without the springs, where they are slack: P + dP
+   * = S + J (dU - A dP). What sticks has 1 + J A = 0; it gives way by a small
+   * share of A.
+   */
+  template <int dim>
+  void AugmentedLagrangian<dim>::remove_springs(const Work &work)
+  {
+    for (const std::size_t i : work.problem.acting) {
+      double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
+      const bool differences =
+          has_difference_quotients(work.problem, i, solutions_[i]);
+      double left = differences ? left_to_differences : rigid_;
+      // Points that are more than motions: what each of them carries is known
+      // from its own compliance alone, as small as that may be.
+      bool gives_way = from_rest_ && !differences;
+      for (unsigned int c = 0; c < dim; ++c)
+        gives_way =
+            gives_way &&
+            1. - T[c * dim + c] * compliance_[i * dim + c] > own_compliance;
+      if (gives_way)
+        left = 0.;
+      dealii::Tensor<2, dim> block, own;
+      dealii::Tensor<1, dim> right;
+      for (unsigned int c = 0; c < dim; ++c) {
+        right[c] = r[c];
+        for (unsigned int d = 0; d < dim; ++d) {
+          block[c][d] = (1. - left) * T[c * dim + d];
+          own[c][d] =
+              (c == d ? 1. : 0.) - block[c][d] * compliance_[i * dim + d];
+        }
+      }
+      const auto inverse = invert(own);
+      block = inverse * block;
+      right = inverse * right;
+      for (unsigned int c = 0; c < dim; ++c) {
+        r[c] = right[c];
+        for (unsigned int d = 0; d < dim; ++d)
+          T[c * dim + d] = block[c][d];
+      }
+    }
+  }
+
+  /** What a point carries and how it moves is lost in the error of a step. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::rests(const Work &work,
+                                       const std::size_t i) const
+  {
+    double moves = 0., carries = 0.;
+    for (std::size_t k = i * dim; k < (i + 1) * dim; ++k) {
+      const double R = work.evaluation.majorant(i, unsigned(k - i * dim));
+      moves += velocity_[k] * velocity_[k] / R;
+      carries +=
+          R * std::max(impulse_[k] * impulse_[k], defect_[k] * defect_[k]);
+    }
+    const double little = 0.1 * work.tolerance * scale_;
+    return std::max(moves, carries) <= little * little;
+  }
+
+  /** Points at rest that carry nothing are open or closed by the last digits:
+      they stay as they are in the factor. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::keep_tangents_at_rest(const Work &work)
+  {
+    const Vector &factored = work.motion.factored();
+    if (from_rest_ || factored.size() != tangents_.size())
+      return;
+    for (const std::size_t i : work.problem.acting)
+      if (rests(work, i)) {
+        std::copy_n(factored.begin() + long(i * dim * dim), dim * dim,
+                    tangents_.begin() + long(i * dim * dim));
+        std::copy_n(defect_.begin() + long(i * dim), dim,
+                    right_side_.begin() + long(i * dim));
+      }
+  }
+
+  /** Newton's step for the natural map, in full. Collective. */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::take_step(const Work &work,
+                                           const double tolerance,
+                                           const double share)
+  {
+    ++work.report.newton;
+    defect_ = right_side_;
+    const bool symmetric = differentiate(work);
+    remove_springs(work);
+    if (symmetric)
+      symmetrise(work, false);
+    keep_tangents_at_rest(work);
+    if (!solve_system(work, symmetric, tolerance, share))
+      return false;
+    for (std::size_t k = 0; k < impulse_.size(); ++k)
+      impulse_[k] += dP_[k];
+    work.motion.move(1., impulse_, velocity_);
+    return true;
+  }
+
+  /**
+   * Newton steps that leave no more than @p most of the rows with a prescribed
+   * velocity, with momenta to round-off: polish() would move such rows again,
+   * by that round-off over the mass of the bodies.
+   */
+  template <int dim>
+  void AugmentedLagrangian<dim>::hold_rows(const Work &work, const double most)
+  {
+    if (!std::isfinite(most)) // nobody asks
+      return;
+    const auto left = [&] {
+      return row_work(work.problem, work.delassus.communicator(), velocity_,
+                      impulse_)
+          .energy;
+    };
+    Iterate best = iterate(work);
+    double least = left();
+    const double balanced =
+        std::max(2. * work.motion.imbalance(), digits_of_momenta);
+    bool moved = false;
+    for (unsigned int round = 0; round < most_row_steps && least > most;
+         ++round) {
+      soften(work, 1.);
+      answer(work, velocity_);
+      set_right_side(work);
+      // the difference of impulses has lost what is left of the velocities to
+      // the last bit of impulses
+      for (const std::size_t i : work.problem.acting)
+        for (unsigned int c = 0; c < dim; ++c)
+          if (const std::size_t k = i * dim + c;
+              work.problem.kind[i] == PointKind::prescribed &&
+              (work.problem.mask[i] & (1u << c)))
+            right_side_[k] = (work.problem.given_velocity[k] - velocity_[k]) /
+                             compliance_[k];
+      moved = true;
+      if (!take_step(work, lost, 0.))
+        break;
+      judge_velocities(work);
+      // what the first step leaves of the momenta, beside rows that were far
+      // off, is made good by the next one
+      if (!(work.evaluation.error <= work.tolerance) ||
+          !work.motion.balances(enough(work)))
+        break;
+      if (work.motion.imbalance() > balanced)
+        continue;
+      const double now = left();
+      if (!(now < 0.5 * least))
+        break;
+      least = now;
+      best = iterate(work);
+    }
+    if (!moved)
+      return;
+    return_to(work, best);
+    judge_velocities(work);
+  }
+
+  /** The natural map at the present velocities and impulses. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::judge_velocities(const Work &work)
+  {
+    for (const std::size_t i : work.problem.acting)
+      work.evaluation.solutions[i].reach = solutions_[i].reach;
+    work.evaluation.velocity = velocity_;
+    work.evaluation.update_laws(impulse_);
+  }
+
+#define INSTANTIATE(dim)                                                       \
+  template void AugmentedLagrangian<dim>::remove_springs(const Work &);        \
+  template bool AugmentedLagrangian<dim>::take_step(const Work &, double,      \
+                                                    double);                   \
+  template void AugmentedLagrangian<dim>::judge_velocities(const Work &);      \
+  template void AugmentedLagrangian<dim>::hold_rows(const Work &, double)
+
+  INSTANTIATE(2);
+  INSTANTIATE(3);
+#undef INSTANTIATE
+} // namespace nsfd
