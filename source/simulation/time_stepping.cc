@@ -11,7 +11,9 @@ namespace nsfd
   template <int dim>
   void TimeStepping<dim>::start(State &state)
   {
-    state = integrator().start_from(std::move(state));
+    // where there may be no equilibrium the given state is what is written then
+    state = integrator().start_from(input_.statics ? State(state)
+                                                   : std::move(state));
     if (!integrator().takes_steps())
       hand_over(state);
   }

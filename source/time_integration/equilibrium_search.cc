@@ -298,12 +298,30 @@ namespace nsfd
     return solved_ && !report.solver.converged;
   }
 
+  namespace
+  {
+    /** @p old with the faces open that have broken since. */
+    template <int dim>
+    State torn(const State &old,
+               const std::vector<LocalSolution<dim>> &solutions)
+    {
+      State state = old;
+      for (std::size_t i = 0; i < solutions.size(); ++i)
+        if (solutions[i].damages && solutions[i].frozen.secant.normal == 0. &&
+            solutions[i].frozen.secant.tangential == 0.)
+          state.kind[i] = PointKind::free;
+      return state;
+    }
+  } // namespace
+
+  /** That the forces left over accelerate, if there is one. */
   template <int dim>
   void EquilibriumSearch<dim>::refuse_rigid_body_modes(const State &old,
                                                        const double time)
   {
-    const std::string modes = rigid_body_modes(discretization_, communicator_,
-                                               old, relaxation_->residual());
+    const std::string modes = rigid_body_modes(
+        discretization_, *delassus_, torn(old, relaxation_->solutions()),
+        relaxation_->residual());
     if (modes.empty())
       return;
     throw StepRejected(
@@ -314,13 +332,13 @@ namespace nsfd
 
   /**
    * Rounds until the forces left over are below @p goal. What nothing holds is
-   * named if it comes from @p old, and else ends them.
+   * refused by name if it comes from @p old, and else ends them.
    */
   template <int dim>
   bool EquilibriumSearch<dim>::settle(std::vector<double> &q,
                                       const unsigned int rounds,
                                       const double goal, StepReport &report,
-                                      const State *old)
+                                      const State *const old)
   {
     double last = std::numeric_limits<double>::infinity(), near = 1e-3;
     bool &converged = report.solver.converged;
