@@ -43,6 +43,12 @@ namespace nsfd
     unsigned int interaction = 0; ///< index into OneStepProblem::interactions
     unsigned int block = 0;
     std::size_t place = nowhere; ///< of what it keeps
+    /// of its impulse, if that has another one
+    std::size_t place_of_impulse = nowhere;
+    std::size_t where_impulse_is() const
+    {
+      return place_of_impulse == nowhere ? place : place_of_impulse;
+    }
     /// place of the corner that would ask for nearly the same from the other
     /// side: both know the same bound of their overlap
     std::size_t twin = nowhere;

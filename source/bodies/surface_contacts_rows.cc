@@ -348,9 +348,10 @@ namespace nsfd
   }
 
   /**
-   * One row per node and obstacle: that of the face which lies nearest to it,
-   * so that what the other faces of a corner touch has a history of its own.
-   * Their indices are in the order of the faces of all ranks.
+   * One row per node and obstacle: that of its largest face. Its impulse is
+   * kept by the face which lies nearest to the obstacle, apart from those of
+   * what the other faces of a corner touch. Their indices are in the order of
+   * the faces of all ranks.
    */
   template <int dim>
   std::vector<MovingRow<dim>>
@@ -432,11 +433,18 @@ namespace nsfd
           add(row, o);
           heights.resize(rows.size());
           heights.back() = height;
-        } else if (height < heights[entry->second]) {
-          rows[entry->second].place = row.place; // the rest is that of the node
-          rows[entry->second].weight = row.weight;
-          rows[entry->second].cell = row.cell;
-          rows[entry->second].node = row.node;
+          rows.back().place_of_impulse = row.place;
+          continue;
+        }
+        Row &same = rows[entry->second];
+        if (row.weight > same.weight) {
+          same.place = row.place; // the rest is that of the node
+          same.weight = row.weight;
+          same.cell = row.cell;
+          same.node = row.node;
+        }
+        if (height < heights[entry->second]) {
+          same.place_of_impulse = row.place;
           heights[entry->second] = height;
         }
       }

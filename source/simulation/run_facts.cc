@@ -138,8 +138,10 @@ namespace nsfd
         // Contacts at rest have no energy but what loads would give in a step.
         // In long steps that is far more than all energies: what supports hold
         // is not related to it.
-        const bool over_present = (of_rows || line == WatchedLine::scheme) &&
-                                  state.largest_energy > 0.;
+        const bool of_long_steps =
+            line == WatchedLine::scheme && !input.time.scheme.has_stable_step();
+        const bool over_present =
+            (of_rows || of_long_steps) && state.largest_energy > 0.;
         const auto share = [&](const double energy) {
           return energy == 0.
                      ? 0.

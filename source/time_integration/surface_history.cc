@@ -11,6 +11,7 @@ namespace nsfd
   template <int dim>
   struct SurfaceHistory<dim>::OfContact {
     std::size_t index, place, twin; ///< index of the row
+    std::size_t place_of_impulse;
     std::array<double, dim> impulse;
     double slip, overlap, approach, worn, wear_speed;
     std::uint8_t contact;
@@ -59,9 +60,9 @@ namespace nsfd
       for (unsigned int a = 0; a < dim && rows[k].place != rows[k].nowhere; ++a)
         for (unsigned int d = 0; d < dim; ++d) {
           const std::size_t i = contacts_.row_point(k);
-          impulse[i * dim + a] += rows[k].share *
-                                  contacts_.points().axes(i)[a * dim + d] *
-                                  old.surface_impulse[rows[k].place * dim + d];
+          impulse[i * dim + a] +=
+              rows[k].share * contacts_.points().axes(i)[a * dim + d] *
+              old.surface_impulse[rows[k].where_impulse_is() * dim + d];
         }
   }
 
@@ -79,6 +80,7 @@ namespace nsfd
       contact.index = row.index;
       contact.place = row.place;
       contact.twin = row.twin;
+      contact.place_of_impulse = row.where_impulse_is();
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int d = 0; d < dim; ++d)
           contact.impulse[d] += contacts_.points().axes(i)[a * dim + d] *
@@ -115,7 +117,8 @@ namespace nsfd
               [](const auto &a, const auto &b) { return a.index < b.index; });
     for (const OfContact &contact : contacts) {
       for (unsigned int d = 0; d < dim; ++d)
-        next.surface_impulse[contact.place * dim + d] += contact.impulse[d];
+        next.surface_impulse[contact.place_of_impulse * dim + d] +=
+            contact.impulse[d];
       next.surface_slip[contact.place] = contact.slip;
       for (const std::size_t place : {contact.place, contact.twin})
         if (place != MovingRow<dim>::nowhere) {
