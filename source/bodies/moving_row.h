@@ -45,10 +45,6 @@ namespace nsfd
     std::size_t place = nowhere; ///< of what it keeps
     /// of its impulse, if that has another one
     std::size_t place_of_impulse = nowhere;
-    std::size_t where_impulse_is() const
-    {
-      return place_of_impulse == nowhere ? place : place_of_impulse;
-    }
     /// place of the corner that would ask for nearly the same from the other
     /// side: both know the same bound of their overlap
     std::size_t twin = nowhere;
@@ -56,6 +52,14 @@ namespace nsfd
     double share = 1.;              ///< of the impulse that its place keeps
     std::array<double, dim> jump{}; ///< of a pin: how far it is off, m
   };
+
+  /** What keeps the impulse of a row. */
+  template <int dim>
+  std::size_t place_of_impulse(const MovingRow<dim> &row)
+  {
+    return row.place_of_impulse == row.nowhere ? row.place
+                                               : row.place_of_impulse;
+  }
 
   /** Body 2 is a ball. */
   template <int dim>

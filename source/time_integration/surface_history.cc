@@ -62,7 +62,7 @@ namespace nsfd
           const std::size_t i = contacts_.row_point(k);
           impulse[i * dim + a] +=
               rows[k].share * contacts_.points().axes(i)[a * dim + d] *
-              old.surface_impulse[rows[k].where_impulse_is() * dim + d];
+              old.surface_impulse[place_of_impulse(rows[k]) * dim + d];
         }
   }
 
@@ -80,7 +80,7 @@ namespace nsfd
       contact.index = row.index;
       contact.place = row.place;
       contact.twin = row.twin;
-      contact.place_of_impulse = row.where_impulse_is();
+      contact.place_of_impulse = place_of_impulse(row);
       for (unsigned int a = 0; a < dim; ++a)
         for (unsigned int d = 0; d < dim; ++d)
           contact.impulse[d] += contacts_.points().axes(i)[a * dim + d] *
