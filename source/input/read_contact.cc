@@ -102,13 +102,15 @@ namespace nsfd
       return contact;
     }
 
-    /** A face may open, or there are several bodies. */
-    bool may_part(const SceneInput &scene)
+    /** All bodies are rigid, and there are faces that may open or several
+        bodies: a scene that makes no sense if they do not touch. */
+    bool is_of_blocks(const SceneInput &scene)
     {
-      return scene.bodies.size() > 1 ||
-             std::any_of(
-                 scene.interfaces.begin(), scene.interfaces.end(),
-                 [](const InterfaceInput &block) { return block.may_open(); });
+      return std::all_of(scene.materials.begin(), scene.materials.end(),
+                         [](const auto &material) { return material.rigid; }) &&
+             (scene.bodies.size() > 1 ||
+              std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
+                          [](const auto &block) { return block.may_open(); }));
     }
 
     /**
@@ -189,7 +191,7 @@ namespace nsfd
       if (errors.n_errors() == n_before)
         claim_pairs(reader, scene.contacts.back(), scene, owners);
     }
-    if (scene.large_motion && !says_something && may_part(scene))
+    if (scene.large_motion && !says_something && is_of_blocks(scene))
       touch_by_default(file, errors, scene);
   }
 

@@ -69,8 +69,8 @@ namespace nsfd
     for (const ContactInput &contact : input.contacts)
       lines.push_back({"contact search", describe_contact(contact)});
     if (input.contacts.empty())
-      lines.push_back(
-          {"contact search", "none: surfaces pass through each other"});
+      lines.push_back({"contact search",
+                       "no Contact block: surfaces pass through each other"});
     for (const PinInput &pin : input.pins)
       lines.push_back({"pin", pin.name + ": of " + pin.material});
     return lines;

@@ -302,7 +302,7 @@ namespace nsfd::large_motion_scenes::test_large_motion_input
     ASSERT_NE(alone, nullptr);
     EXPECT_EQ(motion_report(*alone)[0].text, "rock: each cell is one, mass 3");
     EXPECT_EQ(motion_report(*alone).back().text,
-              "no Contact block: all surfaces, friction 0, restitution 0");
+              "no Contact block: surfaces pass through each other");
     const auto &obstacles = scene->obstacles;
     EXPECT_EQ(describe_obstacle(obstacles[0], 3), "plane");
     EXPECT_EQ(describe_obstacle(obstacles[1], 3), "hollow cylinder");
