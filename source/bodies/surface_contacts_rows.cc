@@ -381,6 +381,7 @@ namespace nsfd
     };
     std::map<std::pair<std::size_t, unsigned int>, std::size_t> known;
     std::vector<double> heights; // of the faces of rows
+    std::vector<double> gaps;    // of the nodes of a face
     const auto add = [&](Row row, const unsigned int o) {
       const bool is_ball = row.node == Row::nowhere;
       Vector away =
@@ -410,17 +411,20 @@ namespace nsfd
         continue;
       }
       const FaceNodes<dim> &face = cells_.faces(c)[f];
+      gaps.clear();
       double height = 0.;
-      for (const unsigned int node : face.nodes)
-        height += geometry(o).gap(node_place(cells_.first_node(c) + node)) /
-                  double(face.nodes.size());
+      for (const unsigned int node : face.nodes) {
+        gaps.push_back(
+            geometry(o).gap(node_place(cells_.first_node(c) + node)));
+        height += gaps.back() / double(face.nodes.size());
+      }
       for (unsigned int j = 0; j < face.nodes.size(); ++j) {
         if (!active_.is_corner(c, f, face.nodes[j]))
           continue;
         Row row;
         row.index = k * cells_.nodes_per_cell() + j;
         row.node = cells_.first_node(c) + face.nodes[j];
-        row.gap = geometry(o).gap(node_place(row.node));
+        row.gap = gaps[j];
         if (row.gap > reach)
           continue;
         row.body_2 = b;

@@ -106,8 +106,7 @@ namespace nsfd
         bodies: a scene that makes no sense if they do not touch. */
     bool is_of_blocks(const SceneInput &scene)
     {
-      return std::all_of(scene.materials.begin(), scene.materials.end(),
-                         [](const auto &material) { return material.rigid; }) &&
+      return no_body_deforms(scene) &&
              (scene.bodies.size() > 1 ||
               std::any_of(scene.interfaces.begin(), scene.interfaces.end(),
                           [](const auto &block) { return block.may_open(); }));

@@ -21,13 +21,6 @@ namespace nsfd
         {"contact", "unilateral contact and Coulomb friction only"},
     };
 
-    bool no_body_deforms(const SceneInput &scene)
-    {
-      return !scene.materials.empty() &&
-             std::all_of(scene.materials.begin(), scene.materials.end(),
-                         [](const MaterialInput &m) { return m.rigid; });
-    }
-
     /**
      * What joins cells of implicit steps: rigid rows on all faces make W
      * singular, and tractions ambiguous, but there are no common nodes where
@@ -453,6 +446,13 @@ namespace nsfd
              !asks_for("path", "local");
     }
   } // namespace
+
+  bool no_body_deforms(const SceneInput &scene)
+  {
+    return !scene.materials.empty() &&
+           std::all_of(scene.materials.begin(), scene.materials.end(),
+                       [](const MaterialInput &m) { return m.rigid; });
+  }
 
   void read_interfaces(ParameterFile &file, InputErrors &errors,
                        SceneInput &scene)

@@ -80,6 +80,9 @@ namespace nsfd
                       SceneInput &scene);
   void read_loads(ParameterFile &file, InputErrors &errors, SceneInput &scene);
 
+  /** There are materials, and all of them are rigid. */
+  bool no_body_deforms(const SceneInput &scene);
+
   /** Contact and Pin blocks, of scenes with large motions only. */
   void read_contacts(ParameterFile &file, InputErrors &errors,
                      SceneInput &scene);

@@ -62,9 +62,8 @@ namespace nsfd
         return any(input.interfaces, [](const auto &b) { return bool(b.law); });
       case WatchedLine::impact:
         return !input.obstacles.empty() || !input.contacts.empty() ||
-               any(input.interfaces, [](const auto &b) {
-                 return b.law || b.law_name == "contact";
-               });
+               any(input.interfaces,
+                   [](const auto &b) { return b.may_open(); });
       case WatchedLine::viscous:
         return e.viscous != 0.;
       case WatchedLine::plastic:
