@@ -40,20 +40,33 @@ namespace nsfd
     /**
      * From now on conjugate gradients with these solve, until a matrix is
      * prepared; both map own values, and @p preconditioner is of the matrix.
+     * @p general: it is not symmetric, and set_product() has to follow.
      */
-    void iterate_with(Product product, Product preconditioner);
+    void iterate_with(Product product, Product preconditioner,
+                      bool general = false);
     /**
      * From now on solutions are those of another matrix, symmetric or not, by
-     * generalised minimal residuals that what was prepared last preconditions;
-     * null: of what was prepared.
+     * generalised minimal residuals that what was prepared last preconditions,
+     * in its norm where it is symmetric; null: of what was prepared.
      */
     void set_product(Product product) { product_ = std::move(product); }
 
+    /** Where iterations end, at either. */
+    struct Goal {
+      /// of the residual in the norm of the preconditioner, over its start
+      double tolerance;
+      double residual = 0.; ///< its own norm: a tolerance sees stiff rows less
+
+      Goal(const double of, const double left = 0.)
+          : tolerance(of), residual(left)
+      {
+      }
+    };
     /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
-    krylov::Outcome solve(const double *b, double *x, double tolerance);
+    krylov::Outcome solve(const double *b, double *x, const Goal &goal);
     /** The same with own values of the space. Collective. */
     krylov::Outcome solve_own(const std::vector<double> &b,
-                              std::vector<double> &x, double tolerance);
+                              std::vector<double> &x, const Goal &goal);
     /** P^T b, own values of the space. Collective. */
     void restrict_to_space(const std::vector<double> &b,
                            std::vector<double> &own);
@@ -78,9 +91,9 @@ namespace nsfd
   private:
     void restrict_to_space(const double *b, double *own);
     void expand(double *own, double *x);
-    krylov::Outcome solve_here(double tolerance);
+    krylov::Outcome solve_here(const Goal &goal);
     void precondition(const std::vector<double> &r, std::vector<double> &z);
-    krylov::Outcome iterate(double tolerance);
+    krylov::Outcome iterate(const Goal &goal);
 
     const Communicator &communicator_;
     const long long largest_factor_;
@@ -94,7 +107,8 @@ namespace nsfd
     Product product_; ///< or null
     struct {
       Product product, preconditioner;
-    } given_; ///< by the caller, or null
+    } given_;                 ///< by the caller, or null
+    bool is_general_ = false; ///< its preconditioner
     std::unique_ptr<Cholesky> factor_;
     std::unique_ptr<Multigrid> multigrid_;
     SparseRows matrix_; ///< of the iterations

@@ -11,9 +11,11 @@ namespace nsfd
   template <int dim>
   void JoinedMotion<dim>::start(const std::vector<double> &momentum,
                                 const std::vector<double> &impulse,
-                                const std::vector<double> &start)
+                                const std::vector<double> &start,
+                                const double floor)
   {
     is_on_ = true;
+    floor_ = floor;
     start_ = start;
     const std::size_t n = bodies_.representative_.size();
     momentum_.assign(n, 0.);
@@ -66,7 +68,8 @@ namespace nsfd
     }
     const auto sums = bodies_.communicator_.sums(squares.data(), 3, n);
     left_ = std::sqrt(sums[0]);
-    const double size = std::sqrt(sums[1]) + std::sqrt(sums[2]);
+    const double size =
+        std::max(floor_, std::sqrt(sums[1]) + std::sqrt(sums[2]));
     scale_ = size > 0. ? size : 1.;
     is_done_ = false;
   }
@@ -118,12 +121,11 @@ namespace nsfd
                  first = accuracy.share * std::sqrt(sums[1]);
     asks_all_ = first <= enough;
     bodies_.rows_ = std::move(rows);
-    const double size = std::sqrt(sums[0]);
+    const double size = std::sqrt(sums[0]), left = std::max(enough, first);
     if (!bodies_.solve_tangent(
             T, symmetric,
-            size > 0.
-                ? std::clamp(std::max(enough, first) / size, bodies_.tight, 0.1)
-                : 1.))
+            {size > 0. ? std::clamp(left / size, bodies_.tight, 0.1) : 1.,
+             left}))
       return false;
     dw_ = bodies_.columns_;
     dU.resize(c.size());

@@ -13,7 +13,7 @@ namespace nsfd
 
     void start(const std::vector<double> &momentum,
                const std::vector<double> &impulse,
-               const std::vector<double> &start) override;
+               const std::vector<double> &start, double floor = 0.) override;
     bool is_on() const override { return is_on_; }
     double stiffness_over_mass() override;
     bool saves_by_rough_solutions() const override
@@ -59,5 +59,6 @@ namespace nsfd
       double share = -1., value = 0.;
     } stiffness_over_mass_;         ///< of steps with this share of K
     double left_ = 0., scale_ = 1.; ///< sizes of the residual, and of its terms
+    double floor_ = 0.;             ///< of the latter
   };
 } // namespace nsfd

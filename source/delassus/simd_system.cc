@@ -1,7 +1,7 @@
 #include "simd_system.h"
 
 #include "core/cost.h"
-#include "linear_algebra/krylov.h"
+#include "linear_algebra/gmres.h"
 
 #include <algorithm>
 #include <cmath>

@@ -78,7 +78,8 @@ namespace nsfd
         },
         [this](const std::vector<double> &r, std::vector<double> &z) {
           jacobi_.apply(r, z);
-        });
+        },
+        general);
     return true;
   }
 
@@ -119,9 +120,9 @@ namespace nsfd
 
   template <int dim>
   void TangentFactor<dim>::note(const unsigned int iterations,
-                                const double tolerance)
+                                const double reduction)
   {
-    const double digits = std::max(1., -std::log10(tolerance));
+    const double digits = std::max(1., -std::log10(reduction));
     const double rate = iterations / digits;
     wear_.least = wear_.least > 0. ? std::min(wear_.least, rate) : rate;
     wear_.excess += iterations - wear_.least * digits;

@@ -72,8 +72,9 @@ namespace nsfd
     Wear &wear() { return wear_; }
     /** A new one would do more. */
     bool is_worn() const { return wear_.excess > worth / 4.; }
-    /** What conjugate gradients by cycles have taken to @p tolerance. */
-    void note(unsigned int iterations, double tolerance);
+    /** What conjugate gradients by cycles have taken for a @p reduction of the
+        residual. */
+    void note(unsigned int iterations, double reduction);
 
     /** Iterations are on the matrix of these springs, symmetric ones, with the
         preconditioner that there is. */

@@ -36,11 +36,12 @@ namespace nsfd
      * At w = 0, until cancel() or the next reinit() of the bodies. @p momentum
      * is M_hat (v_free - v_0) by unknown of the bodies or empty, @p impulse
      * what acts besides (of pressure in cracks) or empty, @p start is U_0 by
-     * point. Collective.
+     * point. Tolerances are of no less than @p floor, which what has been
+     * unloaded no longer shows, N s. Collective.
      */
     virtual void start(const std::vector<double> &momentum,
                        const std::vector<double> &impulse,
-                       const std::vector<double> &start) = 0;
+                       const std::vector<double> &start, double floor = 0.) = 0;
     virtual bool is_on() const = 0;
     /** The largest h^2 theta^2 K_ii / M_ii of the bodies. Collective. */
     virtual double stiffness_over_mass() = 0;

@@ -2,6 +2,7 @@
 
 #include "free_motion.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,8 @@ namespace nsfd
     const std::vector<double> &residual() const { return residual_; }
     /** The largest sum of r^2/support so far, or its round-off, J. */
     double point_scale() const;
-    /** The largest forces so far. */
+    /** What imbalance() is measured by, N. */
+    double largest_forces() const { return std::max(present_, round_off_); }
     void serialize(Archive &archive);
 
   private:

@@ -246,7 +246,8 @@ namespace nsfd
       soften(h);
       if (bonds_)
         bonds_->start_from_rest(h, free_motion_.loads(),
-                                free_motion_.pressure_impulse(pressure_, h), q);
+                                free_motion_.pressure_impulse(pressure_, h), q,
+                                balance_.largest_forces());
       else
         free_motion_.move(iterate_.at, pressure_, problem_, {});
     }

@@ -46,11 +46,10 @@ namespace nsfd
   }
 
   template <int dim>
-  void
-  StaticBonds<dim>::start_from_rest(const double h,
-                                    const std::vector<double> &loads,
-                                    const std::vector<double> &impulse,
-                                    const std::vector<double> &displacement)
+  void StaticBonds<dim>::start_from_rest(
+      const double h, const std::vector<double> &loads,
+      const std::vector<double> &impulse,
+      const std::vector<double> &displacement, const double forces)
   {
     std::vector<double> momentum(loads.size());
     bonded_.apply(DelassusOperator<dim>::Operator::stiffness,
@@ -59,7 +58,8 @@ namespace nsfd
       momentum[k] = h * (loads[k] - momentum[k]);
     problem_.free_motion = FreeVelocity::unknown;
     nodes_.motion().start(momentum, impulse,
-                          std::vector<double>(problem_.n_points * dim, 0.));
+                          std::vector<double>(problem_.n_points * dim, 0.),
+                          h * forces);
   }
 
   template <int dim>

@@ -44,11 +44,13 @@ namespace nsfd
     /** Supports once per node, after the data of a round. Collective. */
     void constrain();
 
-    /** A round of h from rest at @p displacement, see NodeMotion; @p
-       impulse is that of the pressure in cracks, or empty. Collective. */
+    /** A round of h from rest at @p displacement, see NodeMotion; @p impulse is
+        that of the pressure in cracks, or empty, @p forces the largest ones so
+        far. Collective. */
     void start_from_rest(double h, const std::vector<double> &loads,
                          const std::vector<double> &impulse,
-                         const std::vector<double> &displacement);
+                         const std::vector<double> &displacement,
+                         double forces);
     /** v, and the forces that are left over: F + H^T r - K q of its end.
         Collective. */
     void finish_from_rest(double h, std::vector<double> &velocity,

@@ -1,4 +1,4 @@
-#include "linear_algebra/krylov.h"
+#include "linear_algebra/gmres.h"
 
 #include "core/communicator.h"
 
@@ -211,6 +211,81 @@ namespace nsfd
     x.assign(5, 1.);
     const auto outcome =
         krylov::gmres(broken, copy, plain_dot, {1e-10, 9}, {}, x);
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_EQ(outcome.iterations, 0u);
+    EXPECT_EQ(x, Vector(5, 0.));
+  }
+
+  // A row 1e16 times as stiff as the others, whose part of the right-hand side
+  // is as large: the plain norm ends at its round-off, that of the
+  // preconditioner goes on to what the others ask for.
+  TEST(Krylov, GmresInTheNormOfThePreconditionerSeesPastStiffRows)
+  {
+    const std::size_t n = 40, stiff = 7;
+    const double stiffness = 1e16;
+    const auto product = [&](const Vector &x, Vector &y) {
+      Line{0.}(x, y);
+      y[stiff] += stiffness * x[stiff];
+      y[20] -= 1.5 * x[20]; // softens: indefinite
+    };
+    const auto precondition = [&](const Vector &r, Vector &z) {
+      z = r;
+      for (std::size_t k = 0; k < n; ++k)
+        z[k] /= k == stiff ? stiffness : 2.;
+    };
+    struct Sums {
+      double operator()(const Vector &a, const Vector &b) const
+      {
+        return plain_dot(a, b);
+      }
+      Vector operator()(const Vector &a, const std::vector<Vector> &v,
+                        const unsigned int count) const
+      {
+        Vector all;
+        for (unsigned int j = 0; j < count; ++j)
+          all.push_back(plain_dot(a, v[j]));
+        all.push_back(plain_dot(a, a));
+        return all;
+      }
+    };
+    Vector b(n, 1.), x, rest;
+    b[stiff] = stiffness;
+    const auto left = [&] {
+      product(x, rest);
+      double sum = 0.;
+      for (std::size_t k = 0; k < n; ++k)
+        if (k != stiff)
+          sum += (b[k] - rest[k]) * (b[k] - rest[k]);
+      return std::sqrt(sum);
+    };
+    x = b;
+    const auto outcome = krylov::gmres_preconditioned(
+        product, precondition, Sums(), {1e-13, 2 * n}, x);
+    EXPECT_TRUE(outcome.converged);
+    EXPECT_LE(outcome.iterations, n + 1);
+    // its start is sqrt(stiffness) in that norm
+    EXPECT_LT(left(), 1e-13 * 2. * std::sqrt(stiffness));
+    x = b;
+    krylov::gmres(product, precondition, Sums(), {1e-15, 2 * n}, {true, 2}, x);
+    EXPECT_GT(left(), 1e-3);
+  }
+
+  TEST(Krylov, GmresInTheNormOfAPreconditionerThatIsNotPositiveEnds)
+  {
+    const auto negative = [](const Vector &in, Vector &out) {
+      out = in;
+      for (double &value : out)
+        value = -value;
+    };
+    const auto sums = [](const Vector &a, const auto &b, auto... n) {
+      if constexpr (sizeof...(n) == 0)
+        return plain_dot(a, b);
+      else
+        return Vector{plain_dot(a, b[0]), plain_dot(a, a)};
+    };
+    Vector x(5, 1.);
+    const auto outcome =
+        krylov::gmres_preconditioned(Line(), negative, sums, {1e-10, 9}, x);
     EXPECT_FALSE(outcome.converged);
     EXPECT_EQ(outcome.iterations, 0u);
     EXPECT_EQ(x, Vector(5, 0.));

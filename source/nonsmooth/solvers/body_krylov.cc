@@ -1,7 +1,7 @@
 #include "body_krylov.h"
 
 #include "core/stop_request.h"
-#include "linear_algebra/krylov.h"
+#include "linear_algebra/gmres.h"
 
 #include <deal.II/lac/lapack_templates.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "delassus/inner_solver.h"
-#include "linear_algebra/krylov.h"
+#include "linear_algebra/gmres.h"
 #include "nonsmooth/frictional_contact/contact_solver.h"
 #include "nonsmooth/solver.h"
 
