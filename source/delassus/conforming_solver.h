@@ -51,22 +51,11 @@ namespace nsfd
      */
     void set_product(Product product) { product_ = std::move(product); }
 
-    /** Where iterations end, at either. */
-    struct Goal {
-      /// of the residual in the norm of the preconditioner, over its start
-      double tolerance;
-      double residual = 0.; ///< its own norm: a tolerance sees stiff rows less
-
-      Goal(const double of, const double left = 0.)
-          : tolerance(of), residual(left)
-      {
-      }
-    };
     /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
-    krylov::Outcome solve(const double *b, double *x, const Goal &goal);
+    krylov::Outcome solve(const double *b, double *x, double tolerance);
     /** The same with own values of the space. Collective. */
     krylov::Outcome solve_own(const std::vector<double> &b,
-                              std::vector<double> &x, const Goal &goal);
+                              std::vector<double> &x, double tolerance);
     /** P^T b, own values of the space. Collective. */
     void restrict_to_space(const std::vector<double> &b,
                            std::vector<double> &own);
@@ -91,9 +80,9 @@ namespace nsfd
   private:
     void restrict_to_space(const double *b, double *own);
     void expand(double *own, double *x);
-    krylov::Outcome solve_here(const Goal &goal);
+    krylov::Outcome solve_here(double tolerance);
     void precondition(const std::vector<double> &r, std::vector<double> &z);
-    krylov::Outcome iterate(const Goal &goal);
+    krylov::Outcome iterate(double tolerance);
 
     const Communicator &communicator_;
     const long long largest_factor_;

@@ -74,11 +74,10 @@ namespace nsfd
     friend JoinedMotion<dim>;
     bool iterates() const;
     bool factor_tangent(const std::vector<double> &springs, bool general);
-    using Goal = ConformingSolver::Goal;
     bool solve_tangent(const std::vector<double> &T, bool symmetric,
-                       const Goal &goal);
+                       double tolerance);
     krylov::Outcome solve(ConformingSolver &solver,
-                          const Goal &goal = tight) const;
+                          double tolerance = tight) const;
     void answer(double tolerance = tight) const;
     void update() const;
 

@@ -31,7 +31,8 @@ namespace nsfd
    */
   template <int dim>
   bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
-                                        const bool symmetric, const Goal &goal)
+                                        const bool symmetric,
+                                        const double tolerance)
   {
     const bool iterates = this->iterates(),
                general =
@@ -51,7 +52,7 @@ namespace nsfd
             [this, &T](const std::vector<double> &x, std::vector<double> &y) {
               matrix().apply_step(T.data(), x, y);
             });
-      const auto outcome = solve(tangent_.solver(), goal);
+      const auto outcome = solve(tangent_.solver(), tolerance);
       if (cycles && exact && outcome.converged)
         tangent_.note(outcome.iterations, outcome.reduction);
       return outcome.converged;
@@ -86,7 +87,7 @@ namespace nsfd
     means_ = Means::factors_once;
     valid_ = false;
     tangent_.clear();
-    return solve_tangent(T, symmetric, goal);
+    return solve_tangent(T, symmetric, tolerance);
   }
 
   template <int dim>
@@ -109,7 +110,7 @@ namespace nsfd
   template bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &, \
                                                   bool);                       \
   template bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &,  \
-                                                 bool, const Goal &);          \
+                                                 bool, double);                \
   template bool JoinedBodies<dim>::solve_linearised(                           \
       const std::vector<double> &, const std::vector<double> &, double,        \
       std::vector<double> &, std::vector<double> &)

@@ -121,11 +121,12 @@ namespace nsfd
                  first = accuracy.share * std::sqrt(sums[1]);
     asks_all_ = first <= enough;
     bodies_.rows_ = std::move(rows);
-    const double size = std::sqrt(sums[0]), left = std::max(enough, first);
+    const double size = std::sqrt(sums[0]);
     if (!bodies_.solve_tangent(
             T, symmetric,
-            {size > 0. ? std::clamp(left / size, bodies_.tight, 0.1) : 1.,
-             left}))
+            size > 0.
+                ? std::clamp(std::max(enough, first) / size, bodies_.tight, 0.1)
+                : 1.))
       return false;
     dw_ = bodies_.columns_;
     dU.resize(c.size());
