@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -76,6 +77,50 @@ namespace nsfd
       const Communicator &communicator_;
       const std::size_t n_;
     };
+
+    /**
+     * GMRES in the norm of the preconditioner, from x = b; again from what is
+     * really left until that is no more than asked for, or does not fall.
+     */
+    template <typename Product, typename Preconditioner, typename Sums>
+    krylov::Outcome
+    minimise_residual(const Product &product,
+                      const Preconditioner &preconditioner, const Sums &sums,
+                      const ConformingSolver::Goal &goal, Vector &x)
+    {
+      constexpr unsigned int most = 200;
+      // each time some digits more than are missing
+      constexpr double more = 0.1, shortest = 0.1, least_gain = 0.5;
+      const Vector b = x;
+      Vector part = b, left(b.size());
+      double size = std::sqrt(sums(b, b)), reduction = 1.;
+      krylov::Outcome all{0, true};
+      std::fill(x.begin(), x.end(), 0.);
+      while (size > goal.residual && reduction > goal.tolerance) {
+        const double tolerance =
+            std::clamp(more * goal.residual / size, goal.tolerance / reduction,
+                       std::max(shortest, goal.tolerance / reduction));
+        const auto outcome = krylov::gmres_preconditioned(
+            product, preconditioner, sums, {tolerance, most - all.iterations},
+            part);
+        all.iterations += outcome.iterations;
+        all.converged = outcome.converged;
+        for (std::size_t k = 0; k < x.size(); ++k)
+          x[k] += part[k];
+        if (!outcome.converged)
+          break;
+        reduction *= tolerance;
+        if (goal.residual == 0.)
+          break;
+        product(x, left);
+        for (std::size_t k = 0; k < x.size(); ++k)
+          part[k] = b[k] - left[k];
+        const double last = std::exchange(size, std::sqrt(sums(part, part)));
+        if (!(size < least_gain * last))
+          break;
+      }
+      return all;
+    }
   } // namespace
 
   ConformingSolver::ConformingSolver(const Communicator &communicator,
@@ -190,7 +235,7 @@ namespace nsfd
       multigrid_->apply(r.data(), z.data());
   }
 
-  krylov::Outcome ConformingSolver::iterate(const double tolerance)
+  krylov::Outcome ConformingSolver::iterate(const Goal &goal)
   {
     const OwnSums sums(communicator_, n_own_);
     const auto preconditioner = [&](const Vector &r, Vector &z) {
@@ -211,9 +256,8 @@ namespace nsfd
       };
       outcome = is_general_
                     ? krylov::gmres(product, preconditioner, sums,
-                                    {tolerance, most}, {true, 2}, x)
-                    : krylov::gmres_preconditioned(product, preconditioner,
-                                                   sums, {tolerance, most}, x);
+                                    {goal.tolerance, most}, {true, 2}, x)
+                    : minimise_residual(product, preconditioner, sums, goal, x);
     } else {
       Vector direction(n_own_ + matrix_.ghosts.size());
       const auto product = [&](const Vector &p, Vector &q) {
@@ -227,20 +271,20 @@ namespace nsfd
         v->assign(n_own_, 0.);
       krylov::OneSumCgSystem system(product, preconditioner, sums, vectors_, x);
       const unsigned int limit = given_.product ? most_of_given : 1000;
-      outcome = krylov::conjugate_gradients(system, {tolerance, limit});
+      outcome = krylov::conjugate_gradients(system, {goal.tolerance, limit});
     }
     std::copy(x.begin(), x.end(), x_.begin());
     return outcome;
   }
 
   /** From b_ to x_. */
-  krylov::Outcome ConformingSolver::solve_here(const double tolerance)
+  krylov::Outcome ConformingSolver::solve_here(const Goal &goal)
   {
     krylov::Outcome outcome{0, true};
     if (ties_.any())
       ties_.fold(b_.data());
     if (product_ || !factor_)
-      outcome = iterate(tolerance);
+      outcome = iterate(goal);
     else
       factor_->solve(b_.data(), x_.data());
     if (ties_.any())
@@ -249,19 +293,19 @@ namespace nsfd
   }
 
   krylov::Outcome ConformingSolver::solve(const double *b, double *x,
-                                          const double tolerance)
+                                          const Goal &goal)
   {
     restrict_to_space(b, b_.data());
-    const auto outcome = solve_here(tolerance);
+    const auto outcome = solve_here(goal);
     expand(x_.data(), x);
     return outcome;
   }
 
   krylov::Outcome ConformingSolver::solve_own(const Vector &b, Vector &x,
-                                              const double tolerance)
+                                              const Goal &goal)
   {
     std::copy(b.begin(), b.end(), b_.begin());
-    const auto outcome = solve_here(tolerance);
+    const auto outcome = solve_here(goal);
     x.assign(x_.begin(), x_.begin() + long(n_own_));
     return outcome;
   }

@@ -51,11 +51,24 @@ namespace nsfd
      */
     void set_product(Product product) { product_ = std::move(product); }
 
+    /** Where iterations end. */
+    struct Goal {
+      /// of the residual in the norm of the preconditioner, over its start
+      double tolerance;
+      /// its own norm, where minimal residuals end as well: round-off of
+      /// motions that next to nothing resists is large in that norm
+      double residual = 0.;
+
+      Goal(const double of, const double left = 0.)
+          : tolerance(of), residual(left)
+      {
+      }
+    };
     /** Of x = A^{-1} b by iterations; none for a factor. Collective. */
-    krylov::Outcome solve(const double *b, double *x, double tolerance);
+    krylov::Outcome solve(const double *b, double *x, const Goal &goal);
     /** The same with own values of the space. Collective. */
     krylov::Outcome solve_own(const std::vector<double> &b,
-                              std::vector<double> &x, double tolerance);
+                              std::vector<double> &x, const Goal &goal);
     /** P^T b, own values of the space. Collective. */
     void restrict_to_space(const std::vector<double> &b,
                            std::vector<double> &own);
@@ -80,9 +93,9 @@ namespace nsfd
   private:
     void restrict_to_space(const double *b, double *own);
     void expand(double *own, double *x);
-    krylov::Outcome solve_here(double tolerance);
+    krylov::Outcome solve_here(const Goal &goal);
     void precondition(const std::vector<double> &r, std::vector<double> &z);
-    krylov::Outcome iterate(double tolerance);
+    krylov::Outcome iterate(const Goal &goal);
 
     const Communicator &communicator_;
     const long long largest_factor_;

@@ -266,7 +266,7 @@ namespace nsfd
   /** From rows_ to columns_. */
   template <int dim>
   krylov::Outcome JoinedBodies<dim>::solve(ConformingSolver &solver,
-                                           const double tolerance) const
+                                           const Goal &goal) const
   {
     const bool rests = std::all_of(rows_.begin(), rows_.end(),
                                    [](const double r) { return r == 0.; });
@@ -274,7 +274,7 @@ namespace nsfd
       columns_.assign(rows_.size(), 0.);
       return {0, true};
     }
-    const auto outcome = solver.solve_own(rows_, columns_, tolerance);
+    const auto outcome = solver.solve_own(rows_, columns_, goal);
     this->counters_.inner_iterations += outcome.iterations;
     ++this->counters_.global_solves;
     return outcome;

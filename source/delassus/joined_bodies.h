@@ -74,10 +74,11 @@ namespace nsfd
     friend JoinedMotion<dim>;
     bool iterates() const;
     bool factor_tangent(const std::vector<double> &springs, bool general);
+    using Goal = ConformingSolver::Goal;
     bool solve_tangent(const std::vector<double> &T, bool symmetric,
-                       double tolerance);
+                       const Goal &goal);
     krylov::Outcome solve(ConformingSolver &solver,
-                          double tolerance = tight) const;
+                          const Goal &goal = tight) const;
     void answer(double tolerance = tight) const;
     void update() const;
 

@@ -31,8 +31,7 @@ namespace nsfd
    */
   template <int dim>
   bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
-                                        const bool symmetric,
-                                        const double tolerance)
+                                        const bool symmetric, const Goal &goal)
   {
     const bool iterates = this->iterates(),
                general =
@@ -52,7 +51,7 @@ namespace nsfd
             [this, &T](const std::vector<double> &x, std::vector<double> &y) {
               matrix().apply_step(T.data(), x, y);
             });
-      const auto outcome = solve(tangent_.solver(), tolerance);
+      const auto outcome = solve(tangent_.solver(), goal);
       if (cycles && exact && outcome.converged)
         tangent_.note(outcome.iterations, outcome.reduction);
       return outcome.converged;
@@ -87,7 +86,7 @@ namespace nsfd
     means_ = Means::factors_once;
     valid_ = false;
     tangent_.clear();
-    return solve_tangent(T, symmetric, tolerance);
+    return solve_tangent(T, symmetric, goal);
   }
 
   template <int dim>
@@ -110,7 +109,7 @@ namespace nsfd
   template bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &, \
                                                   bool);                       \
   template bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &,  \
-                                                 bool, double);                \
+                                                 bool, const Goal &);          \
   template bool JoinedBodies<dim>::solve_linearised(                           \
       const std::vector<double> &, const std::vector<double> &, double,        \
       std::vector<double> &, std::vector<double> &)

@@ -121,12 +121,11 @@ namespace nsfd
                  first = accuracy.share * std::sqrt(sums[1]);
     asks_all_ = first <= enough;
     bodies_.rows_ = std::move(rows);
-    const double size = std::sqrt(sums[0]);
+    const double size = std::sqrt(sums[0]), left = std::max(enough, first);
     if (!bodies_.solve_tangent(
             T, symmetric,
-            size > 0.
-                ? std::clamp(std::max(enough, first) / size, bodies_.tight, 0.1)
-                : 1.))
+            {size > 0. ? std::clamp(left / size, bodies_.tight, 0.1) : 1.,
+             left}))
       return false;
     dw_ = bodies_.columns_;
     dU.resize(c.size());
