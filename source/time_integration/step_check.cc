@@ -62,6 +62,14 @@ namespace nsfd
     const double noise = report.solver.residual * changes.terms;
     changes.of_rows = round_off_of_rows(changes.impulses_of_rows,
                                         changes.impulses, step.energy_scale);
+    // Rows of large motions turn with the bodies: where those that depend on
+    // each other keep Newton's iteration from round-off, it leaves |P|_R of
+    // them times |U - given|_(1/R), which is |P - P*|_R there.
+    if (input_.large_motion)
+      changes.of_rows = std::max(
+          noise, report.solver.residual *
+                     std::sqrt(changes.impulses_of_rows *
+                               std::max(changes.impulses, step.energy_scale)));
     const double bound = energy_round_off * changes.scale + noise +
                          // no line is known better than the balance closes
                          10. * report.balance_residual * next.largest_energy;
