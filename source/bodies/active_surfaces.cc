@@ -1,5 +1,6 @@
 #include "active_surfaces.h"
 
+#include "contact_detection/flat_sides.h"
 #include "core/gather.h"
 
 #include "nsfd/scene/scene_input.h"
@@ -71,8 +72,11 @@ namespace nsfd
     set_surfaces();
     set_moving_nodes();
     share_motion(state);
-    set_edges<dim>(set_.surfaces, x_.data(),
-                   [this](const unsigned int b) { return table_.is_rigid(b); });
+    const auto keeps_shape = [this](const unsigned int b) {
+      return table_.is_rigid(b);
+    };
+    set_flat_sides<dim>(set_.surfaces, x_.data(), keeps_shape);
+    set_edges<dim>(set_.surfaces, x_.data(), keeps_shape);
     return true;
   }
 
@@ -128,6 +132,11 @@ namespace nsfd
                                        std::uint64_t(b),
                                        unsigned(cells_.centre_node(b))});
     set_.surfaces.n_vertices = cells_.n_nodes() + table_.n_rigid;
+    if (!wholes_.of_cell.empty())
+      set_.surfaces.is_behind = [this](const unsigned int vertex,
+                                       const unsigned int facet) {
+        return is_behind(vertex, facet);
+      };
     set_.points_by_vertex.clear();
     for (unsigned int p = 0; p < set_.surfaces.points.size(); ++p)
       set_.points_by_vertex.emplace_back(set_.surfaces.points[p].vertex, p);
@@ -267,6 +276,36 @@ namespace nsfd
       set_.surfaces.facets.push_back(facet);
       set_.facet_cells.push_back(c);
     }
+  }
+
+  /**
+   * At rest the vertex lies below the facet, as near as a touch may be deep, in
+   * the same whole: across a cell that is flat or a layer that is thin.
+   */
+  template <int dim>
+  bool ActiveSurfaces<dim>::is_behind(const unsigned int vertex,
+                                      const unsigned int f) const
+  {
+    const auto &facet = set_.surfaces.facets[f];
+    if (wholes_.of_cell[vertex / cells_.nodes_per_cell()] != facet.whole)
+      return false;
+    const std::size_t first = cells_.first_node(set_.facet_cells[f]);
+    for (unsigned int node = 0; node < cells_.nodes_per_cell(); ++node)
+      if (merged(first + node) == vertex)
+        return true;
+    const auto put = [this](const std::size_t node, double *x) {
+      const std::size_t k = bodies_.own_node(node);
+      std::copy_n(&bodies_.rest()[k * dim], dim, x);
+    };
+    std::array<double, 4 * dim> x{};
+    auto local = facet;
+    for (unsigned int v = 0; v < facet.n_vertices; ++v) {
+      local.vertex[v] = v;
+      put(facet.vertex[v], &x[v * dim]);
+    }
+    std::array<double, dim> y;
+    put(vertex, y.data());
+    return is_below<dim>(local, x.data(), y);
   }
 
   /** Named faces, and new surfaces where the obstacle is for all. */

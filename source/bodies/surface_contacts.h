@@ -56,6 +56,11 @@ namespace nsfd
     /** After the step of the last call of rows(). */
     void store_facets(State &next) const;
 
+    /** See SurfaceCells::merged(). */
+    unsigned int first_of_rigid(const std::size_t node) const
+    {
+      return cells_.merged(node);
+    }
     /** Cells hang together now by common nodes, see ActiveSurfaces. */
     void set_wholes(typename ActiveSurfaces<dim>::Wholes wholes)
     {
@@ -95,6 +100,7 @@ namespace nsfd
         @p index. */
     std::size_t seen_from_there(const FacetPair<dim> &pair, const Row &row,
                                 std::size_t index);
+    std::size_t place_of_edge(const typename Surfaces<dim>::Edge &edge) const;
     Row edge_row(const EdgePair<dim> &pair, const State &old) const;
     int body_of_key(std::uint64_t key) const;
     std::array<std::size_t, 2> places_of_face(unsigned int facet) const;

@@ -170,7 +170,7 @@ namespace nsfd
     for (unsigned int d = 0; d < dim; ++d)
       row.rate += pair.normal[d] * away[d];
     if (row.gap < 0. && row.node != Row::nowhere) {
-      if (old.surface_facet[row.place] == facet.key) {
+      if (old.surface_facet[row.place] == facet.side) {
         const double before = old.surface_gap[row.place];
         row.approach = before > 0. ? before - row.gap : 0.;
       } else {
@@ -186,6 +186,21 @@ namespace nsfd
     row.released =
         ((old.surface_contact[row.place] | mark_of(old, pair.facet)) &
          released) != 0;
+  }
+
+  /** By the nodes of its own cell: vertices may be those of another one. */
+  template <int dim>
+  std::size_t SurfaceContacts<dim>::place_of_edge(
+      const typename Surfaces<dim>::Edge &edge) const
+  {
+    const std::size_t first =
+        cells_.first_node(active_.set().facet_cells[edge.facet[0]]);
+    std::array<unsigned int, 2> node = edge.vertex;
+    for (unsigned int i = 0; i < cells_.nodes_per_cell(); ++i)
+      for (unsigned int v = 0; v < 2; ++v)
+        if (active_.merged(first + i) == edge.vertex[v])
+          node[v] = cells_.merged(first + i);
+    return places_.of_edge(node[0], node[1]);
   }
 
   /** A point of an edge of body 2 on the edge of body 1 that it crosses. */
@@ -228,7 +243,7 @@ namespace nsfd
     row.rate = normal * away;
     // as of a corner of a facet with these sides
     row.weight = way[0].norm() * way[1].norm() / 4.;
-    row.place = places_.of_edge(edge.vertex[0], edge.vertex[1]);
+    row.place = place_of_edge(edge);
     row.released =
         ((mark_of(old, edge.facet[0]) | mark_of(old, other.facet[0])) &
          released) != 0;
@@ -271,7 +286,7 @@ namespace nsfd
                                               std::vector<Row> &rows)
   {
     for (std::size_t p = 0; p < active_.set().surfaces.points.size(); ++p)
-      active_.set().surfaces.points[p].last_key =
+      active_.set().surfaces.points[p].last_side =
           old.surface_facet[active_.set().point_places[p]];
     search_.find(
         active_.set().surfaces, active_.positions(), reach,
@@ -323,7 +338,7 @@ namespace nsfd
       rows.push_back(edge_row(pair, old));
   }
 
-  /** Which facets points were over at the start of the step. */
+  /** Which sides points were over at the start of the step. */
   template <int dim>
   void SurfaceContacts<dim>::store_facets(State &next) const
   {
@@ -331,7 +346,8 @@ namespace nsfd
     next.surface_gap.assign(places_.n_of_faces(), 0.);
     for (const auto &pair : pairs_.points) {
       const std::size_t place = active_.set().point_places[pair.index];
-      next.surface_facet[place] = active_.set().surfaces.facets[pair.facet].key;
+      next.surface_facet[place] =
+          active_.set().surfaces.facets[pair.facet].side;
       next.surface_gap[place] = pair.gap;
     }
   }

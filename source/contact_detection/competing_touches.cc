@@ -160,8 +160,7 @@ namespace nsfd
             const double distance =
                 (end == 0 ? place : 1. - place) * length(own);
             pair_lost_[k] |= distance < same_place * size(pair);
-          } else if (pair.is_sure && (point->facet == opposite.facet[0] ||
-                                      point->facet == opposite.facet[1])) {
+          } else if (pair.is_sure && is_beside(opposite, point->facet)) {
             const double rounding = same_length * size(pair);
             const Segment segment = segment_of(own, x_);
             const double climb = (end == 0 ? 1. : -1.) *
@@ -179,6 +178,16 @@ namespace nsfd
               pair_lost_[k] = 1;
           }
         }
+      }
+
+      /** The side of the facet ends at the edge. */
+      bool is_beside(const Edge &edge, const unsigned int facet) const
+      {
+        const auto side = [this](const unsigned int f) {
+          return surfaces_.facets[f].side;
+        };
+        return side(facet) == side(edge.facet[0]) ||
+               side(facet) == side(edge.facet[1]);
       }
 
       // ------------------------------------------------- pairs of edges

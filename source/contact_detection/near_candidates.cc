@@ -210,7 +210,9 @@ namespace nsfd
         });
         for (std::size_t j = i; j < end; ++j) {
           for (const auto &entry : near)
-            if (filter.may_touch(surfaces.points[order[j]], entry))
+            if (filter.may_touch(surfaces.points[order[j]], entry) &&
+                !(surfaces.is_behind &&
+                  surfaces.is_behind(point.vertex, entry.second)))
               result.entries.push_back(entry.second);
           result.first.push_back(result.entries.size());
         }

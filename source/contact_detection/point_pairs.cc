@@ -13,7 +13,7 @@ namespace nsfd
     struct Touch {
       FacetPair<dim> pair;
       double opposed = 0.;  ///< cosine between the two outward normals
-      bool is_kept = false; ///< the facet of the last step
+      bool is_kept = false; ///< the side of the last step
     };
 
     template <int dim>
@@ -43,7 +43,7 @@ namespace nsfd
         touch.pair.index = p;
         touch.pair.inset = inset * norm(to_centre);
         for (; begin != end; ++begin) {
-          touch.is_kept = key(*begin) == point.last_key;
+          touch.is_kept = surfaces_.facets[*begin].side == point.last_side;
           if (touches_facet(own, *begin, y, inside, touch))
             valid_.push_back(touch);
         }

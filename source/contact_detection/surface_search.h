@@ -28,6 +28,8 @@ namespace nsfd
       unsigned int body = 0;
       unsigned int whole = 0; ///< bodies that hang together have the same
       std::uint64_t key = 0;  ///< unique; decides where geometry does not
+      /// key of one of those that are one flat side, see set_flat_sides()
+      std::uint64_t side = 0;
     };
     /// no facet has it; exact as a double, as keys are
     static constexpr std::uint64_t no_key = (std::uint64_t(1) << 53) - 1;
@@ -35,8 +37,8 @@ namespace nsfd
     /** A vertex of a facet that may touch facets of other bodies. */
     struct Point {
       unsigned int vertex = 0, facet = 0;
-      /// of the facet that it was over in the last step: which way it came in
-      std::uint64_t last_key = no_key;
+      /// of the side that it was over in the last step: which way it came in
+      std::uint64_t last_side = no_key;
     };
     struct Ball {
       unsigned int body = 0;
@@ -57,6 +59,9 @@ namespace nsfd
     std::vector<Ball> balls;
     std::vector<Edge> edges; ///< see set_edges(); of all bodies or of none
     std::size_t n_vertices = 0;
+    /// the way from a vertex to a facet leads through the body of both, and it
+    /// touches no such facet, however near it is; null: there are none
+    std::function<bool(unsigned int vertex, unsigned int facet)> is_behind;
   };
 
   /**

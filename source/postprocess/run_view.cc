@@ -346,11 +346,11 @@ namespace nsfd
                                              gradient.data());
         side.traction = motion_.traction(i);
         // as the displacements: in the middle of the step
-        const double bulk = input_.time.bulk_theta();
+        const double theta = input_.time.theta;
         for (unsigned int r = 0; r < dim; ++r) {
           double u = state.jump[i * dim + r];
           if (previous && motion_.row().time_step > 0.)
-            u = bulk * u + (1. - bulk) * previous->jump[i * dim + r];
+            u = theta * u + (1. - theta) * previous->jump[i * dim + r];
           for (unsigned int c = 0; c < dim; ++c)
             side.jump[c] += u * points.axes(i)[r * dim + c];
         }

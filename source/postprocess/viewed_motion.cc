@@ -73,14 +73,17 @@ namespace nsfd
                         a(v.size(), 0.);
     middle_->time = state_->time;
     if (previous_ && row_->time_step > 0.) {
-      const double h = row_->time_step, theta = input_.time.work_theta(),
-                   bulk = input_.time.bulk_theta(),
-                   kick = input_.time.kick(h, previous_->last_step);
+      const double h = row_->time_step, theta = input_.time.theta;
+      const bool is_explicit = input_.time.scheme.explicit_forces;
       middle_->time -= (1. - theta) * h;
       for (std::size_t k = 0; k < q.size(); ++k) {
-        a[k] = (v[k] - previous_->velocity[k]) / kick;
-        v[k] = theta * v[k] + (1. - theta) * previous_->velocity[k];
-        q[k] = bulk * q[k] + (1. - bulk) * previous_->displacement[k];
+        const double v_old = previous_->velocity[k],
+                     q_old = previous_->displacement[k];
+        a[k] = (v[k] - v_old) / h;
+        v[k] = theta * v[k] + (1. - theta) * v_old;
+        // where the forces are taken
+        q[k] = is_explicit ? q_old + h * theta * v_old
+                           : theta * q[k] + (1. - theta) * q_old;
       }
     }
     middle_->displacement = discretization_.to_nodal(q);

@@ -143,7 +143,10 @@ namespace nsfd
   {
     // of the longest that is stable; cells that become lower by some share
     // bound it by about as much, and to change the length later costs energy
-    const double share = 0.9 * std::max(0.5, 1. - compression);
+    // (beyond a tenth of the speed of waves by more than that: what forces that
+    // are not linear make of the energies grows with both)
+    const double strong = std::max(0., compression - 0.1);
+    const double share = 0.9 * std::max(0.35, 1. - compression - 3. * strong);
     const bool is_automatic = input.time.step_kind == StepKind::automatic;
     if (input.time.scheme.at_nodes && is_automatic)
       return share * explicit_limit;

@@ -106,7 +106,8 @@ namespace nsfd
         return "lower Solver/tolerance; joints may be redundant";
       case WatchedLine::scheme:
         return time.scheme.explicit_forces
-                   ? "set step to a shorter time, or scheme = moreau-jean"
+                   ? "steps have changed their length: set step to a shorter "
+                     "time, or scheme = moreau-jean"
                : time.cohesion_rule != CohesionRule::exact && !input.statics
                    ? "set cohesion rule = exact"
                    : "set step to a shorter time";
@@ -118,6 +119,21 @@ namespace nsfd
       }
     }
 
+    /** The time scheme does, in steps of one length if they are explicit. */
+    bool keeps_energy(const SceneInput &input)
+    {
+      const TimeInput &time = input.time;
+      const auto breaks = [](const InterfaceInput &block) {
+        return block.law && block.intact == IntactFaces::bonded;
+      };
+      const bool by_steps = time.scheme.explicit_forces &&
+                            time.cohesion_rule == CohesionRule::exact &&
+                            std::none_of(input.interfaces.begin(),
+                                         input.interfaces.end(), breaks);
+      return by_steps || time.scheme.at_nodes ||
+             never_gives(WatchedLine::scheme, input);
+    }
+
     std::vector<GivenEnergy> given_energy(const SceneInput &input,
                                           const EnergyWatch &watch,
                                           const State &state)
@@ -126,7 +142,13 @@ namespace nsfd
       // frames of large motions make comes and goes: as well as curves can be
       // read
       constexpr double of_pure_rules = 1e-2, of_large_motion = 1e-3;
-      const double scale = std::max(watch.scale, state.largest_energy);
+      // Contacts at rest have no energy but round-off of what loads would give
+      // in a step, which in long steps is far more than all energies there are.
+      const double scale =
+          std::max(watch.round_off / energy_round_off, state.largest_energy);
+      const auto share = [&](const double energy) {
+        return energy == 0. ? 0. : energy / scale;
+      };
       std::vector<GivenEnergy> result;
       for (std::size_t k = 0; k < n_watched_lines; ++k) {
         const auto line = WatchedLine(k);
@@ -134,18 +156,6 @@ namespace nsfd
           continue;
         const bool of_rows =
             line == WatchedLine::joints || line == WatchedLine::supports;
-        // Contacts at rest have no energy but what loads would give in a step.
-        // In long steps that is far more than all energies: what supports hold
-        // is not related to it.
-        const bool of_long_steps =
-            line == WatchedLine::scheme && !input.time.scheme.has_stable_step();
-        const bool over_present =
-            (of_rows || of_long_steps) && state.largest_energy > 0.;
-        const auto share = [&](const double energy) {
-          return energy == 0.
-                     ? 0.
-                     : energy / (over_present ? state.largest_energy : scale);
-        };
         GivenEnergy given;
         given.line =
             line == WatchedLine::scheme ? "time scheme" : name_of(line);
@@ -154,11 +164,7 @@ namespace nsfd
         if (of_rows)
           given.bound += share(watch.of_rows);
         if (line == WatchedLine::scheme)
-          // that of the leapfrog only gives where its steps change their length
-          given.bound = (never_gives(line, input) || input.time.scheme.at_nodes
-                             ? energy_round_off
-                             : of_pure_rules) +
-                        share(watch.noise);
+          given.bound = keeps_energy(input) ? energy_round_off : of_pure_rules;
         if (line == WatchedLine::large_motion)
           given.bound = of_large_motion;
         if (line == WatchedLine::load_steps) // as much as a single step may

@@ -68,7 +68,7 @@ namespace nsfd
     std::vector<double> surface_impulse, surface_slip, surface_worn,
         surface_wear_speed, surface_overlap, surface_approach;
     std::vector<std::uint8_t> surface_contact;
-    /// key of the facet that a point was over at the start of the last step,
+    /// key of the side that a point was over at the start of the last step,
     /// or Surfaces::no_key, and how far, m
     std::vector<std::uint64_t> surface_facet;
     std::vector<double> surface_gap;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "energy_watch.h"
 #include "nonsmooth/point_law.h"
 #include "state/point_fields.h"
 #include "time_integrator.h"
@@ -66,14 +67,19 @@ namespace nsfd
   }
 
   /**
-   * The defect over the largest energy so far, or over the kinetic energy that
-   * impulses had to move in this step if that is more: of a body at rest there
-   * is no other. @p energy_scale as for LawEvaluation: four times as much.
+   * The defect over the largest energy so far. At rest there is none but
+   * round-off of the kinetic energy that impulses have to move in each step, as
+   * in EnergyWatch. @p energy_scale as for LawEvaluation: four times as much as
+   * they have to move.
    */
   inline void relate_defect(const double energy_scale, const State &next,
                             StepReport &report)
   {
-    const double moved = energy_scale / 4.;
+    const double round_off = round_off_of_step(work_of_impulses(
+                                 energy_scale, report.changes.impulses)) *
+                             next.step;
+    const double moved =
+        std::min(energy_scale / 4., round_off / energy_round_off);
     if (moved > next.largest_energy)
       report.balance_residual *= next.largest_energy / moved;
   }

@@ -17,7 +17,7 @@ namespace nsfd
                                   std::vector<Node> nodes)
       : communicator_(communicator), rigid_(rigid), solver_(solver),
         chains_(chains), groups_(groups), nodes_(std::move(nodes)),
-        n_(rigid.n_free()), floor_(4e-3 * std::sqrt(rigid.size_of_motion()))
+        n_(rigid.n_free()), floor_(4e-3 * std::sqrt(rigid.sizes().motion))
   {
     for (const Node &node : nodes_) {
       Start &start = starts_.emplace_back();

@@ -11,7 +11,8 @@ namespace nsfd
   }
 
   template <int dim>
-  void ElasticForces<dim>::start(const State &old, const bool bonds_changed)
+  void ElasticForces<dim>::start(const State &old, const double h,
+                                 const bool bonds_changed)
   {
     const auto is_of_old = [&](const Known &force) {
       return force.known && force.step == old.step && force.time == old.time;
@@ -23,6 +24,13 @@ namespace nsfd
     else if (!is_of_old(start_))
       evaluate(old, start_);
     end_.known = false;
+    in_step_.resize(old.velocity.size());
+    for (std::size_t i = 0; i < in_step_.size(); ++i)
+      in_step_[i] = start_.of_displacement[i] + h / 2. * start_.of_velocity[i];
+    share_of_step_ = h == old.last_step
+                         ? 0.
+                         : (h - old.last_step) * (h + old.last_step) / 8. *
+                               product(old.velocity, start_);
   }
 
   template <int dim>
@@ -32,14 +40,36 @@ namespace nsfd
   }
 
   template <int dim>
+  double ElasticForces<dim>::kinetic_share(const State &state) const
+  {
+    return state.last_step * state.last_step / 8. *
+           product(state.velocity, end_);
+  }
+
+  template <int dim>
   void ElasticForces<dim>::evaluate(const State &state, Known &result) const
   {
-    result.force.resize(state.displacement.size());
-    delassus_.apply(DelassusOperator<dim>::Operator::stiffness,
-                    state.displacement.data(), result.force.data());
+    const auto apply = [&](const std::vector<double> &motion,
+                           std::vector<double> &forces) {
+      forces.resize(motion.size());
+      delassus_.apply(DelassusOperator<dim>::Operator::stiffness, motion.data(),
+                      forces.data());
+    };
+    apply(state.displacement, result.of_displacement);
+    apply(state.velocity, result.of_velocity);
     result.known = true;
     result.step = state.step;
     result.time = state.time;
+  }
+
+  template <int dim>
+  double ElasticForces<dim>::product(const std::vector<double> &velocity,
+                                     const Known &forces) const
+  {
+    std::vector<double> terms(velocity.size());
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      terms[i] = velocity[i] * forces.of_velocity[i];
+    return delassus_.communicator().sum(terms);
   }
 
   template class ElasticForces<2>;

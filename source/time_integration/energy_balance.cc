@@ -19,7 +19,7 @@ namespace nsfd
                                     const DelassusOperator<dim> &delassus,
                                     const UniquenessBound<dim> &uniqueness)
       : discretization_(discretization), delassus_(delassus),
-        uniqueness_(uniqueness), theta_(input.time.work_theta()),
+        uniqueness_(uniqueness), theta_(input.time.theta),
         reactions_(discretization.driven_boundaries().size() * dim, 0.)
   {
   }
@@ -35,7 +35,6 @@ namespace nsfd
     using Operator = typename DelassusOperator<dim>::Operator;
     const auto &communicator = delassus_.communicator();
     const std::size_t n = next.velocity.size();
-    const double kick = discretization_.input().time.kick(h, old.last_step);
     // row by row: all terms of all rows at once would be the largest thing of
     // the whole step
     std::vector<double> terms(n), change;
@@ -59,7 +58,9 @@ namespace nsfd
       for (std::size_t i = 0; i < n; ++i)
         terms[i] = 0.5 * next.displacement[i] * elastic->at_end()[i];
       result.elastic = communicator.sum(terms);
-      result.of_strain = explicit_share(kick, *elastic, old, next);
+      // the energy that is kept depends on the step
+      result.kinetic -= elastic->kinetic_share(next);
+      result.of_strain = elastic->share_of_step();
     } else
       result.elastic = 0.5 * energy(Operator::stiffness, next.displacement);
     if (!elastic && theta_ > 0.5) {
@@ -79,34 +80,11 @@ namespace nsfd
     if (discretization_.loads().any()) {
       for (std::size_t i = 0; i < n; ++i)
         terms[i] =
-            kick * forces[i] *
+            h * forces[i] *
             (theta_ * next.velocity[i] + (1. - theta_) * old.velocity[i]);
       result.work = communicator.sum(terms);
     }
     return result;
-  }
-
-  /**
-   * What the bodies take from k v.K q_k of the mean velocity, k the kick,
-   * beyond their own change of energy: (k (v_k + v)/2 - dq).K q_k - dq.K dq
-   * / 2. It comes and goes.
-   */
-  template <int dim>
-  double EnergyBalance<dim>::explicit_share(const double kick,
-                                            const ElasticForces<dim> &elastic,
-                                            const State &old,
-                                            const State &next) const
-  {
-    const std::size_t n = next.velocity.size();
-    std::vector<double> terms(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double dq = next.displacement[i] - old.displacement[i],
-                   before = elastic.at_start()[i], after = elastic.at_end()[i];
-      terms[i] =
-          before * (kick / 2. * (old.velocity[i] + next.velocity[i]) - dq) -
-          dq * (after - before) / 2.;
-    }
-    return delassus_.communicator().sum(terms);
   }
 
   /** w h p U_theta,N of the pressure in cracks. */

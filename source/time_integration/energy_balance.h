@@ -54,8 +54,6 @@ namespace nsfd
   private:
     double pressure_work(const OneStepProblem<dim> &problem, const State &old,
                          const State &next) const;
-    double explicit_share(double kick, const ElasticForces<dim> &elastic,
-                          const State &old, const State &next) const;
 
     const Discretization<dim> &discretization_;
     const DelassusOperator<dim> &delassus_;

@@ -40,7 +40,7 @@ namespace nsfd
 
   template <int dim>
   EnergySafeSliding<dim>::EnergySafeSliding(const SceneInput &input)
-      : theta_(input.time.work_theta()),
+      : theta_(input.time.theta),
         always_(input.time.sliding == Sliding::increment),
         chooses_(input.time.sliding == Sliding::energy_safe && theta_ < 1. &&
                  has_friction(input))

@@ -62,8 +62,7 @@ namespace nsfd
       return time.sliding != Sliding::velocity;
     case WatchedLine::impact:
       return time.contact_target == ContactTarget::energy_safe &&
-             time.work_theta() * (1. + largest_restitution(scene)) <=
-                 1. + 1e-12;
+             time.theta * (1. + largest_restitution(scene)) <= 1. + 1e-12;
     case WatchedLine::scheme:
       // springs of two stiffnesses turn with their frames in large motions, and
       // flow at finite strain has no exact balance of a step
@@ -96,9 +95,8 @@ namespace nsfd
 
   void EnergyWatch::add(const LineChanges &step)
   {
-    noise += step.noise;
     of_rows += step.of_rows;
-    scale = std::max(scale, step.scale);
+    round_off += round_off_of_step(step.terms);
     for (std::size_t k = 0; k < n_watched_lines; ++k) {
       const auto line = WatchedLine(k);
       if (line == WatchedLine::joints || line == WatchedLine::supports) {
@@ -115,14 +113,13 @@ namespace nsfd
   {
     std::vector<double> sums(fallen.begin(), fallen.end());
     sums.insert(sums.end(), given.begin(), given.end());
-    sums.insert(sums.end(), {noise, of_rows, scale});
+    sums.insert(sums.end(), {of_rows, round_off});
     archive.common("energy_watch", sums);
-    if (sums.size() != 2 * n_watched_lines + 3)
+    if (sums.size() != 2 * n_watched_lines + 2)
       throw BadCheckpoint("energy_watch has another number of values");
     std::copy_n(sums.begin(), n_watched_lines, fallen.begin());
     std::copy_n(sums.begin() + n_watched_lines, n_watched_lines, given.begin());
-    noise = sums[2 * n_watched_lines];
-    of_rows = sums[2 * n_watched_lines + 1];
-    scale = sums.back();
+    of_rows = sums[2 * n_watched_lines];
+    round_off = sums.back();
   }
 } // namespace nsfd

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace nsfd
 {
@@ -52,11 +55,11 @@ namespace nsfd
     double impulses = 0.; ///< sum R P^2 over the points, see LawEvaluation, J
     /// where velocities are prescribed and U = U_free + W P, else 0
     double impulses_of_rows = 0.;
-    double noise = 0.; ///< what the residual of the solver leaves open, J
     /// round-off of rows with a prescribed velocity, see RowWork, J
     double of_rows = 0.;
     double scale = 0.; ///< the largest energy so far, or what the loads would
                        ///< give in this step without impulses, J
+    double terms = 0.; ///< see work_of_impulses(), J
   };
 
   /** Of a step from energies @p before to @p after that no point splits. */
@@ -69,8 +72,8 @@ namespace nsfd
    */
   struct EnergyWatch {
     std::array<double, n_watched_lines> fallen{}, given{};
-    double noise = 0., of_rows = 0.; ///< sums over the steps
-    double scale = 0.;               ///< the largest one
+    double of_rows = 0.;   ///< sum over the steps
+    double round_off = 0.; ///< the same of round_off_of_step(terms)
 
     void add(const LineChanges &step);
     void serialize(Archive &archive);
@@ -78,4 +81,22 @@ namespace nsfd
 
   /** Share of the largest energy that counts as none. */
   constexpr double energy_round_off = 1e-9;
+
+  /**
+   * The last bits of the energies of a step, J: there is no energy at rest, but
+   * impulses move @p scale there and take it away again.
+   */
+  inline double round_off_of_step(const double scale)
+  {
+    constexpr double terms = 8.; // of a line: impulses and both velocities
+    return terms * std::numeric_limits<double>::epsilon() * scale;
+  }
+
+  /** |P|_R |U|_(1/R), as large as the terms of these lines: @p energy_scale as
+      for LawEvaluation, @p impulses as in LineChanges. */
+  inline double work_of_impulses(const double energy_scale,
+                                 const double impulses)
+  {
+    return std::max(energy_scale, std::sqrt(energy_scale * impulses));
+  }
 } // namespace nsfd

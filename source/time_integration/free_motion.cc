@@ -63,8 +63,7 @@ namespace nsfd
                              const std::vector<double> &impulse,
                              const std::vector<double> *const elastic)
   {
-    const double h = problem.time_step, theta = input_.time.bulk_theta(),
-                 kick = input_.time.kick(h, old.last_step);
+    const double h = problem.time_step, theta = input_.time.theta;
     const std::size_t n_dofs = old.velocity.size();
     work_.resize(n_dofs);
     velocity_.resize(n_dofs);
@@ -77,7 +76,7 @@ namespace nsfd
                       velocity_.data(), work_.data());
     }
     for (std::size_t i = 0; i < n_dofs; ++i)
-      work_[i] = kick * (loads_[i] - work_[i]);
+      work_[i] = h * (loads_[i] - work_[i]);
     if (delassus_.viscous_theta() > 0.) {
       delassus_.apply(DelassusOperator<dim>::Operator::damping,
                       old.velocity.data(), velocity_.data());

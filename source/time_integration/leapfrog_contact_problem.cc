@@ -212,7 +212,7 @@ namespace nsfd
     }
     SolverControl control;
     // bodies at rest have no energy but what is left over
-    control.tolerance = at_body.empty() ? tolerance : 1e-4 * tolerance;
+    control.tolerance = at_body.empty() ? tolerance : of_rigid * tolerance;
     control.attempts = 1; // what is left is bounded by its own books
     const auto report = solve_contact_problem(
         problem, AssembledMethod<ContactMethod::automatic>(), "automatic",

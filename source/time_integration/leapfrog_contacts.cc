@@ -133,7 +133,9 @@ namespace nsfd
     std::vector<unsigned int> first(groups.size(), unsigned(-1));
     DisjointSets sets(n_cells);
     for (unsigned int node = 0; node < n_cells * n; ++node) {
-      unsigned int &of_group = first[groups.of(layout_.own_node(node))];
+      // cells of a rigid body have groups of their own
+      unsigned int &of_group =
+          first[groups.of(layout_.own_node(surfaces_.first_of_rigid(node)))];
       if (of_group == unsigned(-1))
         of_group = node;
       else

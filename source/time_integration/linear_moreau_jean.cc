@@ -70,6 +70,10 @@ namespace nsfd
       join_motion(*bonded_, state);
     }
     set_energies(this->delassus_, this->problem_, state);
+    if (elastic_forces_) {
+      elastic_forces_->finish(state);
+      state.energy.kinetic -= elastic_forces_->kinetic_share(state);
+    }
     if (bulk_)
       set_bond_tractions(*bulk_, state);
   }
@@ -91,7 +95,7 @@ namespace nsfd
     const auto &time = this->input_.time;
     const bool others = bonded_ && bonded_->set_bonds(bonded_points(old));
     if (elastic_forces_)
-      elastic_forces_->start(old, others);
+      elastic_forces_->start(old, h, others);
     this->delassus_.reinit(h, time.bulk_theta());
     this->step_problem_.begin();
     this->step_problem_.set(this->discretization_.origins(), old, h,
@@ -99,7 +103,7 @@ namespace nsfd
     if (bonded_)
       supports_.prescribe_once(*bonded_, this->discretization_.origins(),
                                others, this->problem_);
-    if (this->free_motion_.set_loads(old.time + time.bulk_theta() * h))
+    if (this->free_motion_.set_loads(old.time + time.theta * h))
       ++this->counters_.load_assemblies;
     this->free_motion_.set_pressure(old, old.time + time.theta * h,
                                     next.pressure);
@@ -107,7 +111,7 @@ namespace nsfd
     if (this->check_.starts_cold())
       std::fill(next.impulse.begin(), next.impulse.end(), 0.);
     this->free_motion_.move(old, next.pressure, this->problem_, next.impulse,
-                            elastic_forces_ ? &elastic_forces_->at_start()
+                            elastic_forces_ ? &elastic_forces_->in_step()
                                             : nullptr);
   }
 

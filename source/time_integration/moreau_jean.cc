@@ -22,7 +22,7 @@ namespace nsfd
         check_(input, [this](const std::size_t i) { return describe(i); })
   {
     if (input.has_viscous_bodies())
-      delassus.set_viscous_theta(input.time.work_theta());
+      delassus.set_viscous_theta(input.time.theta);
   }
 
   template <int dim>

@@ -168,7 +168,7 @@ namespace nsfd
     }
   };
 
-  /** The same around explicit forces of the bodies. */
+  /** The same with theta = 1/2 around explicit forces of the bodies. */
   class SymplecticScheme final : public MoreauJeanScheme
   {
   public:
@@ -192,7 +192,7 @@ namespace nsfd
 
     void read(SectionReader &reader, SceneInput &scene) const override
     {
-      scene.time.theta = 1.;
+      scene.time.theta = 0.5;
       read_rules(reader, scene);
     }
   };

@@ -162,12 +162,17 @@ namespace nsfd
   }
 
   template <int dim>
-  double RigidGroups<dim>::size_of_motion() const
+  auto RigidGroups<dim>::sizes() const -> Sizes
   {
-    double sum = 0.;
-    for (const Body &body : bodies_)
-      sum += product(body.without, times(body.mass, body.without));
-    return sum;
+    Sizes sums;
+    for (const Body &body : bodies_) {
+      Motion change = body.velocity;
+      for (unsigned int i = 0; i < n_motions; ++i)
+        change[i] -= body.without[i];
+      sums.motion += product(body.without, times(body.mass, body.without));
+      sums.impulses += product(change, times(body.mass, change));
+    }
+    return sums;
   }
 
   template <int dim>

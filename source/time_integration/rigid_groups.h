@@ -94,8 +94,12 @@ namespace nsfd
     /** Velocities without impulses of points, and what the free unknowns @p y,
         sqrt(J), add to them. */
     void move(const std::vector<double> &y, CornerGroups<dim> &groups);
-    /** v.M v of the bodies without impulses of points, J. */
-    double size_of_motion() const;
+    /** v.M v of the bodies, J: without impulses of points, and of what impulses
+        have done to their velocities. */
+    struct Sizes {
+      double motion = 0., impulses = 0.;
+    };
+    Sizes sizes() const;
 
     /**
      * Work of the impulses that the motions ask for, J; adds to the reactions

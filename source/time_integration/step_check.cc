@@ -58,20 +58,19 @@ namespace nsfd
     changes.scale = std::max(next.largest_energy, step.energy_scale);
     // |P - P*|_R times |U|_(1/R): impulses of rows that ask for the same may be
     // far larger than what moves
-    changes.noise = report.solver.residual *
-                    std::max(step.energy_scale,
-                             std::sqrt(step.energy_scale * changes.impulses));
+    changes.terms = work_of_impulses(step.energy_scale, changes.impulses);
+    const double noise = report.solver.residual * changes.terms;
     changes.of_rows = round_off_of_rows(changes.impulses_of_rows,
                                         changes.impulses, step.energy_scale);
-    // Rows of large motions turn with the bodies: Newton's iteration leaves
-    // |P|_R of them times |U - given|_(1/R), which is |P - P*|_R there.
+    // Rows of large motions turn with the bodies: where those that depend on
+    // each other keep Newton's iteration from round-off, it leaves |P|_R of
+    // them times |U - given|_(1/R), which is |P - P*|_R there.
     if (input_.large_motion)
       changes.of_rows = std::max(
-          changes.noise,
-          report.solver.residual *
-              std::sqrt(changes.impulses_of_rows *
-                        std::max(changes.impulses, step.energy_scale)));
-    const double bound = energy_round_off * changes.scale + changes.noise +
+          noise, report.solver.residual *
+                     std::sqrt(changes.impulses_of_rows *
+                               std::max(changes.impulses, step.energy_scale)));
+    const double bound = energy_round_off * changes.scale + noise +
                          // no line is known better than the balance closes
                          10. * report.balance_residual * next.largest_energy;
     for (std::size_t k = 0; k < n_watched_lines; ++k) {

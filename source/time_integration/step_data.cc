@@ -71,7 +71,7 @@ namespace nsfd
       switch (time.contact_target) {
       case ContactTarget::energy_safe:
         return U_N <= 0. ? -restitution * U_N
-                         : -(1. - time.work_theta()) / time.work_theta() * U_N;
+                         : -(1. - time.theta) / time.theta * U_N;
       case ContactTarget::velocity:
         return -restitution * U_N;
       case ContactTarget::position:

@@ -65,6 +65,8 @@ namespace end_to_end::test_wall
                         Seed{20059, "large explicit mixed contact"},
                         Seed{2, "large explicit rigid contact"},
                         Seed{11, "large explicit rigid contact"},
+                        Seed{20024, "large explicit rigid contact"},
+                        Seed{20076, "large explicit rigid contact"},
                         Seed{27, "large moreau-jean breakable alone"},
                         Seed{63, "large moreau-jean breakable contact"},
                         Seed{21, "large moreau-jean elastic contact"},
@@ -82,7 +84,8 @@ namespace end_to_end::test_wall
                         Seed{44, "small moreau-jean rigid contact"},
                         Seed{87, "small quasi-static breakable alone"},
                         Seed{15, "small symplectic elastic contact"},
-                        Seed{357, "small symplectic elastic contact"}),
+                        Seed{357, "small symplectic elastic contact"},
+                        Seed{30032, "small symplectic breakable contact"}),
         [](const testing::TestParamInfo<Seed> &info) {
           return std::to_string(info.param.seed);
         });

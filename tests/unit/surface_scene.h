@@ -41,7 +41,7 @@ namespace surface_scene
       std::copy(corners.begin(), corners.end(), result.vertex.begin());
       result.n_vertices = static_cast<unsigned int>(corners.size());
       result.body = body;
-      result.key = 100 + surfaces.facets.size();
+      result.key = result.side = 100 + surfaces.facets.size();
       surfaces.facets.push_back(result);
     }
 

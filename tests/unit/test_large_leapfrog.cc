@@ -116,6 +116,42 @@ subsection Contact: all
 end
 )";
 
+    // Opposite sides of a plate thinner than a quarter of a facet do not touch
+    // each other through the plate.
+    TEST(LargeLeapfrog, ThinPlateDoesNotTouchItself)
+    {
+      Steps<2> scene(R"(
+set dimension = 2
+set motion = large
+subsection Mesh
+  set upper corner = 4 mm, 0.15 mm
+  set cells = 4, 3
+end
+subsection Material: m
+  set model = neo-hookean
+  set Young modulus = 1 GPa
+  set Poisson ratio = 0.3
+  set density = 1000 kg/m^3
+  set initial velocity y = 2 m/s * sin(1000 * x)
+end
+subsection Interface: all
+  set law = camacho-ortiz
+  set strength = 1 GPa
+  set toughness = 1 kJ/m^2
+end
+subsection Contact: all
+  set between = all
+end
+subsection Time
+  set end = 5 us
+  set scheme = explicit
+end
+)");
+      for (unsigned int i = 0; i < 150; ++i)
+        EXPECT_EQ(scene.step().active, 0u);
+      EXPECT_EQ(scene.state.penetration, 0.);
+    }
+
     /** Both halves of each reaction balance E A eps of a bar of two parts. */
     TEST(LargeLeapfrog, PressedBlocksCarryTheForceOfABar)
     {

@@ -1,6 +1,10 @@
 #include "separating_axes.h"
 #include "surface_scene.h"
 
+#include "contact_detection/flat_sides.h"
+
+#include <functional>
+
 namespace surface_scene::test_surface_edges
 {
   /** A body of its own: moved by hand. */
@@ -62,7 +66,22 @@ namespace surface_scene::test_surface_edges
     return result;
   }
 
-  /** Body 0 and body 1 with all their points and edges. */
+  /** Sides of two triangles, cut along either diagonal. */
+  Solid of_triangles(const Solid &solid, std::mt19937 &random)
+  {
+    Solid result = solid;
+    result.scene.surfaces.facets.clear();
+    for (const auto &facet : solid.scene.surfaces.facets) {
+      const auto &v = facet.vertex;
+      const unsigned int k = random() % 2;
+      result.scene.facet(0, {v[k], v[k + 1], v[(k + 2) % 4]});
+      result.scene.facet(0, {v[k], v[(k + 2) % 4], v[(k + 3) % 4]});
+    }
+    return result;
+  }
+
+  /** Body 0 and body 1 with all their points and edges, one point of a corner
+      per side. */
   Scene<3> together(const Solid &a, const Solid &b)
   {
     Scene<3> scene;
@@ -78,8 +97,16 @@ namespace surface_scene::test_surface_edges
         scene.facet(solid == &b, corners);
       }
     }
-    scene.all_points();
-    scene.all_edges();
+    const auto keeps_shape = [](unsigned int) { return true; };
+    set_flat_sides<3>(scene.surfaces, scene.x.data(), keeps_shape);
+    std::set<std::pair<unsigned int, std::uint64_t>> known;
+    for (unsigned int f = 0; f < scene.surfaces.facets.size(); ++f) {
+      const auto &facet = scene.surfaces.facets[f];
+      for (unsigned int i = 0; i < facet.n_vertices; ++i)
+        if (known.insert({facet.vertex[i], facet.side}).second)
+          scene.surfaces.points.push_back({facet.vertex[i], f});
+    }
+    set_edges<3>(scene.surfaces, scene.x.data(), keeps_shape);
     return scene;
   }
 
@@ -205,15 +232,15 @@ namespace surface_scene::test_surface_edges
   // leads another way. Almost parallel normals are one touch, see
   // touching_rules.h. In a step as short as the overlap nothing turns: with a
   // longer reach edges are found that may come to cross.
-  TEST(SurfaceSearch, ShortestWayOutOfRandomSolids)
+  void expect_shortest_ways(const std::function<Solid(std::mt19937 &)> &solid)
   {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> unit(-1., 1.);
     constexpr double depth = 0.004, parallel = 0.998;
     unsigned int n_edges = 0, n_lost = 0, n_wrong = 0;
     for (unsigned int trial = 0; trial < 500; ++trial) {
-      const Solid a = random_solid(random);
-      Solid b = random_solid(random);
+      const Solid a = solid(random);
+      Solid b = solid(random);
       const Place<3> way{unit(random), unit(random), unit(random)};
       double near = 0., far = 8. / norm(way);
       for (unsigned int k = 0; k < 60; ++k) {
@@ -247,5 +274,22 @@ namespace surface_scene::test_surface_edges
     // a corner within the inset of an edge is taken for one over the next facet
     EXPECT_LE(n_lost, 2u);
     EXPECT_LE(n_wrong, 2u);
+  }
+
+  TEST(SurfaceSearch, ShortestWayOutOfRandomSolids)
+  {
+    expect_shortest_ways(random_solid);
+  }
+
+  // Which triangle of a side a corner is over says nothing.
+  TEST(SurfaceSearch, ShortestWayOutOfBoxesOfTriangles)
+  {
+    expect_shortest_ways([](std::mt19937 &random) {
+      std::uniform_real_distribution<double> unit(0.5, 1.5);
+      Solid result =
+          of_triangles(box({unit(random), unit(random), unit(random)}), random);
+      turn_at_random(result.scene.x, random);
+      return result;
+    });
   }
 } // namespace surface_scene::test_surface_edges

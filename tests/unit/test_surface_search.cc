@@ -141,7 +141,7 @@ namespace surface_scene::test_surface_search
         add_box(scene, 1, {1. - inside, 1. - 0.03}, {2. - inside, 1.97});
         scene.all_points();
         for (auto &point : scene.surfaces.points)
-          point.last_key = last;
+          point.last_side = last;
         for (const auto &pair : scene.find(0.2).points)
           if (scene.surfaces.points[pair.index].vertex == 4) {
             EXPECT_EQ(scene.surfaces.facets[pair.facet].key, last);
@@ -179,7 +179,7 @@ namespace surface_scene::test_surface_search
           {{x, y}, {x + c, y + s}, {x + c - s, y + s + c}, {x - s, y + c}});
       scene.all_points();
       for (auto &point : scene.surfaces.points)
-        point.last_key = last;
+        point.last_side = last;
       const auto found = names(scene, scene.find(0.1));
       EXPECT_EQ(found.count({4, 104, 102}), 1u) << "the top";
       EXPECT_EQ(found.count({4, 104, 103}), 0u) << "the side";

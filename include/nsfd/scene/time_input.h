@@ -20,8 +20,8 @@ namespace nsfd
   struct SchemeTraits {
     /// a theta scheme in the bodies: the energy balance of a step is exact
     bool theta_scheme = true;
-    /// the forces of the bodies are those at t_k: the step is bounded, and
-    /// velocities are those of the middle of a step
+    /// the forces of the bodies are those after half a step with the old
+    /// velocity: the step is bounded
     bool explicit_forces = false;
     /// joined cells share nodes with lumped mass, and the points are at nodes;
     /// explicit, too
@@ -58,22 +58,8 @@ namespace nsfd
     std::optional<double> front_viscosity;
     SmoothInput smooth; ///< of scheme = arkode
 
-    /** Weight of the new velocity in the forces of the bodies. */
+    /** Weight of the change of velocity in the forces of the bodies: those at
+        q_k + h theta (v_k + bulk_theta (v - v_k)). */
     double bulk_theta() const { return scheme.explicit_forces ? 0. : theta; }
-
-    /**
-     * How long the forces of the bodies act in a step of length @p h behind one
-     * of @p last (0: none). Explicit velocities are those of the middle of a
-     * step, from one middle to the next; otherwise every change of the step
-     * would move the energy that the scheme keeps, by as much as there is in
-     * the fastest modes.
-     */
-    double kick(const double h, const double last) const
-    {
-      return scheme.explicit_forces && last > 0. ? (h + last) / 2. : h;
-    }
-
-    /** Weight of the new velocity in the work of impulses and loads. */
-    double work_theta() const { return scheme.explicit_forces ? 0.5 : theta; }
   };
 } // namespace nsfd

@@ -41,7 +41,7 @@ namespace nsfd
              "the plate is elastic and in plane strain");
       speed_ = RunningCrack(material, false).pressure_speed();
       poisson_ = material.poisson;
-      theta_ = input.time.work_theta();
+      theta_ = input.time.theta;
     }
 
     void observe(const StepView &view) override
