@@ -121,8 +121,13 @@ namespace nsfd
     // kinetic energies before the impulses: the scale of round-off
     const double energy_scale =
         2. * old.energy.kinetic + this->free_motion_.kinetic_product();
-    LawEvaluation<dim> evaluation(this->problem_, this->delassus_, energy_scale,
-                                  this->input_.solver.tolerance);
+    const double tolerance = this->input_.solver.tolerance;
+    if (!evaluation_)
+      evaluation_ = std::make_unique<LawEvaluation<dim>>(
+          this->problem_, this->delassus_, energy_scale, tolerance);
+    else
+      evaluation_->renew(energy_scale, tolerance);
+    LawEvaluation<dim> &evaluation = *evaluation_;
     StepReport report;
     {
       const Stopwatch watch(this->timings_.solve);

@@ -113,8 +113,9 @@ namespace nsfd
     keep_tangents_at_rest(work);
     if (!solve_system(work, symmetric, tolerance, share))
       return false;
-    for (std::size_t k = 0; k < impulse_.size(); ++k)
-      impulse_[k] += dP_[k];
+    for (const std::size_t i : work.problem.acting)
+      for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+        impulse_[k] += dP_[k];
     work.motion.move(1., impulse_, velocity_);
     return true;
   }
