@@ -104,6 +104,10 @@ namespace nsfd
     this->free_motion_.set_pressure(old, old.time + time.theta * h,
                                     next.pressure);
     next.impulse = old.impulse;
+    // a step of another length begins with the same forces
+    if (bonded_ && old.last_step > 0. && old.last_step != h)
+      for (double &P : next.impulse)
+        P *= h / old.last_step;
     if (this->check_.starts_cold())
       std::fill(next.impulse.begin(), next.impulse.end(), 0.);
     this->free_motion_.move(old, next.pressure, this->problem_, next.impulse,
