@@ -1,5 +1,6 @@
 #include "conforming_solver.h"
 
+#include "linear_algebra/block_kernels.h"
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/gmres.h"
 #include "linear_algebra/multigrid.h"
@@ -26,8 +27,11 @@ namespace nsfd
     class OwnSums
     {
     public:
-      OwnSums(const Communicator &communicator, const std::size_t n)
-          : communicator_(communicator), n_(n)
+      /** @p wide: of short steps, whose iterations are many and need few
+          digits. */
+      OwnSums(const Communicator &communicator, const std::size_t n,
+              const bool wide)
+          : communicator_(communicator), n_(n), wide_(wide)
       {
       }
 
@@ -59,6 +63,10 @@ namespace nsfd
                      const std::vector<const double *> &others) const
       {
         Vector sums(others.size(), 0.);
+        if (wide_) {
+          products_of(a.data(), others.data(), sums.size(), n_, sums.data());
+          return sums;
+        }
         std::size_t j = 0;
         for (; j + 4 <= sums.size(); j += 4)
           add_products<4>(a, &others[j], &sums[j]);
@@ -95,6 +103,7 @@ namespace nsfd
 
       const Communicator &communicator_;
       const std::size_t n_;
+      const bool wide_;
     };
 
     /**
@@ -256,7 +265,7 @@ namespace nsfd
 
   krylov::Outcome ConformingSolver::iterate(const Goal &goal)
   {
-    const OwnSums sums(communicator_, n_own_);
+    const OwnSums sums(communicator_, n_own_, bool(given_.product));
     const auto preconditioner = [&](const Vector &r, Vector &z) {
       precondition(r, z);
     };
