@@ -30,6 +30,9 @@ namespace nsfd
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
 
+    /// of what impulses drift by from one stage to the next
+    constexpr double most_stretched = 64.;
+
     /** @p sum += @p length dx at these points. */
     template <int dim, typename Points>
     void add(const Points &points, const double length,
@@ -379,6 +382,11 @@ namespace nsfd
       answer(work, velocity_);
     }
     double smaller = 1e-2; // a share over the one before
+    // Points that stay closed round a node can share what they carry in many
+    // ways, and the springs, at their stiffest, let them come to the right one
+    // at a constant rate: P_0 is taken ahead on this way, farther and farther.
+    double stretch = 1., before = std::numeric_limits<double>::infinity();
+    Vector shift;
     unsigned int taken = 0;
     while (!solved && report.newton < most) {
       if (!find_direction(work))
@@ -386,10 +394,17 @@ namespace nsfd
       advance(work);
       const Errors errors = this->errors(work);
       const double left = share * errors.shift;
+      double ahead = 0.;
       if (errors.defect <= std::max(0.1 * std::max(tolerance, left),
                                     from_rest_ ? round_off / share : 0.)) {
         taken = 0;
         start = iterate(work);
+        const bool drifts =
+            from_rest_ && share == last_share && left > 0.5 * before;
+        stretch = drifts ? std::min(2. * stretch, most_stretched) : 1.;
+        before = left;
+        shift = impulse_;
+        add<dim>(problem.acting, -1., rest_, shift);
         // what is left may be digits, which stiff springs do not show
         const bool last = left <= 0.1 * tolerance;
         solved = from_rest_ ? jump(work) && judge() : last && judge();
@@ -397,6 +412,7 @@ namespace nsfd
           break;
         if (!last)
           share = std::max(last_share, smaller * share);
+        ahead = stretch - 1.;
       } else if (++taken > most_of_stage && share < first_share) {
         taken = 0;
         return_to(work, start);
@@ -405,6 +421,8 @@ namespace nsfd
       } else
         continue;
       soften(work, share);
+      if (ahead > 0.)
+        add<dim>(problem.acting, ahead, shift, rest_);
       answer(work, velocity_);
     }
     report.converged = solved || judge();
