@@ -36,34 +36,49 @@ namespace nsfd
     return index < step_.size() ? step_[index] : none;
   }
 
-  template <typename Select>
-  void BodyProducts::multiply(const Select &select,
-                              const std::vector<double> &x,
-                              std::vector<double> &y) const
+  template <unsigned int size, typename Select>
+  void BodyProducts::multiply_nodes(const Select &select,
+                                    const std::vector<double> &x,
+                                    std::vector<double> &y) const
   {
     std::fill(y.begin(), y.end(), 0.);
     // pairs of (place in a body, first value of its node)
     const auto for_nodes = [&](const unsigned int b, const auto &work) {
       const std::size_t first = bodies_->first_dof[b],
                         n = bodies_->first_dof[b + 1] - first;
-      for (std::size_t j = 0; j < n; j += size_)
-        work(j, std::size_t((*nodes_)[first + j]) * size_);
+      for (std::size_t j = 0; j < n; j += size)
+        work(j, std::size_t((*nodes_)[first + j]) * size);
     };
     for_all_bodies(
         *bodies_, select,
         [&](const unsigned int b, double *in, const unsigned int stride) {
           for_nodes(b, [&](const std::size_t j, const std::size_t node) {
-            for (unsigned int c = 0; c < size_; ++c)
+            for (unsigned int c = 0; c < size; ++c)
               in[(j + c) * stride] = x[node + c];
           });
         },
         [&](const unsigned int b, const double *out,
             const unsigned int stride) {
           for_nodes(b, [&](const std::size_t j, const std::size_t node) {
-            for (unsigned int c = 0; c < size_; ++c)
+            for (unsigned int c = 0; c < size; ++c)
               y[node + c] += out[(j + c) * stride];
           });
         });
+  }
+
+  template <typename Select>
+  void BodyProducts::multiply(const Select &select,
+                              const std::vector<double> &x,
+                              std::vector<double> &y) const
+  {
+    switch (size_) {
+    case 2:
+      return multiply_nodes<2>(select, x, y);
+    case 3:
+      return multiply_nodes<3>(select, x, y);
+    default:
+      return multiply_nodes<1>(select, x, y);
+    }
   }
 
   void BodyProducts::apply(Block BodyClass::*const block,

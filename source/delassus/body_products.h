@@ -33,6 +33,9 @@ namespace nsfd
     void apply_step(const std::vector<double> &x, std::vector<double> &y) const;
 
   private:
+    template <unsigned int size, typename Select>
+    void multiply_nodes(const Select &select, const std::vector<double> &x,
+                        std::vector<double> &y) const;
     template <typename Select>
     void multiply(const Select &select, const std::vector<double> &x,
                   std::vector<double> &y) const;

@@ -1,5 +1,6 @@
 #include "conforming_solver.h"
 
+#include "linear_algebra/block_kernels.h"
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/gmres.h"
 #include "linear_algebra/multigrid.h"
@@ -26,39 +27,65 @@ namespace nsfd
     class OwnSums
     {
     public:
-      OwnSums(const Communicator &communicator, const std::size_t n)
-          : communicator_(communicator), n_(n)
+      /** @p wide: of short steps, whose iterations are many and need few
+          digits. */
+      OwnSums(const Communicator &communicator, const std::size_t n,
+              const bool wide)
+          : communicator_(communicator), n_(n), wide_(wide)
       {
       }
 
       double operator()(const Vector &a, const Vector &b) const
       {
-        return add({of_rank(a, b)})[0];
+        return add(of_rank(a, {b.data()}))[0];
       }
       std::array<double, 2> operator()(const Vector &a, const Vector &b,
                                        const Vector &c) const
       {
-        const auto both = add({of_rank(a, b), of_rank(b, c)});
+        const auto both = add(of_rank(b, {a.data(), c.data()}));
         return {both[0], both[1]};
       }
       /** With the first @p n of @p v, and with itself. */
       Vector operator()(const Vector &a, const std::vector<Vector> &v,
                         const unsigned int n) const
       {
-        Vector all;
+        std::vector<const double *> all;
         for (unsigned int j = 0; j < n; ++j)
-          all.push_back(of_rank(a, v[j]));
-        all.push_back(of_rank(a, a));
-        return add(std::move(all));
+          all.push_back(v[j].data());
+        all.push_back(a.data());
+        return add(of_rank(a, all));
       }
 
     private:
-      double of_rank(const Vector &a, const Vector &b) const
+      /** Each of them from its first term to its last, four of them side by
+          side: a sum alone waits for its last addition. */
+      Vector of_rank(const Vector &a,
+                     const std::vector<const double *> &others) const
       {
-        double sum = 0.;
+        Vector sums(others.size(), 0.);
+        if (wide_) {
+          products_of(a.data(), others.data(), sums.size(), n_, sums.data());
+          return sums;
+        }
+        std::size_t j = 0;
+        for (; j + 4 <= sums.size(); j += 4)
+          add_products<4>(a, &others[j], &sums[j]);
+        for (; j + 2 <= sums.size(); j += 2)
+          add_products<2>(a, &others[j], &sums[j]);
+        for (; j < sums.size(); ++j)
+          add_products<1>(a, &others[j], &sums[j]);
+        return sums;
+      }
+
+      template <unsigned int n>
+      void add_products(const Vector &a, const double *const *others,
+                        double *sums) const
+      {
+        double s[n] = {};
         for (std::size_t i = 0; i < n_; ++i)
-          sum += a[i] * b[i];
-        return sum;
+          for (unsigned int j = 0; j < n; ++j)
+            s[j] += a[i] * others[j][i];
+        std::copy_n(s, n, sums);
       }
 
       Vector add(Vector sums) const
@@ -76,6 +103,7 @@ namespace nsfd
 
       const Communicator &communicator_;
       const std::size_t n_;
+      const bool wide_;
     };
 
     /**
@@ -237,7 +265,7 @@ namespace nsfd
 
   krylov::Outcome ConformingSolver::iterate(const Goal &goal)
   {
-    const OwnSums sums(communicator_, n_own_);
+    const OwnSums sums(communicator_, n_own_, bool(given_.product));
     const auto preconditioner = [&](const Vector &r, Vector &z) {
       precondition(r, z);
     };

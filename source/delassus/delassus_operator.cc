@@ -40,11 +40,13 @@ namespace nsfd
       const BodyClass &body = bodies_.classes[k];
       const BlockInverse inverse(body, shares(time_step, theta));
       ++counters_.factorisations;
+      blocks_[k].delassus = inverse.form(this->trace_transposed(k));
+      if (!bodies_are_apart())
+        continue; // none of them moves alone
       Block identity(body.n_dofs, body.n_dofs);
       for (unsigned int i = 0; i < body.n_dofs; ++i)
         identity(i, i) = 1.;
       blocks_[k].inverse = inverse.form(identity);
-      blocks_[k].delassus = inverse.form(this->trace_transposed(k));
       blocks_[k].velocity_change =
           product(blocks_[k].inverse, this->trace_transposed(k));
     }

@@ -325,10 +325,9 @@ namespace nsfd
   template <int dim>
   std::vector<char> JoinedBodies<dim>::parting() const
   {
-    const auto &matrix = this->matrix();
-    std::vector<char> result(this->points_.n_points);
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = matrix.parts(i);
+    std::vector<char> result(this->points_.n_points, 0);
+    for (const std::size_t i : matrix().parting_points())
+      result[i] = 1;
     return result;
   }
 

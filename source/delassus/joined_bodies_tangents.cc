@@ -36,10 +36,14 @@ namespace nsfd
     const bool iterates = this->iterates(),
                general =
                    iterates && !symmetric && this->communicator_.size() == 1;
-    std::vector<double> springs = T;
-    for (std::size_t k = 0; k < T.size() && !symmetric && !general;
-         k += dim * dim)
-      take_positive_part<dim>(&springs[k]);
+    const auto &points = matrix().parting_points();
+    std::vector<double> positive;
+    if (!symmetric && !general) {
+      positive = T;
+      for (const std::size_t i : points)
+        take_positive_part<dim>(&positive[i * dim * dim]);
+    }
+    const std::vector<double> &springs = positive.empty() ? T : positive;
     using Fit = typename TangentFactor<dim>::Fit;
     const bool cycles = !iterates && tangent_.has_cycles();
     const auto solved = [&](const bool exact) {
@@ -70,13 +74,14 @@ namespace nsfd
     }
     // a point that changes costs about an iteration, a factor some five of
     // them, blocks on the diagonal some two or, vertex by vertex, none
-    Fit fit = tangent_.fit(springs, !iterates             ? 5
-                                    : tangent_.is_cheap() ? 0
-                                                          : 2);
+    Fit fit = tangent_.fit(matrix(), springs,
+                           !iterates             ? 5
+                           : tangent_.is_cheap() ? 0
+                                                 : 2);
     if (symmetric && tangent_.is_general())
       fit = Fit::none; // conjugate gradients need a symmetric one
     if (iterates && symmetric && fit != Fit::none)
-      tangent_.iterate_on(springs);
+      tangent_.iterate_on(matrix(), springs);
     if ((fit != Fit::none &&
          solved(symmetric && (iterates || fit == Fit::exact))) ||
         (factor_tangent(springs, general) && solved(symmetric)))
@@ -101,7 +106,7 @@ namespace nsfd
     if (!solve_tangent(T, true, std::max(tight, tolerance)))
       return false;
     matrix().velocity(columns_, dU.data());
-    answer_of_points<dim>(T, c, dU, dP);
+    answer_of_points<dim>(matrix().parting_points(), T, c, dU, dP);
     return true;
   }
 

@@ -117,6 +117,7 @@ namespace nsfd
   void JoinedMatrix<dim>::set_entries(const std::vector<char> &shares_nodes)
   {
     sights_.entries.clear();
+    sights_.points.clear();
     sights_.first.assign(1, 0);
     for (std::size_t i = 0; i < points_.n_points; ++i) {
       const std::size_t first = sights_.entries.size();
@@ -163,6 +164,8 @@ namespace nsfd
           std::remove_if(sights_.entries.begin() + long(first),
                          sights_.entries.end(), vanishes),
           sights_.entries.end());
+      if (sights_.entries.size() > first)
+        sights_.points.push_back(unsigned(i));
       sights_.first.push_back(sights_.entries.size());
     }
   }

@@ -56,10 +56,10 @@ namespace nsfd
     void apply_step(const double *springs, const std::vector<double> &x,
                     std::vector<double> &y) const;
 
-    /** A point sees motions of the space. */
-    bool parts(const std::size_t point) const
+    /** Points that see motions of the space, ascending. */
+    const std::vector<unsigned int> &parting_points() const
     {
-      return sights_.first[point] != sights_.first[point + 1];
+      return sights_.points;
     }
 
     /**
@@ -130,6 +130,7 @@ namespace nsfd
     struct Sights {
       std::vector<std::size_t> first; ///< by point, and the end
       std::vector<Entry> entries;
+      std::vector<unsigned int> points; ///< that see anything, ascending
 
       /**
        * For all pairs (row, column) of what a point with the spring @p T sees:
@@ -160,8 +161,36 @@ namespace nsfd
       void for_springs(const double *springs, const unsigned int size,
                        const Work &work) const
       {
-        for (std::size_t i = 0; i + 1 < first.size(); ++i)
+        for (const std::size_t i : points)
           for_spring(i, springs + i * dim * dim, size, work);
+      }
+      /** y += H^T T H x of values by block. */
+      template <unsigned int size>
+      void multiply(const double *springs, const double *x, double *y) const
+      {
+        for (const std::size_t i : points) {
+          const Entry *const begin = &entries[first[i]], *const end =
+                                                             begin +
+                                                             (first[i + 1] -
+                                                              first[i]);
+          double U[dim] = {}, P[dim] = {};
+          for (const Entry *entry = begin; entry != end; ++entry) {
+            const double *in = x + std::size_t(entry->block) * size;
+            for (unsigned int d = 0; d < dim; ++d)
+              for (unsigned int c = 0; c < size; ++c)
+                U[d] += entry->all[d * size + c] * in[c];
+          }
+          const double *T = springs + i * dim * dim;
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int e = 0; e < dim; ++e)
+              P[d] += T[d * dim + e] * U[e];
+          for (const Entry *entry = begin; entry != end; ++entry) {
+            double *out = y + std::size_t(entry->block) * size;
+            for (unsigned int d = 0; d < dim; ++d)
+              for (unsigned int c = 0; c < size; ++c)
+                out[c] += entry->own[d * size + c] * P[d];
+          }
+        }
       }
     } sights_; ///< what points see of the blocks
     struct {

@@ -26,7 +26,7 @@ namespace nsfd
                                   std::vector<double> &own) const
   {
     std::fill(shared_.values.begin(), shared_.values.end(), 0.);
-    for (std::size_t i = 0; i < points_.n_points; ++i)
+    for (const std::size_t i : sights_.points)
       for (std::size_t k = sights_.first[i]; k < sights_.first[i + 1]; ++k) {
         const Entry &entry = sights_.entries[k];
         double *out = &shared_.values[std::size_t(entry.block) * size_];
@@ -43,7 +43,7 @@ namespace nsfd
   {
     fetch_ghosts(x);
     std::fill(U, U + points_.n_points * dim, 0.);
-    for (std::size_t i = 0; i < points_.n_points; ++i)
+    for (const std::size_t i : sights_.points)
       for (std::size_t k = sights_.first[i]; k < sights_.first[i + 1]; ++k) {
         const Entry &entry = sights_.entries[k];
         const double *in = &shared_.values[std::size_t(entry.block) * size_];
@@ -125,25 +125,10 @@ namespace nsfd
       by_bodies_.apply_step(in, shared_.values);
     else
       multiply(operators_.step, in.data());
-    for (std::size_t i = 0; springs && i < points_.n_points; ++i) {
-      const std::size_t first = sights_.first[i], end = sights_.first[i + 1];
-      if (first == end)
-        continue;
-      double U[dim] = {}, P[dim] = {};
-      for (std::size_t k = first; k < end; ++k)
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int c = 0; c < size_; ++c)
-            U[d] += sights_.entries[k].all[d * size_ + c] *
-                    in[std::size_t(sights_.entries[k].block) * size_ + c];
-      for (unsigned int d = 0; d < dim; ++d)
-        for (unsigned int e = 0; e < dim; ++e)
-          P[d] += springs[(i * dim + d) * dim + e] * U[e];
-      for (std::size_t k = first; k < end; ++k)
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int c = 0; c < size_; ++c)
-            shared_.values[std::size_t(sights_.entries[k].block) * size_ + c] +=
-                sights_.entries[k].own[d * size_ + c] * P[d];
-    }
+    if (springs && size_ == 1)
+      sights_.template multiply<1>(springs, in.data(), shared_.values.data());
+    else if (springs)
+      sights_.template multiply<dim>(springs, in.data(), shared_.values.data());
     return_ghosts(y);
   }
 

@@ -16,6 +16,7 @@ namespace nsfd
   {
     is_on_ = true;
     floor_ = floor;
+    known_ = false;
     start_ = start;
     const std::size_t n = bodies_.representative_.size();
     momentum_.assign(n, 0.);
@@ -51,6 +52,9 @@ namespace nsfd
   template <int dim>
   void JoinedMotion<dim>::set_residual(const std::vector<double> &P)
   {
+    is_done_ = false;
+    known_ = true;
+    of_ = P;
     auto &matrix = bodies_.matrix();
     std::vector<double> of_points, of_bodies;
     matrix.impulse(P.data(), of_points);
@@ -71,7 +75,16 @@ namespace nsfd
     const double size =
         std::max(floor_, std::sqrt(sums[1]) + std::sqrt(sums[2]));
     scale_ = size > 0. ? size : 1.;
-    is_done_ = false;
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::keep_residual(const std::vector<double> &P,
+                                        const bool same_motion)
+  {
+    if (!known_ || bodies_.communicator_.any(!same_motion || P != of_))
+      set_residual(P);
+    else
+      is_done_ = false;
   }
 
   template <int dim>
@@ -86,7 +99,7 @@ namespace nsfd
   void JoinedMotion<dim>::balance(const std::vector<double> &P,
                                   const double tolerance)
   {
-    set_residual(P);
+    keep_residual(P, true);
     if (left_ <= tolerance * scale_)
       return;
     bodies_.rows_ = residual_;
@@ -130,7 +143,7 @@ namespace nsfd
     dw_ = bodies_.columns_;
     dU.resize(c.size());
     bodies_.matrix().velocity(dw_, dU.data());
-    answer_of_points<dim>(T, c, dU, dP);
+    answer_of_points<dim>(bodies_.matrix().parting_points(), T, c, dU, dP);
     return true;
   }
 
@@ -151,8 +164,10 @@ namespace nsfd
                                      const std::vector<double> &P,
                                      std::vector<double> &U)
   {
-    w_ = w;
-    set_residual(P);
+    const bool same = w == w_;
+    if (!same)
+      w_ = w;
+    keep_residual(P, same);
     set_velocity(U);
   }
 

@@ -46,6 +46,8 @@ namespace nsfd
     using Operator = typename DelassusOperator<dim>::Operator;
 
     void set_residual(const std::vector<double> &P);
+    /** The same, where it is not what is known. Collective. */
+    void keep_residual(const std::vector<double> &P, bool same_motion);
     void set_velocity(std::vector<double> &U) const;
 
     JoinedBodies<dim> &bodies_;
@@ -60,5 +62,7 @@ namespace nsfd
     } stiffness_over_mass_;         ///< of steps with this share of K
     double left_ = 0., scale_ = 1.; ///< sizes of the residual, and of its terms
     double floor_ = 0.;             ///< of the latter
+    bool known_ = false;            ///< the residual is that of w and of_
+    std::vector<double> of_;        ///< P
   };
 } // namespace nsfd

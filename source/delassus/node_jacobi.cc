@@ -1,5 +1,6 @@
 #include "node_jacobi.h"
 
+#include "node_values.h"
 #include "point_nodes.h"
 
 #include "linear_algebra/dense_lu.h"
@@ -120,7 +121,8 @@ namespace nsfd
 
   template <int dim>
   bool NodeJacobi<dim>::prepare(const JoinedMatrix<dim> &matrix,
-                                const double *springs, const bool general)
+                                const std::vector<double> *const springs,
+                                const bool general)
   {
     if (!placed_) {
       size_ = matrix.size_;
@@ -141,13 +143,13 @@ namespace nsfd
     factor_.reset();
     general_.reset();
     stiffened_.clear();
-    const std::vector<double> present(
-        springs,
-        springs + (springs ? clusters_.of_point.size() * dim * dim : 0));
-    bool done = !springs || invert_clusters(matrix, present, general);
+    bool done = !springs || invert_clusters(matrix, *springs, general);
     if (springs && !by_vertex_)
-      done = factorise(matrix, present, general) && done;
-    springs_ = present;
+      done = factorise(matrix, *springs, general) && done;
+    if (springs)
+      copy_blocks<dim>(matrix.parting_points(), *springs, springs_);
+    else
+      springs_.clear();
     of_general_ = general;
     if (!communicator_.any(!done))
       return true;
@@ -185,32 +187,61 @@ namespace nsfd
     return factor_->try_factorise(rows_, true);
   }
 
+  /** Of the blocks at nodes, then of vertices. */
+  template <int dim>
+  template <unsigned int size>
+  void NodeJacobi<dim>::apply_inverses(const double *r, double *z) const
+  {
+    const std::size_t n_nodes = diagonal_.size() / (size * size);
+    for (std::size_t b = 0; b < n_nodes; ++b)
+      for (unsigned int k = 0; k < size; ++k) {
+        const double *row = &inverse_[(b * size + k) * size];
+        double sum = 0.;
+        for (unsigned int l = 0; l < size; ++l)
+          sum += row[l] * r[b * size + l];
+        z[b * size + k] = sum;
+      }
+    if (springs_.empty())
+      return;
+    double in[NodeClusters::largest], out[NodeClusters::largest];
+    for (const auto &cluster : clusters_.clusters) {
+      if (cluster.inverse.empty())
+        continue;
+      const std::size_t n = cluster.nodes.size() * size;
+      for (std::size_t b = 0; b < cluster.nodes.size(); ++b)
+        std::copy_n(r + std::size_t(cluster.nodes[b]) * size, size,
+                    in + b * size);
+      // four rows side by side: a sum alone waits for its last addition
+      std::size_t k = 0;
+      for (; k + 4 <= n; k += 4) {
+        const double *a = &cluster.inverse[k * n];
+        double s[4] = {};
+        for (std::size_t l = 0; l < n; ++l)
+          for (unsigned int q = 0; q < 4; ++q)
+            s[q] += a[q * n + l] * in[l];
+        std::copy_n(s, 4, out + k);
+      }
+      for (; k < n; ++k) {
+        const double *a = &cluster.inverse[k * n];
+        double s = 0.;
+        for (std::size_t l = 0; l < n; ++l)
+          s += a[l] * in[l];
+        out[k] = s;
+      }
+      for (std::size_t b = 0; b < cluster.nodes.size(); ++b)
+        std::copy_n(out + b * size, size,
+                    z + std::size_t(cluster.nodes[b]) * size);
+    }
+  }
+
   template <int dim>
   void NodeJacobi<dim>::apply(const std::vector<double> &r,
                               std::vector<double> &z)
   {
-    for (std::size_t k = 0; k < r.size(); ++k) {
-      const double *block = &inverse_[k * size_], *in = &r[k / size_ * size_];
-      double sum = 0.;
-      for (unsigned int l = 0; l < size_; ++l)
-        sum += block[l] * in[l];
-      z[k] = sum;
-    }
-    double part[NodeClusters::largest];
-    for (const auto &cluster : clusters_.clusters) {
-      if (springs_.empty() || cluster.inverse.empty())
-        continue;
-      const std::size_t n = cluster.nodes.size() * size_;
-      for (std::size_t k = 0; k < n; ++k)
-        part[k] = r[std::size_t(cluster.nodes[k / size_]) * size_ + k % size_];
-      for (std::size_t k = 0; k < n; ++k) {
-        const double *row = &cluster.inverse[k * n];
-        double sum = 0.;
-        for (std::size_t l = 0; l < n; ++l)
-          sum += row[l] * part[l];
-        z[std::size_t(cluster.nodes[k / size_]) * size_ + k % size_] = sum;
-      }
-    }
+    if (size_ == 1)
+      apply_inverses<1>(r.data(), z.data());
+    else
+      apply_inverses<dim>(r.data(), z.data());
     if (!factor_ && !general_)
       return;
     for (std::size_t k = 0; k < stiffened_.size(); ++k)

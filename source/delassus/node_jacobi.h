@@ -39,8 +39,8 @@ namespace nsfd
      * semidefinite, or not symmetric (@p general: on one rank alone). False: B
      * has no factor. Collective.
      */
-    bool prepare(const JoinedMatrix<dim> &matrix, const double *springs,
-                 bool general = false);
+    bool prepare(const JoinedMatrix<dim> &matrix,
+                 const std::vector<double> *springs, bool general = false);
     /** There are small dense matrices alone, on all ranks. */
     bool is_by_vertex() const { return placed_ && by_vertex_; }
     /** z = B^-1 r of own values. Collective. */
@@ -48,6 +48,8 @@ namespace nsfd
 
   private:
     void set_diagonal(const JoinedMatrix<dim> &matrix);
+    template <unsigned int size>
+    void apply_inverses(const double *r, double *z) const;
     NodeClusters clusters_of(const JoinedMatrix<dim> &matrix);
     bool invert_clusters(const JoinedMatrix<dim> &matrix,
                          const std::vector<double> &springs, bool general);

@@ -24,15 +24,32 @@ namespace nsfd
       x[places[k]] = values[k];
   }
 
-  /** dP = c - T dU, T a block of dim x dim per point. */
+  /** dP = c - T dU, T a block of dim x dim per point; 0 but at @p points. */
   template <int dim>
-  void answer_of_points(const std::vector<double> &T,
+  void answer_of_points(const std::vector<unsigned int> &points,
+                        const std::vector<double> &T,
                         const std::vector<double> &c,
                         const std::vector<double> &dU, std::vector<double> &dP)
   {
     dP = c;
-    for (std::size_t k = 0; k < c.size(); ++k)
-      for (unsigned int e = 0; e < dim; ++e)
-        dP[k] -= T[k * dim + e] * dU[k / dim * dim + e];
+    for (const std::size_t i : points)
+      for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+        for (unsigned int e = 0; e < dim; ++e)
+          dP[k] -= T[k * dim + e] * dU[i * dim + e];
+  }
+
+  /** @p to = @p from, blocks of dim x dim per point that are 0 but at @p
+      points. */
+  template <int dim>
+  void copy_blocks(const std::vector<unsigned int> &points,
+                   const std::vector<double> &from, std::vector<double> &to)
+  {
+    if (to.size() != from.size()) {
+      to = from;
+      return;
+    }
+    for (const std::size_t i : points)
+      std::copy_n(from.begin() + long(i * dim * dim), dim * dim,
+                  to.begin() + long(i * dim * dim));
   }
 } // namespace nsfd

@@ -16,7 +16,8 @@ namespace nsfd
   }
 
   template <int dim>
-  auto TangentFactor<dim>::fit(const std::vector<double> &springs,
+  auto TangentFactor<dim>::fit(const JoinedMatrix<dim> &matrix,
+                               const std::vector<double> &springs,
                                const unsigned int few) const -> Fit
   {
     // measured on a bar of hexes and a plate of grains that break
@@ -26,23 +27,28 @@ namespace nsfd
     constexpr unsigned long long other = 1ull << 32, missing = other << bits;
     const bool made = springs.size() == springs_.size();
     unsigned long long changed = 0;
-    const auto &faces = delassus_.points().faces;
-    for (std::size_t f = 0; made && f < faces.size(); ++f)
-      for (std::size_t i = 0; i < faces[f].count; ++i) {
-        const std::size_t first = (faces[f].first + i) * dim * dim;
-        double size = 0., change = 0.;
-        for (std::size_t k = first; k < first + dim * dim; ++k) {
-          size = std::max({size, std::abs(springs[k]), std::abs(springs_[k])});
-          change = std::max(change, std::abs(springs[k] - springs_[k]));
-        }
-        // beside what the bodies themselves resist with
-        const std::size_t n = faces[f].count * dim;
-        const double W = delassus_.face_block(f)[i * dim * (n + 1)];
-        changed += change > same * size && change * W > soft;
+    bool differ = !made;
+    const auto &points = delassus_.points();
+    for (const std::size_t i : matrix.parting_points()) {
+      if (!made)
+        break;
+      const std::size_t first = i * dim * dim;
+      double size = 0., change = 0.;
+      for (std::size_t k = first; k < first + dim * dim; ++k) {
+        size = std::max({size, std::abs(springs[k]), std::abs(springs_[k])});
+        change = std::max(change, std::abs(springs[k] - springs_[k]));
+        differ = differ || springs[k] != springs_[k];
       }
-    const auto all = communicator_.sum_integer(
-        changed + (made && springs == springs_ ? 0 : other) +
-        (made ? 0 : missing));
+      // beside what the bodies themselves resist with
+      const std::size_t f = points.face_of[i];
+      const auto &face = points.faces[f];
+      const std::size_t n = face.count * dim;
+      const double W =
+          delassus_.face_block(f)[(i - face.first) * dim * (n + 1)];
+      changed += change > same * size && change * W > soft;
+    }
+    const auto all = communicator_.sum_integer(changed + (differ ? other : 0) +
+                                               (made ? 0 : missing));
     return all == 0                    ? Fit::exact
            : all >= missing            ? Fit::none
            : (all & (other - 1)) > few ? Fit::none
@@ -65,12 +71,13 @@ namespace nsfd
                                         const std::vector<double> &springs,
                                         const bool general)
   {
-    springs_.clear();
     is_general_ = false;
-    if (!jacobi_.prepare(matrix, springs.data(), general))
+    if (!jacobi_.prepare(matrix, &springs, general)) {
+      springs_.clear();
       return false;
-    springs_ = springs;
-    present_ = springs;
+    }
+    copy_blocks<dim>(matrix.parting_points(), springs, springs_);
+    copy_blocks<dim>(matrix.parting_points(), springs, present_);
     is_general_ = general;
     solver_.iterate_with(
         [this, &matrix](const std::vector<double> &x, std::vector<double> &y) {

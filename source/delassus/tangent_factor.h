@@ -3,6 +3,7 @@
 #include "conforming_solver.h"
 #include "delassus_operator.h"
 #include "node_jacobi.h"
+#include "node_values.h"
 #include "tangent_multigrid.h"
 
 namespace nsfd
@@ -32,6 +33,7 @@ namespace nsfd
     void clear()
     {
       springs_.clear();
+      present_.clear();
       is_general_ = false;
       jacobi_.clear();
     }
@@ -43,7 +45,8 @@ namespace nsfd
     };
     /** Of @p springs, T, positive semidefinite; close if at most @p few points
         have changed much. Collective. */
-    Fit fit(const std::vector<double> &springs, unsigned int few) const;
+    Fit fit(const JoinedMatrix<dim> &matrix, const std::vector<double> &springs,
+            unsigned int few) const;
     /** False: not positive definite. Collective. */
     bool factor(const SparseRows &matrix, const std::vector<double> &springs);
     /** The same for iterations on @p matrix, of short steps; @p general: the
@@ -78,7 +81,11 @@ namespace nsfd
 
     /** Iterations are on the matrix of these springs, symmetric ones, with the
         preconditioner that there is. */
-    void iterate_on(const std::vector<double> &springs) { present_ = springs; }
+    void iterate_on(const JoinedMatrix<dim> &matrix,
+                    const std::vector<double> &springs)
+    {
+      copy_blocks<dim>(matrix.parting_points(), springs, present_);
+    }
 
     ConformingSolver &solver() { return solver_; }
     /** Those that were factored; empty: none. */

@@ -53,4 +53,40 @@ namespace nsfd
       *reinterpret_cast<Vector8u *>(y + r) = sum;
     }
   }
+
+  NSFD_CLONES
+  void products_of(const double *a, const double *const *b, const std::size_t n,
+                   const std::size_t size, double *sums)
+  {
+    const std::size_t whole = size / 8 * 8;
+    for (std::size_t j = 0; j < n; j += 4) {
+      // the last ones are counted several times over
+      const double *b0 = b[j], *b1 = b[j + 1 < n ? j + 1 : j],
+                   *b2 = b[j + 2 < n ? j + 2 : j],
+                   *b3 = b[j + 3 < n ? j + 3 : j];
+      Vector8 s0 = {}, s1 = {}, s2 = {}, s3 = {};
+      for (std::size_t i = 0; i < whole; i += 8) {
+        const Vector8 x = *reinterpret_cast<const Vector8u *>(a + i);
+        s0 += x * *reinterpret_cast<const Vector8u *>(b0 + i);
+        s1 += x * *reinterpret_cast<const Vector8u *>(b1 + i);
+        s2 += x * *reinterpret_cast<const Vector8u *>(b2 + i);
+        s3 += x * *reinterpret_cast<const Vector8u *>(b3 + i);
+      }
+      double s[4] = {};
+      for (unsigned int l = 0; l < 8; ++l) {
+        s[0] += s0[l];
+        s[1] += s1[l];
+        s[2] += s2[l];
+        s[3] += s3[l];
+      }
+      for (std::size_t i = whole; i < size; ++i) {
+        s[0] += a[i] * b0[i];
+        s[1] += a[i] * b1[i];
+        s[2] += a[i] * b2[i];
+        s[3] += a[i] * b3[i];
+      }
+      for (std::size_t k = j; k < n && k < j + 4; ++k)
+        sums[k] = s[k - j];
+    }
+  }
 } // namespace nsfd

@@ -26,4 +26,9 @@ namespace nsfd
   /** y = A x for one column; y has padded(rows) entries. */
   void multiply_one(const double *A, unsigned int rows, unsigned int cols,
                     const double *x, double *y);
+
+  /** @p sums[j] = a.b_j over @p size entries, j < @p n: eight sums per product,
+      of every eighth term. */
+  void products_of(const double *a, const double *const *b, std::size_t n,
+                   std::size_t size, double *sums);
 } // namespace nsfd

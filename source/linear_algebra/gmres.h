@@ -95,6 +95,25 @@ namespace nsfd::krylov
     return outcome;
   }
 
+  /** @p sum += y_j v_j one after the other, four to a pass over it. */
+  inline void add_vectors(const std::vector<std::vector<double>> &v,
+                          const std::vector<double> &y,
+                          std::vector<double> &sum)
+  {
+    std::size_t j = 0;
+    for (; j + 4 <= y.size(); j += 4) {
+      const double *a = v[j].data(), *b = v[j + 1].data(), *c = v[j + 2].data(),
+                   *d = v[j + 3].data();
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] =
+            (((sum[i] + y[j] * a[i]) + y[j + 1] * b[i]) + y[j + 2] * c[i]) +
+            y[j + 3] * d[i];
+    }
+    for (; j < y.size(); ++j)
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += y[j] * v[j][i];
+  }
+
   /** What a basis of doubles keeps, and how orthogonal it is. */
   struct BasisOptions {
     /// B v_k are kept as well: for a preconditioner that is not the same
@@ -147,10 +166,7 @@ namespace nsfd::krylov
     void combine(const Vector &y)
     {
       Vector sum(x_.size(), 0.);
-      const auto &terms = options_.flexible ? z_ : v_;
-      for (std::size_t j = 0; j < y.size(); ++j)
-        for (std::size_t i = 0; i < sum.size(); ++i)
-          sum[i] += y[j] * terms[j][i];
+      add_vectors(options_.flexible ? z_ : v_, y, sum);
       if (options_.flexible)
         x_ = std::move(sum);
       else
@@ -176,12 +192,13 @@ namespace nsfd::krylov
       for (unsigned int pass = 0; pass < 2; ++pass) {
         const std::vector<double> products = dot_(next, v_, k + 1);
         double left = products[k + 1];
+        Vector shares(k + 1);
         for (unsigned int j = 0; j <= k; ++j) {
           h[j] += products[j];
           left -= products[j] * products[j];
-          for (std::size_t i = 0; i < next.size(); ++i)
-            next[i] -= products[j] * v_[j][i];
+          shares[j] = -products[j];
         }
+        add_vectors(v_, shares, next);
         length = std::sqrt(std::max(0., left));
         if (length > 0.1 * std::sqrt(products[k + 1]))
           return length;
@@ -291,9 +308,7 @@ namespace nsfd::krylov
     void combine(const Vector &y)
     {
       std::fill(x_.begin(), x_.end(), 0.);
-      for (std::size_t j = 0; j < y.size(); ++j)
-        for (std::size_t i = 0; i < x_.size(); ++i)
-          x_[i] += y[j] * z_[j][i];
+      add_vectors(z_, y, x_);
     }
 
   private:
@@ -316,14 +331,15 @@ namespace nsfd::krylov
     {
       double squares = 0.;
       const Vector products = sums_(next, z_, k + 1);
+      Vector shares(k + 1);
       for (unsigned int j = 0; j <= k; ++j) {
         h[j] += products[j];
         squares += products[j] * products[j];
-        for (std::size_t i = 0; i < next.size(); ++i)
-          next[i] -= products[j] * v_[j][i];
-        for (std::size_t i = 0; z && i < z->size(); ++i)
-          (*z)[i] -= products[j] * z_[j][i];
+        shares[j] = -products[j];
       }
+      add_vectors(v_, shares, next);
+      if (z)
+        add_vectors(z_, shares, *z);
       return squares;
     }
 

@@ -24,19 +24,40 @@ namespace nsfd
                                     const DelassusOperator<dim> &delassus,
                                     const double energy_scale,
                                     const double tolerance)
-      : velocity(problem.n_points * dim), defect(problem.n_points * dim),
-        solutions(problem.n_points), problem_(problem), delassus_(delassus),
-        floor_(std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale))
+      : problem_(problem), delassus_(delassus)
+  {
+    renew(energy_scale, tolerance);
+  }
+
+  template <int dim>
+  void LawEvaluation<dim>::renew(const double energy_scale,
+                                 const double tolerance)
   {
     const Charge charge(Cost::laws);
-    linear_.resize(problem.n_points);
-    for (const std::size_t i : problem.acting) {
+    const std::size_t n = problem_.n_points;
+    floor_ = std::max(1e-6, 1e-14 / tolerance) * std::sqrt(energy_scale);
+    error = worst_error = 0.;
+    worst_point = law_calls = 0;
+    frozen_ = nullptr;
+    velocity.assign(n * dim, 0.);
+    defect.assign(n * dim, 0.);
+    // of most points there is nothing in them
+    if (solutions.size() != n) {
+      solutions.assign(n, {});
+      linear_.assign(n, {});
+    } else
+      for (const std::size_t i : points_) {
+        solutions[i] = {};
+        linear_[i] = {};
+      }
+    points_ = problem_.acting;
+    for (const std::size_t i : points_) {
       linear_[i] =
-          linear_point<dim>(problem, i, majorant(i, 0), majorant(i, 1));
+          linear_point<dim>(problem_, i, majorant(i, 0), majorant(i, 1));
       // local solves start from the opening without any change
-      solutions[i].reach.opening = problem.opening_max[i];
-      if (!problem.slip_max.empty())
-        solutions[i].reach.slip = problem.slip_max[i];
+      solutions[i].reach.opening = problem_.opening_max[i];
+      if (!problem_.slip_max.empty())
+        solutions[i].reach.slip = problem_.slip_max[i];
     }
   }
 

@@ -149,6 +149,14 @@ namespace nsfd
       return solve_prescribed<dim>(problem, i, local, majorant_normal,
                                    majorant_tangential);
 
+    if (kind == PointKind::free && !problem.contact[i] &&
+        (problem.viscosity.empty() || problem.viscosity[i] == 0.)) {
+      LocalSolution<dim> solution; // nothing acts
+      solution.velocity = local;
+      solution.frozen.secant = Secant{0., 0.};
+      return solution;
+    }
+
     LocalProblem<dim> here{problem, i, local, majorant_normal,
                            majorant_tangential};
     auto &solution = here.solution;

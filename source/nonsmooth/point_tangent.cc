@@ -1,5 +1,7 @@
 #include "point_tangent.h"
 
+#include "local_problem.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -69,6 +71,79 @@ namespace nsfd
         T[c * dim] = -direction[c] * (1. - A_T * along) * coefficient / A_N;
     }
 
+    /** T is symmetric but for what difference quotients leave. */
+    template <int dim>
+    bool is_symmetric(const double *T)
+    {
+      double largest = 0., skew = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int d = 0; d < dim; ++d) {
+          largest = std::max(largest, std::abs(T[c * dim + d]));
+          skew = std::max(skew, std::abs(T[c * dim + d] - T[d * dim + c]));
+        }
+      return skew <= of_differences * largest;
+    }
+
+    /**
+     * Of damage of one scalar, d = d(u'(d)): the local solve at a given d is
+     * differentiated, without a search for the next d in every direction,
+     *
+     *     dP/dU = P_U - P_d F_U / F_d,   F = d(u'(U, d)) - d.
+     *
+     * False, and T is not set, where d is not such a root: at a jump of the
+     * law, or at the end of what the point has been through.
+     */
+    template <int dim>
+    bool damage_tangent(const OneStepProblem<dim> &problem, const std::size_t i,
+                        const LocalSolution<dim> &solution,
+                        const std::array<double, dim> &local, const double size,
+                        const double A_N, const double A_T, double *T)
+    {
+      if ((problem.kind[i] != PointKind::cohesive &&
+           problem.kind[i] != PointKind::rigid) ||
+          !solution.damages)
+        return false;
+      const PointDamage<dim> damage(problem, i);
+      const double d = solution.reach.opening;
+      if (damage.plateau() || !(d > damage.history().opening) ||
+          problem.interactions[problem.interaction[i]].law->mixed())
+        return false;
+      struct Answer {
+        std::array<double, dim> impulse;
+        double excess;
+      };
+      const auto at = [&](const std::array<double, dim> &velocity,
+                          const double opening) {
+        local::LocalProblem<dim> here{problem, i, velocity, A_N, A_T};
+        here.solve_end(damage, {opening, 0.});
+        return Answer{here.solution.impulse,
+                      here.solution.reach.opening - opening};
+      };
+      const Answer base = at(local, d);
+      const double further = d * (1. + 1e-7);
+      if (!(std::abs(base.excess) <= 1e-9 * d))
+        return false;
+      const Answer beyond = at(local, further);
+      const double F_d = (beyond.excess - base.excess) / (further - d);
+      // the next root is further off than round-off could say
+      if (!(F_d < -1e-6))
+        return false;
+      for (unsigned int c = 0; c < dim; ++c) {
+        auto moved = local;
+        moved[c] += 1e-7 * size;
+        const double h = moved[c] - local[c];
+        if (!(h > 0.))
+          return false;
+        const Answer other = at(moved, d);
+        const double dd = -(other.excess - base.excess) / (h * F_d);
+        for (unsigned int r = 0; r < dim; ++r)
+          T[r * dim + c] =
+              -(other.impulse[r] - base.impulse[r]) / h -
+              dd * (beyond.impulse[r] - base.impulse[r]) / (further - d);
+      }
+      return true;
+    }
+
     /** Friction and damage in the local solve. */
     template <int dim>
     bool difference_quotients(const OneStepProblem<dim> &problem,
@@ -81,6 +156,8 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c)
         size = std::max({size, std::abs(local[c]),
                          (c == 0 ? A_N : A_T) * std::abs(solution.impulse[c])});
+      if (damage_tangent<dim>(problem, i, solution, local, size, A_N, A_T, T))
+        return is_symmetric<dim>(T);
       for (unsigned int c = 0; c < dim; ++c) {
         auto moved = local;
         moved[c] += 1e-7 * size;
@@ -90,13 +167,7 @@ namespace nsfd
         for (unsigned int d = 0; d < dim && h > 0.; ++d)
           T[d * dim + c] = (solution.impulse[d] - other.impulse[d]) / h;
       }
-      double largest = 0., skew = 0.;
-      for (unsigned int c = 0; c < dim; ++c)
-        for (unsigned int d = 0; d < dim; ++d) {
-          largest = std::max(largest, std::abs(T[c * dim + d]));
-          skew = std::max(skew, std::abs(T[c * dim + d] - T[d * dim + c]));
-        }
-      return skew <= of_differences * largest;
+      return is_symmetric<dim>(T);
     }
   } // namespace
 

@@ -28,6 +28,9 @@ namespace nsfd
                   const DelassusOperator<dim> &delassus, double energy_scale,
                   double tolerance);
 
+    /** As a new one of what the problem is now. */
+    void renew(double energy_scale, double tolerance);
+
     /** Recompute U = U_free + W P and everything that follows. */
     void update(const std::vector<double> &impulse);
 
@@ -77,7 +80,8 @@ namespace nsfd
   private:
     const OneStepProblem<dim> &problem_;
     const DelassusOperator<dim> &delassus_;
-    double floor_;
+    double floor_ = 0.;
+    std::vector<unsigned int> points_; ///< that acted at the last renew()
     std::vector<LinearPoint<dim>> linear_;
     std::vector<double> terms_;
     const std::vector<FrozenPoint> *frozen_ = nullptr;

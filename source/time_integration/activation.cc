@@ -73,10 +73,6 @@ namespace nsfd
                   const std::vector<double> &impulse,
                   const OneStepProblem<dim> &problem)
   {
-    std::vector<double> joined(problem.n_points * dim, 0.);
-    for (std::size_t k = 0; k < joined.size(); ++k)
-      if (is_joined(problem, k))
-        joined[k] = impulse[k];
     std::vector<std::size_t> candidates;
     for (std::size_t i = 0; i < problem.n_points; ++i)
       if (may_let_go(problem, origins, i))
@@ -84,6 +80,10 @@ namespace nsfd
     if (!delassus.communicator().any(!candidates.empty()))
       return std::nullopt;
 
+    std::vector<double> joined(problem.n_points * dim, 0.);
+    for (std::size_t k = 0; k < joined.size(); ++k)
+      if (is_joined(problem, k))
+        joined[k] = impulse[k];
     const auto least = least_impulse(delassus, problem, joined);
     std::vector<double> shares(problem.n_points, 0.);
     for (const std::size_t i : candidates) {

@@ -108,6 +108,10 @@ namespace nsfd
     this->free_motion_.set_pressure(old, old.time + time.theta * h,
                                     next.pressure);
     next.impulse = old.impulse;
+    // a step of another length begins with the same forces
+    if (bonded_ && old.last_step > 0. && old.last_step != h)
+      for (double &P : next.impulse)
+        P *= h / old.last_step;
     if (this->check_.starts_cold())
       std::fill(next.impulse.begin(), next.impulse.end(), 0.);
     this->free_motion_.move(old, next.pressure, this->problem_, next.impulse,
@@ -125,8 +129,13 @@ namespace nsfd
     // kinetic energies before the impulses: the scale of round-off
     const double energy_scale =
         2. * old.energy.kinetic + this->free_motion_.kinetic_product();
-    LawEvaluation<dim> evaluation(this->problem_, this->delassus_, energy_scale,
-                                  this->input_.solver.tolerance);
+    const double tolerance = this->input_.solver.tolerance;
+    if (!evaluation_)
+      evaluation_ = std::make_unique<LawEvaluation<dim>>(
+          this->problem_, this->delassus_, energy_scale, tolerance);
+    else
+      evaluation_->renew(energy_scale, tolerance);
+    LawEvaluation<dim> &evaluation = *evaluation_;
     StepReport report;
     {
       const Stopwatch watch(this->timings_.solve);

@@ -49,5 +49,6 @@ namespace nsfd
     NodeSupports<dim> supports_;              ///< of bodies that share nodes
     std::unique_ptr<BulkTraction<dim>> bulk_; ///< or null: no bonded faces
     std::unique_ptr<ElasticForces<dim>> elastic_forces_; ///< of explicit steps
+    std::unique_ptr<LawEvaluation<dim>> evaluation_;     ///< of the last step
   };
 } // namespace nsfd

@@ -178,13 +178,16 @@ namespace end_to_end::test_ranks
       EXPECT_NEAR(two.error(name) / one.error(name), 1., 1e-12) << name;
   }
 
-  // Explicit steps of common nodes: their mass is shared by the ranks.
+  // Explicit steps of common nodes: their mass is shared by the ranks. What the
+  // tolerance leaves grows with damage, by 1e5 and more, until faces that are
+  // about to open do so in another order.
   TEST(Ranks, ExplicitBondsAgree)
   {
     const Workspace workspace;
     const std::vector<std::string> set = {
-        "Mesh/cells=8, 8", "Time/end=9 ns", "Output/fields=false",
-        "Time/scheme=symplectic", "Time/step=0.05 courant"};
+        "Mesh/cells=8, 8",        "Time/end=9 ns",
+        "Output/fields=false",    "Time/scheme=symplectic",
+        "Time/step=0.05 courant", "Solver/tolerance=1e-12"};
     const auto file = benchmark("fracture_extrinsic");
     const Result one = good_run(workspace, "1 rank", {file, set});
     EXPECT_GT(one.counter("released_bonds"), 0.);

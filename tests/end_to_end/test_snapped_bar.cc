@@ -79,14 +79,16 @@ end
     good_run(workspace, "along", {file, {"Loads/gravity=9.81, 0"}});
   }
 
-  // Other digits by another density, which no equilibrium depends on. With some
-  // (1000, 1788, 2861) 200 rounds do not come to the end of the jump: that
-  // fault is left. 1085 and 2454 had been refused for a translation that is
-  // held.
+  // Other digits by another density, which no equilibrium depends on. 1085 and
+  // 2454 had been refused for a translation that is held. With 1000, 1788,
+  // 1854, 2708 and 2861 the halves, of which each turns about the one point
+  // that holds it, did not come to rest: rows so stiff that their round-off was
+  // that mass.
   TEST(Extremes, SnappedBarWithOtherDigits)
   {
-    for (const double density : {1085., 1234., 1999., 2000., 2001., 2002.,
-                                 2003., 2454., 2718., 3141., 7800., 10000.})
+    for (const double density :
+         {1000., 1085., 1234., 1788., 1854., 1999., 2000., 2001., 2002., 2003.,
+          2454., 2708., 2718., 2861., 3141., 7800., 10000.})
       expect_snap({"Material: bar/density=" + std::to_string(density)});
   }
 

@@ -29,6 +29,19 @@ namespace nsfd
     constexpr double of_momenta = 1e-2, of_equilibria = 0.1;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
+
+    /// of what impulses drift by from one stage to the next
+    constexpr double most_stretched = 64.;
+
+    /** @p sum += @p length dx at these points. */
+    template <int dim, typename Points>
+    void add(const Points &points, const double length,
+             const std::vector<double> &dx, std::vector<double> &sum)
+    {
+      for (const std::size_t i : points)
+        for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+          sum[k] += length * dx[k];
+    }
   } // namespace
 
   /** A step from rest does not ask for all digits of each solution. */
@@ -59,6 +72,11 @@ namespace nsfd
     compliance_.assign(n, 0.);
     dP_.assign(n, 0.);
     dU_.assign(n, 0.);
+    // of points that do not act they stay so
+    rest_.assign(n, 0.);
+    right_side_.assign(n, 0.);
+    defect_.assign(n, 0.);
+    tangents_.assign(n * dim, 0.);
     rigid_ = of_nodes;
     if (!from_rest_) {
       // what is rigid is so beside the stiffness of the bodies as well, which
@@ -97,10 +115,11 @@ namespace nsfd
   template <int dim>
   void AugmentedLagrangian<dim>::soften(const Work &work, const double share)
   {
-    rest_ = impulse_;
     for (const std::size_t i : work.problem.acting)
-      for (unsigned int c = 0; c < dim; ++c)
+      for (unsigned int c = 0; c < dim; ++c) {
+        rest_[i * dim + c] = impulse_[i * dim + c];
         compliance_[i * dim + c] = share * work.evaluation.majorant(i, c);
+      }
   }
 
   /** S of all points. */
@@ -149,12 +168,12 @@ namespace nsfd
   {
     const Charge charge(Cost::laws);
     const auto &problem = work.problem;
-    tangents_.assign(problem.n_points * dim * dim, 0.);
     bool symmetric = true;
     for (const std::size_t i : work.problem.acting) {
       const auto &solution = solutions_[i];
       const double A_N = compliance_[i * dim], A_T = compliance_[i * dim + 1];
       double *T = &tangents_[i * dim * dim];
+      std::fill_n(T, dim * dim, 0.);
       std::array<double, dim> local;
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t k = i * dim + c;
@@ -200,7 +219,6 @@ namespace nsfd
   template <int dim>
   void AugmentedLagrangian<dim>::set_right_side(const Work &work)
   {
-    right_side_.assign(impulse_.size(), 0.);
     for (const std::size_t i : work.problem.acting)
       for (unsigned int c = 0; c < dim; ++c)
         right_side_[i * dim + c] =
@@ -298,8 +316,7 @@ namespace nsfd
                                             const double length)
   {
     moved_ = velocity_;
-    for (std::size_t k = 0; k < moved_.size(); ++k)
-      moved_[k] += length * dU_[k];
+    add<dim>(work.problem.acting, length, dU_, moved_);
     answer(work, moved_);
   }
 
@@ -324,8 +341,7 @@ namespace nsfd
       (value < 0. ? low : high) = length;
       (value < 0. ? at_low : at_high) = value;
     }
-    for (std::size_t k = 0; k < impulse_.size(); ++k)
-      impulse_[k] += length * dP_[k];
+    add<dim>(work.problem.acting, length, dP_, impulse_);
     work.motion.move(length, impulse_, velocity_);
   }
 
@@ -366,6 +382,11 @@ namespace nsfd
       answer(work, velocity_);
     }
     double smaller = 1e-2; // a share over the one before
+    // Points that stay closed round a node can share what they carry in many
+    // ways, and the springs, at their stiffest, let them come to the right one
+    // at a constant rate: P_0 is taken ahead on this way, farther and farther.
+    double stretch = 1., before = std::numeric_limits<double>::infinity();
+    Vector shift;
     unsigned int taken = 0;
     while (!solved && report.newton < most) {
       if (!find_direction(work))
@@ -373,10 +394,17 @@ namespace nsfd
       advance(work);
       const Errors errors = this->errors(work);
       const double left = share * errors.shift;
+      double ahead = 0.;
       if (errors.defect <= std::max(0.1 * std::max(tolerance, left),
                                     from_rest_ ? round_off / share : 0.)) {
         taken = 0;
         start = iterate(work);
+        const bool drifts =
+            from_rest_ && share == last_share && left > 0.5 * before;
+        stretch = drifts ? std::min(2. * stretch, most_stretched) : 1.;
+        before = left;
+        shift = impulse_;
+        add<dim>(problem.acting, -1., rest_, shift);
         // what is left may be digits, which stiff springs do not show
         const bool last = left <= 0.1 * tolerance;
         solved = from_rest_ ? jump(work) && judge() : last && judge();
@@ -384,6 +412,7 @@ namespace nsfd
           break;
         if (!last)
           share = std::max(last_share, smaller * share);
+        ahead = stretch - 1.;
       } else if (++taken > most_of_stage && share < first_share) {
         taken = 0;
         return_to(work, start);
@@ -392,6 +421,8 @@ namespace nsfd
       } else
         continue;
       soften(work, share);
+      if (ahead > 0.)
+        add<dim>(problem.acting, ahead, shift, rest_);
       answer(work, velocity_);
     }
     report.converged = solved || judge();

@@ -14,6 +14,11 @@ namespace nsfd
   {
     /// over A: a law that gives way by less is rigid to machine precision
     constexpr double own_compliance = 1e-11;
+    /// what rows with a prescribed velocity give way by in steps from rest,
+    /// over A, which knows the stiffness of the bodies: beside stiffer rows, of
+    /// 1e14 times a mass, round-off is as large as the mass that alone holds a
+    /// body which turns about its support
+    constexpr double of_supports = 1e-6;
     /// what difference quotients leave of their digits
     constexpr double left_to_differences = 1e-5;
     /// of the momenta, as imbalance() measures it
@@ -34,7 +39,11 @@ namespace nsfd
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
       const bool differences =
           has_difference_quotients(work.problem, i, solutions_[i]);
-      double left = differences ? left_to_differences : rigid_;
+      const bool support =
+          from_rest_ && work.problem.kind[i] == PointKind::prescribed;
+      double left = differences ? left_to_differences
+                    : support   ? of_supports
+                                : rigid_;
       // Points that are more than motions: what each of them carries is known
       // from its own compliance alone, as small as that may be.
       bool gives_way = from_rest_ && !differences;
@@ -113,8 +122,9 @@ namespace nsfd
     keep_tangents_at_rest(work);
     if (!solve_system(work, symmetric, tolerance, share))
       return false;
-    for (std::size_t k = 0; k < impulse_.size(); ++k)
-      impulse_[k] += dP_[k];
+    for (const std::size_t i : work.problem.acting)
+      for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+        impulse_[k] += dP_[k];
     work.motion.move(1., impulse_, velocity_);
     return true;
   }
