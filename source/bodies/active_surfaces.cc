@@ -75,7 +75,11 @@ namespace nsfd
     const auto keeps_shape = [this](const unsigned int b) {
       return table_.is_rigid(b);
     };
-    set_flat_sides<dim>(set_.surfaces, x_.data(), keeps_shape);
+    // of the leapfrog, whose contacts need the edges of bodies of many cells
+    const auto has_sides = [this](const unsigned int b) {
+      return input_.time.scheme.at_nodes && table_.is_rigid(b);
+    };
+    set_flat_sides<dim>(set_.surfaces, x_.data(), has_sides);
     set_edges<dim>(set_.surfaces, x_.data(), keeps_shape);
     return true;
   }

@@ -5,6 +5,8 @@
 #include "core/disjoint_sets.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -38,8 +40,15 @@ namespace nsfd
         others.push_back(f);
       }
     }
+    // by the least key: the order of facets is another one after a resume
+    std::vector<std::uint64_t> least(facets.size(),
+                                     std::numeric_limits<std::uint64_t>::max());
+    for (unsigned int f = 0; f < facets.size(); ++f) {
+      auto &key = least[sides.first(f)];
+      key = std::min(key, facets[f].key);
+    }
     for (unsigned int f = 0; f < facets.size(); ++f)
-      facets[f].side = facets[sides.first(f)].key;
+      facets[f].side = least[sides.first(f)];
   }
 
   template <int dim>

@@ -10,6 +10,47 @@ namespace end_to_end::test_long_steps
 {
   namespace
   {
+    /// a bar in space, one end held, the other one driven: its middle opens all
+    /// at once, and what comes off is held in one direction alone
+    constexpr const char *pulled_bar = R"(
+set dimension = 3
+subsection Mesh
+  set type         = brick
+  set upper corner = 40 mm, 20 mm, 20 mm
+  set cells        = 10, 6, 6
+end
+subsection Material: PMMA
+  set Young modulus = 3 GPa
+  set Poisson ratio = 0.35
+  set density       = 1190 kg/m^3
+end
+subsection Interface: middle
+  set where     = abs(x - 20 mm) < 1 um
+  set law       = camacho-ortiz
+  set strength  = 5 MPa
+  set toughness = 300 J/m^2
+end
+subsection Interface: elsewhere
+  set law = joined
+end
+subsection Boundary: left
+  set displacement x = 0
+  set displacement y = 0
+  set displacement z = 0
+end
+subsection Boundary: right
+  set displacement x = t / 1 s * 0.4 mm
+end
+subsection Time
+  set scheme = quasi-static
+  set end    = 0.4 s
+  set step   = 0.04 s
+end
+subsection Output
+  set fields = false
+end
+)";
+
     std::filesystem::path pulse()
     {
       return quickstart().parent_path() / "benchmarks/pulse.prm";
@@ -111,5 +152,28 @@ namespace end_to_end::test_long_steps
                      energy_difference(one.history, several.history), 1e-9,
                      "100 times the tolerance");
       }
+  }
+
+  // Multigrid goes the way of factors through a plane whose points soften, all
+  // of them at once, and to the equilibria of what has come apart. A bar of 400
+  // mm^2 and 300 J/m^2.
+  TEST(LongSteps, PlanesOpenWithMultigridAsWithFactors)
+  {
+    const Workspace workspace;
+    const auto file = workspace.path() / "bar.prm";
+    write_text(file, pulled_bar);
+    const auto run_with = [&](const std::string &solver) {
+      return good_run(workspace, solver,
+                      {file, {"Solver/linear solver=" + solver}});
+    };
+    const Result factors = run_with("direct"), cycles = run_with("cg");
+    ASSERT_TRUE(factors.completed() && cycles.completed());
+    for (const Result *result : {&factors, &cycles})
+      expect_below("work of separation",
+                   std::abs(result->dissipated("damage") / 0.12 - 1.), 1e-8);
+    expect_below("rounds of multigrid over those of factors",
+                 cycles.counter("equilibrium_rounds") /
+                     factors.counter("equilibrium_rounds"),
+                 1.5, "what solutions to round-off leave as it was");
   }
 } // namespace end_to_end::test_long_steps
