@@ -192,8 +192,14 @@ namespace nsfd
     {
       const Stopwatch watch(this->timings_.solve);
       const Charge charge(Cost::solver);
-      report.solver = iterate(
-          old, h, this->step_problem_.control(idle_rounds, h, old), evaluation);
+      // joints of large motions depend on each other: along what they leave
+      // open, steps for a last digit let impulses grow without end
+      report.solver =
+          iterate(old, h,
+                  this->input_.large_motion
+                      ? this->step_problem_.control(idle_rounds)
+                      : this->step_problem_.control(idle_rounds, h, old),
+                  evaluation);
     }
     const StepPoints<dim> points = bodies_->points();
     save_problem<dim>(this->input_, points.problem, this->delassus_,

@@ -207,19 +207,11 @@ namespace nsfd
         std::max(control.row_energy, rows.round_off(energy_scale));
     const std::vector<double> before(impulse);
     const double error = evaluation.error;
-    // joints of large motions depend on each other: what is left is of the size
-    // of the tolerance, and so is what removes it; beyond that impulses grow
-    // along what the rows leave open
-    const double size = input_.large_motion
-                            ? (1. + 10. * control.tolerance) * rows.all_impulses
-                            : std::numeric_limits<double>::infinity();
     control.tolerance =
         std::max(1e-15, 0.5 * evaluation.error * most / rows.energy);
     control.maximum_iterations = 3;
-    if (!go_on(problem, control, energy_scale, impulse, evaluation, report))
-      return;
-    const RowWork after = present();
-    if (!(after.energy < rows.energy) || after.all_impulses > size) {
+    if (go_on(problem, control, energy_scale, impulse, evaluation, report) &&
+        !(present().energy < rows.energy)) {
       impulse = before;
       evaluation.update(impulse);
       report.residual = error;

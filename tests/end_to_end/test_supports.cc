@@ -103,47 +103,6 @@ end
       }
   }
 
-  // Rows turn with the bodies, and joints around a node depend on each other.
-  TEST(LongSteps, SupportsAndJointsOfLargeMotionsGiveNothing)
-  {
-    const Workspace workspace;
-    const auto file = workspace.path() / "strip.prm";
-    write_text(file, R"(
-set dimension = 2
-set motion = large
-subsection Mesh
-  set type         = rectangle
-  set upper corner = 100 mm, 10 mm
-  set cells        = 10, 1
-end
-subsection Material: rubber
-  set model         = saint-venant kirchhoff
-  set Young modulus = 2 GPa
-  set Poisson ratio = 0.3
-  set density       = 7800 kg/m^3
-end
-subsection Interface: rest
-  set law = rigid
-end
-subsection Boundary: left
-  set displacement x = 0
-  set displacement y = 0
-end
-subsection Boundary: right
-  set displacement x = 2 mm * sin(2 * pi * t / (10 ms))
-  set displacement y = 10 mm * (1 - cos(2 * pi * t / (10 ms)))
-end
-subsection Time
-  set scheme = moreau-jean
-  set end    = 4 ms
-  set step   = 0.1 ms
-end
-)");
-    const Result result = good_run(workspace, "run", {file, {}, 1, true});
-    for (const char *const name : {"given by supports", "given by joints"})
-      EXPECT_LE(line(result, name, "value"), 1e-9) << name;
-  }
-
   // Of U_free + W P the last bits are all there is: they are part of the bound.
   TEST(LongSteps, SupportsOfRigidBlocksOnSpringsGiveNothing)
   {
