@@ -40,7 +40,7 @@ namespace nsfd
         others.push_back(f);
       }
     }
-    // by the least key: the order of facets is another one after a resume
+    // by the least key, which does not depend on the order of facets
     std::vector<std::uint64_t> least(facets.size(),
                                      std::numeric_limits<std::uint64_t>::max());
     for (unsigned int f = 0; f < facets.size(); ++f) {

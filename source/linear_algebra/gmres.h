@@ -91,6 +91,8 @@ namespace nsfd::krylov
         break;
     }
     outcome.converged = least.residual() <= limits.tolerance * start;
+    if (start > 0.)
+      outcome.reduction = least.residual() / start;
     basis.combine(least.template solution<typename Basis::Number>());
     return outcome;
   }
