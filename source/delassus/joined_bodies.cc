@@ -173,7 +173,7 @@ namespace nsfd
                                   ? stiffest_beside_factor
                                   : stiffest_of_iterations;
       const bool does =
-          n > smallest_of_iterations<dim> && space.ties.empty() &&
+          n > smallest_of_iterations && space.ties.empty() &&
           stiffness_over_mass(this->bodies_,
                               this->shares(this->time_step_, this->theta_),
                               this->communicator_) < stiffest;

@@ -20,11 +20,11 @@ namespace nsfd
    * Unknowns of bodies that share nodes from which on short steps are solved by
    * conjugate gradients with blocks on the diagonal: 25 iterations at a Courant
    * number of 1. Measured there: 27 000 hexes 0.15 s per step, with a factor
-   * 0.6 s; 640 hexes of a bar that spalls 38 ms per step, with a factor 59 ms;
-   * 40 000 quadrilaterals 39 ms per solution, with a factor 27 ms.
+   * 0.6 s; 40 000 quadrilaterals, nothing open, 39 ms per solution, with a
+   * factor 27 ms; but 1712 quadrilaterals that break 8 ms per step, with
+   * factors 28 ms, and 2866 triangles 10 and 60 ms.
    */
-  template <int dim>
-  constexpr long long smallest_of_iterations = dim == 2 ? 100000 : 1000;
+  constexpr long long smallest_of_iterations = 1000;
   /**
    * What makes a step short: the largest entry of f K over that of M on the
    * diagonal, which is 1.0 to 1.3 (Courant number)^2 for squares and cubes of

@@ -23,12 +23,18 @@ namespace nsfd
     /// of the tolerance, of impulses that may stay without any iteration: what
     /// they lack is the same in every step of bodies at rest, and adds up
     constexpr double untouched = 1e-4;
-    /// steps for the natural map that do not halve its error
-    constexpr unsigned int patience = 4;
+    /// steps for the natural map that do not halve its error, of the first
+    /// ones, and of those between two stages of the method of multipliers
+    constexpr unsigned int patience = 4, between_stages = 0;
     /// of the tolerance, what the momenta of the nodes may lack
     constexpr double of_momenta = 1e-2, of_equilibria = 0.1;
+    /// of the right-hand side, what a direction may lack: the next one makes it
+    /// good, and stiff springs leave no more digits to iterations
+    constexpr double of_directions = 1e-3;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
+    /// a stage that has taken no more than so many steps was not too stiff
+    constexpr unsigned int few_of_stage = 3;
 
     /// of what impulses drift by from one stage to the next
     constexpr double most_stretched = 64.;
@@ -227,11 +233,12 @@ namespace nsfd
 
   /**
    * Full steps of Newton's method for the natural map, from which the method of
-   * multipliers takes over where they lead nowhere: true if they have solved
-   * the problem.
+   * multipliers takes over where more than @p patience of them lead nowhere:
+   * true if they have solved the problem.
    */
   template <int dim>
-  bool AugmentedLagrangian<dim>::jump(const Work &work)
+  bool AugmentedLagrangian<dim>::jump(const Work &work,
+                                      const unsigned int patience)
   {
     constexpr double none = std::numeric_limits<double>::infinity();
     Iterate best = iterate(work);
@@ -299,8 +306,11 @@ namespace nsfd
     ++work.report.newton;
     set_right_side(work);
     defect_ = right_side_;
+    const double enough = from_rest_ ? 0. : this->enough(work),
+                 share = from_rest_ ? 0. : of_directions;
     const auto solved = [&](const bool symmetric) {
-      return solve_system(work, symmetric, 0., 0.) && slope(work, 0.) <= 0.;
+      return solve_system(work, symmetric, enough, share) &&
+             slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);
     if (symmetric)
@@ -370,7 +380,7 @@ namespace nsfd
       return evaluation.error <= tolerance;
     };
     bool solved = false;
-    for (unsigned int k = 0; k < 2 && !solved && jump(work); ++k)
+    for (unsigned int k = 0; k < 2 && !solved && jump(work, patience); ++k)
       solved = judge(); // anew where round-off was left
     Iterate start;      // of a stage
     if (!solved) {
@@ -381,7 +391,9 @@ namespace nsfd
       soften(work, share);
       answer(work, velocity_);
     }
-    double smaller = 1e-2; // a share over the one before
+    // a share over the one before
+    const double smallest = from_rest_ ? 1e-2 : 0.1;
+    double smaller = smallest;
     // Points that stay closed round a node can share what they carry in many
     // ways, and the springs, at their stiffest, let them come to the right one
     // at a constant rate: P_0 is taken ahead on this way, farther and farther.
@@ -397,6 +409,8 @@ namespace nsfd
       double ahead = 0.;
       if (errors.defect <= std::max(0.1 * std::max(tolerance, left),
                                     from_rest_ ? round_off / share : 0.)) {
+        if (taken <= few_of_stage)
+          smaller = std::max(smallest, 0.1 * smaller);
         taken = 0;
         start = iterate(work);
         const bool drifts =
@@ -407,7 +421,12 @@ namespace nsfd
         add<dim>(problem.acting, -1., rest_, shift);
         // what is left may be digits, which stiff springs do not show
         const bool last = left <= 0.1 * tolerance;
-        solved = from_rest_ ? jump(work) && judge() : last && judge();
+        if (from_rest_)
+          solved = jump(work, patience) && judge();
+        else if (last)
+          solved = judge();
+        else if (!(solved = jump(work, between_stages) && judge()))
+          return_to(work, start);
         if (from_rest_ && last)
           break;
         if (!last)
