@@ -131,7 +131,9 @@ namespace nsfd
     template <int dim>
     bool Simulation<dim>::set_state(const std::optional<FoundCheckpoint> &found)
     {
-      if (model_.delassus)
+      // steps of a load have an operator of their own, and dynamic ones after
+      // them set theirs
+      if (model_.delassus && !(input_.statics && input_.statics->steps))
         model_.delassus->reinit(model_.control->step(),
                                 input_.time.bulk_theta());
       charge_memory("blocks of the bodies");
