@@ -218,7 +218,8 @@ namespace nsfd
         this->put_losses(step, result);
         const LogSecant secant(start, end);
         result.S = of_space<dim>(forward(G, secant.pulled_back(step.stress)));
-        if (with_tangent)
+        if (with_tangent) {
+          const auto turn = secant.derivative_at_end(step.stress);
           for (unsigned int j = 0; j < n_entries<dim>; ++j) {
             Strain H{};
             H[in_space<dim>(j)] = 1. / voigt_weight<dim>(j);
@@ -229,11 +230,11 @@ namespace nsfd
               for (unsigned int l = 0; l < 6; ++l)
                 dT[k] += step.tangent[k * 6 + l] * voigt_weight<3>(l) * dE[l];
             const Voigt<dim> dS = of_space<dim>(
-                forward(G, sum(secant.pulled_back(dT), 1.,
-                               secant.change_at_end(step.stress, H))));
+                forward(G, sum(secant.pulled_back(dT), 1., turn(H))));
             for (unsigned int i = 0; i < n_entries<dim>; ++i)
               result.tangent[i * n_entries<dim> + j] = dS[i];
           }
+        }
         if (history) {
           write_matrix(step.flow > 0. ? flown(G, end, step) : G, history);
           write_variables(variables, step, history + 9);

@@ -149,19 +149,31 @@ namespace nsfd
     return from_bases(W);
   }
 
-  Voigt<3> LogSecant::change_at_end(const Voigt<3> &T, const Voigt<3> &H) const
+  LogSecant::EndDerivative::EndDerivative(const LogSecant &secant,
+                                          const Voigt<3> &T)
+      : secant_(secant)
   {
-    const Mat3 &B = end_.vectors();
-    const Mat3 W = transposed(start_.vectors()) * (matrix(T) * B),
-               K = transposed(B) * (matrix(H) * B);
+    const Mat3 W = transposed(secant.start_.vectors()) *
+                   (matrix(T) * secant.end_.vectors());
+    const Vec3 &a = secant.start_.values(), &b = secant.end_.values();
+    for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int j = 0; j < 3; ++j)
+        for (unsigned int k = 0; k <= j; ++k) {
+          const double second = second_log_difference(a[i], b[j], b[k]);
+          differences_[i][j][k] = second * W[i][j];
+          differences_[i][k][j] = second * W[i][k];
+        }
+  }
+
+  Voigt<3> LogSecant::EndDerivative::operator()(const Voigt<3> &H) const
+  {
+    const Mat3 &B = secant_.end_.vectors();
+    const Mat3 K = transposed(B) * (matrix(H) * B);
     Mat3 change{};
     for (unsigned int i = 0; i < 3; ++i)
       for (unsigned int j = 0; j < 3; ++j)
         for (unsigned int k = 0; k < 3; ++k)
-          change[i][k] -=
-              second_log_difference(start_.values()[i], end_.values()[j],
-                                    end_.values()[k]) *
-              W[i][j] * K[j][k];
-    return from_bases(change);
+          change[i][k] -= differences_[i][j][k] * K[j][k];
+    return secant_.from_bases(change);
   }
 } // namespace nsfd

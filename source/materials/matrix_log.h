@@ -59,8 +59,24 @@ namespace nsfd
     /** The symmetric S with S:(C1 - C0) / 2 = T:(ln C1 - ln C0) / 2. */
     Voigt<3> pulled_back(const Voigt<3> &T) const;
 
-    /** Change of pulled_back(T) when C1 changes by @p H. */
-    Voigt<3> change_at_end(const Voigt<3> &T, const Voigt<3> &H) const;
+    /** Of pulled_back(T) by C1: operator() is its change along @p H. */
+    class EndDerivative
+    {
+    public:
+      Voigt<3> operator()(const Voigt<3> &H) const;
+
+    private:
+      friend LogSecant;
+      EndDerivative(const LogSecant &secant, const Voigt<3> &T);
+
+      const LogSecant &secant_;
+      double differences_[3][3][3]; ///< times T between the eigenvectors
+    };
+    /** Valid as long as this object. */
+    EndDerivative derivative_at_end(const Voigt<3> &T) const
+    {
+      return {*this, T};
+    }
 
   private:
     Voigt<3> from_bases(const Mat3 &W) const;

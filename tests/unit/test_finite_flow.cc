@@ -71,7 +71,7 @@ namespace plastic_flow::test_finite_flow
         };
         const Voigt<3> difference = plus(at(1.), -1., at(-1.));
         const Voigt<3> change =
-            LogSecant(Spectrum(C0), Spectrum(C1)).change_at_end(T, H);
+            LogSecant(Spectrum(C0), Spectrum(C1)).derivative_at_end(T)(H);
         EXPECT_LT(size(plus(plus({}, 0.5 / d, difference), -1., change)),
                   1e-6 * (1. + size(change)));
         const auto log_at = [&](const double s) {
