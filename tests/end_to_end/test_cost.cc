@@ -107,6 +107,27 @@ namespace end_to_end::test_cost
     }
   }
 
+  // Grains that come apart in short steps: no factor though points soften,
+  // slide and close in every step, and nothing is given by it.
+  TEST(ShortSteps, CracksInThePlaneNeedNoFactor)
+  {
+    const Workspace workspace;
+    const Result result = good_run(
+        workspace, "grains",
+        {benchmark("alumina_grains"),
+         {"Time/scheme=moreau-jean", "Time/end=20 ns", "Output/fields=false"}});
+    ASSERT_TRUE(result.completed());
+    EXPECT_EQ(result.counter("global_factorisations"), 0.);
+    EXPECT_EQ(result.counter("rejected_steps"), 0.);
+    EXPECT_GT(result.counter("switches_to_multipliers"), 0.)
+        << "the method of multipliers is not in this scene";
+    EXPECT_GT(result.dissipated("damage"), 0.);
+    expect_below("Newton steps per step",
+                 result.counter("newton") / result.number("steps"), 8.,
+                 "twice the count, 3.7: chaos may change it");
+    EXPECT_LT(result.number("ledger_defect_max"), 1e-11);
+  }
+
   INSTANTIATE_TEST_SUITE_P(Table, CostTest, testing::ValuesIn(rows),
                            [](const auto &info) { return info.param.name; });
 } // namespace end_to_end::test_cost
