@@ -1,15 +1,65 @@
 #include "relaxation.h"
 
 #include "delassus/velocity_solver.h"
+#include "discretization/body_frequency.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 namespace nsfd
 {
   namespace
   {
+    using Vector = std::vector<double>;
+
+    /**
+     * By the method of Lanczos with all vectors kept orthogonal, from @p v, to
+     * some four digits; infinity where @p multiply fails.
+     */
+    double largest_eigenvalue(
+        Vector v, const std::function<bool(const Vector &, Vector &)> &multiply,
+        const std::function<double(const Vector &, const Vector &)> &product)
+    {
+      constexpr unsigned int least = 3, most = 60;
+      constexpr double digits = 1e-4, none = 1e-10;
+      std::vector<Vector> basis;
+      std::vector<double> alpha, beta;
+      double largest = 0., size = std::sqrt(product(v, v));
+      Vector next;
+      while (size > none * std::abs(largest) && alpha.size() < most) {
+        for (double &x : v)
+          x /= size;
+        if (!alpha.empty())
+          beta.push_back(size);
+        basis.push_back(v);
+        if (!multiply(v, next))
+          return std::numeric_limits<double>::infinity();
+        alpha.push_back(product(v, next));
+        for (const Vector &one : basis) {
+          const double share = product(one, next);
+          for (std::size_t i = 0; i < next.size(); ++i)
+            next[i] -= share * one[i];
+        }
+        const unsigned int m = unsigned(alpha.size());
+        Block T(m, m);
+        for (unsigned int i = 0; i < m; ++i) {
+          T(i, i) = alpha[i];
+          if (i > 0)
+            T(i, i - 1) = T(i - 1, i) = beta[i - 1];
+        }
+        const double before =
+            std::exchange(largest, m == 1 ? alpha[0] : largest_eigenpair(T)[0]);
+        if (m >= least && std::abs(largest - before) < digits * largest)
+          break;
+        v = next;
+        size = std::sqrt(product(v, v));
+      }
+      return largest;
+    }
+
     /** b - T'(d) on the envelope of a point, b its secant @p secant or less. */
     double softening_slope(const CohesiveLaw &law, const double a,
                            const double l, const double opening,
@@ -163,41 +213,32 @@ namespace nsfd
         u[k] = D[k] > 0. ? r[k] - D[k] * z[k] : 0.;
       return true;
     };
-    std::vector<double> share(problem.n_points, 1.), f(n), u(n);
-    double largest = 0.;
-    for (unsigned int round = 0; round < 60; ++round) {
+    // G^{1/2} H A^{-1} H^T G^{1/2} of what the points open by
+    std::vector<double> f(n), u(n);
+    const auto multiply = [&](const std::vector<double> &share,
+                              std::vector<double> &next) {
       for (std::size_t k = 0; k < n; ++k)
         f[k] = direction[k] * share[k / dim];
       if (!respond(f, u))
-        return std::numeric_limits<double>::infinity();
-      std::vector<double> terms(2 * problem.n_owned, 0.);
-      std::vector<double> next(problem.n_points, 0.);
-      for (std::size_t i = 0; i < problem.n_points; ++i) {
-        for (unsigned int c = 0; c < dim; ++c) {
-          const std::size_t k = i * dim + c;
-          if (direction[k] != 0.)
-            next[i] += direction[k] * u[k];
-        }
-        if (i < problem.n_owned) {
-          terms[i] = next[i] * next[i];
-          terms[problem.n_owned + i] = direction[i * dim] != 0. || next[i] != 0.
-                                           ? share[i] * share[i]
-                                           : 0.;
-        }
-      }
-      const auto sums = communicator.sums(terms.data(), 2, problem.n_owned);
-      if (!(sums[0] > 0.))
-        break;
-      const double value = std::sqrt(sums[0] / sums[1]);
-      const double scale = 1. / std::sqrt(sums[0]);
-      for (std::size_t i = 0; i < problem.n_points; ++i)
-        share[i] = next[i] * scale;
-      const bool settled = std::abs(value - largest) < 1e-4 * value;
-      largest = value;
-      if (settled && round > 3)
-        break;
-    }
-    return largest;
+        return false;
+      next.assign(problem.n_points, 0.);
+      for (std::size_t k = 0; k < n; ++k)
+        if (direction[k] != 0.)
+          next[k / dim] += direction[k] * u[k];
+      return true;
+    };
+    const auto product = [&](const std::vector<double> &a,
+                             const std::vector<double> &b) {
+      std::vector<double> terms(problem.n_owned);
+      for (std::size_t i = 0; i < problem.n_owned; ++i)
+        terms[i] = a[i] * b[i];
+      return communicator.sum(terms.data(), problem.n_owned);
+    };
+    std::vector<double> start(problem.n_points, 0.);
+    for (std::size_t k = 0; k < n; ++k)
+      if (direction[k] != 0.)
+        start[k / dim] = 1.;
+    return largest_eigenvalue(std::move(start), multiply, product);
   }
 
   template double Relaxation<2>::softening();
