@@ -29,6 +29,8 @@ namespace nsfd
       }
       bound = std::max(bound, row);
     }
+    if (!(bound > 0.))
+      return {{0., 0.}};
     dealii::Vector<double> values;
     dealii::FullMatrix<double> vectors;
     matrix.compute_eigenvalues_symmetric(-bound, 1.1 * bound, 0., values,

@@ -27,8 +27,9 @@ namespace nsfd
     /**
      * Bytes per cell as measured with `--check` on 1e3 to 1e4 cells, degrees 1
      * to 4: the mesh, what a face point needs (frames, traces of the cells at
-     * both sides, history), and the matrix of bonded faces with its factors.
-     * The true numbers are within a factor of two.
+     * both sides, history), and the matrix of bonded faces with its factors,
+     * which short steps do without. The true numbers are within a factor of
+     * two.
      */
     double bytes_per_cell(const SceneInput &scene)
     {
@@ -42,8 +43,11 @@ namespace nsfd
       if (scene.time.scheme.at_nodes) // joined cells have no blocks
         return mesh + 650. * n_points;
       const double point = (dim == 2 ? 600. : 1200.) + 16. * n_unknowns;
+      const bool iterates =
+          !scene.statics && scene.discretization.degree == 1 &&
+          scene.time.step_kind == StepKind::courant && scene.time.step <= 2.;
       const double matrix =
-          scene.has_bonded_faces()
+          scene.has_bonded_faces() && !iterates
               ? 2.7 * 8. * n_unknowns * n_unknowns * (2. * dim + 1.)
               : 0.;
       return mesh + n_points * point + matrix;
