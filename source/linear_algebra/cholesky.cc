@@ -11,6 +11,19 @@
 #include <stdexcept>
 #include <utility>
 
+/**
+ * In place of that of libgomp, in the whole process: CHOLMOD opens two regions
+ * for every supernode, and a team of one thread ends with a call of the kernel,
+ * which for factors of some thousand unknowns takes ten times as long as the
+ * factor. Ranks are what shares the cores; a region is what its only thread
+ * does.
+ */
+extern "C" void GOMP_parallel(void (*work)(void *), void *data, unsigned,
+                              unsigned)
+{
+  work(data);
+}
+
 namespace nsfd
 {
   struct Cholesky::Library {
@@ -22,7 +35,7 @@ namespace nsfd
     {
       SuiteSparse_config.malloc_func = allocate_large;
       // CHOLMOD asks for four threads of its own whatever the environment
-      // says; ranks are what shares the cores
+      // says, in other kinds of regions too
       omp_set_max_active_levels(0);
       start_cholmod(common);
     }
