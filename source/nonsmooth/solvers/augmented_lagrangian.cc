@@ -29,8 +29,9 @@ namespace nsfd
     /// of the tolerance, what the momenta of the nodes may lack
     constexpr double of_momenta = 1e-2, of_equilibria = 0.1;
     /// of the right-hand side, what a direction may lack: the next one makes it
-    /// good, and stiff springs leave no more digits to iterations
-    constexpr double of_directions = 1e-3;
+    /// good, and stiff springs leave few more digits to iterations. With 1e-3
+    /// ranks went different ways where a step hardly has one solution.
+    constexpr double of_directions = 1e-6;
     /// of springs that are stiffer than the first: then softer ones are taken
     constexpr unsigned int most_of_stage = 10;
     /// a stage that has taken no more than so many steps was not too stiff
