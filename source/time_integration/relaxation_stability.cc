@@ -1,7 +1,8 @@
 #include "relaxation.h"
 
 #include "delassus/velocity_solver.h"
-#include "discretization/body_frequency.h"
+
+#include <deal.II/lac/lapack_full_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,14 +45,16 @@ namespace nsfd
             next[i] -= share * one[i];
         }
         const unsigned int m = unsigned(alpha.size());
-        Block T(m, m);
+        dealii::LAPACKFullMatrix<double> T(m); // vectors may fail to be found
         for (unsigned int i = 0; i < m; ++i) {
           T(i, i) = alpha[i];
           if (i > 0)
             T(i, i - 1) = T(i - 1, i) = beta[i - 1];
         }
-        const double before =
-            std::exchange(largest, m == 1 ? alpha[0] : largest_eigenpair(T)[0]);
+        T.compute_eigenvalues();
+        const double before = std::exchange(largest, T.eigenvalue(0).real());
+        for (unsigned int i = 1; i < m; ++i)
+          largest = std::max(largest, T.eigenvalue(i).real());
         if (m >= least && std::abs(largest - before) < digits * largest)
           break;
         v = next;

@@ -1,6 +1,5 @@
 #include "uniqueness.h"
 
-#include "discretization/body_frequency.h"
 #include "nonsmooth/point_law.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
@@ -14,6 +13,42 @@ namespace nsfd
 {
   namespace
   {
+    /**
+     * Largest eigenvalue of a small symmetric positive semi-definite block by
+     * power iteration. Bodies are symmetric and their highest modes are not:
+     * the start must not be nearly orthogonal to them.
+     */
+    double largest_eigenvalue(const std::vector<double> &A,
+                              const unsigned int n)
+    {
+      std::vector<double> x(n), y(n);
+      for (unsigned int i = 0; i < n; ++i)
+        x[i] = std::sin(1. + 7.3 * i * i);
+      double value = 0.;
+      for (unsigned int k = 0; k < 2000; ++k) {
+        double norm = 0.;
+        for (const double v : x)
+          norm += v * v;
+        norm = std::sqrt(norm);
+        if (norm == 0.)
+          return 0.;
+        double next = 0.;
+        for (unsigned int i = 0; i < n; ++i) {
+          y[i] = 0.;
+          for (unsigned int j = 0; j < n; ++j)
+            y[i] += A[i * n + j] * (x[j] / norm);
+          next += y[i] * y[i];
+        }
+        next = std::sqrt(next);
+        x.swap(y);
+        // the norm never falls
+        if (k > 20 && next <= value * (1. + 1e-9))
+          return next;
+        value = next;
+      }
+      return value;
+    }
+
     /** Of sqrt(w_i) W_ij sqrt(w_j) over the slots that hold a point. */
     template <int dim>
     double largest_eigenvalue(const Block &W,
@@ -22,13 +57,13 @@ namespace nsfd
                               const std::vector<double> &weight)
     {
       const unsigned int n = unsigned(slots.size()) * dim;
-      Block A(n, n);
+      std::vector<double> A(std::size_t(n) * n);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
-          A(i, j) =
+          A[std::size_t(i) * n + j] =
               std::sqrt(weight[places[i / dim]] * weight[places[j / dim]]) *
               W(slots[i / dim] * dim + i % dim, slots[j / dim] * dim + j % dim);
-      return largest_eigenpair(A)[0];
+      return largest_eigenvalue(A, n);
     }
 
     Reach history_of(const State &state, const std::size_t i)
