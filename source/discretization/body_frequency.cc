@@ -29,8 +29,6 @@ namespace nsfd
       }
       bound = std::max(bound, row);
     }
-    if (!(bound > 0.))
-      return {{0., 0.}};
     dealii::Vector<double> values;
     dealii::FullMatrix<double> vectors;
     matrix.compute_eigenvalues_symmetric(-bound, 1.1 * bound, 0., values,
@@ -42,22 +40,27 @@ namespace nsfd
     return {{values[at], vectors(n - 1, at)}};
   }
 
+  double largest_eigenvalue(const Block &A)
+  {
+    dealii::LAPACKFullMatrix<double> matrix(A.rows);
+    for (unsigned int i = 0; i < A.rows; ++i)
+      for (unsigned int j = 0; j < A.rows; ++j)
+        matrix(i, j) = (A(i, j) + A(j, i)) / 2.;
+    matrix.compute_eigenvalues();
+    double largest = 0.;
+    for (unsigned int k = 0; k < A.rows; ++k)
+      largest = std::max(largest, matrix.eigenvalue(k).real());
+    return largest;
+  }
+
   namespace
   {
-    /** Of M^{-1} K, also where eigenvalues coincide: no vectors. */
+    /** Of M^{-1} K. */
     double largest_eigenvalue(const Block &M, const Block &K)
     {
       const Block L = cholesky(M);
-      const Block A = forward_solve(L, forward_solve(L, K).transposed());
-      dealii::LAPACKFullMatrix<double> matrix(A.rows);
-      for (unsigned int i = 0; i < A.rows; ++i)
-        for (unsigned int j = 0; j < A.rows; ++j)
-          matrix(i, j) = (A(i, j) + A(j, i)) / 2.;
-      matrix.compute_eigenvalues();
-      double largest = 0.;
-      for (unsigned int k = 0; k < A.rows; ++k)
-        largest = std::max(largest, matrix.eigenvalue(k).real());
-      return largest;
+      return nsfd::largest_eigenvalue(
+          forward_solve(L, forward_solve(L, K).transposed()));
     }
   } // namespace
 

@@ -13,6 +13,10 @@ namespace nsfd
   /** Largest eigenvalue of a symmetric matrix and its last component. */
   std::array<double, 2> largest_eigenpair(const Block &A);
 
+  /** The former alone, of a positive semidefinite matrix, also where
+      eigenvalues coincide: no vectors. */
+  double largest_eigenvalue(const Block &A);
+
   /** omega_max of a free body from its blocks, rad/s; 0 of a rigid one. */
   double highest_frequency(const BodyClass &body);
 

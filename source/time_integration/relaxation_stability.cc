@@ -1,8 +1,7 @@
 #include "relaxation.h"
 
 #include "delassus/velocity_solver.h"
-
-#include <deal.II/lac/lapack_full_matrix.h>
+#include "discretization/body_frequency.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +16,11 @@ namespace nsfd
     using Vector = std::vector<double>;
 
     /**
-     * By the method of Lanczos with all vectors kept orthogonal, from @p v, to
-     * some four digits; infinity where @p multiply fails.
+     * The largest one by the method of Lanczos with all vectors kept
+     * orthogonal, from @p v, to some four digits; infinity where @p multiply
+     * fails.
      */
-    double largest_eigenvalue(
+    double lanczos(
         Vector v, const std::function<bool(const Vector &, Vector &)> &multiply,
         const std::function<double(const Vector &, const Vector &)> &product)
     {
@@ -45,16 +45,13 @@ namespace nsfd
             next[i] -= share * one[i];
         }
         const unsigned int m = unsigned(alpha.size());
-        dealii::LAPACKFullMatrix<double> T(m); // vectors may fail to be found
+        Block T(m, m);
         for (unsigned int i = 0; i < m; ++i) {
           T(i, i) = alpha[i];
           if (i > 0)
             T(i, i - 1) = T(i - 1, i) = beta[i - 1];
         }
-        T.compute_eigenvalues();
-        const double before = std::exchange(largest, T.eigenvalue(0).real());
-        for (unsigned int i = 1; i < m; ++i)
-          largest = std::max(largest, T.eigenvalue(i).real());
+        const double before = std::exchange(largest, largest_eigenvalue(T));
         if (m >= least && std::abs(largest - before) < digits * largest)
           break;
         v = next;
@@ -241,7 +238,7 @@ namespace nsfd
     for (std::size_t k = 0; k < n; ++k)
       if (direction[k] != 0.)
         start[k / dim] = 1.;
-    return largest_eigenvalue(std::move(start), multiply, product);
+    return lanczos(std::move(start), multiply, product);
   }
 
   template double Relaxation<2>::softening();

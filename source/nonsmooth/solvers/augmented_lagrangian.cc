@@ -234,12 +234,12 @@ namespace nsfd
 
   /**
    * Full steps of Newton's method for the natural map, from which the method of
-   * multipliers takes over where more than @p patience of them lead nowhere:
+   * multipliers takes over where more than @p most_idle of them lead nowhere:
    * true if they have solved the problem.
    */
   template <int dim>
   bool AugmentedLagrangian<dim>::jump(const Work &work,
-                                      const unsigned int patience)
+                                      const unsigned int most_idle)
   {
     constexpr double none = std::numeric_limits<double>::infinity();
     Iterate best = iterate(work);
@@ -274,7 +274,7 @@ namespace nsfd
       }
       const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
       before = {error, before[0]};
-      if (idle > patience || comes_back || !std::isfinite(error))
+      if (idle > most_idle || comes_back || !std::isfinite(error))
         break;
       set_right_side(work);
       // as far as a step of Newton's method is right; the next one makes good
@@ -307,10 +307,10 @@ namespace nsfd
     ++work.report.newton;
     set_right_side(work);
     defect_ = right_side_;
-    const double enough = from_rest_ ? 0. : this->enough(work),
-                 share = from_rest_ ? 0. : of_directions;
     const auto solved = [&](const bool symmetric) {
-      return solve_system(work, symmetric, enough, share) &&
+      return (from_rest_ ? solve_system(work, symmetric, 0., 0.)
+                         : solve_system(work, symmetric, enough(work),
+                                        of_directions)) &&
              slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);
@@ -422,11 +422,11 @@ namespace nsfd
         add<dim>(problem.acting, -1., rest_, shift);
         // what is left may be digits, which stiff springs do not show
         const bool last = left <= 0.1 * tolerance;
-        if (from_rest_)
-          solved = jump(work, patience) && judge();
-        else if (last)
-          solved = judge();
-        else if (!(solved = jump(work, between_stages) && judge()))
+        const bool jumps = from_rest_ || !last;
+        solved =
+            (!jumps || jump(work, from_rest_ ? patience : between_stages)) &&
+            judge();
+        if (!solved && jumps && !from_rest_)
           return_to(work, start);
         if (from_rest_ && last)
           break;

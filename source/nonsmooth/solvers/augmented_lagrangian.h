@@ -87,7 +87,7 @@ namespace nsfd
     void keep_tangents_at_rest(const Work &work);
     void remove_springs(const Work &work);
     bool take_step(const Work &work, double tolerance, double share);
-    bool jump(const Work &work, unsigned int patience);
+    bool jump(const Work &work, unsigned int most_idle);
     void judge_velocities(const Work &work);
     void hold_rows(const Work &work, double most);
     bool solve_system(const Work &work, bool symmetric, double tolerance,
