@@ -128,9 +128,13 @@ namespace nsfd
   void FaceRelease<dim>::start(std::vector<std::uint8_t> intact)
   {
     intact_ = std::move(intact);
-    for (std::size_t k = 0; k < sites_.size(); ++k)
-      if (!intact_[sites_[k].first_point])
+    // `broken` is of points: a face may be broken at one of its ends
+    for (std::size_t k = 0; k < sites_.size(); ++k) {
+      const auto first = intact_.begin() + long(sites_[k].first_point);
+      if (std::find(first, first + long(sites_[k].n_points), 1) ==
+          first + long(sites_[k].n_points))
         sites_.release(k);
+    }
   }
 
   template <int dim>
@@ -140,6 +144,8 @@ namespace nsfd
     sites_.release(site);
     const unsigned int first = sites_[site].first_point;
     for (unsigned int i = first; i < first + sites_[site].n_points; ++i) {
+      if (!intact_[i])
+        continue; // it was broken before, and stays so
       intact_[i] = 0;
       released.push_back(i);
     }
@@ -326,12 +332,14 @@ namespace nsfd
     std::fill(tractions.begin(), tractions.end(), 0.);
     for (std::size_t k = 0; k < sites_.size(); ++k) {
       const unsigned int first = sites_[k].first_point;
-      if (!intact_[first])
+      if (sites_.is_released(k))
         continue;
       auto t = traction(forces, k);
       for (double &of_t : t)
         of_t *= share_of(k);
       for (unsigned int i = first; i < first + sites_[k].n_points; ++i) {
+        if (!intact_[i])
+          continue;
         const auto local = in_frame(i, t);
         std::copy(local.begin(), local.end(), &tractions[std::size_t(i) * dim]);
       }
