@@ -96,6 +96,47 @@ end
       expect_balance<3>(tetrahedra);
     }
 
+    // `broken` is asked at every point: of one face the upper or the lower one.
+    // What is left of it breaks at the strength, and takes half of the energy.
+    TEST(Leapfrog, HalfBrokenFaceReleasesItsOtherHalf)
+    {
+      std::vector<double> times, damages;
+      for (const std::string broken : {"y > 5 um", "y < 5 um"}) {
+        SCOPED_TRACE(broken);
+        Steps<2> run(square,
+                     {"Mesh/type=rectangle", "Mesh/cells=2, 1",
+                      "Interface: all/strength scatter=0",
+                      "Interface: all/broken=" + broken,
+                      "Boundary: left/velocity x=-2 m/s",
+                      "Boundary: right/velocity x=2 m/s", "Time/end=24 ns"});
+        EXPECT_EQ(run.state.energy.damage, 0.);
+        double released = 0., residual = 0.;
+        while (run.state.time < run.input->time.end) {
+          residual = std::max(residual, run.step().balance_residual);
+          if (released == 0. && run.state.energy.damage > 0.)
+            released = run.state.time;
+        }
+        EXPECT_LT(residual, 1e-12);
+        EXPECT_GT(released, 0.);
+        EXPECT_NEAR(run.state.energy.damage, 0.5 * 10e-6 / 2.,
+                    1e-9 * 0.5 * 10e-6);
+        times.push_back(released);
+        damages.push_back(run.state.energy.damage);
+      }
+      EXPECT_NEAR(times[0], times[1], 1e-9 * times[0]);
+      EXPECT_NEAR(damages[0], damages[1], 1e-12 * damages[0]);
+    }
+
+    // The rim of a disc goes through faces; what is on it is pulled apart.
+    TEST(Leapfrog, BalanceClosesWhereADiscIsBroken)
+    {
+      expect_balance<2>(
+          {"Interface: all/broken=sqrt((x - 5 um)^2 + (y - 5 um)^2) < "
+           "1.7 um"});
+      expect_balance<2>({"Interface: all/broken=x + 0.3 * y < 4.1 um && "
+                         "x + 0.3 * y > 3 um"});
+    }
+
     // Pieces of all shapes that rub against each other: no problem of a node is
     // left above 1e-12, so that no step is shortened.
     TEST(Leapfrog, SolvesEveryNodeWhereTetrahedraRub)
