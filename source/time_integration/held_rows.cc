@@ -84,9 +84,13 @@ namespace nsfd
     for (std::size_t i = 0; i < problem.n_points; ++i)
       if (problem.kind[i] == PointKind::prescribed &&
           origins[i].kind != PointOrigin::Kind::motion)
-        for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
+        for (std::size_t k = i * dim; k < (i + 1) * dim; ++k) {
           problem.given_velocity[k] =
               is_mean_ && !is_impact_ ? -share * old.relative_velocity[k] : 0.;
+          if (is_mean_ && old.kind[i] == PointKind::rigid)
+            problem.jump_free[k] = problem.time_step * (1. - problem.theta) *
+                                   old.relative_velocity[k];
+        }
     if (!is_impact_)
       set_supports(old, problem);
   }

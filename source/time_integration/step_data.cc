@@ -108,8 +108,11 @@ namespace nsfd
         problem.mask[i] = all_components;
         for (unsigned int c = 0; c < dim; ++c) {
           problem.given_velocity[i * dim + c] = 0.;
-          // the law counts from where the joint is released, not from its drift
-          problem.jump_free[i * dim + c] -= old.jump[i * dim + c];
+          // The law counts from where the joint is released, not from its drift.
+          // What a solver has left of its velocity is no slip either: a law
+          // that began there would hold more than the strength on one side.
+          double &free = problem.jump_free[i * dim + c];
+          free = old.last_step > 0. ? 0. : free - old.jump[i * dim + c];
           problem.jump_old[i * dim + c] = 0.;
         }
       }
@@ -121,8 +124,11 @@ namespace nsfd
         // A closed point must not open by what the solver left of its position;
         // one without restitution stays a candidate as long as it rests.
         const bool rests = old.contact[i] && interaction.restitution == 0.;
-        problem.contact[i] = u_N + h * time.forecast_gamma1 * U_N <=
-                             (rests ? 1e-9 : 1e-14) * extent;
+        // What has been joined is closed, wherever it has drifted to: without
+        // contact it would lose what it carries as soon as it slides.
+        problem.contact[i] = old.kind[i] == PointKind::rigid ||
+                             u_N + h * time.forecast_gamma1 * U_N <=
+                                 (rests ? 1e-9 : 1e-14) * extent;
         // restitution belongs to broken points
         const double e =
             old.kind[i] == PointKind::free ? interaction.restitution : 0.;

@@ -1,5 +1,7 @@
 #include "augmented_lagrangian.h"
 
+#include "apart_motion.h"
+
 #include "core/cost.h"
 #include "linear_algebra/positive_part.h"
 #include "nonsmooth/natural_map.h"
@@ -8,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace nsfd
 {
@@ -365,7 +368,10 @@ namespace nsfd
   {
     SolverReport report;
     const double tolerance = control.tolerance;
-    NodeMotion &motion = dynamic_cast<VelocitySolver &>(delassus).motion();
+    auto *const joined = dynamic_cast<VelocitySolver *>(&delassus);
+    std::optional<ApartMotion<dim>> apart;
+    NodeMotion &motion =
+        joined ? joined->motion() : apart.emplace(delassus, problem.time_step);
     const Work work{problem, delassus, motion, evaluation, tolerance, report};
     from_rest_ = problem.free_motion == FreeVelocity::unknown;
     const bool own = !motion.is_on(); // U_free is known, and w the rest

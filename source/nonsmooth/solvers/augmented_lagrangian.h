@@ -6,8 +6,9 @@
 namespace nsfd
 {
   /**
-   * Newton's method in the velocities of the bodies, for bodies that share
-   * nodes: there points may be more than motions, and impulses are not unique.
+   * Newton's method in the velocities of the bodies, where points may be more
+   * than motions, so that impulses are not unique: of bodies that share nodes,
+   * or round a node that faces of cells apart have in common.
    *
    * A spring in series with every law gives way by A = share R times what the
    * impulse is beyond P_0, so that the impulse follows from the velocity,
@@ -31,7 +32,8 @@ namespace nsfd
    * with their impulses, which in long steps are far larger than what moves:
    * further Newton steps solve them to SolverControl::row_energy.
    *
-   * The operator has to be a VelocitySolver.
+   * The operator is a VelocitySolver, or its bodies are apart and all on one
+   * rank.
    */
   template <int dim>
   class AugmentedLagrangian final : public NonsmoothSolver<dim>

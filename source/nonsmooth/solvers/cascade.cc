@@ -1,4 +1,5 @@
 #include "augmented_lagrangian.h"
+#include "gathered.h"
 
 #include "linear_algebra/factor_limits.h"
 
@@ -9,6 +10,45 @@ namespace nsfd
 {
   namespace
   {
+    /** The method of multipliers for bodies apart, of all ranks on one. */
+    template <int dim>
+    class Multipliers final : public NonsmoothSolver<dim>
+    {
+    public:
+      SolverReport solve(const OneStepProblem<dim> &problem,
+                         DelassusOperator<dim> &delassus,
+                         const double energy_scale,
+                         const SolverControl &control,
+                         std::vector<double> &impulse,
+                         LawEvaluation<dim> &evaluation) override
+      {
+        SolverReport report;
+        if (delassus.communicator().size() == 1) {
+          report = method_.solve(problem, delassus, energy_scale, control,
+                                 impulse, evaluation);
+          evaluation.update(impulse);
+        } else {
+          if (!gathered_)
+            gathered_ = std::make_unique<Gathered<dim>>(delassus);
+          solve_gathered(*gathered_, problem, delassus, energy_scale, control,
+                         impulse, evaluation, report,
+                         [&](const auto &whole, auto &bodies, auto &laws,
+                             auto &all, auto &part) {
+                           laws.update(all);
+                           part = method_.solve(whole, bodies, energy_scale,
+                                                control, all, laws);
+                         });
+        }
+        report.residual = evaluation.error;
+        report.converged = evaluation.error <= control.tolerance;
+        return report;
+      }
+
+    private:
+      std::unique_ptr<Gathered<dim>> gathered_; // before what refers to it
+      AugmentedLagrangian<dim> method_;
+    };
+
     /**
      * One solver after the other until the natural map is small: Newton's
      * method on the dual problem (with its sweeps of Gauss-Seidel), then
@@ -16,7 +56,10 @@ namespace nsfd
      * method needs a factor of all bodies in every iteration and Coulomb
      * friction makes it cycle, the interior points come first; without
      * friction, after a few steps of Newton's, which are enough where few
-     * contacts change. Every hand-over is in the report. Steps in which points
+     * contacts change. Last the method of multipliers in the velocities, which
+     * knows nothing of W: where W is singular, as round a node that four faces
+     * share, the others may not reach the tolerance. Every hand-over is in the
+     * report. Steps in which points
      * soften are not handed over: a shorter step is their cure, until four cuts
      * have shown that it is none.
      */
@@ -40,13 +83,14 @@ namespace nsfd
         if (dynamic_cast<VelocitySolver *>(&delassus))
           return solve_joined(problem, delassus, energy_scale, control, impulse,
                               evaluation);
-        if (!delassus.bodies_are_apart() || !all.any(may_touch(problem)))
+        if (!delassus.bodies_are_apart())
           return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
-        if (!path_)
+        const bool touches = all.any(may_touch(problem));
+        if (touches && !path_)
           path_ = SolverRegistry<dim>::instance().create("interior point");
-        const bool rubs = all.any(may_rub(problem)),
-                   lasts = is_long(problem, delassus);
+        const bool rubs = touches && all.any(may_rub(problem)),
+                   lasts = touches && is_long(problem, delassus);
         auto *first = newton_.get(), *second = path_.get();
         const char *second_name = "interior point";
         if (rubs && lasts) {
@@ -86,10 +130,12 @@ namespace nsfd
             go_on(*first, "dual newton", false);
           return report;
         }
-        if (!report.converged)
+        if (!report.converged && touches)
           go_on(*second, second_name, true);
         if (!report.converged && brief)
           go_on(*first, "dual newton", false);
+        if (!report.converged)
+          go_on(apart_, "multipliers", true);
         return report;
       }
 
@@ -198,16 +244,17 @@ namespace nsfd
       }
 
       std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;
-      AugmentedLagrangian<dim> joined_;
+      AugmentedLagrangian<dim> joined_; ///< of bodies that share nodes
+      Multipliers<dim> apart_;          ///< and of others
     };
 
     using Cascade2 = Cascade<2>;
     using Cascade3 = Cascade<3>;
     NSFD_REGISTER(SolverRegistry<2>, Cascade2, "cascade",
                   "dual newton, then interior point where it fails on contact; "
-                  "at long steps the other way round");
+                  "at long steps the other way round; then multipliers");
     NSFD_REGISTER(SolverRegistry<3>, Cascade3, "cascade",
                   "dual newton, then interior point where it fails on contact; "
-                  "at long steps the other way round");
+                  "at long steps the other way round; then multipliers");
   } // namespace
 } // namespace nsfd

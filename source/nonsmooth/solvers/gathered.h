@@ -46,4 +46,33 @@ namespace nsfd
     InterfacePoints<dim> points_;
     std::unique_ptr<DelassusOperator<dim>> delassus_;
   };
+
+  /**
+   * @p solve(problem, bodies, laws, impulse, report) on the first rank, with
+   * the bodies of all; @p impulse, @p evaluation and the counts of @p report
+   * are those of its answer on every rank. Collective.
+   */
+  template <int dim, typename Solve>
+  void solve_gathered(const Gathered<dim> &gathered,
+                      const OneStepProblem<dim> &problem,
+                      const DelassusOperator<dim> &delassus,
+                      const double energy_scale, const SolverControl &control,
+                      std::vector<double> &impulse,
+                      LawEvaluation<dim> &evaluation, SolverReport &report,
+                      const Solve &solve)
+  {
+    const auto whole = gathered.gather(problem);
+    auto all = gathered.gather(impulse);
+    if (auto *bodies = gathered.delassus()) {
+      bodies->reinit(problem.time_step, delassus.bulk_theta());
+      LawEvaluation<dim> laws(whole, *bodies, energy_scale, control.tolerance);
+      solve(whole, *bodies, laws, all, report);
+    }
+    unsigned int counts[2] = {report.newton, report.krylov};
+    MPI_Bcast(counts, 2, MPI_UNSIGNED, 0, delassus.communicator().mpi());
+    report.newton = counts[0];
+    report.krylov = counts[1];
+    gathered.scatter(all, impulse);
+    evaluation.update(impulse);
+  }
 } // namespace nsfd

@@ -83,20 +83,12 @@ namespace nsfd
       {
         if (!gathered_)
           gathered_ = std::make_unique<Gathered<dim>>(delassus);
-        const auto whole = gathered_->gather(problem);
-        auto all = gathered_->gather(impulse);
-        if (auto *bodies = gathered_->delassus()) {
-          bodies->reinit(problem.time_step, delassus.bulk_theta());
-          LawEvaluation<dim> laws(whole, *bodies, energy_scale,
-                                  control.tolerance);
-          follow(whole, *bodies, control, all, laws, report);
-        }
-        unsigned int counts[2] = {report.newton, report.krylov};
-        MPI_Bcast(counts, 2, MPI_UNSIGNED, 0, delassus.communicator().mpi());
-        report.newton = counts[0];
-        report.krylov = counts[1];
-        gathered_->scatter(all, impulse);
-        evaluation.update(impulse);
+        solve_gathered(*gathered_, problem, delassus, energy_scale, control,
+                       impulse, evaluation, report,
+                       [&](const auto &whole, auto &bodies, auto &laws,
+                           auto &all, auto &part) {
+                         follow(whole, bodies, control, all, laws, part);
+                       });
       }
 
       /** Dear parts last; each begins where the one before has come to. */
