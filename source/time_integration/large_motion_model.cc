@@ -82,6 +82,28 @@ namespace nsfd
                             (old.relative_velocity[i * dim] - lift_speed);
       }
     }
+
+    /**
+     * Jumps are differences of places: of a face that has just begun to open
+     * they are known to a few digits only. One beyond its history would hold
+     * more than its strength.
+     */
+    template <int dim>
+    void keep_histories(const ContactPoints<dim> &contacts,
+                        const std::size_t n_mesh_points,
+                        const OneStepProblem<dim> &problem, State &old)
+    {
+      for (std::size_t j = 0; j < n_mesh_points; ++j) {
+        const std::size_t i = contacts.mesh_point(j);
+        const auto &interaction = problem.interactions[problem.interaction[i]];
+        if (old.kind[i] != PointKind::cohesive || !interaction.law->extrinsic())
+          continue;
+        const Reach reach = reach_of<dim>(interaction, &old.jump[i * dim]);
+        old.opening_max[i] = std::max(old.opening_max[i], reach.opening);
+        if (!old.slip_max.empty())
+          old.slip_max[i] = std::max(old.slip_max[i], reach.slip);
+      }
+    }
   } // namespace
 
   template <int dim>
@@ -242,27 +264,6 @@ namespace nsfd
     return parts_.delassus.communicator().sum(bodies_.kinetic_products(v, v));
   }
 
-  /**
-   * Jumps are differences of places: of a face that has just begun to open
-   * they are known to a few digits only. One beyond its history would hold more
-   * than its strength.
-   */
-  template <int dim>
-  void LargeMotionModel<dim>::keep_histories(const std::size_t n)
-  {
-    for (std::size_t j = 0; j < n; ++j) {
-      const std::size_t i = bodies_.contacts().mesh_point(j);
-      const auto &interaction =
-          problem_.interactions[problem_.interaction[i]];
-      if (old_.kind[i] != PointKind::cohesive || !interaction.law->extrinsic())
-        continue;
-      const Reach reach = reach_of<dim>(interaction, &old_.jump[i * dim]);
-      old_.opening_max[i] = std::max(old_.opening_max[i], reach.opening);
-      if (!old_.slip_max.empty())
-        old_.slip_max[i] = std::max(old_.slip_max[i], reach.slip);
-    }
-  }
-
   /** In the frames at hand: jumps, relative velocities, what acts where. */
   template <int dim>
   void LargeMotionModel<dim>::set_problem()
@@ -278,7 +279,7 @@ namespace nsfd
           value += frame[a * dim + d] * mesh_jumps_[j * dim + d];
         old_.jump[i * dim + a] = value;
       }
-    keep_histories(parts_.discretization.points().n_points);
+    keep_histories(bodies_.contacts(), n, problem_, old_);
     for (std::size_t k = 0; k < rows.size(); ++k)
       for (unsigned int a = 0; a < dim; ++a)
         old_.jump[bodies_.contacts().row_point(k) * dim + a] =

@@ -60,7 +60,6 @@ namespace nsfd
 
   private:
     void add_contacts();
-    void keep_histories(std::size_t n);
     void set_problem();
     void set_tangents();
     void forecast(bool first);

@@ -14,7 +14,8 @@ namespace nsfd
                               DelassusOperator<dim> &delassus)
       : input_(input), discretization_(discretization), delassus_(delassus),
         problem_(constant_data(input, discretization)),
-        uniqueness_(std::make_unique<UniquenessBound<dim>>(input, delassus)),
+        uniqueness_(std::make_unique<UniquenessBound<dim>>(
+            input, discretization.origins(), delassus)),
         balance_(std::make_unique<EnergyBalance<dim>>(input, discretization,
                                                       delassus, *uniqueness_)),
         free_motion_(input, discretization, delassus),

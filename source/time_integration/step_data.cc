@@ -108,9 +108,9 @@ namespace nsfd
         problem.mask[i] = all_components;
         for (unsigned int c = 0; c < dim; ++c) {
           problem.given_velocity[i * dim + c] = 0.;
-          // The law counts from where the joint is released, not from its drift.
-          // What a solver has left of its velocity is no slip either: a law
-          // that began there would hold more than the strength on one side.
+          // The law counts from where the joint is released, not from its
+          // drift. What a solver has left of its velocity is no slip either: a
+          // law that began there would hold more than the strength on one side.
           double &free = problem.jump_free[i * dim + c];
           free = old.last_step > 0. ? 0. : free - old.jump[i * dim + c];
           problem.jump_old[i * dim + c] = 0.;

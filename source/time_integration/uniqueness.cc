@@ -1,5 +1,7 @@
 #include "uniqueness.h"
 
+#include "discretization/body_frequency.h"
+#include "discretization/discretization.h"
 #include "nonsmooth/point_law.h"
 #include "nsfd/scene/scene_input.h"
 #include "state/state.h"
@@ -13,43 +15,8 @@ namespace nsfd
 {
   namespace
   {
-    /**
-     * Largest eigenvalue of a small symmetric positive semi-definite block by
-     * power iteration. Bodies are symmetric and their highest modes are not:
-     * the start must not be nearly orthogonal to them.
-     */
-    double largest_eigenvalue(const std::vector<double> &A,
-                              const unsigned int n)
-    {
-      std::vector<double> x(n), y(n);
-      for (unsigned int i = 0; i < n; ++i)
-        x[i] = std::sin(1. + 7.3 * i * i);
-      double value = 0.;
-      for (unsigned int k = 0; k < 2000; ++k) {
-        double norm = 0.;
-        for (const double v : x)
-          norm += v * v;
-        norm = std::sqrt(norm);
-        if (norm == 0.)
-          return 0.;
-        double next = 0.;
-        for (unsigned int i = 0; i < n; ++i) {
-          y[i] = 0.;
-          for (unsigned int j = 0; j < n; ++j)
-            y[i] += A[i * n + j] * (x[j] / norm);
-          next += y[i] * y[i];
-        }
-        next = std::sqrt(next);
-        x.swap(y);
-        // the norm never falls
-        if (k > 20 && next <= value * (1. + 1e-9))
-          return next;
-        value = next;
-      }
-      return value;
-    }
-
-    /** Of sqrt(w_i) W_ij sqrt(w_j) over the slots that hold a point. */
+    /** The largest eigenvalue of sqrt(w_i) W_ij sqrt(w_j) over the slots that
+        hold a point. */
     template <int dim>
     double largest_eigenvalue(const Block &W,
                               const std::vector<unsigned int> &slots,
@@ -57,13 +24,13 @@ namespace nsfd
                               const std::vector<double> &weight)
     {
       const unsigned int n = unsigned(slots.size()) * dim;
-      std::vector<double> A(std::size_t(n) * n);
+      Block A(n, n);
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
-          A[std::size_t(i) * n + j] =
+          A(i, j) =
               std::sqrt(weight[places[i / dim]] * weight[places[j / dim]]) *
               W(slots[i / dim] * dim + i % dim, slots[j / dim] * dim + j % dim);
-      return largest_eigenvalue(A, n);
+      return nsfd::largest_eigenvalue(A);
     }
 
     Reach history_of(const State &state, const std::size_t i)
@@ -120,6 +87,7 @@ namespace nsfd
 
   template <int dim>
   UniquenessBound<dim>::UniquenessBound(const SceneInput &input,
+                                        const std::vector<PointOrigin> &origins,
                                         const DelassusOperator<dim> &delassus)
       : delassus_(delassus), theta_(input.time.theta),
         chi_(input.time.cohesion_rule == CohesionRule::exact ? 0.5 : 1.),
@@ -127,20 +95,24 @@ namespace nsfd
   {
     for (const auto &block : input.interfaces)
       if (block.law) {
-        set_flexibility();
+        set_flexibility(input, origins);
         return;
       }
   }
 
+  /** Of bodies with a point that has a law; nobody asks for the others. */
   template <int dim>
-  void UniquenessBound<dim>::set_flexibility()
+  void
+  UniquenessBound<dim>::set_flexibility(const SceneInput &input,
+                                        const std::vector<PointOrigin> &origins)
   {
     const auto &points = delassus_.points();
     const auto &bodies = delassus_.bodies();
-    std::vector<Block> delassus;
-    for (const auto &body : bodies.classes)
-      delassus.push_back(
-          gram(forward_solve(cholesky(body.mass), body.trace.transposed())));
+    const auto has_law = [&](const unsigned int i) {
+      return origins[i].kind == PointOrigin::Kind::interface &&
+             input.interfaces[origins[i].block].law;
+    };
+    std::vector<Block> delassus(bodies.classes.size());
     std::array<std::vector<double>, 2> sides;
     for (auto &side : sides)
       side.assign(points.n_points, 0.);
@@ -154,11 +126,18 @@ namespace nsfd
           slots.push_back(unsigned(s - bodies.first_slot[b]));
           places.push_back(bodies.slot_point[s]);
         }
-      const auto [entry, is_new] =
-          known.emplace(std::pair(bodies.class_of[b], slots), 0.);
-      if (is_new)
-        entry->second = largest_eigenvalue<dim>(delassus[bodies.class_of[b]],
-                                                slots, places, points.weight);
+      if (std::none_of(places.begin(), places.end(), has_law))
+        continue;
+      const unsigned int k = bodies.class_of[b];
+      const auto [entry, is_new] = known.emplace(std::pair(k, slots), 0.);
+      if (is_new) {
+        const auto &body = bodies.classes[k];
+        if (delassus[k].rows == 0)
+          delassus[k] =
+              gram(forward_solve(cholesky(body.mass), body.trace.transposed()));
+        entry->second =
+            largest_eigenvalue<dim>(delassus[k], slots, places, points.weight);
+      }
       for (const unsigned int i : places)
         sides[points.faces[points.face_of[i]].bodies[1] == int(b)][i] =
             entry->second;

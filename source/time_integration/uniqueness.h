@@ -7,6 +7,7 @@
 
 namespace nsfd
 {
+  struct PointOrigin;
   struct SceneInput;
   struct State;
 
@@ -27,6 +28,7 @@ namespace nsfd
   public:
     /** Collective. Without a cohesive law the flexibilities are zero. */
     UniquenessBound(const SceneInput &input,
+                    const std::vector<PointOrigin> &origins,
                     const DelassusOperator<dim> &delassus);
 
     /** The left side at a cohesive point. */
@@ -50,7 +52,8 @@ namespace nsfd
                      double time_step, double share) const;
 
   private:
-    void set_flexibility();
+    void set_flexibility(const SceneInput &input,
+                         const std::vector<PointOrigin> &origins);
     double bound(const OneStepProblem<dim> &problem, std::size_t point) const;
 
     const DelassusOperator<dim> &delassus_;

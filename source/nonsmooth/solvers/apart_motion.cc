@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace nsfd
@@ -15,16 +16,46 @@ namespace nsfd
   } // namespace
 
   template <int dim>
-  ApartMotion<dim>::ApartMotion(const DelassusOperator<dim> &delassus,
-                                const double time_step)
-      : delassus_(delassus), system_(delassus, time_step, delassus.bulk_theta())
+  ApartMotion<dim>::ApartMotion(const OneStepProblem<dim> &problem,
+                                const DelassusOperator<dim> &delassus,
+                                const TiedNodes<dim> &ties)
+      : problem_(problem), delassus_(delassus), ties_(ties),
+        system_(delassus, problem.time_step, delassus.bulk_theta(),
+                largest_factor<dim>, ties.any() ? &ties : nullptr)
   {
   }
 
+  /** H^T P of the points that are not tied. */
   template <int dim>
-  void ApartMotion<dim>::start(const std::vector<double> &momentum,
-                               const std::vector<double> &impulse,
-                               const std::vector<double> &start, const double)
+  void ApartMotion<dim>::impulse(const Vector &P, Vector &result) const
+  {
+    Vector free(P);
+    for (std::size_t k = 0; k < free.size(); ++k)
+      if (ties_.points()[k / dim])
+        free[k] = 0.;
+    result.resize(w_.size());
+    delassus_.generalised_impulse(free.data(), result.data());
+  }
+
+  template <int dim>
+  void ApartMotion<dim>::complete(Vector &P) const
+  {
+    if (!ties_.any())
+      return;
+    Vector of_bodies, of_points;
+    system_.apply(w_, of_bodies);
+    impulse(P, of_points);
+    for (std::size_t k = 0; k < of_bodies.size(); ++k)
+      of_bodies[k] -= of_points[k];
+    const Vector held = ties_.impulses_of(of_bodies);
+    for (std::size_t k = 0; k < P.size(); ++k)
+      if (ties_.points()[k / dim])
+        P[k] = held[k];
+  }
+
+  template <int dim>
+  void ApartMotion<dim>::start(const Vector &momentum, const Vector &impulse,
+                               const Vector &start, const double)
   {
     if (!momentum.empty() || !impulse.empty())
       throw std::logic_error("ApartMotion: points alone act on these bodies");
@@ -32,7 +63,14 @@ namespace nsfd
     start_ = start;
     w_.assign(delassus_.bodies().n_dofs(), 0.);
     dw_ = residual_ = w_;
-    set_residual(std::vector<double>(start.size(), 0.));
+    if (ties_.any()) {
+      Vector right(start.size(), 0.);
+      for (std::size_t k = 0; k < right.size(); ++k)
+        if (ties_.points()[k / dim])
+          right[k] = problem_.given_velocity[k] - start[k];
+      w_ = ties_.motion_of(right);
+    }
+    set_residual(Vector(start.size(), 0.));
   }
 
   template <int dim>
@@ -45,23 +83,26 @@ namespace nsfd
   }
 
   template <int dim>
-  void ApartMotion<dim>::set_residual(const std::vector<double> &P)
+  void ApartMotion<dim>::set_residual(const Vector &P)
   {
     is_done_ = false;
-    std::vector<double> of_bodies;
+    Vector of_bodies, of_points;
     system_.apply(w_, of_bodies);
-    delassus_.generalised_impulse(P.data(), residual_.data());
-    double left = 0., size = 0.;
-    for (std::size_t k = 0; k < w_.size(); ++k) {
-      size += residual_[k] * residual_[k];
-      residual_[k] -= of_bodies[k];
-      left += residual_[k] * residual_[k];
-    }
-    left_ = size > 0. ? std::sqrt(left / size) : (left > 0. ? 1. : 0.);
+    impulse(P, of_points);
+    for (std::size_t k = 0; k < w_.size(); ++k)
+      residual_[k] = of_points[k] - of_bodies[k];
+    const auto size = [&](const Vector &x) {
+      Vector sums;
+      ties_.fold(x, sums);
+      return std::sqrt(
+          std::inner_product(sums.begin(), sums.end(), sums.begin(), 0.));
+    };
+    const double all = std::max(size(of_points), size(of_bodies));
+    left_ = all > 0. ? size(residual_) / all : 0.;
   }
 
   template <int dim>
-  void ApartMotion<dim>::set_velocity(std::vector<double> &U) const
+  void ApartMotion<dim>::set_velocity(Vector &U) const
   {
     U.resize(start_.size());
     delassus_.relative_velocity(w_.data(), U.data());
@@ -69,20 +110,28 @@ namespace nsfd
       U[k] += start_[k];
   }
 
-  /** Each body by itself, exactly. */
+  /** Exactly, whatever is asked for. */
   template <int dim>
-  void ApartMotion<dim>::balance(const std::vector<double> &P, const double)
+  void ApartMotion<dim>::balance(const Vector &P, const double tolerance)
   {
-    std::fill(w_.begin(), w_.end(), 0.);
-    delassus_.add_velocity_change(P.data(), w_.data());
+    set_residual(P);
+    if (!ties_.any()) {
+      std::fill(w_.begin(), w_.end(), 0.);
+      delassus_.add_velocity_change(P.data(), w_.data());
+    } else if (left_ > tolerance) {
+      system_.factorise(Vector(start_.size() * dim, 0.));
+      Vector more;
+      system_.solve(residual_, more);
+      for (std::size_t k = 0; k < w_.size(); ++k)
+        w_[k] += more[k];
+    }
     set_residual(P);
     is_done_ = true;
   }
 
   template <int dim>
-  bool ApartMotion<dim>::solve(const std::vector<double> &T, bool,
-                               const std::vector<double> &c, const Accuracy &,
-                               std::vector<double> &dP, std::vector<double> &dU)
+  bool ApartMotion<dim>::solve(const Vector &T, bool, const Vector &c,
+                               const Accuracy &, Vector &dP, Vector &dU)
   {
     if (!system_.factorise(T))
       return false;
@@ -92,8 +141,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void ApartMotion<dim>::move(const double length, const std::vector<double> &P,
-                              std::vector<double> &U)
+  void ApartMotion<dim>::move(const double length, const Vector &P, Vector &U)
   {
     for (std::size_t k = 0; k < w_.size(); ++k)
       w_[k] += length * dw_[k];
@@ -102,9 +150,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void ApartMotion<dim>::set_motion(const std::vector<double> &w,
-                                    const std::vector<double> &P,
-                                    std::vector<double> &U)
+  void ApartMotion<dim>::set_motion(const Vector &w, const Vector &P, Vector &U)
   {
     const bool done = is_done_ && w == w_;
     w_ = w;
@@ -114,7 +160,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void ApartMotion<dim>::add_to(std::vector<double> &velocity) const
+  void ApartMotion<dim>::add_to(Vector &velocity) const
   {
     for (std::size_t k = 0; k < w_.size(); ++k)
       velocity[k] += w_[k];
@@ -123,7 +169,7 @@ namespace nsfd
   template <int dim>
   std::vector<double> ApartMotion<dim>::left_over() const
   {
-    std::vector<double> result(w_.size());
+    Vector result(w_.size());
     delassus_.apply(Operator::mass, w_.data(), result.data());
     for (std::size_t k = 0; k < w_.size(); ++k)
       result[k] += residual_[k];

@@ -1,23 +1,34 @@
 #pragma once
 
 #include "body_system.h"
+#include "tied_nodes.h"
 
 #include "delassus/velocity_solver.h"
+#include "nonsmooth/one_step_problem.h"
 
 #include <vector>
 
 namespace nsfd
 {
   /**
-   * The motion of bodies that share no node, by unknown of the bodies: w = v -
-   * v_free, with no momentum besides the impulses of the points. Its matrix is
-   * that of BodySystem. On one rank.
+   * The motion of bodies apart, by unknown of the bodies: w = v - v_free, with
+   * no momentum besides the impulses of the points. Where joints hold all nodes
+   * of a face together these are one unknown, and the joint has no row: W of
+   * such rows is singular, one condition per loop of cells round a node. What
+   * they carry follows from the motion, see complete(). On one rank.
    */
   template <int dim>
   class ApartMotion final : public NodeMotion
   {
   public:
-    ApartMotion(const DelassusOperator<dim> &delassus, double time_step);
+    /** Impulses of points that @p ties holds together count for nothing. */
+    ApartMotion(const OneStepProblem<dim> &problem,
+                const DelassusOperator<dim> &delassus,
+                const TiedNodes<dim> &ties);
+
+    /** The impulses of points that are held together, with which the bodies
+        move as they do under the others. */
+    void complete(std::vector<double> &P) const;
 
     /** @throws std::logic_error with a momentum or an impulse. */
     void start(const std::vector<double> &momentum,
@@ -46,17 +57,21 @@ namespace nsfd
     std::vector<double> left_over() const override;
 
   private:
+    using Vector = std::vector<double>;
     using Operator = typename DelassusOperator<dim>::Operator;
 
-    void set_residual(const std::vector<double> &P);
-    void set_velocity(std::vector<double> &U) const;
+    void impulse(const Vector &P, Vector &result) const;
+    void set_residual(const Vector &P);
+    void set_velocity(Vector &U) const;
 
+    const OneStepProblem<dim> &problem_;
     const DelassusOperator<dim> &delassus_;
-    BodySystem<dim> system_;
+    const TiedNodes<dim> &ties_;
+    mutable BodySystem<dim> system_;
     bool is_on_ = false, is_done_ = false;
-    const std::vector<double> none_{};
-    std::vector<double> start_;             ///< U_0
-    std::vector<double> w_, dw_, residual_; ///< the last is H^T P - M_hat w
-    double left_ = 0.;                      ///< of it, over |H^T P|
+    const Vector none_{};
+    Vector start_;             ///< U_0
+    Vector w_, dw_, residual_; ///< the last is H^T P - M_hat w
+    double left_ = 0.;         ///< of it, beside its terms
   };
 } // namespace nsfd

@@ -1,7 +1,5 @@
 #include "augmented_lagrangian.h"
 
-#include "apart_motion.h"
-
 #include "core/cost.h"
 #include "linear_algebra/positive_part.h"
 #include "nonsmooth/natural_map.h"
@@ -10,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace nsfd
 {
@@ -277,7 +274,8 @@ namespace nsfd
       }
       const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
       before = {error, before[0]};
-      if (idle > most_idle || comes_back || !std::isfinite(error))
+      if (idle > most_idle || comes_back || !std::isfinite(error) ||
+          work.report.newton >= work.most)
         break;
       set_right_side(work);
       // as far as a step of Newton's method is right; the next one makes good
@@ -325,22 +323,18 @@ namespace nsfd
     return solved(true);
   }
 
-  template <int dim>
-  void AugmentedLagrangian<dim>::try_length(const Work &work,
-                                            const double length)
-  {
-    moved_ = velocity_;
-    add<dim>(work.problem.acting, length, dU_, moved_);
-    answer(work, moved_);
-  }
-
   /** Along the direction, until the slope is a part of what it was. */
   template <int dim>
   void AugmentedLagrangian<dim>::advance(const Work &work)
   {
     const double start = -slope(work, 0.);
     double length = 1., low = 0., high = 1.;
-    try_length(work, length);
+    const auto try_length = [&] {
+      moved_ = velocity_;
+      add<dim>(work.problem.acting, length, dU_, moved_);
+      answer(work, moved_);
+    };
+    try_length();
     double value = slope(work, length), at_low = -start, at_high = value;
     if (value > flat * start)
       ++work.report.line_searches;
@@ -350,7 +344,7 @@ namespace nsfd
       length = low - at_low * (high - low) / (at_high - at_low);
       if (!(length > low && length < high) || k % 3 == 2)
         length = 0.5 * (low + high);
-      try_length(work, length);
+      try_length();
       value = slope(work, length);
       (value < 0. ? low : high) = length;
       (value < 0. ? at_low : at_high) = value;
@@ -368,17 +362,17 @@ namespace nsfd
   {
     SolverReport report;
     const double tolerance = control.tolerance;
-    auto *const joined = dynamic_cast<VelocitySolver *>(&delassus);
-    std::optional<ApartMotion<dim>> apart;
     NodeMotion &motion =
-        joined ? joined->motion() : apart.emplace(delassus, problem.time_step);
-    const Work work{problem, delassus, motion, evaluation, tolerance, report};
+        own_motion_ ? *own_motion_
+                    : dynamic_cast<VelocitySolver &>(delassus).motion();
+    const unsigned int most = control.iterations_or(80);
+    const Work work{problem,   delassus, motion, evaluation,
+                    tolerance, most,     report};
     from_rest_ = problem.free_motion == FreeVelocity::unknown;
     const bool own = !motion.is_on(); // U_free is known, and w the rest
     if (own)
       motion.start({}, {}, problem.free_velocity);
     begin(work, impulse);
-    const unsigned int most = control.iterations_or(80);
     double share = first_share;
     const auto judge = [&] {
       if (!from_rest_)

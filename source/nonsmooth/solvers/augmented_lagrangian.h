@@ -32,13 +32,14 @@ namespace nsfd
    * with their impulses, which in long steps are far larger than what moves:
    * further Newton steps solve them to SolverControl::row_energy.
    *
-   * The operator is a VelocitySolver, or its bodies are apart and all on one
-   * rank.
+   * The operator is a VelocitySolver, or there is a motion of its bodies.
    */
   template <int dim>
   class AugmentedLagrangian final : public NonsmoothSolver<dim>
   {
   public:
+    /** Of bodies apart, which have none of their own; it stays the owner's. */
+    void set_motion(NodeMotion *motion) { own_motion_ = motion; }
     SolverReport solve(const OneStepProblem<dim> &problem,
                        DelassusOperator<dim> &delassus, double energy_scale,
                        const SolverControl &control,
@@ -53,6 +54,7 @@ namespace nsfd
       NodeMotion &motion; ///< of its bodies
       LawEvaluation<dim> &evaluation;
       double tolerance;
+      unsigned int most; ///< Newton steps
       SolverReport &report;
     };
 
@@ -95,9 +97,9 @@ namespace nsfd
     bool solve_system(const Work &work, bool symmetric, double tolerance,
                       double share);
     bool find_direction(const Work &work);
-    void try_length(const Work &work, double length);
     void advance(const Work &work);
 
+    NodeMotion *own_motion_ = nullptr;
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
     bool from_rest_ = false;           ///< a round of statics

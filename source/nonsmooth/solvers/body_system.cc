@@ -29,8 +29,9 @@ namespace nsfd
   template <int dim>
   BodySystem<dim>::BodySystem(const DelassusOperator<dim> &delassus,
                               const double time_step, const double theta,
-                              const long long largest_factor)
-      : delassus_(delassus), largest_factor_(largest_factor)
+                              const long long largest_factor,
+                              const TiedNodes<dim> *const ties)
+      : delassus_(delassus), largest_factor_(largest_factor), ties_(ties)
   {
     find_faces();
     find_pattern();
@@ -71,6 +72,8 @@ namespace nsfd
       FaceRows &mine = faces_[f];
       mine.first = face.first;
       mine.count = face.count;
+      if (ties_ && face.count > 0 && ties_->points()[face.first])
+        continue; // its rows say nothing
       for (unsigned int p = face.first; p < face.first + face.count; ++p)
         for (const Side &side : sides[p]) {
           const auto &body = bodies.classes[bodies.class_of[side.body]];
@@ -115,16 +118,19 @@ namespace nsfd
   void BodySystem<dim>::find_pattern()
   {
     const auto &bodies = delassus_.bodies();
-    std::vector<std::vector<int>> column(bodies.n_dofs());
+    std::vector<std::vector<int>> column(ties_ ? ties_->n_unknowns()
+                                               : bodies.n_dofs());
     for (std::size_t b = 0; b < bodies.size(); ++b)
       for (std::size_t j = bodies.first_dof[b]; j < bodies.first_dof[b + 1];
            ++j)
         for (std::size_t i = bodies.first_dof[b]; i < bodies.first_dof[b + 1];
              ++i)
-          column[j].push_back(int(i));
+          column[unknown(j)].push_back(int(unknown(i)));
     for (const FaceRows &face : faces_)
       for (const int j : face.dofs)
-        column[j].insert(column[j].end(), face.dofs.begin(), face.dofs.end());
+        for (const int i : face.dofs)
+          column[unknown(std::size_t(j))].push_back(
+              int(unknown(std::size_t(i))));
     matrix_.start.assign(1, 0);
     for (auto &rows : column) {
       std::sort(rows.begin(), rows.end());
@@ -132,7 +138,9 @@ namespace nsfd
       matrix_.column.insert(matrix_.column.end(), rows.begin(), rows.end());
       matrix_.start.push_back(int(matrix_.column.size()));
     }
-    const auto entry = [&](const int i, const int j) {
+    const auto entry = [&](const int row, const int dof) {
+      const int i = int(unknown(std::size_t(row))),
+                j = int(unknown(std::size_t(dof)));
       const auto begin = matrix_.column.begin() + matrix_.start[j],
                  end = matrix_.column.begin() + matrix_.start[j + 1];
       return int(std::lower_bound(begin, end, i) - matrix_.column.begin());
@@ -241,10 +249,10 @@ namespace nsfd
     const long long n = matrix_.n_rows();
     assemble(S);
     means_ = Means::cholesky;
-    if (n <= 10 * largest_factor_ && are_symmetric<dim>(S) &&
+    if ((ties_ || n <= 10 * largest_factor_) && are_symmetric<dim>(S) &&
         factorise_symmetric())
       return true;
-    if (n <= largest_factor_ || !may_iterate_)
+    if (ties_ || n <= largest_factor_ || !may_iterate_)
       return factorise_general();
     means_ = Means::iteration;
     if (!iteration_)
@@ -296,6 +304,17 @@ namespace nsfd
   unsigned int BodySystem<dim>::solve(const Vector &b, Vector &x,
                                       const double tolerance)
   {
+    if (ties_ && means_ != Means::iteration) {
+      Vector sums, motion(ties_->n_unknowns());
+      ties_->fold(b, sums);
+      const Charge charge(Cost::precondition);
+      if (means_ == Means::cholesky)
+        cholesky_->solve(sums.data(), motion.data(), 0.);
+      else
+        factor_->solve(sums.data(), motion.data());
+      ties_->spread(motion, x);
+      return 1;
+    }
     const Charge charge(Cost::precondition);
     x.resize(b.size());
     if (means_ == Means::cholesky)

@@ -2,6 +2,7 @@
 
 #include "body_krylov.h"
 #include "linear_algebra/sparse_lu.h"
+#include "tied_nodes.h"
 
 #include "linear_algebra/factor_limits.h"
 
@@ -32,9 +33,12 @@ namespace nsfd
   public:
     using Vector = std::vector<double>;
 
+    /** With @p ties, which stay the owner's, of the unknowns that are left;
+        there is a factor then, whatever their number. */
     BodySystem(const DelassusOperator<dim> &delassus, double time_step,
                double theta,
-               long long largest_factor = nsfd::largest_factor<dim>);
+               long long largest_factor = nsfd::largest_factor<dim>,
+               const TiedNodes<dim> *ties = nullptr);
 
     /** Other values on the same pattern, for another step. */
     void reinit(double time_step, double theta);
@@ -77,6 +81,10 @@ namespace nsfd
     double theta() const { return theta_; }
 
   private:
+    std::size_t unknown(const std::size_t dof) const
+    {
+      return ties_ ? std::size_t(ties_->unknown()[dof]) : dof;
+    }
     void find_faces();
     void find_pattern();
     void fill_bodies();
@@ -95,6 +103,7 @@ namespace nsfd
     double time_step_, theta_;
     StepShares shares_ = {0.};
     const long long largest_factor_;
+    const TiedNodes<dim> *const ties_;
     std::vector<FaceRows> faces_;
     std::vector<std::vector<int>> entries_; // of a face, dofs x dofs, row-major
     SparseRows matrix_;             // its columns: the pattern is symmetric

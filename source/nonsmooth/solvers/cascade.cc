@@ -1,5 +1,4 @@
 #include "augmented_lagrangian.h"
-#include "gathered.h"
 
 #include "linear_algebra/factor_limits.h"
 
@@ -10,45 +9,6 @@ namespace nsfd
 {
   namespace
   {
-    /** The method of multipliers for bodies apart, of all ranks on one. */
-    template <int dim>
-    class Multipliers final : public NonsmoothSolver<dim>
-    {
-    public:
-      SolverReport solve(const OneStepProblem<dim> &problem,
-                         DelassusOperator<dim> &delassus,
-                         const double energy_scale,
-                         const SolverControl &control,
-                         std::vector<double> &impulse,
-                         LawEvaluation<dim> &evaluation) override
-      {
-        SolverReport report;
-        if (delassus.communicator().size() == 1) {
-          report = method_.solve(problem, delassus, energy_scale, control,
-                                 impulse, evaluation);
-          evaluation.update(impulse);
-        } else {
-          if (!gathered_)
-            gathered_ = std::make_unique<Gathered<dim>>(delassus);
-          solve_gathered(*gathered_, problem, delassus, energy_scale, control,
-                         impulse, evaluation, report,
-                         [&](const auto &whole, auto &bodies, auto &laws,
-                             auto &all, auto &part) {
-                           laws.update(all);
-                           part = method_.solve(whole, bodies, energy_scale,
-                                                control, all, laws);
-                         });
-        }
-        report.residual = evaluation.error;
-        report.converged = evaluation.error <= control.tolerance;
-        return report;
-      }
-
-    private:
-      std::unique_ptr<Gathered<dim>> gathered_; // before what refers to it
-      AugmentedLagrangian<dim> method_;
-    };
-
     /**
      * One solver after the other until the natural map is small: Newton's
      * method on the dual problem (with its sweeps of Gauss-Seidel), then
@@ -58,10 +18,11 @@ namespace nsfd
      * friction, after a few steps of Newton's, which are enough where few
      * contacts change. Last the method of multipliers in the velocities, which
      * knows nothing of W: where W is singular, as round a node that four faces
-     * share, the others may not reach the tolerance. Every hand-over is in the
-     * report. Steps in which points
-     * soften are not handed over: a shorter step is their cure, until four cuts
-     * have shown that it is none.
+     * share, the others may not reach the tolerance. It comes first where most
+     * points are joints of deformable bodies, whose nodes it takes for one.
+     * Every hand-over is in the report. Steps in which points soften are not
+     * handed over: a shorter step is their cure, until four cuts have shown
+     * that it is none.
      */
     template <int dim>
     class Cascade final : public NonsmoothSolver<dim>
@@ -79,13 +40,47 @@ namespace nsfd
                          LawEvaluation<dim> &evaluation) override
       {
         // the interior points know the bodies' own matrices only
-        const Communicator &all = delassus.communicator();
         if (dynamic_cast<VelocitySolver *>(&delassus))
           return solve_joined(problem, delassus, energy_scale, control, impulse,
                               evaluation);
         if (!delassus.bodies_are_apart())
           return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
+        if (holds_nodes(problem, delassus)) {
+          const std::vector<double> start(impulse);
+          SolverReport report = multipliers().solve(
+              problem, delassus, energy_scale, control, impulse, evaluation);
+          if (report.converged)
+            return report;
+          impulse = start;
+          add(solve_others(problem, delassus, energy_scale, control, false,
+                           impulse, evaluation),
+              "dual newton", report);
+          report.residual = evaluation.error;
+          report.converged = report.residual <= control.tolerance;
+          return report;
+        }
+        return solve_others(problem, delassus, energy_scale, control, true,
+                            impulse, evaluation);
+      }
+
+      void serialize(Archive &archive) override
+      {
+        if (!path_)
+          path_ = SolverRegistry<dim>::instance().create("interior point");
+        path_->serialize(archive);
+      }
+
+    private:
+      SolverReport solve_others(const OneStepProblem<dim> &problem,
+                                DelassusOperator<dim> &delassus,
+                                const double energy_scale,
+                                const SolverControl &control,
+                                const bool ends_with_multipliers,
+                                std::vector<double> &impulse,
+                                LawEvaluation<dim> &evaluation)
+      {
+        const Communicator &all = delassus.communicator();
         const bool touches = all.any(may_touch(problem));
         if (touches && !path_)
           path_ = SolverRegistry<dim>::instance().create("interior point");
@@ -134,19 +129,44 @@ namespace nsfd
           go_on(*second, second_name, true);
         if (!report.converged && brief)
           go_on(*first, "dual newton", false);
-        if (!report.converged)
-          go_on(apart_, "multipliers", true);
+        if (!report.converged && ends_with_multipliers)
+          go_on(multipliers(), "multipliers", true);
         return report;
       }
 
-      void serialize(Archive &archive) override
+      NonsmoothSolver<dim> &multipliers()
       {
-        if (!path_)
-          path_ = SolverRegistry<dim>::instance().create("interior point");
-        path_->serialize(archive);
+        if (!last_)
+          last_ = SolverRegistry<dim>::instance().create("multipliers");
+        return *last_;
       }
 
-    private:
+      /** Most points are joints of deformable bodies, which have a factor once
+          the joints are gone. Collective. */
+      static bool holds_nodes(const OneStepProblem<dim> &problem,
+                              const DelassusOperator<dim> &delassus)
+      {
+        const auto &points = delassus.points();
+        const auto &bodies = delassus.bodies();
+        const std::size_t n = owned_acting(problem);
+        unsigned long long n_held = 0;
+        for (std::size_t a = 0; a < n; ++a) {
+          const std::size_t i = problem.acting[a];
+          bool joins = problem.kind[i] == PointKind::prescribed &&
+                       problem.mask[i] == (1u << dim) - 1u;
+          for (const int b : points.faces[points.face_of[i]].bodies)
+            if (b >= 0)
+              joins = joins &&
+                      !bodies.classes[bodies.class_of[std::size_t(b)]].rigid;
+          n_held += joins;
+        }
+        const Communicator &all = delassus.communicator();
+        // of 2^dim cells round a node one unknown is left
+        return 2 * all.sum_integer(n_held) > all.sum_integer(n) &&
+               all.sum_integer(bodies.n_dofs()) <=
+                   (10ull << dim) * largest_factor<dim>;
+      }
+
       /** Of bodies that share nodes. */
       SolverReport solve_joined(const OneStepProblem<dim> &problem,
                                 DelassusOperator<dim> &delassus,
@@ -243,9 +263,8 @@ namespace nsfd
                delassus.communicator().sum(ratio) > 50. * double(count);
       }
 
-      std::unique_ptr<NonsmoothSolver<dim>> newton_, path_;
+      std::unique_ptr<NonsmoothSolver<dim>> newton_, path_, last_;
       AugmentedLagrangian<dim> joined_; ///< of bodies that share nodes
-      Multipliers<dim> apart_;          ///< and of others
     };
 
     using Cascade2 = Cascade<2>;
