@@ -269,8 +269,7 @@ namespace nsfd::changed_scene::test_bad_input
         {"method", "set method = auto", "set method = magic",
          "method = magic is not one of: auto, admm, anderson, cascade, dual "
          "newton, fixed point, frictional contact, gauss seidel, interior "
-         "point, "
-         "projected gradient, proximal",
+         "point, multipliers, projected gradient, proximal",
          "set method = magic"},
         {"unknown_law", "camacho-ortiz", "camacho-ortis",
          "did you mean `camacho-ortiz`?", "set law = camacho-ortis"},
