@@ -19,6 +19,10 @@ namespace nsfd
     /// it, see RowWork, J: of bodies that share nodes
     double row_energy = std::numeric_limits<double>::infinity();
 
+    /// matrices of the bodies are those of this problem alone: no factor of
+    /// them serves later ones
+    bool bodies_change = false;
+
     /// of the cascade for problems whose W is assembled: the first one and
     /// restarts. In a run a step that is not solved has other cures.
     unsigned int attempts = 6;

@@ -102,6 +102,7 @@ namespace nsfd
     SolverReport total;
     SolverControl present = control;
     present.row_energy = std::numeric_limits<double>::infinity();
+    present.bodies_change = true;
     for (unsigned int round = 0;; ++round) {
       if (round > 0)
         bodies_->linearise();
@@ -147,7 +148,7 @@ namespace nsfd
           !this->step_problem_.gives_by_rows(
               points.problem, control, energy_scale_, impulse_, *evaluation))
         return total;
-      present = control;
+      present.row_energy = control.row_energy;
     }
   }
 

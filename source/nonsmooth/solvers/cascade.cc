@@ -19,7 +19,8 @@ namespace nsfd
      * contacts change. Last the method of multipliers in the velocities, which
      * knows nothing of W: where W is singular, as round a node that four faces
      * share, the others may not reach the tolerance. It comes first where most
-     * points are joints of deformable bodies, whose nodes it takes for one.
+     * points are joints of deformable bodies, whose nodes it takes for one, and
+     * no factor of a former problem is of use.
      * Every hand-over is in the report. Steps in which points soften are not
      * handed over: a shorter step is their cure, until four cuts have shown
      * that it is none.
@@ -46,7 +47,7 @@ namespace nsfd
         if (!delassus.bodies_are_apart())
           return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
-        if (holds_nodes(problem, delassus)) {
+        if (control.bodies_change && holds_nodes(problem, delassus)) {
           const std::vector<double> start(impulse);
           SolverReport report = multipliers().solve(
               problem, delassus, energy_scale, control, impulse, evaluation);
