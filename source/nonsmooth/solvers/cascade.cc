@@ -16,7 +16,8 @@ namespace nsfd
      * method needs a factor of all bodies in every iteration and Coulomb
      * friction makes it cycle, the interior points come first; without
      * friction, after a few steps of Newton's, which are enough where few
-     * contacts change. Last the method of multipliers in the velocities, which
+     * contacts change. In large motions last the method of multipliers in the
+     * velocities, which
      * knows nothing of W: where W is singular, as round a node that four faces
      * share, the others may not reach the tolerance. It comes first where most
      * points are joints of deformable bodies, whose nodes it takes for one, and
@@ -130,7 +131,7 @@ namespace nsfd
           go_on(*second, second_name, true);
         if (!report.converged && brief)
           go_on(*first, "dual newton", false);
-        if (!report.converged && ends_with_multipliers)
+        if (!report.converged && ends_with_multipliers && control.bodies_change)
           go_on(multipliers(), "multipliers", true);
         return report;
       }
