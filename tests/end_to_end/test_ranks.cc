@@ -25,7 +25,7 @@ namespace end_to_end::test_ranks
                                              "Mesh/lower corner=0, 0, 0",
                                              "Mesh/upper corner=10 m, 1 m, 1 m",
                                              "Mesh/distortion=0.2",
-                                             "Solver/tolerance=1e-11",
+                                             "Solver/tolerance=1e-12",
                                              "Obstacle: wall/point=-5 m, 0, 0",
                                              "Obstacle: wall/normal=1, 0, 0"};
 
@@ -50,7 +50,7 @@ namespace end_to_end::test_ranks
         {"interface_step", {"Mesh/cells=60, 1"}, {"Mesh/cells=40, 1"}},
         {"midplane",
          {"Mesh/cells=10, 10"},
-         {"Mesh/cells=10, 10", "Time/end=4 ns", "Solver/tolerance=1e-11"}},
+         {"Mesh/cells=10, 10", "Time/end=4 ns", "Solver/tolerance=1e-12"}},
         {"midplane_scattered",
          {"Mesh/cells=10, 10", "Interface: midline/scatter=weibull",
           "Interface: midline/strength modulus=8",
@@ -59,7 +59,7 @@ namespace end_to_end::test_ranks
           "Interface: midline/toughness factor=1 + 0.3 * sin(y / 1 um)"},
          {"Mesh/cells=10, 10", "Interface: midline/scatter=weibull",
           "Interface: midline/strength modulus=8", "Time/end=4 ns",
-          "Solver/tolerance=1e-11"},
+          "Solver/tolerance=1e-12"},
          "midplane"},
         {"mode", {"Time/end=200 us"}, {"Time/end=100 us"}},
         {"patch_blocks", {}, {}},
@@ -74,7 +74,7 @@ namespace end_to_end::test_ranks
         {"midplane_pressure",
          {"Mesh/cells=10, 10",
           "Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"},
-         {"Mesh/cells=10, 10", "Time/end=4 ns", "Solver/tolerance=1e-11",
+         {"Mesh/cells=10, 10", "Time/end=4 ns", "Solver/tolerance=1e-12",
           "Interface: midline/broken=y < 5 um",
           "Interface: midline/crack pressure=10 MPa * (1 + y / 10 um)"},
          "midplane"},
@@ -154,7 +154,7 @@ namespace end_to_end::test_ranks
         "Constants/n=6",         "Mesh/cells=6, 6",
         "Constants/share=0.4",   "Time/step=2 courant",
         "Time/end=1.4",          "Solver/method=interior point",
-        "Solver/tolerance=1e-11"};
+        "Solver/tolerance=1e-12"};
     const auto file = benchmark("broken_faces");
     const Result one = good_run(workspace, "1 rank", {file, set});
     ASSERT_TRUE(one.completed());
@@ -184,8 +184,10 @@ namespace end_to_end::test_ranks
   TEST(Ranks, ExplicitBondsAgree)
   {
     const Workspace workspace;
+    // All breaking is over at 8.3 ns. At 8.72 ns a step is solved or halved by
+    // the last digits, which are others with other kernels of BLAS.
     const std::vector<std::string> set = {
-        "Mesh/cells=8, 8",        "Time/end=9 ns",
+        "Mesh/cells=8, 8",        "Time/end=8.6 ns",
         "Output/fields=false",    "Time/scheme=symplectic",
         "Time/step=0.05 courant", "Solver/tolerance=1e-12"};
     const auto file = benchmark("fracture_extrinsic");
