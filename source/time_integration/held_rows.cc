@@ -87,6 +87,7 @@ namespace nsfd
         for (std::size_t k = i * dim; k < (i + 1) * dim; ++k) {
           problem.given_velocity[k] =
               is_mean_ && !is_impact_ ? -share * old.relative_velocity[k] : 0.;
+          // of arms that turn this is no remainder: the joint makes it good
           if (is_mean_ && old.kind[i] == PointKind::rigid)
             problem.jump_free[k] = problem.time_step * (1. - problem.theta) *
                                    old.relative_velocity[k];

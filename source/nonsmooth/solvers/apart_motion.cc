@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -38,7 +39,7 @@ namespace nsfd
   }
 
   template <int dim>
-  void ApartMotion<dim>::complete(Vector &P) const
+  void ApartMotion<dim>::complete(Vector &P)
   {
     if (!ties_.any())
       return;
@@ -70,7 +71,8 @@ namespace nsfd
           right[k] = problem_.given_velocity[k] - start[k];
       w_ = ties_.motion_of(right);
     }
-    set_residual(Vector(start.size(), 0.));
+    left_ = std::numeric_limits<double>::infinity();
+    is_done_ = false;
   }
 
   template <int dim>
@@ -110,15 +112,18 @@ namespace nsfd
       U[k] += start_[k];
   }
 
-  /** Exactly, whatever is asked for. */
+  /** Each body by itself, or all by one factor if nodes are tied: exactly,
+      unless no more than @p tolerance is left. */
   template <int dim>
   void ApartMotion<dim>::balance(const Vector &P, const double tolerance)
   {
-    set_residual(P);
     if (!ties_.any()) {
       std::fill(w_.begin(), w_.end(), 0.);
       delassus_.add_velocity_change(P.data(), w_.data());
-    } else if (left_ > tolerance) {
+    } else {
+      set_residual(P);
+      if (left_ <= tolerance)
+        return;
       system_.factorise(Vector(start_.size() * dim, 0.));
       Vector more;
       system_.solve(residual_, more);

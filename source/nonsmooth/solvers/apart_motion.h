@@ -28,7 +28,7 @@ namespace nsfd
 
     /** The impulses of points that are held together, with which the bodies
         move as they do under the others. */
-    void complete(std::vector<double> &P) const;
+    void complete(std::vector<double> &P);
 
     /** @throws std::logic_error with a momentum or an impulse. */
     void start(const std::vector<double> &momentum,
@@ -67,7 +67,7 @@ namespace nsfd
     const OneStepProblem<dim> &problem_;
     const DelassusOperator<dim> &delassus_;
     const TiedNodes<dim> &ties_;
-    mutable BodySystem<dim> system_;
+    BodySystem<dim> system_;
     bool is_on_ = false, is_done_ = false;
     const Vector none_{};
     Vector start_;             ///< U_0

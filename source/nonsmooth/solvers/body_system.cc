@@ -304,28 +304,28 @@ namespace nsfd
   unsigned int BodySystem<dim>::solve(const Vector &b, Vector &x,
                                       const double tolerance)
   {
-    if (ties_ && means_ != Means::iteration) {
-      Vector sums, motion(ties_->n_unknowns());
-      ties_->fold(b, sums);
-      const Charge charge(Cost::precondition);
-      if (means_ == Means::cholesky)
-        cholesky_->solve(sums.data(), motion.data(), 0.);
-      else
-        factor_->solve(sums.data(), motion.data());
-      ties_->spread(motion, x);
-      return 1;
-    }
     const Charge charge(Cost::precondition);
-    x.resize(b.size());
-    if (means_ == Means::cholesky)
-      cholesky_->solve(b.data(), x.data(), 0.);
-    else if (means_ == Means::factor)
-      factor_->solve(b.data(), x.data());
-    else {
+    if (means_ == Means::iteration) {
       const Vector none(delassus_.points().n_points * dim, 0.);
       Vector dP;
+      x.resize(b.size());
       const auto count = iteration_->solve(b, none, tolerance, x, dP);
       return iterates_in_vain(count) ? count + solve(b, x, tolerance) : count;
+    }
+    const auto substitute = [&](const Vector &right, Vector &result) {
+      result.resize(right.size());
+      if (means_ == Means::cholesky)
+        cholesky_->solve(right.data(), result.data(), 0.);
+      else
+        factor_->solve(right.data(), result.data());
+    };
+    if (!ties_)
+      substitute(b, x);
+    else {
+      Vector sums, motion;
+      ties_->fold(b, sums);
+      substitute(sums, motion);
+      ties_->spread(motion, x);
     }
     return 1;
   }

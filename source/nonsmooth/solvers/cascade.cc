@@ -1,4 +1,5 @@
 #include "augmented_lagrangian.h"
+#include "tied_nodes.h"
 
 #include "linear_algebra/factor_limits.h"
 
@@ -48,22 +49,19 @@ namespace nsfd
         if (!delassus.bodies_are_apart())
           return newton_->solve(problem, delassus, energy_scale, control,
                                 impulse, evaluation);
-        if (control.bodies_change && holds_nodes(problem, delassus)) {
-          const std::vector<double> start(impulse);
-          SolverReport report = multipliers().solve(
-              problem, delassus, energy_scale, control, impulse, evaluation);
-          if (report.converged)
-            return report;
-          impulse = start;
-          add(solve_others(problem, delassus, energy_scale, control, false,
-                           impulse, evaluation),
-              "dual newton", report);
-          report.residual = evaluation.error;
-          report.converged = report.residual <= control.tolerance;
-          return report;
-        }
-        return solve_others(problem, delassus, energy_scale, control, true,
-                            impulse, evaluation);
+        const auto others = [&](const bool end_with_multipliers) {
+          return solve_others(problem, delassus, energy_scale, control,
+                              end_with_multipliers, impulse, evaluation);
+        };
+        if (!control.bodies_change || !holds_nodes(problem, delassus))
+          return others(control.bodies_change);
+        const std::vector<double> start(impulse);
+        SolverReport report = multipliers().solve(
+            problem, delassus, energy_scale, control, impulse, evaluation);
+        if (!report.converged)
+          hand_over([&] { return others(false); }, "dual newton", &start,
+                    control, impulse, evaluation, report);
+        return report;
       }
 
       void serialize(Archive &archive) override
@@ -78,7 +76,7 @@ namespace nsfd
                                 DelassusOperator<dim> &delassus,
                                 const double energy_scale,
                                 const SolverControl &control,
-                                const bool ends_with_multipliers,
+                                const bool end_with_multipliers,
                                 std::vector<double> &impulse,
                                 LawEvaluation<dim> &evaluation)
       {
@@ -106,18 +104,13 @@ namespace nsfd
                                            part, impulse, evaluation);
         const auto go_on = [&](NonsmoothSolver<dim> &solver, const char *name,
                                const bool from_start) {
-          const std::vector<double> best(impulse);
-          if (from_start)
-            impulse = start;
-          add(solver.solve(problem, delassus, energy_scale, control, impulse,
-                           evaluation),
-              name, report);
-          if (evaluation.error > report.residual) {
-            impulse = best;
-            evaluation.update(impulse);
-          }
-          report.residual = evaluation.error;
-          report.converged = report.residual <= control.tolerance;
+          hand_over(
+              [&] {
+                return solver.solve(problem, delassus, energy_scale, control,
+                                    impulse, evaluation);
+              },
+              name, from_start ? &start : nullptr, control, impulse, evaluation,
+              report);
         };
         const bool early =
             control.idle_rounds < (SolverControl().idle_rounds << 4);
@@ -131,7 +124,7 @@ namespace nsfd
           go_on(*second, second_name, true);
         if (!report.converged && brief)
           go_on(*first, "dual newton", false);
-        if (!report.converged && ends_with_multipliers && control.bodies_change)
+        if (!report.converged && end_with_multipliers)
           go_on(multipliers(), "multipliers", true);
         return report;
       }
@@ -154,8 +147,7 @@ namespace nsfd
         unsigned long long n_held = 0;
         for (std::size_t a = 0; a < n; ++a) {
           const std::size_t i = problem.acting[a];
-          bool joins = problem.kind[i] == PointKind::prescribed &&
-                       problem.mask[i] == (1u << dim) - 1u;
+          bool joins = is_held(problem, i);
           for (const int b : points.faces[points.face_of[i]].bodies)
             if (b >= 0)
               joins = joins &&
@@ -183,27 +175,38 @@ namespace nsfd
         // others know no motion of nodes
         if (report.converged || problem.free_motion != FreeVelocity::known)
           return report;
+        hand_over(
+            [&] {
+              return newton_->solve(problem, delassus, energy_scale, control,
+                                    impulse, evaluation);
+            },
+            "dual newton", &start, control, impulse, evaluation, report);
+        return report;
+      }
+
+      /**
+       * @p solve, at @p start if there is one, after what @p report has come
+       * to; the better one of both answers is kept, and the work of both.
+       */
+      template <typename Solve>
+      static void
+      hand_over(const Solve &solve, const char *name,
+                const std::vector<double> *start, const SolverControl &control,
+                std::vector<double> &impulse, LawEvaluation<dim> &evaluation,
+                SolverReport &report)
+      {
         const std::vector<double> best(impulse);
-        const double error = evaluation.error;
-        impulse = start;
-        add(newton_->solve(problem, delassus, energy_scale, control, impulse,
-                           evaluation),
-            "dual newton", report);
-        if (evaluation.error > error) {
+        if (start)
+          impulse = *start;
+        const SolverReport next = solve();
+        report.switches.push_back(name);
+        report.add_work(next);
+        if (evaluation.error > report.residual) {
           impulse = best;
           evaluation.update(impulse);
         }
         report.residual = evaluation.error;
         report.converged = report.residual <= control.tolerance;
-        return report;
-      }
-
-      /** What @p next did goes into @p report. */
-      static void add(const SolverReport &next, const char *name,
-                      SolverReport &report)
-      {
-        report.switches.push_back(name);
-        report.add_work(next);
       }
 
       static bool may_touch(const OneStepProblem<dim> &problem)

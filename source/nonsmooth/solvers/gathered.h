@@ -48,31 +48,47 @@ namespace nsfd
   };
 
   /**
-   * @p solve(problem, bodies, laws, impulse, report) on the first rank, with
-   * the bodies of all; @p impulse, @p evaluation and the counts of @p report
-   * are those of its answer on every rank. Collective.
+   * For solvers whose factor is serial: nothing if @p impulse is a solution,
+   * else @p solve(problem, bodies, impulse, laws, report) at it, on several
+   * ranks on the first one with the bodies of all, which @p gathered keeps.
+   * Its answer and the counts of its report are those of every rank.
+   * Collective.
    */
   template <int dim, typename Solve>
-  void solve_gathered(const Gathered<dim> &gathered,
-                      const OneStepProblem<dim> &problem,
-                      const DelassusOperator<dim> &delassus,
-                      const double energy_scale, const SolverControl &control,
-                      std::vector<double> &impulse,
-                      LawEvaluation<dim> &evaluation, SolverReport &report,
-                      const Solve &solve)
+  SolverReport
+  solve_on_one_rank(std::unique_ptr<Gathered<dim>> &gathered,
+                    const OneStepProblem<dim> &problem,
+                    DelassusOperator<dim> &delassus, const double energy_scale,
+                    const SolverControl &control, std::vector<double> &impulse,
+                    LawEvaluation<dim> &evaluation, const Solve &solve)
   {
-    const auto whole = gathered.gather(problem);
-    auto all = gathered.gather(impulse);
-    if (auto *bodies = gathered.delassus()) {
-      bodies->reinit(problem.time_step, delassus.bulk_theta());
-      LawEvaluation<dim> laws(whole, *bodies, energy_scale, control.tolerance);
-      solve(whole, *bodies, laws, all, report);
-    }
-    unsigned int counts[2] = {report.newton, report.krylov};
-    MPI_Bcast(counts, 2, MPI_UNSIGNED, 0, delassus.communicator().mpi());
-    report.newton = counts[0];
-    report.krylov = counts[1];
-    gathered.scatter(all, impulse);
+    SolverReport report;
     evaluation.update(impulse);
+    if (evaluation.error > control.tolerance) {
+      if (delassus.communicator().size() == 1)
+        solve(problem, delassus, impulse, evaluation, report);
+      else {
+        if (!gathered)
+          gathered = std::make_unique<Gathered<dim>>(delassus);
+        const auto whole = gathered->gather(problem);
+        auto all = gathered->gather(impulse);
+        if (auto *bodies = gathered->delassus()) {
+          bodies->reinit(problem.time_step, delassus.bulk_theta());
+          LawEvaluation<dim> laws(whole, *bodies, energy_scale,
+                                  control.tolerance);
+          laws.update(all);
+          solve(whole, *bodies, all, laws, report);
+        }
+        unsigned int counts[2] = {report.newton, report.krylov};
+        MPI_Bcast(counts, 2, MPI_UNSIGNED, 0, delassus.communicator().mpi());
+        report.newton = counts[0];
+        report.krylov = counts[1];
+        gathered->scatter(all, impulse);
+        evaluation.update(impulse);
+      }
+    }
+    report.residual = evaluation.error;
+    report.converged = evaluation.error <= control.tolerance;
+    return report;
   }
 } // namespace nsfd

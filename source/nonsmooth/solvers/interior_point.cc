@@ -27,18 +27,13 @@ namespace nsfd
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
-        SolverReport report;
-        evaluation.update(impulse);
-        if (evaluation.error > control.tolerance) {
-          if (delassus.communicator().size() == 1)
-            follow(problem, delassus, control, impulse, evaluation, report);
-          else
-            follow_gathered(problem, delassus, energy_scale, control, impulse,
-                            evaluation, report);
-        }
-        report.residual = evaluation.error;
-        report.converged = evaluation.error <= control.tolerance;
-        return report;
+        return solve_on_one_rank(gathered_, problem, delassus, energy_scale,
+                                 control, impulse, evaluation,
+                                 [&](const auto &whole, auto &bodies, auto &all,
+                                     auto &laws, auto &report) {
+                                   follow(whole, bodies, control, all, laws,
+                                          report);
+                                 });
       }
 
       /** Whether iterations have failed, so that factors came back. */
@@ -71,24 +66,6 @@ namespace nsfd
                               evaluation, report);
         run(path);
         path.restore();
-      }
-
-      /** On the first rank, with the bodies of all. */
-      void follow_gathered(const OneStepProblem<dim> &problem,
-                           const DelassusOperator<dim> &delassus,
-                           const double energy_scale,
-                           const SolverControl &control,
-                           std::vector<double> &impulse,
-                           LawEvaluation<dim> &evaluation, SolverReport &report)
-      {
-        if (!gathered_)
-          gathered_ = std::make_unique<Gathered<dim>>(delassus);
-        solve_gathered(*gathered_, problem, delassus, energy_scale, control,
-                       impulse, evaluation, report,
-                       [&](const auto &whole, auto &bodies, auto &laws,
-                           auto &all, auto &part) {
-                         follow(whole, bodies, control, all, laws, part);
-                       });
       }
 
       /** Dear parts last; each begins where the one before has come to. */

@@ -25,53 +25,25 @@ namespace nsfd
         if (dynamic_cast<VelocitySolver *>(&delassus))
           return method_.solve(problem, delassus, energy_scale, control,
                                impulse, evaluation);
-        SolverReport report;
-        evaluation.update(impulse);
-        if (evaluation.error > control.tolerance) {
-          if (delassus.communicator().size() == 1)
-            solve_apart(problem, delassus, energy_scale, control, impulse,
-                        evaluation, report);
-          else
-            gather_and_solve(problem, delassus, energy_scale, control, impulse,
-                             evaluation, report);
-        }
-        report.residual = evaluation.error;
-        report.converged = evaluation.error <= control.tolerance;
-        return report;
+        return solve_on_one_rank(gathered_, problem, delassus, energy_scale,
+                                 control, impulse, evaluation,
+                                 [&](const auto &whole, auto &bodies, auto &all,
+                                     auto &laws, auto &report) {
+                                   solve_apart(whole, bodies, energy_scale,
+                                               control, all, laws, report);
+                                 });
       }
 
     private:
-      void gather_and_solve(const OneStepProblem<dim> &problem,
-                            DelassusOperator<dim> &delassus,
-                            const double energy_scale,
-                            const SolverControl &control,
-                            std::vector<double> &impulse,
-                            LawEvaluation<dim> &evaluation,
-                            SolverReport &report)
-      {
-        if (!gathered_)
-          gathered_ = std::make_unique<Gathered<dim>>(delassus);
-        solve_gathered(*gathered_, problem, delassus, energy_scale, control,
-                       impulse, evaluation, report,
-                       [&](const auto &whole, auto &bodies, auto &laws,
-                           auto &all, auto &part) {
-                         laws.update(all);
-                         solve_apart(whole, bodies, energy_scale, control, all,
-                                     laws, part);
-                       });
-      }
-
       void solve_apart(const OneStepProblem<dim> &problem,
                        DelassusOperator<dim> &delassus,
                        const double energy_scale, const SolverControl &control,
                        std::vector<double> &impulse,
                        LawEvaluation<dim> &evaluation, SolverReport &report)
       {
-        constexpr unsigned int all = (1u << dim) - 1u;
         std::vector<char> held(problem.n_points, 0);
         for (const std::size_t i : problem.acting)
-          held[i] = problem.kind[i] == PointKind::prescribed &&
-                    problem.mask[i] == all;
+          held[i] = is_held(problem, i);
         const TiedNodes<dim> ties(delassus, held);
         OneStepProblem<dim> rest = problem;
         rest.acting.erase(std::remove_if(rest.acting.begin(), rest.acting.end(),

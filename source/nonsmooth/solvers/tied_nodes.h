@@ -3,12 +3,21 @@
 #include "delassus/delassus_operator.h"
 #include "discretization/point_places.h"
 #include "linear_algebra/dense_lu.h"
+#include "nonsmooth/one_step_problem.h"
 
 #include <array>
 #include <vector>
 
 namespace nsfd
 {
+  /** All components of the point are prescribed. */
+  template <int dim>
+  bool is_held(const OneStepProblem<dim> &problem, const std::size_t point)
+  {
+    return problem.kind[point] == PointKind::prescribed &&
+           problem.mask[point] == (1u << dim) - 1u;
+  }
+
   /**
    * Unknowns of bodies apart that joints make one. A face whose points are all
    * held in all components holds the nodes of its two sides together, if these
