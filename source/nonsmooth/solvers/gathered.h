@@ -48,23 +48,24 @@ namespace nsfd
   };
 
   /**
-   * For solvers whose factor is serial: nothing if @p impulse is a solution,
-   * else @p solve(problem, bodies, impulse, laws, report) at it, on several
-   * ranks on the first one with the bodies of all, which @p gathered keeps.
-   * Its answer and the counts of its report are those of every rank.
-   * Collective.
+   * For solvers whose factor is serial: nothing if the error at @p impulse is
+   * at most @p enough, else @p solve(problem, bodies, impulse, laws, report) at
+   * it, on several ranks on the first one with the bodies of all, which @p
+   * gathered keeps. Its answer and the counts of its report are those of every
+   * rank. Collective.
    */
   template <int dim, typename Solve>
   SolverReport
   solve_on_one_rank(std::unique_ptr<Gathered<dim>> &gathered,
                     const OneStepProblem<dim> &problem,
                     DelassusOperator<dim> &delassus, const double energy_scale,
-                    const SolverControl &control, std::vector<double> &impulse,
+                    const SolverControl &control, const double enough,
+                    std::vector<double> &impulse,
                     LawEvaluation<dim> &evaluation, const Solve &solve)
   {
     SolverReport report;
     evaluation.update(impulse);
-    if (evaluation.error > control.tolerance) {
+    if (evaluation.error > enough) {
       if (delassus.communicator().size() == 1)
         solve(problem, delassus, impulse, evaluation, report);
       else {

@@ -27,13 +27,13 @@ namespace nsfd
                          std::vector<double> &impulse,
                          LawEvaluation<dim> &evaluation) override
       {
-        return solve_on_one_rank(gathered_, problem, delassus, energy_scale,
-                                 control, impulse, evaluation,
-                                 [&](const auto &whole, auto &bodies, auto &all,
-                                     auto &laws, auto &report) {
-                                   follow(whole, bodies, control, all, laws,
-                                          report);
-                                 });
+        return solve_on_one_rank(
+            gathered_, problem, delassus, energy_scale, control,
+            control.tolerance, impulse, evaluation,
+            [&](const auto &whole, auto &bodies, auto &all, auto &laws,
+                auto &report) {
+              follow(whole, bodies, control, all, laws, report);
+            });
       }
 
       /** Whether iterations have failed, so that factors came back. */

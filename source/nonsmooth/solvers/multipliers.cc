@@ -25,12 +25,16 @@ namespace nsfd
         if (dynamic_cast<VelocitySolver *>(&delassus))
           return method_.solve(problem, delassus, energy_scale, control,
                                impulse, evaluation);
+        // One more step costs little, and what is left adds up: over steps, and
+        // in the rounds of a large motion, which begin near their solution.
+        SolverControl aim = control;
+        aim.tolerance *= 0.1;
         return solve_on_one_rank(gathered_, problem, delassus, energy_scale,
-                                 control, impulse, evaluation,
+                                 control, aim.tolerance, impulse, evaluation,
                                  [&](const auto &whole, auto &bodies, auto &all,
                                      auto &laws, auto &report) {
-                                   solve_apart(whole, bodies, energy_scale,
-                                               control, all, laws, report);
+                                   solve_apart(whole, bodies, energy_scale, aim,
+                                               all, laws, report);
                                  });
       }
 
@@ -53,10 +57,7 @@ namespace nsfd
                           rest.acting.end());
         ApartMotion<dim> motion(rest, delassus, ties);
         method_.set_motion(&motion);
-        // one more step costs little, and what it leaves adds up over steps
-        SolverControl aim = control;
-        aim.tolerance *= 0.1;
-        report = method_.solve(rest, delassus, energy_scale, aim, impulse,
+        report = method_.solve(rest, delassus, energy_scale, control, impulse,
                                evaluation);
         method_.set_motion(nullptr);
         motion.complete(impulse);
