@@ -14,6 +14,8 @@
 namespace nsfd
 {
   template <int dim>
+  class JoinedMotion;
+  template <int dim>
   class NodeJacobi;
   template <int dim>
   class PointNodes;
@@ -79,6 +81,7 @@ namespace nsfd
     std::vector<double> diagonal_blocks(const double *springs = nullptr) const;
 
   private:
+    friend class JoinedMotion<dim>;
     friend class NodeJacobi<dim>;
     friend class PointNodes<dim>;
     friend class TangentMultigrid<dim>;

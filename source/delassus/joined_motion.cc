@@ -189,6 +189,53 @@ namespace nsfd
     return result;
   }
 
+  template <int dim>
+  const NodeClusters &JoinedMotion<dim>::vertices()
+  {
+    auto &matrix = bodies_.matrix();
+    matrix.set_step(bodies_.shares(bodies_.time_step_, bodies_.theta_));
+    return bodies_.jacobi_.vertices(matrix);
+  }
+
+  template <int dim>
+  unsigned int JoinedMotion<dim>::unknowns_per_node() const
+  {
+    return bodies_.matrix().size_;
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::node(const int k,
+                               std::array<double, dim> &inverse_mass,
+                               std::array<double, dim> &velocity) const
+  {
+    const unsigned int n = unknowns_per_node();
+    inverse_mass = velocity = {};
+    for (unsigned int c = 0; c < n; ++c) {
+      inverse_mass[c] = 1. / bodies_.jacobi_.diagonal(std::size_t(k), c);
+      velocity[c] = inverse_mass[c] * residual_[std::size_t(k) * n + c];
+    }
+  }
+
+  template <int dim>
+  void JoinedMotion<dim>::sight(
+      const std::size_t point, std::vector<int> &nodes,
+      std::vector<std::array<double, std::size_t(dim) * dim>> &B) const
+  {
+    const auto &sights = bodies_.matrix().sights_;
+    const unsigned int n = unknowns_per_node();
+    nodes.clear();
+    B.clear();
+    for (std::size_t k = sights.first[point]; k < sights.first[point + 1];
+         ++k) {
+      nodes.push_back(sights.entries[k].block);
+      auto &full = B.emplace_back();
+      full = {};
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int c = 0; c < n; ++c)
+          full[d * dim + c] = sights.entries[k].all[d * n + c];
+    }
+  }
+
   template class JoinedMotion<2>;
   template class JoinedMotion<3>;
 } // namespace nsfd

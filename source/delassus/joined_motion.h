@@ -6,7 +6,7 @@ namespace nsfd
 {
   /** Of bodies that share nodes. */
   template <int dim>
-  class JoinedMotion final : public NodeMotion
+  class JoinedMotion final : public NodeMotion, public VertexMotion<dim>
   {
   public:
     explicit JoinedMotion(JoinedBodies<dim> &bodies) : bodies_(bodies) {}
@@ -41,6 +41,14 @@ namespace nsfd
     }
     void add_to(std::vector<double> &velocity) const override;
     std::vector<double> left_over() const override;
+
+    const NodeClusters &vertices() override;
+    unsigned int unknowns_per_node() const override;
+    void node(int k, std::array<double, dim> &inverse_mass,
+              std::array<double, dim> &velocity) const override;
+    void sight(std::size_t point, std::vector<int> &nodes,
+               std::vector<std::array<double, std::size_t(dim) * dim>> &B)
+        const override;
 
   private:
     using Operator = typename DelassusOperator<dim>::Operator;

@@ -120,26 +120,47 @@ namespace nsfd
   }
 
   template <int dim>
+  void NodeJacobi<dim>::place(const JoinedMatrix<dim> &matrix)
+  {
+    if (placed_)
+      return;
+    size_ = matrix.size_;
+    set_diagonal(matrix);
+    clustered_ = false;
+    placed_ = true;
+    by_vertex_ = false;
+    springs_.clear();
+  }
+
+  template <int dim>
+  void NodeJacobi<dim>::cluster(const JoinedMatrix<dim> &matrix)
+  {
+    if (clustered_)
+      return;
+    clustered_ = true;
+    clusters_ = clusters_of(matrix);
+    const auto &covers = clusters_.covers;
+    by_vertex_ = !communicator_.any(
+        std::any_of(covers.begin(), covers.end(),
+                    [](const char covered) { return !covered; }));
+  }
+
+  template <int dim>
+  const NodeClusters &NodeJacobi<dim>::vertices(const JoinedMatrix<dim> &matrix)
+  {
+    place(matrix);
+    cluster(matrix);
+    return clusters_;
+  }
+
+  template <int dim>
   bool NodeJacobi<dim>::prepare(const JoinedMatrix<dim> &matrix,
                                 const std::vector<double> *const springs,
                                 const bool general)
   {
-    if (!placed_) {
-      size_ = matrix.size_;
-      set_diagonal(matrix);
-      clustered_ = false;
-      placed_ = true;
-      by_vertex_ = false;
-      springs_.clear();
-    }
-    if (springs && !clustered_) {
-      clustered_ = true;
-      clusters_ = clusters_of(matrix);
-      const auto &covers = clusters_.covers;
-      by_vertex_ = !communicator_.any(
-          std::any_of(covers.begin(), covers.end(),
-                      [](const char covered) { return !covered; }));
-    }
+    place(matrix);
+    if (springs)
+      cluster(matrix);
     factor_.reset();
     general_.reset();
     stiffened_.clear();

@@ -34,6 +34,14 @@ namespace nsfd
 
     /** The step or the space of the matrix is another one. */
     void clear() { placed_ = false; }
+    /** Nodes that points couple, where they are few. Collective where the step
+        or the space is another one. */
+    const NodeClusters &vertices(const JoinedMatrix<dim> &matrix);
+    /** The diagonal of M_hat at unknown @p c of own node @p k, of those. */
+    double diagonal(const std::size_t k, const unsigned int c) const
+    {
+      return diagonal_[(k * size_ + c) * size_ + c];
+    }
     /**
      * Of the step that is set in @p matrix; @p springs are null, or positive
      * semidefinite, or not symmetric (@p general: on one rank alone). False: B
@@ -48,6 +56,8 @@ namespace nsfd
 
   private:
     void set_diagonal(const JoinedMatrix<dim> &matrix);
+    void place(const JoinedMatrix<dim> &matrix);
+    void cluster(const JoinedMatrix<dim> &matrix);
     template <unsigned int size>
     void apply_inverses(const double *r, double *z) const;
     NodeClusters clusters_of(const JoinedMatrix<dim> &matrix);

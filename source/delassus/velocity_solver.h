@@ -1,5 +1,8 @@
 #pragma once
 
+#include "node_clusters.h"
+
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -87,6 +90,31 @@ namespace nsfd
     /** p + H^T P - (M_hat - M) w by unknown of the bodies, with all of a node
         at one of its unknowns. Collective. */
     virtual std::vector<double> left_over() const = 0;
+  };
+
+  /**
+   * Of a NodeMotion whose points see the nodes of one vertex alone: these, with
+   * M_hat by its diagonal, while all others stay.
+   */
+  template <int dim>
+  class VertexMotion
+  {
+  public:
+    using Vector = std::array<double, dim>;
+
+    virtual ~VertexMotion() = default;
+    /** Nodes and points of the vertices. Collective where the space of the
+        nodes has changed. */
+    virtual const NodeClusters &vertices() = 0;
+    /** Unknowns of a node: own values k n to (k + 1) n - 1 of node k. */
+    virtual unsigned int unknowns_per_node() const = 0;
+    /** Of a node: the inverse of the diagonal of M_hat, 1/kg, and that times
+        what is left of its momentum, m/s; 0 beyond its unknowns. */
+    virtual void node(int k, Vector &inverse_mass, Vector &velocity) const = 0;
+    /** What is seen at a point: nodes, and B of U = sum B v, dim x dim. */
+    virtual void
+    sight(std::size_t point, std::vector<int> &nodes,
+          std::vector<std::array<double, std::size_t(dim) * dim>> &B) const = 0;
   };
 
   /** What a DelassusOperator of bodies that share nodes can do as well. */

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "node_problem.h"
+#include "nonsmooth/node/node_problem.h"
 #include "nonsmooth/point_law.h"
 
 #include <cstdint>

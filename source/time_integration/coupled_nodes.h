@@ -4,7 +4,7 @@
 #include "rigid_groups.h"
 
 #include "core/order_free_sum.h"
-#include "joined/node_solver.h"
+#include "nonsmooth/node/node_solver.h"
 
 namespace nsfd
 {

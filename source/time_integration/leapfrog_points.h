@@ -4,7 +4,7 @@
 #include "common_balance.h"
 #include "rigid_groups.h"
 
-#include "joined/node_solver.h"
+#include "nonsmooth/node/node_solver.h"
 #include "nonsmooth/one_step_problem.h"
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include "node_stars.h"
 #include "one_point.h"
 
-#include "joined/node_solver.h"
+#include "nonsmooth/node/node_solver.h"
 
 #include <numeric>
 
@@ -13,7 +13,6 @@
 namespace node_test
 {
   using namespace nsfd;
-  using point_law_test::interaction_of;
   using point_law_test::range_of;
 
   /** What a run is like; all others are drawn. */
@@ -252,8 +251,8 @@ namespace node_test
       problem.time_step = 2. * h;
       problem.theta = 0.5;
       problem.rule = CohesionRule::exact;
-      Interaction interaction =
-          interaction_of(setting_.law, setting_.friction, random.below(3));
+      Interaction interaction = point_law_test::interaction_of(
+          setting_.law, setting_.friction, random.below(3));
       interaction.plateau = setting_.plateau;
       problem.interactions = {interaction,
                               point_law_test::contact_only(setting_.friction)};

@@ -310,9 +310,10 @@ namespace point_law_test
     for (unsigned int path = 0; path < 60; ++path) {
       if (testing::Test::HasFailure())
         return;
-      OnePoint<dim> point(interaction_of(law, friction, path % 3),
-                          initial_kind(*law), rule, theta,
-                          0.6 + 0.8 * unit(random), 0.5 + unit(random));
+      OnePoint<dim> point(
+          point_law_test::interaction_of(law, friction, path % 3),
+          initial_kind(*law), rule, theta, 0.6 + 0.8 * unit(random),
+          0.5 + unit(random));
       point.two_sided = !law->extrinsic() && path % 2 == 0;
       if (path % 5 == 4) // against the spring in a step of 0.02
         point.problem.viscosity = {0.2 * unit(random) * law->strength() /

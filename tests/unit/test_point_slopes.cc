@@ -1,4 +1,4 @@
-#include "joined/point_slopes.h"
+#include "nonsmooth/node/point_slopes.h"
 #include "one_point.h"
 
 // Derivatives of the local problem of a point, against differences of its

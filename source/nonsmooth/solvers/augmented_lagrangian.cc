@@ -20,9 +20,6 @@ namespace nsfd
     constexpr double round_off = 1e-15;
     /// a step of Newton's method is long enough
     constexpr double flat = 0.5;
-    /// of the tolerance, of impulses that may stay without any iteration: what
-    /// they lack is the same in every step of bodies at rest, and adds up
-    constexpr double untouched = 1e-4;
     /// steps for the natural map that do not halve its error, of the first
     /// ones, and of those between two stages of the method of multipliers
     constexpr unsigned int patience = 4, between_stages = 0;
@@ -232,75 +229,6 @@ namespace nsfd
             solutions_[i].impulse[c] - impulse_[i * dim + c];
   }
 
-  /**
-   * Full steps of Newton's method for the natural map, from which the method of
-   * multipliers takes over where more than @p most_idle of them lead nowhere:
-   * true if they have solved the problem.
-   */
-  template <int dim>
-  bool AugmentedLagrangian<dim>::jump(const Work &work,
-                                      const unsigned int most_idle)
-  {
-    constexpr double none = std::numeric_limits<double>::infinity();
-    Iterate best = iterate(work);
-    double least = none;
-    std::array<double, 2> before{least, least};
-    unsigned int idle = 0;
-    bool polished = work.motion.balances(lost);
-    for (;;) {
-      soften(work, 1.);
-      answer(work, velocity_);
-      const double defect = errors(work).defect;
-      if (!from_rest_ && work.report.newton == 0 &&
-          defect <= untouched * work.tolerance && !polished) {
-        polish(work); // the impulses are right
-        polished = true;
-        continue;
-      }
-      // a step from rest balances from its first iteration on, if that is exact
-      const bool exact = from_rest_ && !may_be_rough(work);
-      const bool balances =
-          exact ? work.report.newton > 0 : work.motion.balances(enough(work));
-      const double error = balances || exact
-                               ? defect
-                               : std::max(defect, work.motion.imbalance());
-      if (balances &&
-          error <= (work.report.newton == 0 ? untouched : 1.) * work.tolerance)
-        return true;
-      idle = error < 0.5 * least ? 0 : idle + 1;
-      if (error < least && (balances || !exact)) {
-        least = error;
-        best = iterate(work);
-      }
-      const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
-      before = {error, before[0]};
-      if (idle > most_idle || comes_back || !std::isfinite(error) ||
-          work.report.newton >= work.most)
-        break;
-      set_right_side(work);
-      // as far as a step of Newton's method is right; the next one makes good
-      // what is left
-      if (!take_step(work, enough(work),
-                     exact ? 0. : std::min(1e-2, 0.1 * defect)))
-        break;
-    }
-    if (least == none)
-      return false;
-    return_to(work, best);
-    return false;
-  }
-
-  /** dP and dU of the tangents, see NodeMotion. Collective. */
-  template <int dim>
-  bool AugmentedLagrangian<dim>::solve_system(const Work &work,
-                                              const bool symmetric,
-                                              const double tolerance,
-                                              const double share)
-  {
-    return work.motion.solve(tangents_, symmetric, right_side_,
-                             {tolerance, share, defect_}, dP_, dU_);
-  }
-
   /** Downhill; false where there is no such system. Collective. */
   template <int dim>
   bool AugmentedLagrangian<dim>::find_direction(const Work &work)
@@ -309,9 +237,10 @@ namespace nsfd
     set_right_side(work);
     defect_ = right_side_;
     const auto solved = [&](const bool symmetric) {
-      return (from_rest_ ? solve_system(work, symmetric, 0., 0.)
-                         : solve_system(work, symmetric, enough(work),
-                                        of_directions)) &&
+      const double tolerance = from_rest_ ? 0. : enough(work),
+                   share = from_rest_ ? 0. : of_directions;
+      return work.motion.solve(tangents_, symmetric, right_side_,
+                               {tolerance, share, defect_}, dP_, dU_) &&
              slope(work, 0.) <= 0.;
     };
     const bool symmetric = differentiate(work);

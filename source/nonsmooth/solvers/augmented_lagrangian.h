@@ -2,6 +2,7 @@
 
 #include "delassus/velocity_solver.h"
 #include "nonsmooth/solver.h"
+#include "vertex_elimination.h"
 
 namespace nsfd
 {
@@ -27,6 +28,9 @@ namespace nsfd
    * Hestenes 1969, Powell 1969; with friction Alart & Curnier 1991), until the
    * springs carry no more than the tolerance. Springs that are too stiff for
    * the method to get on are replaced by softer ones.
+   *
+   * What goes on round after round at a few points of one vertex is eliminated,
+   * see VertexElimination.
    *
    * Rows with a prescribed velocity are linear, and what is left of them works
    * with their impulses, which in long steps are far larger than what moves:
@@ -91,11 +95,10 @@ namespace nsfd
     void keep_tangents_at_rest(const Work &work);
     void remove_springs(const Work &work);
     bool take_step(const Work &work, double tolerance, double share);
+    double eliminate(const Work &work, double error);
     bool jump(const Work &work, unsigned int most_idle);
     void judge_velocities(const Work &work);
     void hold_rows(const Work &work, double most);
-    bool solve_system(const Work &work, bool symmetric, double tolerance,
-                      double share);
     bool find_direction(const Work &work);
     void advance(const Work &work);
 
@@ -109,5 +112,6 @@ namespace nsfd
     Vector tangents_; ///< T, dim x dim per point
     Vector right_side_, defect_, dP_, dU_;
     Vector moved_; ///< U of a trial
+    VertexElimination<dim> elimination_;
   };
 } // namespace nsfd

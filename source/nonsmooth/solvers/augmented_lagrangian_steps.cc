@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
@@ -19,6 +20,13 @@ namespace nsfd
     /// 1e14 times a mass, round-off is as large as the mass that alone holds a
     /// body which turns about its support
     constexpr double of_supports = 1e-6;
+    /// what a step of Newton's method leaves where it is near its solution
+    constexpr double fast = 0.1;
+    /// of the error, what a point has whose vertex is solved by itself
+    constexpr double of_elimination = 1e-2;
+    /// of the tolerance, of impulses that may stay without any iteration: what
+    /// they lack is the same in every step of bodies at rest, and adds up
+    constexpr double untouched = 1e-4;
     /// what difference quotients leave of their digits
     constexpr double left_to_differences = 1e-5;
     /// of the momenta, as imbalance() measures it
@@ -120,7 +128,8 @@ namespace nsfd
     if (symmetric)
       symmetrise(work, false);
     keep_tangents_at_rest(work);
-    if (!solve_system(work, symmetric, tolerance, share))
+    if (!work.motion.solve(tangents_, symmetric, right_side_,
+                           {tolerance, share, defect_}, dP_, dU_))
       return false;
     for (const std::size_t i : work.problem.acting)
       for (std::size_t k = i * dim; k < (i + 1) * dim; ++k)
@@ -186,6 +195,107 @@ namespace nsfd
     judge_velocities(work);
   }
 
+  /**
+   * The vertices of what @p error, |P - S|_R over |P|_R, consists of, by
+   * themselves, if that leaves less; what is left. Collective.
+   */
+  template <int dim>
+  double AugmentedLagrangian<dim>::eliminate(const Work &work,
+                                             const double error)
+  {
+    auto *const vertices = dynamic_cast<VertexMotion<dim> *>(&work.motion);
+    if (!vertices)
+      return error;
+    std::vector<std::size_t> points;
+    for (const std::size_t i : work.problem.acting) {
+      double square = 0.;
+      for (unsigned int c = 0; c < dim; ++c) {
+        const double defect = impulse_[i * dim + c] - solutions_[i].impulse[c];
+        square += work.evaluation.majorant(i, c) * defect * defect;
+      }
+      if (std::sqrt(square) > of_elimination * error * scale_)
+        points.push_back(i);
+    }
+    const Iterate before = iterate(work);
+    Vector w = before.motion;
+    if (!elimination_.solve(work.problem, *vertices,
+                            work.delassus.communicator(), points, velocity_, w,
+                            impulse_))
+      return error;
+    work.motion.set_motion(w, impulse_, velocity_);
+    const auto judge = [&] {
+      soften(work, 1.);
+      answer(work, velocity_);
+      return errors(work).defect;
+    };
+    const double left = judge();
+    if (left < error)
+      return left;
+    return_to(work, before);
+    return judge();
+  }
+
+  /**
+   * Full steps of Newton's method for the natural map, from which the method of
+   * multipliers takes over where more than @p most_idle of them lead nowhere:
+   * true if they have solved the problem.
+   */
+  template <int dim>
+  bool AugmentedLagrangian<dim>::jump(const Work &work,
+                                      const unsigned int most_idle)
+  {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    Iterate best = iterate(work);
+    double least = none;
+    std::array<double, 2> before{least, least};
+    unsigned int idle = 0;
+    bool polished = work.motion.balances(lost);
+    for (;;) {
+      soften(work, 1.);
+      answer(work, velocity_);
+      double defect = errors(work).defect;
+      if (!from_rest_ && work.report.newton > 0 && defect > work.tolerance &&
+          defect > fast * before[0])
+        defect = eliminate(work, defect);
+      if (!from_rest_ && work.report.newton == 0 &&
+          defect <= untouched * work.tolerance && !polished) {
+        polish(work); // the impulses are right
+        polished = true;
+        continue;
+      }
+      // a step from rest balances from its first iteration on, if that is exact
+      const bool exact = from_rest_ && !may_be_rough(work);
+      const bool balances =
+          exact ? work.report.newton > 0 : work.motion.balances(enough(work));
+      const double error = balances || exact
+                               ? defect
+                               : std::max(defect, work.motion.imbalance());
+      if (balances &&
+          error <= (work.report.newton == 0 ? untouched : 1.) * work.tolerance)
+        return true;
+      idle = error < 0.5 * least ? 0 : idle + 1;
+      if (error < least && (balances || !exact)) {
+        least = error;
+        best = iterate(work);
+      }
+      const bool comes_back = std::abs(error - before[1]) < 1e-2 * error;
+      before = {error, before[0]};
+      if (idle > most_idle || comes_back || !std::isfinite(error) ||
+          work.report.newton >= work.most)
+        break;
+      set_right_side(work);
+      // as far as a step of Newton's method is right; the next one makes good
+      // what is left
+      if (!take_step(work, enough(work),
+                     exact ? 0. : std::min(1e-2, 0.1 * defect)))
+        break;
+    }
+    if (least == none)
+      return false;
+    return_to(work, best);
+    return false;
+  }
+
   /** The natural map at the present velocities and impulses. */
   template <int dim>
   void AugmentedLagrangian<dim>::judge_velocities(const Work &work)
@@ -201,6 +311,7 @@ namespace nsfd
   template bool AugmentedLagrangian<dim>::take_step(const Work &, double,      \
                                                     double);                   \
   template void AugmentedLagrangian<dim>::judge_velocities(const Work &);      \
+  template bool AugmentedLagrangian<dim>::jump(const Work &, unsigned int);    \
   template void AugmentedLagrangian<dim>::hold_rows(const Work &, double)
 
   INSTANTIATE(2);

@@ -101,6 +101,7 @@ namespace nsfd
       const double *frame;
       std::array<int, 2> groups;
       const PointEnds *ends;
+      Vector start; ///< U where the groups have no velocity
       double R, speed;
       bool scalar;                ///< W of the point is R times the identity
       Vector rest;                ///< impulse at which its spring is slack

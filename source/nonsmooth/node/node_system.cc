@@ -60,6 +60,7 @@ namespace nsfd
     added.frame = &frames[i * dim * dim];
     added.groups = point.groups;
     added.ends = point.ends;
+    added.start = point.start;
     added.solution.reach = history(*problem_, i);
     added.solution.damages = false;
     Vector sum{};
@@ -82,6 +83,8 @@ namespace nsfd
                            (*inverse_mass_)[g][d];
         }
     });
+    for (const double U : point.start)
+      speed += std::abs(U);
     // springs compute velocities from jumps
     if (problem_->kind[i] != PointKind::free)
       for (unsigned int c = 0; c < dim; ++c)
@@ -117,8 +120,10 @@ namespace nsfd
   template <int dim>
   void NodeSystem<dim>::answer(Point &point, const bool near_first) const
   {
-    const Vector U = relative_velocity<dim>(point.frame, point.groups,
-                                            velocity_, point.ends);
+    Vector U = relative_velocity<dim>(point.frame, point.groups, velocity_,
+                                      point.ends);
+    for (unsigned int c = 0; c < dim; ++c)
+      U[c] += point.start[c];
     for (unsigned int c = 0; c < dim; ++c)
       point.local[c] =
           U[c] - point.R * (point.impulse[c] -

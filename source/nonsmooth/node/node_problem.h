@@ -56,6 +56,8 @@ namespace nsfd
       /// rest)
       std::array<int, 2> groups;
       const PointEnds *ends = nullptr; ///< in place of these
+      /// U where the groups have no velocity, local frame, m/s
+      std::array<double, dim> start{};
     };
     std::vector<Point> points;
     /// of every group and axis, 1/kg; 0 where the motion is prescribed
