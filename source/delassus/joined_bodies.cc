@@ -119,6 +119,7 @@ namespace nsfd
     this->shares_nodes_ = sharing(this->bonded_);
     conforming_->conform(this->shares_nodes_);
     placed_ = false;
+    jacobi_.clear();
     factor_.set_space(conforming_->space());
     tangent_.set_space(conforming_->space());
     // of several unknowns that are one node, the first
@@ -227,6 +228,7 @@ namespace nsfd
       valid_ = false;
       means_ = Means::unknown;
       tangent_.clear();
+      jacobi_.clear();
     }
     // a step that was resumed has none of the step before: what is counted,
     // and with that when W is condensed, would differ
