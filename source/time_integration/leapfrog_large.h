@@ -100,8 +100,9 @@ namespace nsfd
       if (front.acts())
         front = front_;
     }
-    /** Its forces change so much in the step that the bulk gives or takes what
-        the certificate does not allow; @p largest: energy of the run so far. */
+    /** Forces change so much in the step that the bulk gives what the
+        certificate does not allow, in this step or when it comes back; @p
+        largest: energy of the run so far. */
     bool is_too_long(double largest) const;
     /** No cell was well in a step of this length. */
     void ask_for_shorter_steps() { stiffening_ *= 4.; }
