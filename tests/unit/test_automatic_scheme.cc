@@ -99,8 +99,9 @@ subsection Time
     const std::string text = R"(
 set motion = large
 subsection Mesh
-  set type  = rectangle
-  set cells = 2, 2
+  set type         = rectangle
+  set upper corner = 1, 1
+  set cells        = 2, 2
 end
 subsection Material: stone
   set model   = rigid

@@ -473,7 +473,11 @@ end
     for (unsigned int k = 0; k < 3; ++k)
       scene.step();
     scene.leapfrog->show(scene.state);
-    const auto fragments = measure(scene);
+    Fragments<2> found(*scene.discretization, scene.communicator);
+    found.update(scene.state);
+    const FragmentMotion<2> motion(*scene.discretization, scene.communicator,
+                                   nullptr, scene.leapfrog->initial_state());
+    const auto fragments = motion.measure(scene.state, found);
     ASSERT_EQ(fragments.size(), 2u);
     const double mass = 1000. * M_PI / 4.;
     EXPECT_NEAR(fragments[0].mass, mass, 1e-9 * mass);

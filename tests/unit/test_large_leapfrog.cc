@@ -365,6 +365,7 @@ end
         and what its front viscosity holds comes back when it rebounds. */
     TEST(LargeLeapfrog, FastImpactsGiveLittle)
     {
+      double slow = 0.; // given at the speed before
       for (const double speed : {0.05, 1., 10.}) {
         Steps<2> scene(fmt::format(R"(
 set motion = large
@@ -413,8 +414,13 @@ end
         const double given =
             watch.given[std::size_t(WatchedLine::large_motion)] /
             scene.state.largest_energy;
-        EXPECT_LT(given, speed > 5. ? 1e-3 : 2e-4) << speed;
+        EXPECT_LT(given, 1e-3) << speed; // what the certificate allows
         EXPECT_EQ(rejected > 0, speed > 5.) << speed;
+        // the error of the bulk goes with the strain, and so with the speed;
+        // what a viscosity gives would be the same share of the energy
+        if (speed == 1.)
+          EXPECT_LT(slow, 0.1 * given);
+        slow = given;
       }
     }
   } // namespace
