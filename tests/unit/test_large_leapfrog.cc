@@ -418,8 +418,9 @@ end
         EXPECT_EQ(rejected > 0, speed > 5.) << speed;
         // the error of the bulk goes with the strain, and so with the speed;
         // what a viscosity gives would be the same share of the energy
-        if (speed == 1.)
+        if (speed == 1.) {
           EXPECT_LT(slow, 0.1 * given);
+        }
         slow = given;
       }
     }
