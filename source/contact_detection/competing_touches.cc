@@ -170,8 +170,15 @@ namespace nsfd
               point_lost_[std::size_t(point - points_.begin())] = 1;
               continue;
             }
-            if (std::max(point->gap, pair.gap) > -rounding)
+            if (pair.gap > -rounding)
               continue;
+            if (point->gap > -rounding) {
+              // all of the edge is in front of the facet that ends where it
+              // is said to have come in
+              if (climb > cone_room)
+                pair_lost_[k] = 1;
+              continue;
+            }
             if (pair.gap > point->gap + rounding)
               point_lost_[std::size_t(point - points_.begin())] = 1;
             else

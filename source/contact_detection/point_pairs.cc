@@ -129,30 +129,57 @@ namespace nsfd
         touch.is_kept = touch.is_kept && touch.pair.gap <= 0.;
         return within(touch.pair.gap, depth) &&
                !(touch.pair.gap < -same_length * own.size &&
-                 is_outside(f, y, same_length * own.size));
+                 is_outside(f, y, foot.place, touch.is_kept,
+                            same_length * own.size));
       }
 
       /**
-       * Below a facet, but beyond its end and in front of the next one. In
-       * space edges say so, see settle_touches().
+       * Below a facet, but in front of the next one, beyond the end that they
+       * share or with this next one between the point and the facet: through
+       * the tip of an acute corner. In space edges say so, see
+       * settle_touches().
        */
       bool is_outside(const unsigned int f, const Place<dim> &y,
+                      const Place<dim> &foot, const bool is_kept,
                       const double rounding) const
       {
         if (dim == 3 || next_.empty())
           return false;
         const auto &ends = surfaces_.facets[f].vertex;
-        const auto past = [&](const unsigned int v) {
+        for (unsigned int v = 0; v < 2; ++v) {
+          if (next_[f][v] == NearCandidates::no_facet)
+            continue;
+          const Plane<dim> &next = planes_[next_[f][v]];
+          const double height = dot(next.normal, difference(y, next.centre));
+          if (!(height > rounding))
+            continue;
           const Place<dim> end = place<dim>(x_, ends[v]);
-          return dot(difference(y, end), difference(end, planes_[f].centre)) >
-                 0.;
-        };
-        for (unsigned int v = 0; v < 2; ++v)
-          if (past(v) && next_[f][v] != NearCandidates::no_facet) {
-            const Plane<dim> &next = planes_[next_[f][v]];
-            return dot(next.normal, difference(y, next.centre)) > rounding;
-          }
+          const bool past =
+              dot(difference(y, end), difference(end, planes_[f].centre)) > 0.;
+          // what came in through the facet is held there until it is past it
+          if (past || (!is_kept && crosses(next_[f][v], y, foot)))
+            return true;
+        }
         return false;
+      }
+
+      /** The way from in front of facet @p f to @p foot goes through it. */
+      bool crosses(const unsigned int f, const Place<dim> &y,
+                   const Place<dim> &foot) const
+      {
+        const Plane<dim> &plane = planes_[f];
+        const double height = dot(plane.normal, difference(y, plane.centre)),
+                     of_foot =
+                         dot(plane.normal, difference(foot, plane.centre));
+        if (!(of_foot < 0.))
+          return false;
+        const Place<dim> there =
+            sum(y, height / (height - of_foot), difference(foot, y));
+        const auto &ends = surfaces_.facets[f].vertex;
+        const Place<dim> a = place<dim>(x_, ends[0]),
+                         side = difference(place<dim>(x_, ends[1]), a);
+        const double along = dot(difference(there, a), side);
+        return along >= 0. && along <= dot(side, side);
       }
 
       bool within(const double gap, const double depth) const

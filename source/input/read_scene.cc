@@ -252,7 +252,11 @@ namespace nsfd
       const std::size_t entry = scene->echo.find("set scheme"),
                         value = scene->echo.find("moreau-jean", entry);
       scene->echo.replace(value, std::strlen("moreau-jean"), "auto");
-      if (longest && has_step)
+      // of rigid bodies alone no step is the longest
+      const bool all_rigid =
+          std::all_of(scene->materials.begin(), scene->materials.end(),
+                      [](const MaterialInput &one) { return one.rigid; });
+      if (has_step && (longest || all_rigid))
         choice->given_steps = read({{"scheme", "explicit"}}, of_given);
       choice->longest_steps = std::move(longest);
       scene->automatic = std::move(choice);

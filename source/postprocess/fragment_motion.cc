@@ -4,6 +4,7 @@
 #include "core/gather.h"
 #include "discretization/body_shape.h"
 #include "discretization/cells.h"
+#include "nsfd/scene/scene_input.h"
 
 #include "core/order_free_sum.h"
 
@@ -173,9 +174,13 @@ namespace nsfd
                                       const Communicator &communicator,
                                       const MovingBodies<dim> *moving,
                                       const State &start)
-      : discretization_(discretization), communicator_(communicator),
-        moving_(moving)
+      : discretization_(discretization), communicator_(communicator)
   {
+    const SceneInput &input = discretization.input();
+    if (!moving && input.large_motion && discretization.body_table().n_rigid)
+      own_layout_ =
+          std::make_shared<const BodyLayout<dim>>(input, discretization);
+    layout_ = moving ? &moving->layout() : own_layout_.get();
     mesh_changed(start);
   }
 
@@ -267,12 +272,12 @@ namespace nsfd
   }
 
   template <int dim>
-  auto FragmentMotion<dim>::rigid_body(const std::size_t b,
+  auto FragmentMotion<dim>::rigid_body(const MovingBody &moving,
                                        const State &state) const -> Body
   {
-    const RigidInertia &inertia = moving_->layout()[b].inertia;
+    const RigidInertia &inertia = moving.inertia;
     const RigidState rigid =
-        moving_->rigid_motions().of(state, moving_->layout()[b]);
+        rigid_state(state.rigid.data() + 13 * moving.rigid_number);
     const Mat3 R = rotation(rigid.orientation);
     Body body;
     body.mass = inertia.mass;
@@ -299,18 +304,17 @@ namespace nsfd
     }
     const auto &displacement = has_rigid ? nodal[0] : state.displacement;
     const auto &velocity = has_rigid ? nodal[1] : state.velocity;
-    std::vector<char> seen(moving_ ? moving_->layout().size() : 0, 0);
+    std::vector<char> seen(layout_ ? layout_->size() : 0, 0);
     for (unsigned int c = 0; c < discretization_.bodies().size(); ++c) {
-      if (!moving_ ||
-          !moving_->layout()[moving_->layout().body_of_cell(c)].is_rigid()) {
+      if (!layout_ || !(*layout_)[layout_->body_of_cell(c)].is_rigid()) {
         visit(cell_body(c, displacement, velocity));
         continue;
       }
-      const unsigned int b = moving_->layout().body_of_cell(c);
+      const unsigned int b = layout_->body_of_cell(c);
       if (seen[b])
         continue;
       seen[b] = 1;
-      Body body = rigid_body(b, state);
+      Body body = rigid_body((*layout_)[b], state);
       body.cell = c;
       visit(body);
     }

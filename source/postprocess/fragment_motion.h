@@ -11,7 +11,10 @@
 namespace nsfd
 {
   template <int dim>
+  class BodyLayout;
+  template <int dim>
   class MovingBodies;
+  struct MovingBody;
 
   /**
    * Mass, place, momentum, spin and energy of every fragment, with the mass
@@ -25,7 +28,7 @@ namespace nsfd
   public:
     /**
      * @p start is the state at t = 0: what is broken there is no new surface.
-     * @p moving are the bodies of large motions, or null.
+     * @p moving are the bodies of implicit large motions, or null.
      */
     FragmentMotion(const Discretization<dim> &discretization,
                    const Communicator &communicator,
@@ -47,7 +50,7 @@ namespace nsfd
 
     Body cell_body(unsigned int cell, const std::vector<double> &displacement,
                    const std::vector<double> &velocity) const;
-    Body rigid_body(std::size_t body, const State &state) const;
+    Body rigid_body(const MovingBody &moving, const State &state) const;
     template <typename Visit>
     void for_bodies(const State &state, Visit &&visit) const;
     std::vector<Amounts> amounts(const State &state,
@@ -55,7 +58,10 @@ namespace nsfd
 
     const Discretization<dim> &discretization_;
     const Communicator &communicator_;
-    const MovingBodies<dim> *moving_;
+    /// of explicit steps with rigid bodies of any motion: their mass need not
+    /// be that of their cells
+    std::shared_ptr<const BodyLayout<dim>> own_layout_;
+    const BodyLayout<dim> *layout_; ///< of bodies of large motions, or null
     std::vector<std::vector<double>> masses_; ///< by class, node x node;
                                               ///< none where cells differ()
     std::vector<bool> held_at_start_;         ///< by point: not broken

@@ -48,6 +48,11 @@ namespace nsfd
                        const AutomaticScheme &automatic,
                        const Communicator &communicator)
     {
+      if (!automatic.longest_steps && automatic.given_steps)
+        return {automatic.given_steps.get(),
+                fmt::format("all bodies are rigid, and steps are those of the "
+                            "scene, {}",
+                            engineering(input.time.step, "s"))};
       if (!automatic.longest_steps)
         return {nullptr, automatic.refused};
       Model<dim> model;

@@ -341,9 +341,17 @@ namespace nsfd
     }
     const auto front = forces_->front().finish(communicator_);
     energies.power_after = ghosts_.dot(g, g.force, g.velocity);
-    if (large_)
+    if (large_) {
       large_->take_forces(old.step + 1, h, g, energies);
-    else {
+      if (large_->is_too_long(std::max(old.largest_energy, energies.kinetic))) {
+        forces_before();
+        large_->ask_for_shorter_steps();
+        throw StepRejected(fmt::format(
+            "in the step of {:.4g} s at t = {:.6g} s forces change so much "
+            "that the bodies would get energy from nothing",
+            h, old.time));
+      }
+    } else {
       energies.stored -= before_.front.stored / 2.;
       energies.power += front.before;
       // the part of the kinetic energy that the viscosity holds

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <tuple>
 
 namespace nsfd
 {
@@ -85,6 +86,7 @@ namespace nsfd
         see inverted(). */
     void begin_forces(const double h, const FrontViscosity &front)
     {
+      before_ = {bulk_, stored_, stiffening_, front_held_, flow_};
       forces_.histories().begin_step(h);
       if (front.acts())
         front_ = front;
@@ -94,9 +96,14 @@ namespace nsfd
     void go_back(FrontViscosity &front)
     {
       forces_.histories().go_back();
+      std::tie(bulk_, stored_, stiffening_, front_held_, flow_) = before_;
       if (front.acts())
         front = front_;
     }
+    /** Forces change so much in the step that the bulk gives what the
+        certificate does not allow, in this step or when it comes back; @p
+        largest: energy of the run so far. */
+    bool is_too_long(double largest) const;
     /** No cell was well in a step of this length. */
     void ask_for_shorter_steps() { stiffening_ *= 4.; }
     /** Where a cell is turned inside out; empty: nowhere. */
@@ -106,6 +113,7 @@ namespace nsfd
     void serialize(Archive &archive);
 
   private:
+    void take_front(double held, LeapfrogEnergies &energies);
     std::vector<std::size_t>
     nodes_of_groups(const LeapfrogPoints<dim> &points,
                     const CornerGroups<dim> &groups) const;
@@ -119,6 +127,10 @@ namespace nsfd
     FrontViscosity front_; ///< of the forces that act in the step
     double turned_ = 0.;   ///< see LeapfrogEnergies, until a step is taken, J
     double bulk_ = 0.;     ///< of the last way, which the next step takes, J
+    double front_taken_ = 0.; ///< by the front viscosity in the step, J
+    double front_held_ = 0.;  ///< of the kinetic energy, by the same, J
+    /// what the last forces have changed, as it was before them
+    std::tuple<double, double, double, double, std::array<double, 2>> before_{};
     std::array<double, 2> flow_{};    ///< plastic and viscous, likewise, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;

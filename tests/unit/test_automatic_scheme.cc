@@ -92,6 +92,39 @@ subsection Time
         << scene.scheme_choice;
   }
 
+  // No wave says how long explicit steps of rigid bodies may be: they are those
+  // of the scene.
+  TEST(AutomaticScheme, RigidBodiesTakeTheStepsOfTheScene)
+  {
+    const std::string text = R"(
+set motion = large
+subsection Mesh
+  set type         = rectangle
+  set upper corner = 1, 1
+  set cells        = 2, 2
+end
+subsection Material: stone
+  set model   = rigid
+  set bodies  = connected
+  set density = 1 kg/m^3
+end
+subsection Interface: all
+  set law = joined
+end
+subsection Time
+  set scheme = auto
+  set step   = 0.1 s
+  set end    = 1 s
+end
+)";
+    const SceneInput scene = chosen(text);
+    EXPECT_EQ(scene.time.scheme_name, "explicit");
+    EXPECT_EQ(scene.time.step, 0.1);
+    EXPECT_NE(scene.scheme_choice.find("all bodies are rigid"),
+              std::string::npos)
+        << scene.scheme_choice;
+  }
+
   TEST(AutomaticScheme, WhatIsNotImplicitIsExplicit)
   {
     const auto scene =

@@ -1,4 +1,5 @@
 #include "breaking_plate.h"
+#include "leapfrog_steps.h"
 #include "make_scene.h"
 
 #include "core/order_free_sum.h"
@@ -418,5 +419,74 @@ end
     EXPECT_TRUE(wanted(plane_blocks, {"Interface: cut/law=camacho-ortiz",
                                       "Interface: cut/strength=1",
                                       "Interface: cut/toughness=1"}));
+  }
+
+  /** Explicit steps: a disc has the mass of the disc, not of its cells, and a
+      body the mass that the scene gives. */
+  TEST(FragmentMotion, RigidBodiesOfExplicitStepsHaveTheirOwnMass)
+  {
+    test::Steps<2> scene(R"(
+set dimension = 2
+set motion    = large
+subsection Mesh
+  set type = bodies
+end
+subsection Body: disc
+  set type      = hyper_ball
+  set arguments = 0, 0 : 0.5 : true
+end
+subsection Body: block
+  set type         = rectangle
+  set lower corner = 2, 0
+  set upper corner = 3, 1
+  set cells        = 2, 1
+end
+subsection Material: disc
+  set where   = disc
+  set model   = rigid
+  set bodies  = connected
+  set surface = ball
+  set density = 1000 kg/m^3
+  set initial velocity x = 3
+end
+subsection Material: block
+  set where   = block
+  set model   = rigid
+  set bodies  = connected
+  set density = 1000 kg/m^3
+  set mass    = 50 kg/m
+  set principal inertia = 7 kg*m
+  set initial velocity y = -2
+end
+subsection Interface: inside
+  set law = joined
+end
+subsection Contact: any
+  set between = all
+end
+subsection Time
+  set scheme = explicit
+  set step   = 1 ms
+  set end    = 10 ms
+end
+)");
+    for (unsigned int k = 0; k < 3; ++k)
+      scene.step();
+    scene.leapfrog->show(scene.state);
+    Fragments<2> found(*scene.discretization, scene.communicator);
+    found.update(scene.state);
+    const FragmentMotion<2> motion(*scene.discretization, scene.communicator,
+                                   nullptr, scene.leapfrog->initial_state());
+    const auto fragments = motion.measure(scene.state, found);
+    ASSERT_EQ(fragments.size(), 2u);
+    const double mass = 1000. * M_PI / 4.;
+    EXPECT_NEAR(fragments[0].mass, mass, 1e-9 * mass);
+    EXPECT_NEAR(fragments[0].velocity[0], 3., 1e-12);
+    EXPECT_NEAR(fragments[0].inertia[2][2], mass / 8., 1e-9 * mass);
+    EXPECT_NEAR(fragments[1].mass, 50., 1e-9);
+    EXPECT_NEAR(fragments[1].inertia[2][2], 7., 1e-9);
+    EXPECT_NEAR(fragments[1].velocity[1], -2., 1e-12);
+    EXPECT_NEAR(fragments[0].kinetic + fragments[1].kinetic,
+                scene.state.energy.kinetic, 1e-9 * mass);
   }
 } // namespace nsfd::test_fragment_motion

@@ -359,5 +359,70 @@ end
         EXPECT_TRUE(found);
       }
     }
+
+    /** A block of few cells is thrown against the floor and rings: steps in
+        which its forces change much are rejected until they are short enough,
+        and what its front viscosity holds comes back when it rebounds. */
+    TEST(LargeLeapfrog, FastImpactsGiveLittle)
+    {
+      double slow = 0.; // given at the speed before
+      for (const double speed : {0.05, 1., 10.}) {
+        Steps<2> scene(fmt::format(R"(
+set motion = large
+subsection Mesh
+  set type         = rectangle
+  set lower corner = 0, 0.001
+  set upper corner = 0.3, 0.201
+  set cells        = 3, 2
+end
+subsection Material: rubber
+  set model         = neo-hookean
+  set Young modulus = 5 MPa
+  set Poisson ratio = 0.45
+  set density       = 1100 kg/m^3
+  set initial velocity y = -{}
+end
+subsection Interface: all
+  set law = rigid
+end
+subsection Obstacle: floor
+  set point  = 0, 0
+  set normal = 0, 1
+end
+subsection Time
+  set scheme          = explicit
+  set front viscosity = 0.2
+  set step            = auto
+  set end             = 20 ms
+end
+)",
+                                   speed));
+        double share = 1.;
+        EnergyWatch watch;
+        unsigned int rejected = 0;
+        while (scene.state.time < 0.001 / speed + 0.015) {
+          try {
+            const StepReport report = scene.step(share);
+            ASSERT_LT(report.balance_residual, 1e-12);
+            watch.add(report.changes);
+          } catch (const StepRejected &) {
+            share /= 2.;
+            ASSERT_LT(++rejected, 4u);
+          }
+        }
+        EXPECT_GT(scene.state.energy.impact, 0.);
+        const double given =
+            watch.given[std::size_t(WatchedLine::large_motion)] /
+            scene.state.largest_energy;
+        EXPECT_LT(given, 1e-3) << speed; // what the certificate allows
+        EXPECT_EQ(rejected > 0, speed > 5.) << speed;
+        // the error of the bulk goes with the strain, and so with the speed;
+        // what a viscosity gives would be the same share of the energy
+        if (speed == 1.) {
+          EXPECT_LT(slow, 0.1 * given);
+        }
+        slow = given;
+      }
+    }
   } // namespace
 } // namespace nsfd

@@ -292,4 +292,30 @@ namespace surface_scene::test_surface_edges
       return result;
     });
   }
+
+  /** A brick slides off a table and tips over its end: the corner behind is
+      above the table by less than the search tells from none, and the upright
+      edge there has not come through the end of the table from the side. */
+  TEST(SurfaceEdges, UprightEdgeAboveATable)
+  {
+    for (const double height : {-1e-10, 0., 1e-9, 1e-6}) {
+      Scene<3> scene;
+      add_box(scene, 0, {-2., -1., -1.}, {0., 2., 0.});
+      add_box(scene, 1, {-0.1, 0., 0.}, {1.9, 1., 1.});
+      // about the end of the table, then up
+      for (std::size_t v = 8; v < 16; ++v) {
+        double *x = &scene.x[3 * v];
+        const double a = x[0], b = x[2], c = 0.9999975, s = 0.00223;
+        x[0] = c * a + s * b;
+        x[2] = -s * a + c * b + height - 0.1 * s;
+      }
+      scene.all_points();
+      scene.all_edges();
+      const auto pairs = scene.find(0.2);
+      for (const auto &pair : pairs.edges)
+        EXPECT_GT(std::abs(pair.normal[2]), 0.9) << height;
+      for (const auto &pair : pairs.points)
+        EXPECT_GT(std::abs(pair.normal[2]), 0.9) << height;
+    }
+  }
 } // namespace surface_scene::test_surface_edges

@@ -106,6 +106,24 @@ namespace surface_scene::test_surface_search
     EXPECT_NEAR(pairs.points[0].normal[1], 1., 1e-15);
   }
 
+  // Two acute tips pass each other, flank along flank: the one of body 1 is
+  // 0.2 below the upper side of body 0, where this is thinner.
+  TEST(SurfaceSearch, InFrontOfTheOtherSideOfAnAcuteTip)
+  {
+    Scene<2> scene;
+    add_polygon(scene, 0, {{0., 0.}, {4., -2.3}, {4., 0.}}); // 100 to 102
+    add_polygon(scene, 1, {{0.3, -0.2}, {4.3, -3.6}, {4.3, -2.5}});
+    scene.all_points();
+    EXPECT_EQ(names(scene, scene.find(0.1)),
+              (Names<2>{{1, 100, 105}, {3, 105, 100}}));
+    // what came in through the upper side is held there
+    for (auto &point : scene.surfaces.points)
+      if (point.vertex == 3 && point.facet == 3)
+        point.last_side = 102;
+    const auto held = names(scene, scene.find(0.1));
+    EXPECT_EQ(held.count({3, 103, 102}), 1u);
+  }
+
   // A box has sunk in by 0.03 and rests on its support by 0.02 or 0.04 only:
   // the side of the support is nearer to the corner than its top, or the other
   // way round.
