@@ -44,6 +44,8 @@ namespace nsfd
         });
       }
 
+      bool is_of_points() const override { return true; }
+
     private:
       /** @p visit (body, zone) near points that carry at least a share. */
       template <typename Visit>
