@@ -7,11 +7,13 @@
 
 namespace nsfd
 {
-  LeafView::LeafView(const Bisection &cells, std::vector<Point> points)
-      : points_(std::move(points))
+  LeafView::LeafView(const Bisection &cells, const unsigned int deepest)
   {
-    bodies_.reserve(cells.cells().size());
-    for (const auto &cell : cells.cells()) {
+    for (unsigned int k = 0; k < cells.cells().size(); ++k) {
+      const auto &cell = cells.cells()[k];
+      if (cell.level >= deepest)
+        continue;
+      cell_.push_back(k);
       Body &body = bodies_.emplace_back();
       for (const unsigned int v : cell.vertices)
         for (unsigned int c = 0; c < 2; ++c)

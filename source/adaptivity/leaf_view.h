@@ -8,12 +8,18 @@
 
 namespace nsfd
 {
-  /** What indicators of points and places see of bisected cells. */
+  /** What indicators of points and places see of bisected cells. Those that
+      cannot be halved any more are no bodies of it. */
   class LeafView final : public MeshView
   {
   public:
-    /** @p points that ask for smaller cells. */
-    LeafView(const Bisection &cells, std::vector<Point> points);
+    /** Of cells of less than @p deepest bisections. */
+    LeafView(const Bisection &cells, unsigned int deepest);
+
+    /** The points that ask for smaller cells. */
+    void set_points(std::vector<Point> points) { points_ = std::move(points); }
+    /** Of a body. */
+    unsigned int cell(const std::size_t body) const { return cell_[body]; }
 
     const std::vector<Body> &bodies() const override { return bodies_; }
     const std::vector<Point> &points() const override { return points_; }
@@ -31,6 +37,7 @@ namespace nsfd
     const std::vector<double> &none() const;
 
     std::vector<Body> bodies_;
+    std::vector<unsigned int> cell_;
     std::vector<Point> points_;
   };
 } // namespace nsfd

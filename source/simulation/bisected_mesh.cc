@@ -1,7 +1,6 @@
 #include "bisected_mesh.h"
 
 #include "adaptivity/bisection_transfer.h"
-#include "adaptivity/leaf_view.h"
 #include "adaptivity/mesh_view.h"
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
@@ -93,6 +92,7 @@ namespace nsfd
   State BisectedMesh::restore(const std::vector<std::uint32_t> &ids)
   {
     cells_.restore(ids);
+    view_.reset();
     build();
     return model_.initial_state();
   }
@@ -147,28 +147,31 @@ namespace nsfd
   }
 
   /** False: all cells are small enough. */
-  bool BisectedMesh::refine(const std::vector<MeshView::Point> &points)
+  bool BisectedMesh::refine(std::vector<MeshView::Point> points)
   {
     constexpr double round_off = 1. + 1e-6; // sizes were halved and compared
     const auto &adaptivity = *input_.adaptivity;
+    const unsigned int deepest = 2 * adaptivity.levels;
     bool any = false;
-    for (auto wanted = points;;) {
-      const LeafView view(cells_, wanted);
-      std::vector<double> size(view.bodies().size(),
+    for (;;) {
+      if (!view_)
+        view_ = std::make_unique<LeafView>(cells_, deepest);
+      view_->set_points(points);
+      const auto &bodies = view_->bodies();
+      std::vector<double> size(bodies.size(),
                                std::numeric_limits<double>::max());
       for (const auto &indicator : adaptivity.indicators)
-        indicator->limit(view, size);
-      std::vector<char> marked(size.size(), 0);
+        indicator->limit(*view_, size);
+      std::vector<char> marked(cells_.cells().size(), 0);
       bool more = false;
       for (std::size_t b = 0; b < size.size(); ++b)
-        if (view.bodies()[b].size > size[b] * round_off &&
-            cells_.cells()[b].level < 2 * adaptivity.levels)
-          more = marked[b] = 1;
-      if (!more)
+        if (bodies[b].size > size[b] * round_off)
+          more = marked[view_->cell(b)] = 1;
+      if (!more || !cells_.refine(marked, deepest))
         return any;
-      wanted = and_ahead(adaptivity.ahead, points);
-      if (!cells_.refine(marked, 2 * adaptivity.levels))
-        return any;
+      view_.reset();
+      if (!any)
+        points = and_ahead(adaptivity.ahead, points);
       any = true;
     }
   }

@@ -3,6 +3,7 @@
 #include "mesh_changes.h"
 
 #include "adaptivity/bisection.h"
+#include "adaptivity/leaf_view.h"
 #include "nsfd/adaptivity/indicator.h"
 
 namespace nsfd
@@ -28,7 +29,7 @@ namespace nsfd
 
   private:
     std::vector<MeshView::Point> new_fronts();
-    bool refine(const std::vector<MeshView::Point> &points);
+    bool refine(std::vector<MeshView::Point> points);
     void build();
     void change(State &state);
     double kinetic_energy(const State &state) const;
@@ -38,6 +39,7 @@ namespace nsfd
     Model<2> &model_;
     std::vector<unsigned int> materials_; ///< of the cells of the first mesh
     Bisection cells_;
+    std::unique_ptr<LeafView> view_; ///< of them, or null
     /// by point of the present mesh: hundredths of the strength at which
     /// indicators have been asked
     std::vector<std::uint8_t> asked_;
