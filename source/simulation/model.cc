@@ -165,7 +165,7 @@ namespace nsfd
   template <int dim>
   const OneStepProblem<dim> &Model<dim>::points() const
   {
-    return leapfrog ? leapfrog->points_of_mesh() : stepper->problem();
+    return leapfrog ? leapfrog->parts().constants : stepper->problem();
   }
 
   template <int dim>

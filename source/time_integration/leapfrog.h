@@ -58,20 +58,19 @@ namespace nsfd
 
     /** At t = 0, as the scene gives it; start_from() joins it. */
     State initial_state() const;
-    /** Their constant data. */
-    const OneStepProblem<dim> &points_of_mesh() const
-    {
-      return own_ ? *own_ : all_;
-    }
 
     /** What it consists of. */
     struct Parts {
+      const OneStepProblem<dim> &constants; ///< of the points of the mesh
       const JoinedMesh<dim> &mesh;
       const HangingNodes<dim> &hanging;
       const FaceRelease<dim> &faces;
       const LeapfrogPoints<dim> &points;
     };
-    Parts parts() const { return {mesh_, hanging_, faces_, points_}; }
+    Parts parts() const
+    {
+      return {own_ ? *own_ : all_, mesh_, hanging_, faces_, points_};
+    }
     /** Faces at hanging nodes; nothing: there are none. Collective. */
     std::optional<typename FaceRelease<dim>::Held> held_faces() const
     {
