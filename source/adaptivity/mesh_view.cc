@@ -48,6 +48,26 @@ namespace nsfd
   } // namespace
 
   template <int dim>
+  double cohesive_zone(const SceneInput &input,
+                       const Discretization<dim> &discretization,
+                       const OneStepProblem<dim> &problem, const std::size_t i)
+  {
+    constexpr double pi = 3.14159265358979323846;
+    const auto &points = discretization.points();
+    const auto &interaction = problem.interactions[problem.interaction[i]];
+    const double strength =
+        LawPoint(*interaction.law, problem.strength_factor[i],
+                 problem.opening_factor[i], interaction.plateau)
+            .strength();
+    const double toughness = interaction.law->toughness() *
+                             problem.strength_factor[i] /
+                             problem.opening_factor[i];
+    return 9. * pi / 32. * toughness / (strength * strength) *
+           plane_strain_modulus(input, discretization,
+                                points.faces[points.face_of[i]].bodies);
+  }
+
+  template <int dim>
   StateView<dim>::StateView(const SceneInput &input, const MeshState<dim> &mesh,
                             const std::vector<unsigned int> &levels)
       : input_(input), mesh_(mesh), bodies_(levels.size())
@@ -172,7 +192,6 @@ namespace nsfd
     points_.emplace();
     const auto &points = mesh_.discretization.points();
     const auto &problem = mesh_.problem;
-    constexpr double pi = 3.14159265358979323846;
     for (std::size_t i = 0; i < points.n_points; ++i) {
       const auto &law = problem.interactions[problem.interaction[i]].law;
       if (!law)
@@ -182,12 +201,7 @@ namespace nsfd
         point.position[c] = points.position[i * dim + c];
       point.broken = mesh_.state.beta[i] <= 0.;
       point.utilisation = point.broken ? 0. : utilisation(i);
-      const double strength = point_strength<dim>(problem, i);
-      const double toughness = law->toughness() * problem.strength_factor[i] /
-                               problem.opening_factor[i];
-      point.zone = 9. * pi / 32. * toughness / (strength * strength) *
-                   plane_strain_modulus(input_, mesh_.discretization,
-                                        points.faces[points.face_of[i]].bodies);
+      point.zone = cohesive_zone<dim>(input_, mesh_.discretization, problem, i);
       points_->push_back(point);
     }
     return *points_;
@@ -216,6 +230,10 @@ namespace nsfd
   mean_stresses(const Discretization<2> &, const std::vector<double> &);
   template std::vector<std::array<double, 6>>
   mean_stresses(const Discretization<3> &, const std::vector<double> &);
+  template double cohesive_zone(const SceneInput &, const Discretization<2> &,
+                                const OneStepProblem<2> &, std::size_t);
+  template double cohesive_zone(const SceneInput &, const Discretization<3> &,
+                                const OneStepProblem<3> &, std::size_t);
   template class StateView<2>;
   template class StateView<3>;
 } // namespace nsfd

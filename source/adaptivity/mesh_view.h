@@ -28,6 +28,12 @@ namespace nsfd
   mean_stresses(const Discretization<dim> &discretization,
                 const std::vector<double> &displacement);
 
+  /** 9 pi/32 E' G/R_max^2 of a point with a law that damages, m. */
+  template <int dim>
+  double cohesive_zone(const SceneInput &input,
+                       const Discretization<dim> &discretization,
+                       const OneStepProblem<dim> &problem, std::size_t point);
+
   /** What indicators see; nothing is computed before it is asked for. */
   template <int dim>
   class StateView final : public MeshView

@@ -17,8 +17,13 @@ namespace nsfd
   {
     std::vector<std::uint32_t> cells;
     unsigned int components = 4;
-    if (found.image)
-      found.image->read("mesh/cells", cells, components);
+    if (found.image) {
+      std::vector<double> bisected;
+      if (found.image->read("bisected_mesh/cells", bisected, components))
+        cells.assign(bisected.begin(), bisected.end());
+      else
+        found.image->read("mesh/cells", cells, components);
+    }
     unsigned long long n = cells.size();
     MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, communicator.mpi());
     cells.resize(n);

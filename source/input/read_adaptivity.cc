@@ -10,6 +10,38 @@ namespace nsfd
 {
   namespace
   {
+    /** Parts that do not know triangles that are bisected. */
+    void check_bisection(SectionReader &reader, const SceneInput &scene)
+    {
+      const auto refuse = [&](const bool bad, const std::string &what,
+                              const std::string &advice) {
+        if (bad)
+          reader.error("levels", what, advice);
+      };
+      refuse(scene.dimension == 3,
+             "triangles are bisected, tetrahedra are not yet",
+             "remove the section Adaptivity, or take hexes");
+      for (const MaterialInput &material : scene.materials)
+        refuse(material.rigid || material.graded || material.is_viscous(),
+               fmt::format("cells of material `{}` are not bisected yet: it is "
+                           "rigid, graded or viscous",
+                           material.name),
+               "make it elastic and uniform, or remove the section Adaptivity");
+      for (const InterfaceInput &block : scene.interfaces) {
+        refuse((block.law && !block.law->extrinsic()) ||
+                   block.law_name == "elastic",
+               fmt::format("faces of Interface: {} are springs, and new faces "
+                           "inside a cell that is bisected have none",
+                           block.name),
+               "take an extrinsic law, or remove the section Adaptivity");
+        refuse(block.crack_pressure.has_value(),
+               fmt::format("Interface: {} has a pressure in its cracks, which "
+                           "bisection does not carry on yet",
+                           block.name),
+               "remove it, or the section Adaptivity");
+      }
+    }
+
     /** Parts that do not know a mesh that changes. */
     void check_scene(SectionReader &reader, const SceneInput &scene)
     {
@@ -28,10 +60,14 @@ namespace nsfd
                                   history_dependent_model(scene)),
                       "remove the section Adaptivity, or write model = linear "
                       "elastic");
+      if (scene.time.scheme.at_nodes && has_simplices(scene))
+        return check_bisection(reader, scene);
       refuse(has_simplices(scene),
-             "only meshes of quads and hexes can change: triangles and "
+             "with this scheme only meshes of quads and hexes can change: "
+             "triangles and "
              "tetrahedra have no non-conforming faces",
-             "take such a mesh, or `split simplices = true`");
+             "take such a mesh, `split simplices = true`, or triangles with "
+             "scheme = explicit");
       refuse(
           !scene.time.scheme.at_nodes &&
               std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -107,6 +143,7 @@ namespace nsfd
         reader.integer("levels", "2", 0, 12,
                        "the smallest cell is 2^levels times smaller than that "
                        "of the mesh; 0: the mesh stays as it is");
+    adaptivity.bisects = scene.time.scheme.at_nodes && has_simplices(scene);
     const bool changes = !scene.time.scheme.at_nodes;
     adaptivity.coarsen_every =
         reader.integer("coarsen every steps", changes ? "10" : "0", 0, 1000000,
@@ -114,11 +151,15 @@ namespace nsfd
     if (!changes && adaptivity.coarsen_every > 0)
       reader.error(
           "coarsen every steps",
-          fmt::format("with scheme = explicit the mesh does not change "
-                      "in a run yet: cells would not grow again every "
-                      "{} steps",
+          fmt::format("with scheme = explicit cells do not grow again: not "
+                      "every {} steps",
                       adaptivity.coarsen_every),
           "write 0, or scheme = moreau-jean or symplectic");
+    if (adaptivity.bisects)
+      adaptivity.ahead = reader.number(
+          "ahead", "1", units::none, Range::non_negative(),
+          "of triangles: in cohesive zones, further than the indicators ask "
+          "for, so that the mesh changes seldom");
     adaptivity.constant_modulus =
         reader.choice("springs", "constant modulus",
                       {"constant modulus", "constant stiffness"},
@@ -126,13 +167,21 @@ namespace nsfd
                       "the modulus of the body, or as stiff as the law says") ==
         "constant modulus";
     check_scene(reader, scene);
-    if (adaptivity.constant_modulus)
+    if (adaptivity.constant_modulus && !adaptivity.bisects)
       check_springs(reader, scene);
     for (ParameterSection *block : blocks)
       if (auto indicator = read_indicator(*block, errors))
         adaptivity.indicators.push_back(std::move(indicator));
     const auto &found = adaptivity.indicators;
-    if (!changes &&
+    if (adaptivity.bisects &&
+        !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
+          return indicator->is_of_points();
+        }))
+      reader.error("levels",
+                   "triangles are bisected by indicators that look at points "
+                   "and places alone",
+                   "take indicators of type = process zone or region");
+    if (!changes && !adaptivity.bisects &&
         !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
           return indicator->is_fixed();
         }))

@@ -1,56 +1,40 @@
 #pragma once
 
-#include "model.h"
-
-#include "state/state.h"
-
-#include <map>
-#include <memory>
-#include <string>
+#include "mesh_changes.h"
 
 namespace nsfd
 {
   template <int dim>
   class MeshAdaptor;
-  class Archive;
 
   /**
-   * A mesh that follows the motion: the parts of a model are built again
-   * whenever cells change, and the state goes with them. What a change does to
-   * the stored energies counts as numerical.
+   * Quads and hexes: a step is repeated on the mesh that it needs. What a
+   * change does to the stored energies counts as numerical.
    */
   template <int dim>
-  class AdaptiveMesh
+  class AdaptiveMesh final : public MeshChanges<dim>
   {
   public:
     AdaptiveMesh(const SceneInput &input, const Communicator &communicator,
                  Model<dim> &model);
-    ~AdaptiveMesh();
+    ~AdaptiveMesh() override;
 
-    /** Fine enough for the state at t = 0, which is returned. Collective. */
-    State start();
+    State start() override;
+    State restore(const std::vector<std::uint32_t> &ids) override;
+    void serialize(Archive &archive) override;
 
-    /**
-     * The mesh of a checkpoint from the first one on: ids of all cells of all
-     * ranks, four numbers each. Returns the state at t = 0 there. Collective.
-     */
-    State restore(const std::vector<std::uint32_t> &ids);
+    /** As far as it is looked at: no wave gets further than a quarter of the
+        smallest cell in between. */
+    bool follow(State &state, const State &next) override;
 
-    /** What has been counted so far. Collective. */
-    void serialize(Archive &archive);
+    /** Cells may grow again. */
+    bool accept(State &) override
+    {
+      rounds_ = 0;
+      return false;
+    }
 
-    /**
-     * Whether the mesh is good enough for a step from @p state to @p next, as
-     * far as it is looked at: no wave gets further than a quarter of the
-     * smallest cell in between. If it is not, it changes, with @p state on it,
-     * and the step is to be repeated. Collective.
-     */
-    bool follow(State &state, const State &next);
-
-    /** The step was taken: cells may grow again. */
-    void accept() { rounds_ = 0; }
-
-    void fill_counters(std::map<std::string, double> &counters) const;
+    void fill_counters(std::map<std::string, double> &counters) const override;
 
   private:
     void change(State &state);

@@ -147,7 +147,9 @@ namespace nsfd
     if (!leapfrog)
       return;
     charge_memory("blocks of the bodies");
-    const double share = leapfrog->mass_share();
+    // what frequencies of free cells, squared, are multiplied with at most
+    const double share =
+        communicator.max(leapfrog->parts().hanging.mass_share());
     if (share > 1.) { // masses of nodes that follow others lie differently
       explicit_limit /= share;
       control = dynamic_control(input, 0.);
@@ -163,7 +165,7 @@ namespace nsfd
   template <int dim>
   const OneStepProblem<dim> &Model<dim>::points() const
   {
-    return leapfrog ? leapfrog->points_of_mesh() : stepper->problem();
+    return leapfrog ? leapfrog->parts().constants : stepper->problem();
   }
 
   template <int dim>
@@ -204,6 +206,21 @@ namespace nsfd
   }
 
   template <int dim>
+  void Model<dim>::rebuild_joined(const SceneInput &input,
+                                  const Communicator &communicator,
+                                  const std::vector<unsigned int> &materials)
+  {
+    const auto before = std::move(other); // its counters
+    *discretization = Discretization<dim>(communicator, *triangulation, *groups,
+                                          materials, input);
+    std::vector<std::string> problems;
+    build_integrators(input, communicator, problems);
+    if (!problems.empty())
+      throw std::runtime_error(problems.front());
+    leapfrog->continue_counters(dynamic_cast<const Leapfrog<dim> &>(*before));
+  }
+
+  template <int dim>
   void Model<dim>::build_mesh_parts(const SceneInput &input,
                                     const Communicator &communicator,
                                     std::vector<std::string> &problems)
@@ -212,6 +229,12 @@ namespace nsfd
     if (!problems.empty())
       return;
     groups = std::make_unique<MeshGroups<dim>>(input, *triangulation);
+    if (input.mesh_changes() && input.adaptivity->bisects &&
+        communicator.size() > 1) {
+      problems.push_back("Adaptivity: triangles are bisected on one rank alone "
+                         "yet: start the run without mpirun");
+      return;
+    }
     if (input.adaptivity && !input.mesh_changes())
       refine_by_place(input, *triangulation);
     charge_memory("mesh");

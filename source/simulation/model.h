@@ -73,6 +73,14 @@ namespace nsfd
      */
     void rebuild(const SceneInput &input, const Communicator &communicator);
 
+    /**
+     * The same of joined cells, on a mesh of the present kind. @p materials of
+     * its cells. Collective. @throws std::runtime_error with a sentence.
+     */
+    void rebuild_joined(const SceneInput &input,
+                        const Communicator &communicator,
+                        const std::vector<unsigned int> &materials);
+
     /** Bodies and points are all that a run needs of it. */
     void forget_mesh()
     {

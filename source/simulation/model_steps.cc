@@ -1,3 +1,4 @@
+#include "bisected_mesh.h"
 #include "model.h"
 
 #include "discretization/body_frequency.h"
@@ -91,6 +92,9 @@ namespace nsfd
     }
     if (input.time.scheme.at_nodes)
       explicit_limit = communicator.min(limit_of_cells(input, *discretization));
+    if constexpr (dim == 2)
+      if (input.mesh_changes() && input.adaptivity->bisects)
+        explicit_limit = longest_bisected_step(input, *this);
     compression = compression_of_impact(input, *discretization, communicator);
     const bool quasi_static = input.statics && input.statics->steps;
     // more are a slip of the pen, and are counted in 32 bits

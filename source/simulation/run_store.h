@@ -1,6 +1,6 @@
 #pragma once
 
-#include "adaptive_mesh.h"
+#include "mesh_changes.h"
 #include "run_recorder.h"
 
 #include "checkpoint/checkpoints.h"
@@ -24,7 +24,7 @@ namespace nsfd
     Model<dim> model;
     TimeStepping<dim> steps;
     RunRecorder<dim> recorder;
-    std::unique_ptr<AdaptiveMesh<dim>> adaptive; ///< or null
+    std::unique_ptr<MeshChanges<dim>> adaptive; ///< or null
     State state;
   };
 

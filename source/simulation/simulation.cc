@@ -141,8 +141,7 @@ namespace nsfd
         state_ = model_.initial_state();
         return true;
       }
-      parts_.adaptive =
-          std::make_unique<AdaptiveMesh<dim>>(input_, communicator_, model_);
+      parts_.adaptive = make_mesh_changes(input_, communicator_, model_);
       state_ =
           found ? parts_.adaptive->restore(stored_cells(*found, communicator_))
                 : parts_.adaptive->start();
@@ -247,10 +246,8 @@ namespace nsfd
       if (!adaptive)
         return false;
       const Charge charge(Cost::set_up);
-      if (!adaptive->follow(state_, next)) {
-        adaptive->accept();
+      if (!adaptive->follow(state_, next))
         return false;
-      }
       next = state_;
       recorder_.change_mesh(state_);
       store_->mesh_changed();
@@ -266,8 +263,18 @@ namespace nsfd
       std::swap(state_, next);
       if (steps_.integrator().keeps_motion())
         swap_motion(state_, next); // there is one of it
+      {
+        const Charge charge(Cost::output);
+        recorder_.record(next, state_, report, h); // next: before the step
+      }
+      if (parts_.adaptive) {
+        const Charge charge(Cost::set_up);
+        if (parts_.adaptive->accept(state_)) {
+          recorder_.change_mesh(state_);
+          store_->mesh_changed();
+        }
+      }
       const Charge charge(Cost::output);
-      recorder_.record(next, state_, report, h); // next: before the step
       store_->store_if_due();
     }
 

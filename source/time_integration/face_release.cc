@@ -269,6 +269,21 @@ namespace nsfd
   }
 
   template <int dim>
+  void FaceRelease<dim>::visit_near(
+      const std::function<void(unsigned int, double)> &visit) const
+  {
+    for (std::size_t n = 0; n < near_.site.size(); ++n) {
+      const std::size_t k = near_.site[n];
+      if (sites_.is_released(k))
+        continue;
+      const double share =
+          share_of(k) * std::sqrt(near_.square[n]) / law(k).strength();
+      if (share >= 0.5)
+        visit(sites_[k].first_point, share);
+    }
+  }
+
+  template <int dim>
   auto FaceRelease<dim>::worst_held(const Communicator &communicator) const
       -> Held
   {

@@ -6,6 +6,7 @@
 #include "joined/hanging_nodes.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace nsfd
@@ -54,6 +55,10 @@ namespace nsfd
 
     /** The tractions of the last step. Collective. */
     void serialize(const Communicator &communicator, Archive &archive);
+    /** Of faces that are not released, as far as the last step has looked at
+        them: from half of the strength on. @p visit(first point, share). */
+    void
+    visit_near(const std::function<void(unsigned int, double)> &visit) const;
     /** Mean tractions at intact points in their frames, Pa. */
     void show(const CellForces<dim> &forces,
               std::vector<double> &tractions) const;

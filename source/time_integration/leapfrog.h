@@ -58,16 +58,18 @@ namespace nsfd
 
     /** At t = 0, as the scene gives it; start_from() joins it. */
     State initial_state() const;
-    /** Their constant data. */
-    const OneStepProblem<dim> &points_of_mesh() const
-    {
-      return own_ ? *own_ : all_;
-    }
 
-    /** What frequencies of free cells, squared, are multiplied with at most. */
-    double mass_share() const
+    /** What it consists of. */
+    struct Parts {
+      const OneStepProblem<dim> &constants; ///< of the points of the mesh
+      const JoinedMesh<dim> &mesh;
+      const HangingNodes<dim> &hanging;
+      const FaceRelease<dim> &faces;
+      const LeapfrogPoints<dim> &points;
+    };
+    Parts parts() const
     {
-      return communicator_.max(hanging_.mass_share());
+      return {own_ ? *own_ : all_, mesh_, hanging_, faces_, points_};
     }
     /** Faces at hanging nodes; nothing: there are none. Collective. */
     std::optional<typename FaceRelease<dim>::Held> held_faces() const
@@ -93,6 +95,11 @@ namespace nsfd
       return supports_.reactions();
     }
     void fill_counters(std::map<std::string, double> &counters) const override;
+    /** Of one on another mesh. */
+    void continue_counters(const Leapfrog &before)
+    {
+      counters_ = before.counters_;
+    }
     std::vector<std::pair<std::string, double>> stage_seconds() const override
     {
       return {{"explicit steps", counters_.seconds}};

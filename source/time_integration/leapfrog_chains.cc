@@ -195,7 +195,7 @@ namespace nsfd
 
   template <int dim>
   void LeapfrogChains<dim>::serialize(Archive &archive, const std::size_t n,
-                                      const bool turn)
+                                      const Others &others)
   {
     OneStepProblem<dim> &p = problem;
     const Archive::Part part(archive, "chain");
@@ -222,8 +222,12 @@ namespace nsfd
       store("slip_max", p.slip_max, 1);
     store("compression", p.compression_stiffness, 1);
     store("beta", beta, 1);
-    if (turn) // what a state says of points is along these axes
+    if (others.frames) // what a state says of points is along these axes
       store("frame", frame, dim * dim);
+    if (others.factors) {
+      store("strength_factor", p.strength_factor, 1);
+      store("opening_factor", p.opening_factor, 1);
+    }
   }
 
   template struct LeapfrogChains<2>;

@@ -55,10 +55,14 @@ namespace nsfd
     /** Of the chain of the last step. @p place in @p state of the points of the
         mesh, or unsigned(-1); empty: that of the mesh. */
     void show(State &state, const std::vector<unsigned int> &place) const;
-    /** The other one, of points that have been added, and frames if they @p
-       turn;
-        @p n of the mesh. */
-    void serialize(Archive &archive, std::size_t n, bool turn);
+    /** What may be other than the mesh of a point says. */
+    struct Others {
+      bool frames = false;  ///< in large motions
+      bool factors = false; ///< of halves of faces that were released as one
+    };
+    /** The chain that is not shown, of points that have been added; @p n of the
+        mesh. */
+    void serialize(Archive &archive, std::size_t n, const Others &others);
 
     std::vector<unsigned int> point; ///< of the mesh
     OneStepProblem<dim> problem;

@@ -397,6 +397,15 @@ namespace nsfd
     return communicator.sum(terms);
   }
 
+  template <int dim>
+  void LeapfrogPoints<dim>::serialize(Archive &archive)
+  {
+    const auto &input = discretization_.input();
+    chains_.serialize(archive, discretization_.points().n_points,
+                      {input.large_motion, input.mesh_changes()});
+    count_holds();
+  }
+
   template class LeapfrogPoints<2>;
   template class LeapfrogPoints<3>;
 } // namespace nsfd

@@ -138,12 +138,7 @@ namespace nsfd
 
     const LeapfrogChains<dim> &chains() const { return chains_; }
     /** The chain that is not shown, of points that have been add()ed. */
-    void serialize(Archive &archive)
-    {
-      chains_.serialize(archive, discretization_.points().n_points,
-                        discretization_.input().large_motion);
-      count_holds();
-    }
+    void serialize(Archive &archive);
 
   private:
     using Node = ActiveNode<dim>;

@@ -60,6 +60,14 @@ namespace end_to_end::test_restart
                     "Indicator: near/region=abs(x - 4 um) < 1.5 um && y < 7 um",
                     "Indicator: near/cell size=0.5 um"});
 
+    // halves of faces that soften and of broken ones, before and after
+    const Launch bisected =
+        with(torn, {"Mesh/type=crossed triangles", "Mesh/cells=6, 6",
+                    "Interface: all/strength scatter=0.1", "Time/end=16 ns",
+                    "Adaptivity/levels=2", "Adaptivity/ahead=0.3",
+                    "Indicator: front/type=process zone",
+                    "Indicator: front/cells=2", "Indicator: front/reach=0.5"});
+
     // whatever a step may leave to the next one
     const std::vector<RestartRow> rows = {
         {"breaking", breaking},
@@ -95,6 +103,7 @@ namespace end_to_end::test_restart
          with(torn, {"Mesh/type=crossed triangles", "Mesh/cells=6, 6",
                      "Interface: all/friction=0.3", "Time/end=16 ns"})},
         {"explicit_refined", refined},
+        {"explicit_bisected", bisected},
         {"explicit_viscous",
          with(torn, {"Material: bulk/shear viscosity=20 mPa*s",
                      "Material: bulk/bulk viscosity=50 mPa*s"})},

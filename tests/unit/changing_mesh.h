@@ -203,7 +203,7 @@ namespace nsfd
         next.step = ++looks;
         next.time = looks; // long after the last look
         const bool changed = adaptive->follow(state, next);
-        adaptive->accept();
+        adaptive->accept(state);
         return changed;
       }
 

@@ -77,6 +77,9 @@ namespace nsfd
                        std::vector<double> &size) const = 0;
     /** It looks at MeshView::bodies() alone. */
     virtual bool is_fixed() const { return false; }
+    /** It looks at them and at MeshView::points() alone, each of which asks for
+        smaller cells by itself. */
+    virtual bool is_of_points() const { return is_fixed(); }
   };
 
   using IndicatorRegistry = Registry<Indicator, SectionReader &>;

@@ -14,6 +14,10 @@ namespace nsfd
     /// springs of intrinsic laws on smaller cells: the modulus of the body or
     /// the stiffness of every face stays
     bool constant_modulus = true;
+    /// triangles on joined nodes, see adaptivity/bisection.h
+    bool bisects = false;
+    /// of them: further than the indicators ask for, in cohesive zones
+    double ahead = 1.;
     std::vector<std::shared_ptr<const Indicator>> indicators;
   };
 } // namespace nsfd

@@ -77,7 +77,11 @@ namespace nsfd
     std::shared_ptr<const AutomaticScheme> alternative;
     std::string scheme_choice; ///< what `scheme = auto` has found; or empty
     /** In the run; joined cells of explicit steps are refined before it. */
-    bool mesh_changes() const { return adaptivity && !time.scheme.at_nodes; }
+    /** In the run. */
+    bool mesh_changes() const
+    {
+      return adaptivity && (!time.scheme.at_nodes || adaptivity->bisects);
+    }
     bool has_viscous_bodies() const
     {
       for (const auto &material : materials)

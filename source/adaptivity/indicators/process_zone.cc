@@ -44,6 +44,8 @@ namespace nsfd
         });
       }
 
+      bool is_of_points() const override { return true; }
+
     private:
       /** @p visit (body, zone) near points that carry at least a share. */
       template <typename Visit>
@@ -66,22 +68,38 @@ namespace nsfd
         std::vector<double> here;
         for (const auto &box : boxes)
           here.insert(here.end(), box.begin(), box.end());
-        const std::vector<double> fronts = view.gather(here);
+        const std::vector<double> all = view.gather(here);
+        std::vector<std::array<double, 4>> fronts(all.size() / 4);
+        double largest = 0.;
+        for (std::size_t k = 0; k < fronts.size(); ++k) {
+          std::copy_n(&all[4 * k], 4, fronts[k].begin());
+          largest = std::max(largest, fronts[k][3]);
+        }
+        std::sort(fronts.begin(), fronts.end());
 
         const auto &bodies = view.bodies();
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
+        for (std::size_t b = 0; b < bodies.size() && !fronts.empty(); ++b) {
           const auto &centre = bodies[b].centre;
-          for (std::size_t k = 0; k < fronts.size(); k += 4) {
-            const double zone = fronts[k + 3];
-            // the cell itself may be much larger than the zone
-            const double near = (reach_ + 0.25) * zone + 0.75 * bodies[b].size;
+          // the cell itself may be much larger than the zone
+          const auto reach_of = [&](const double zone) {
+            return (reach_ + 0.25) * zone + 0.75 * bodies[b].size;
+          };
+          const double furthest = reach_of(largest);
+          const auto left_of = [](const auto &front, const double x) {
+            return front[0] < x;
+          };
+          for (auto front = std::lower_bound(fronts.begin(), fronts.end(),
+                                             centre[0] - furthest, left_of);
+               front != fronts.end() && (*front)[0] <= centre[0] + furthest;
+               ++front) {
+            const double near = reach_of((*front)[3]);
             double square = 0.;
             for (unsigned int c = 0; c < 3; ++c) {
-              const double d = centre[c] - fronts[k + c];
+              const double d = centre[c] - (*front)[c];
               square += d * d;
             }
             if (square < near * near)
-              visit(b, zone);
+              visit(b, (*front)[3]);
           }
         }
       }

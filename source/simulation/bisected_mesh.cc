@@ -1,0 +1,283 @@
+#include "bisected_mesh.h"
+
+#include "adaptivity/bisection_transfer.h"
+#include "adaptivity/mesh_view.h"
+#include "discretization/body_frequency.h"
+#include "discretization/cells.h"
+#include "mesh/level_mesh.h"
+#include "nonsmooth/point_law.h"
+
+#include "nsfd/core/archive.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace nsfd
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// steps between two looks: a wave passes a few of the smallest cells
+    constexpr unsigned int between_looks = 4;
+
+    std::vector<unsigned int> materials_of(const SceneInput &input,
+                                           const Model<2> &model)
+    {
+      std::vector<std::string> problems, warnings; // found before
+      return material_indices<2>(input, *model.groups, *model.triangulation,
+                                 problems, warnings);
+    }
+
+    Bisection cells_of(const Model<2> &model)
+    {
+      return Bisection(active_level<2>(*model.triangulation, true));
+    }
+
+    std::vector<unsigned int> of_cells(const std::vector<unsigned int> &first,
+                                       const Bisection &cells)
+    {
+      std::vector<unsigned int> result;
+      result.reserve(cells.cells().size());
+      for (const auto &cell : cells.cells())
+        result.push_back(first[cell.first]);
+      return result;
+    }
+
+    void fill_with(const Bisection &cells, Triangulation<2> &triangulation)
+    {
+      const auto mesh = cells.mesh();
+      triangulation.clear();
+      triangulation.create_triangulation(mesh.vertices, mesh.cells,
+                                         mesh.boundary);
+    }
+
+    /** The points, and those around them that fronts will get to: meshes change
+        seldom. */
+    std::vector<MeshView::Point>
+    and_ahead(const double ahead, const std::vector<MeshView::Point> &points)
+    {
+      constexpr unsigned int n = 12;
+      constexpr double pi = 3.14159265358979323846;
+      auto result = points;
+      for (const auto &point : points)
+        for (unsigned int k = 0; k < n && ahead > 0.; ++k) {
+          auto &one = result.emplace_back(point);
+          one.position[0] += ahead * point.zone * std::cos(2. * pi * k / n);
+          one.position[1] += ahead * point.zone * std::sin(2. * pi * k / n);
+        }
+      return result;
+    }
+  } // namespace
+
+  BisectedMesh::BisectedMesh(const SceneInput &input,
+                             const Communicator &communicator, Model<2> &model)
+      : input_(input), communicator_(communicator), model_(model),
+        materials_(materials_of(input, model)), cells_(cells_of(model))
+  {
+  }
+
+  BisectedMesh::~BisectedMesh() = default;
+
+  State BisectedMesh::start()
+  {
+    refine({});
+    cells_.settle();
+    build();
+    return model_.initial_state();
+  }
+
+  State BisectedMesh::restore(const std::vector<std::uint32_t> &ids)
+  {
+    cells_.restore(ids);
+    view_.reset();
+    build();
+    return model_.initial_state();
+  }
+
+  void BisectedMesh::serialize(Archive &archive)
+  {
+    const Archive::Part part(archive, "bisected_mesh");
+    const auto ids = cells_.ids();
+    std::vector<double> cells(ids.begin(), ids.end());
+    archive.common("cells", cells);
+    archive.numbers("sums", changes_, largest_cells_, cells_sum_, steps_, lost_,
+                    worst_);
+  }
+
+  /** All parts on the present cells. */
+  void BisectedMesh::build()
+  {
+    fill_with(cells_, *model_.triangulation);
+    model_.rebuild_joined(input_, communicator_, of_cells(materials_, cells_));
+    asked_.assign(model_.discretization->points().n_points, 0);
+    largest_cells_ =
+        std::max<unsigned long long>(largest_cells_, cells_.cells().size());
+  }
+
+  /** Points that hold and are near their strength, or nearer to it than they
+      were when indicators were asked. */
+  std::vector<MeshView::Point> BisectedMesh::new_fronts()
+  {
+    std::vector<MeshView::Point> result;
+    const auto &discretization = *model_.discretization;
+    const auto &problem = model_.points();
+    const auto look = [&](const unsigned int i, const double share) {
+      if (!problem.interactions[problem.interaction[i]].law)
+        return;
+      const auto level = std::uint8_t(std::min(100., 100. * share));
+      if (level <= asked_[i])
+        return;
+      asked_[i] = level;
+      auto &point = result.emplace_back();
+      for (unsigned int c = 0; c < 2; ++c)
+        point.position[c] = discretization.points().position[2 * i + c];
+      point.utilisation = share;
+      point.zone = cohesive_zone<2>(input_, discretization, problem, i);
+    };
+    const auto parts = model_.leapfrog->parts();
+    parts.faces.visit_near(look);
+    const auto &chains = parts.points.chains();
+    for (std::size_t a = 0; a < chains.size(); ++a)
+      if (chains.beta[a] > 0. || chains.other.beta[a] > 0.)
+        look(chains.point[a], 1.);
+    return result;
+  }
+
+  /** False: all cells are small enough. */
+  bool BisectedMesh::refine(std::vector<MeshView::Point> points)
+  {
+    constexpr double round_off = 1. + 1e-6; // sizes were halved and compared
+    const auto &adaptivity = *input_.adaptivity;
+    const unsigned int deepest = 2 * adaptivity.levels;
+    bool any = false;
+    for (;;) {
+      if (!view_)
+        view_ = std::make_unique<LeafView>(cells_, deepest);
+      view_->set_points(points);
+      const auto &bodies = view_->bodies();
+      std::vector<double> size(bodies.size(),
+                               std::numeric_limits<double>::max());
+      for (const auto &indicator : adaptivity.indicators)
+        indicator->limit(*view_, size);
+      std::vector<char> marked(cells_.cells().size(), 0);
+      bool more = false;
+      for (std::size_t b = 0; b < size.size(); ++b)
+        if (bodies[b].size > size[b] * round_off)
+          more = marked[view_->cell(b)] = 1;
+      if (!more || !cells_.refine(marked, deepest))
+        return any;
+      view_.reset();
+      if (!any)
+        points = and_ahead(adaptivity.ahead, points);
+      any = true;
+    }
+  }
+
+  bool BisectedMesh::accept(State &state)
+  {
+    ++steps_;
+    cells_sum_ += double(cells_.cells().size());
+    if (state.step % between_looks != 0)
+      return false;
+    const auto fronts = new_fronts();
+    if (fronts.empty() || !refine(fronts))
+      return false;
+    change(state);
+    return true;
+  }
+
+  void BisectedMesh::change(State &state)
+  {
+    model_.leapfrog->show(state);
+    const double before = kinetic_energy(state);
+    // of the old cells: these are kept by the new ones
+    BisectionTransfer transfer(cells_, *model_.discretization,
+                               model_.leapfrog->parts().mesh);
+    model_.leapfrog->serialize(transfer.old_parts());
+    build();
+    transfer.set_mesh(*model_.discretization, model_.leapfrog->parts().mesh);
+    state = transfer.state(state);
+    model_.leapfrog->resume_from(state);
+    model_.leapfrog->serialize(transfer.new_parts());
+    model_.leapfrog->show(state);
+    cells_.settle();
+    const double lost = before - kinetic_energy(state);
+    state.energy.kinetic -= lost;
+    state.energy.numerical += lost;
+    lost_ += lost;
+    worst_ = std::max(worst_, lost / state.largest_energy);
+    ++changes_;
+  }
+
+  double BisectedMesh::kinetic_energy(const State &state) const
+  {
+    const auto &mesh = model_.leapfrog->parts().mesh;
+    std::vector<double> terms(state.velocity.size());
+    for (std::size_t k = 0; k < terms.size(); ++k)
+      terms[k] = mesh.mass(k / 2) * state.velocity[k] * state.velocity[k] / 2.;
+    return communicator_.sum(terms);
+  }
+
+  void
+  BisectedMesh::fill_counters(std::map<std::string, double> &counters) const
+  {
+    counters["mesh_changes"] = changes_;
+    counters["largest_cells"] = double(largest_cells_);
+    counters["mean_cells"] = cells_sum_ / std::max(1., steps_);
+    counters["mesh_change_energy"] = lost_;
+    counters["mesh_change_energy_worst"] = worst_;
+  }
+
+  namespace
+  {
+    using Corners = std::array<Point<2>, 3>;
+
+    /** Gradients of the linear shape functions. */
+    void set_gradients(const Corners &x, BodyShape<2> &shape)
+    {
+      const auto a = x[1] - x[0], b = x[2] - x[0];
+      const double twice = a[0] * b[1] - a[1] * b[0];
+      for (unsigned int i = 0; i < 3; ++i) {
+        const auto side = x[(i + 2) % 3] - x[(i + 1) % 3];
+        shape.gradients[i][0] = -side[1] / twice;
+        shape.gradients[i][1] = side[0] / twice;
+      }
+    }
+
+    /** Over the descendants of a cell: the highest frequency at @p deepest
+        bisections or less. All four shapes are among those of the first five,
+        and come again at half of the size after two more. */
+    void look_at_halves(const Corners &x, const unsigned int level,
+                        const unsigned int deepest, BodyShape<2> &shape,
+                        double &highest)
+    {
+      set_gradients(x, shape);
+      const double scale = std::ldexp(1., int((deepest - level) / 2));
+      if (scale * frequency_bound(shape) > highest)
+        highest = std::max(highest, scale * highest_frequency(shape));
+      if (level == std::min(5u, deepest))
+        return;
+      const Point<2> m = x[1] + (x[2] - x[1]) / 2.;
+      look_at_halves({{m, x[0], x[1]}}, level + 1, deepest, shape, highest);
+      look_at_halves({{m, x[2], x[0]}}, level + 1, deepest, shape, highest);
+    }
+  } // namespace
+
+  double longest_bisected_step(const SceneInput &input, const Model<2> &model)
+  {
+    const Bisection mesh = cells_of(model);
+    const auto &cells = model.discretization->cells();
+    double highest = 0.;
+    for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+      BodyShape<2> shape = *cells.shape(b);
+      Corners x;
+      for (unsigned int k = 0; k < 3; ++k)
+        x[k] = mesh.vertex(mesh.cells()[b].vertices[k]);
+      look_at_halves(x, 0, 2 * input.adaptivity->levels, shape, highest);
+    }
+    return longest_step(highest, input.front_viscosity());
+  }
+} // namespace nsfd
