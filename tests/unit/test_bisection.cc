@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-namespace nsfd
+namespace nsfd::test_bisection
 {
   namespace
   {
@@ -152,7 +152,8 @@ namespace nsfd
       bool is_of_points() const override { return true; }
       static inline unsigned int level = 0;
     };
-    NSFD_REGISTER(IndicatorRegistry, Sometimes, "sometimes (test)", "test", "");
+    NSFD_REGISTER(IndicatorRegistry, Sometimes, "sometimes (test)",
+                  "For tests");
 
     constexpr const char *plate = R"(
 set dimension = 2
@@ -190,9 +191,9 @@ end
 )";
 
     /** Steps on a mesh that changes. */
-    struct Run {
-      explicit Run(const std::string &text,
-                   const std::vector<std::string> &overrides = {})
+    struct BisectedRun {
+      explicit BisectedRun(const std::string &text,
+                           const std::vector<std::string> &overrides = {})
           : input(test::make_input(text, overrides)),
             communicator(MPI_COMM_WORLD)
       {
@@ -253,8 +254,8 @@ end
 
     TEST(Bisection, CarriesBrokenPlates)
     {
-      Run run(plate);
-      const double start = Run::total(run.state.energy);
+      BisectedRun run(plate);
+      const double start = BisectedRun::total(run.state.energy);
       unsigned int changes = 0;
       bool was_open = false;
       for (unsigned int n = 0; run.state.time < 8e-9; ++n) {
@@ -262,7 +263,8 @@ end
           ++Sometimes::level;
         const bool changed = run.step();
         const auto &energy = run.state.energy;
-        ASSERT_NEAR(Run::total(energy), start, 1e-13 * start) << "step " << n;
+        ASSERT_NEAR(BisectedRun::total(energy), start, 1e-13 * start)
+            << "step " << n;
         if (!changed)
           continue;
         ++changes;
@@ -295,10 +297,11 @@ end
       const auto from = text.find("subsection Interface"),
                  to = text.find("subsection Time");
       text.replace(from, to - from, plane);
-      Run run(text, {"Material: bulk/initial velocity x=0",
-                     "Material: bulk/initial velocity y=if(y > 5 um, 1, -1) * "
-                     "(3 + 3 * x / 10 um) * abs(y - 5 um) / 5 um"});
-      const double start = Run::total(run.state.energy);
+      BisectedRun run(
+          text, {"Material: bulk/initial velocity x=0",
+                 "Material: bulk/initial velocity y=if(y > 5 um, 1, -1) * "
+                 "(3 + 3 * x / 10 um) * abs(y - 5 um) / 5 um"});
+      const double start = BisectedRun::total(run.state.energy);
       bool cut = false;
       for (unsigned int n = 0;
            run.state.time < 24e-9 && run.state.broken_area < 10e-6 * 0.999999;
@@ -310,7 +313,7 @@ end
       EXPECT_TRUE(cut);
       EXPECT_NEAR(run.state.broken_area, 10e-6, 1e-17);
       EXPECT_NEAR(run.state.energy.damage, 0.5 * 10e-6, 1e-12 * 0.5 * 10e-6);
-      EXPECT_NEAR(Run::total(run.state.energy), start, 1e-13 * start);
+      EXPECT_NEAR(BisectedRun::total(run.state.energy), start, 1e-13 * start);
     }
 
     TEST(Bisection, RefusesWhatItCannotCarry)
@@ -328,4 +331,4 @@ end
       EXPECT_THROW(test::make_input(energy), std::invalid_argument);
     }
   } // namespace
-} // namespace nsfd
+} // namespace nsfd::test_bisection
