@@ -72,10 +72,11 @@ namespace nsfd
     /** Cells of the first mesh become those of ids(). */
     void restore(const std::vector<std::uint32_t> &ids);
 
-  private:
+    /** An edge by its two vertices, in any order. */
     using Edge = std::uint64_t;
     static Edge edge(unsigned int a, unsigned int b);
 
+  private:
     static Edge cut_edge(const Cell &cell)
     {
       return edge(cell.vertices[1], cell.vertices[2]);

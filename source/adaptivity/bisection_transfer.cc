@@ -10,14 +10,6 @@
 
 namespace nsfd
 {
-  namespace
-  {
-    std::uint64_t key_of(const unsigned int a, const unsigned int b)
-    {
-      return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
-    }
-  } // namespace
-
   /** By name. */
   class BisectionTransfer::Store
   {
@@ -138,7 +130,7 @@ namespace nsfd
       face.block = origin.block;
     if (b < a)
       std::swap(face.points[0], face.points[1]);
-    old_faces_.emplace(key_of(a, b), face);
+    old_faces_.emplace(Bisection::edge(a, b), face);
   }
 
   /** How far it is from the first to the second end of an old edge. */
@@ -167,13 +159,14 @@ namespace nsfd
     // up to the edge of the old mesh that it is a part of
     std::array<unsigned int, 2> edge = {
         {std::min(here[0], here[1]), std::max(here[0], here[1])}};
-    while (old_faces_.count(key_of(edge[0], edge[1])) == 0) {
+    while (old_faces_.count(Bisection::edge(edge[0], edge[1])) == 0) {
       const auto &ends = cells_.ends(edge[1]); // the later one
       if (ends[0] != edge[0] && ends[1] != edge[0])
         return; // inside an old cell
       edge = ends;
     }
-    const auto range = old_faces_.equal_range(key_of(edge[0], edge[1]));
+    const auto range =
+        old_faces_.equal_range(Bisection::edge(edge[0], edge[1]));
     const auto old =
         std::find_if(range.first, range.second, [&](const auto &one) {
           return one.second.kind == origin.kind &&

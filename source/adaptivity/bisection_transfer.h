@@ -89,7 +89,7 @@ namespace nsfd
                               unsigned int width) const;
 
     const Bisection &cells_;
-    std::unordered_multimap<std::uint64_t, OldFace> old_faces_;
+    std::unordered_multimap<Bisection::Edge, OldFace> old_faces_;
     std::vector<double> old_weights_;
     std::vector<Origin> origins_; ///< of the new points
     std::unique_ptr<Store> store_;

@@ -30,7 +30,8 @@ namespace nsfd
 
   /** What acts at a point of this law; no restitution. */
   Interaction interaction_of(std::shared_ptr<const CohesiveLaw> law,
-                             double friction, double friction_exponent);
+                             double friction = 0.,
+                             double friction_exponent = 1.);
 
   /**
    * Drive a point of unit area along a path, one step of the point law

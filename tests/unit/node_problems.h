@@ -251,8 +251,8 @@ namespace node_test
       problem.time_step = 2. * h;
       problem.theta = 0.5;
       problem.rule = CohesionRule::exact;
-      Interaction interaction = point_law_test::interaction_of(
-          setting_.law, setting_.friction, random.below(3));
+      Interaction interaction =
+          interaction_of(setting_.law, setting_.friction, random.below(3));
       interaction.plateau = setting_.plateau;
       problem.interactions = {interaction,
                               point_law_test::contact_only(setting_.friction)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "make_law.h"
+#include "material_point/drive_point.h"
 #include "nonsmooth/point_law.h"
 #include "nsfd/scene/time_input.h"
 
@@ -21,25 +22,13 @@
 namespace point_law_test
 {
   using namespace nsfd;
+  using nsfd::interaction_of;
   using nsfd::test::LawEntries;
   using nsfd::test::make_law;
 
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr CohesionRule rules[] = {
       CohesionRule::exact, CohesionRule::end_point, CohesionRule::end_velocity};
-
-  inline Interaction interaction_of(std::shared_ptr<const CohesiveLaw> law,
-                                    const double friction = 0.,
-                                    const double friction_exponent = 1.)
-  {
-    Interaction interaction;
-    interaction.stiffness_ratio = law->stiffness_ratio();
-    interaction.shear_weight = law->shear_weight();
-    interaction.law = std::move(law);
-    interaction.friction = friction;
-    interaction.friction_exponent = friction_exponent;
-    return interaction;
-  }
 
   inline Interaction contact_only(const double friction)
   {
@@ -310,10 +299,9 @@ namespace point_law_test
     for (unsigned int path = 0; path < 60; ++path) {
       if (testing::Test::HasFailure())
         return;
-      OnePoint<dim> point(
-          point_law_test::interaction_of(law, friction, path % 3),
-          initial_kind(*law), rule, theta, 0.6 + 0.8 * unit(random),
-          0.5 + unit(random));
+      OnePoint<dim> point(interaction_of(law, friction, path % 3),
+                          initial_kind(*law), rule, theta,
+                          0.6 + 0.8 * unit(random), 0.5 + unit(random));
       point.two_sided = !law->extrinsic() && path % 2 == 0;
       if (path % 5 == 4) // against the spring in a step of 0.02
         point.problem.viscosity = {0.2 * unit(random) * law->strength() /

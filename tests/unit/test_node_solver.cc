@@ -205,8 +205,8 @@ namespace node_test::test_node_solver
   TEST(NodeSolver, OnePointIsSolvePoint)
   {
     point_law_test::OnePoint<2> point(
-        point_law_test::interaction_of(point_law_test::camacho_ortiz()),
-        PointKind::rigid, CohesionRule::exact, 0.5);
+        interaction_of(point_law_test::camacho_ortiz()), PointKind::rigid,
+        CohesionRule::exact, 0.5);
     point.prepare();
     const std::vector<double> frames = {0.8, 0.6, -0.6, 0.8};
     for (const double inverse : {1e-3, 1e-2, 0.1, 1., 10.}) {

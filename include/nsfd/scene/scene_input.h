@@ -76,8 +76,7 @@ namespace nsfd
     /// with explicit steps, of a scene that names no scheme; or null
     std::shared_ptr<const AutomaticScheme> alternative;
     std::string scheme_choice; ///< what `scheme = auto` has found; or empty
-    /** In the run; joined cells of explicit steps are refined before it. */
-    /** In the run. */
+    /** In the run; quads and hexes of explicit steps are refined before it. */
     bool mesh_changes() const
     {
       return adaptivity && (!time.scheme.at_nodes || adaptivity->bisects);
