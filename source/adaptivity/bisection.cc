@@ -265,7 +265,10 @@ namespace nsfd
         if (wanted.count(
                 {{cells_[k].first, cells_[k].level, cells_[k].path}}) == 0 &&
             cells_[k].level < 63)
-          coarse = marked[k] = 1;
+          {
+            marked[k] = 1;
+            coarse = true;
+          }
       coarse = coarse && refine(marked);
     }
     settle();
