@@ -165,8 +165,10 @@ namespace nsfd
       std::vector<char> marked(cells_.cells().size(), 0);
       bool more = false;
       for (std::size_t b = 0; b < size.size(); ++b)
-        if (bodies[b].size > size[b] * round_off)
-          more = marked[view_->cell(b)] = 1;
+        if (bodies[b].size > size[b] * round_off) {
+          marked[view_->cell(b)] = 1;
+          more = true;
+        }
       if (!more || !cells_.refine(marked, deepest))
         return any;
       view_.reset();
