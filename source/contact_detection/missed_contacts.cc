@@ -20,7 +20,7 @@ namespace nsfd
   first_missed(const Surfaces<dim> &surfaces, const StepPath &path,
                const std::vector<double> &thickness,
                const std::function<bool(unsigned int)> &is_own,
-               const JoinedBodies &joined)
+               const AreJoined &joined)
   {
     std::optional<MissedContact<dim>> first;
     const SweptSurfaces<dim> swept(surfaces, path, thickness);
@@ -48,7 +48,7 @@ namespace nsfd
                                 const MissedContact<dim> &);                   \
   template std::optional<MissedContact<dim>> first_missed<dim>(                \
       const Surfaces<dim> &, const StepPath &, const std::vector<double> &,    \
-      const std::function<bool(unsigned int)> &, const JoinedBodies &)
+      const std::function<bool(unsigned int)> &, const AreJoined &)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

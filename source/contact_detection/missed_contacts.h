@@ -44,5 +44,5 @@ namespace nsfd
   first_missed(const Surfaces<dim> &surfaces, const StepPath &path,
                const std::vector<double> &thickness,
                const std::function<bool(unsigned int)> &is_own,
-               const JoinedBodies &joined);
+               const AreJoined &joined);
 } // namespace nsfd

@@ -183,7 +183,7 @@ namespace nsfd
     facets_of_points(const Surfaces<dim> &surfaces, const double *x,
                      const std::vector<unsigned int> &order,
                      const BoxTree<dim> &tree, const FacetFilter<dim> &filter,
-                     const OwnBodies &is_own, const JoinedBodies &joined)
+                     const OwnBodies &is_own, const AreJoined &joined)
     {
       IndexLists result;
       result.first.reserve(order.size() + 1);
@@ -231,8 +231,7 @@ namespace nsfd
     template <int dim>
     IndexLists facets_of_balls(const Surfaces<dim> &surfaces, const double *x,
                                const BoxTree<dim> &tree, const double margin,
-                               const OwnBodies &is_own,
-                               const JoinedBodies &joined)
+                               const OwnBodies &is_own, const AreJoined &joined)
     {
       IndexLists result;
       result.first.push_back(0);
@@ -251,7 +250,7 @@ namespace nsfd
     template <int dim>
     IndexLists balls_of_balls(const Surfaces<dim> &surfaces, const double *x,
                               const double margin, const OwnBodies &is_own,
-                              const JoinedBodies &joined)
+                              const AreJoined &joined)
     {
       const auto &balls = surfaces.balls;
       std::vector<typename BoxTree<dim>::Entry> entries;
@@ -292,8 +291,7 @@ namespace nsfd
     IndexLists edges_of_edges(const Surfaces<3> &surfaces, const double *x,
                               const std::vector<Plane<3>> &planes,
                               const double reach, const double skin,
-                              const OwnBodies &is_own,
-                              const JoinedBodies &joined)
+                              const OwnBodies &is_own, const AreJoined &joined)
     {
       const auto &edges = surfaces.edges;
       std::vector<Segment> segments(edges.size());
@@ -383,7 +381,7 @@ namespace nsfd
   search_candidates(const Surfaces<dim> &surfaces, const double *x,
                     const std::vector<Plane<dim>> &planes, const double reach,
                     const double skin, const OwnBodies &is_own,
-                    const JoinedBodies &joined)
+                    const AreJoined &joined)
   {
     NearCandidates result;
     const BoxTree<dim> tree = tree_of_facets<dim>(surfaces, x);
@@ -410,7 +408,7 @@ namespace nsfd
                                const std::vector<Plane<dim>> &);               \
   template NearCandidates search_candidates<dim>(                              \
       const Surfaces<dim> &, const double *, const std::vector<Plane<dim>> &,  \
-      double, double, const OwnBodies &, const JoinedBodies &)
+      double, double, const OwnBodies &, const AreJoined &)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

@@ -29,5 +29,5 @@ namespace nsfd
   search_candidates(const Surfaces<dim> &surfaces, const double *x,
                     const std::vector<Plane<dim>> &planes, double reach,
                     double skin, const OwnBodies &is_own,
-                    const JoinedBodies &joined);
+                    const AreJoined &joined);
 } // namespace nsfd

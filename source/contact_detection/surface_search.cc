@@ -93,7 +93,7 @@ namespace nsfd
 
   template <int dim>
   void SurfaceSearch<dim>::find(const Surfaces<dim> &surfaces, const double *x,
-                                const double reach, const JoinedBodies &joined,
+                                const double reach, const AreJoined &joined,
                                 NearPairs<dim> &pairs)
   {
     set_planes<dim>(surfaces, x, planes_);

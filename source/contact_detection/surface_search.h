@@ -128,7 +128,7 @@ namespace nsfd
   };
 
   /** Bodies that are still joined; asked for two different bodies only. */
-  using JoinedBodies = std::function<bool(unsigned int, unsigned int)>;
+  using AreJoined = std::function<bool(unsigned int, unsigned int)>;
 
   /** List i is entries first[i] to first[i + 1]. */
   struct IndexLists {
@@ -181,7 +181,7 @@ namespace nsfd
      * take 1.5 to 3.5 times as long.
      */
     void find(const Surfaces<dim> &surfaces, const double *x, double reach,
-              const JoinedBodies &joined, NearPairs<dim> &pairs);
+              const AreJoined &joined, NearPairs<dim> &pairs);
 
     /** How often candidates have been searched. */
     std::size_t n_searches() const { return n_searches_; }

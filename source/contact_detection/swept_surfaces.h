@@ -152,7 +152,7 @@ namespace nsfd
   /** Which bodies may miss which others in a step. */
   struct PassingBodies {
     const std::function<bool(unsigned int)> &is_own;
-    const JoinedBodies &joined;
+    const AreJoined &joined;
 
     bool may_touch(const unsigned int a, const unsigned int b) const
     {

@@ -187,7 +187,7 @@ namespace nsfd
 
   double ConformingSolver::n_factor_entries() const
   {
-    return factor_ ? factor_->n_entries() : 0.;
+    return factor_ ? factor_->n_entries() : given_.entries;
   }
 
   void ConformingSolver::prepare(const SparseRows &matrix)
@@ -232,7 +232,15 @@ namespace nsfd
     multigrid_.reset();
     matrix_ = SparseRows();
     new_pattern_ = true;
-    given_ = {std::move(product), std::move(preconditioner)};
+    given_ = {std::move(product), std::move(preconditioner), nullptr, 0.};
+  }
+
+  void ConformingSolver::solve_with(Solution factor, const bool general,
+                                    const double entries)
+  {
+    iterate_with(nullptr, nullptr, general);
+    given_.factor = std::move(factor);
+    given_.entries = entries;
   }
 
   /** P^T b. */
@@ -257,6 +265,8 @@ namespace nsfd
   {
     if (given_.preconditioner)
       given_.preconditioner(r, z);
+    else if (given_.factor)
+      given_.factor(r.data(), z.data());
     else if (factor_)
       factor_->solve(r.data(), z.data());
     else
@@ -311,8 +321,10 @@ namespace nsfd
     krylov::Outcome outcome{0, true};
     if (ties_.any())
       ties_.fold(b_.data());
-    if (product_ || !factor_)
+    if (product_ || !has_factor())
       outcome = iterate(goal);
+    else if (given_.factor)
+      given_.factor(b_.data(), x_.data());
     else
       factor_->solve(b_.data(), x_.data());
     if (ties_.any())

@@ -44,6 +44,14 @@ namespace nsfd
      */
     void iterate_with(Product product, Product preconditioner,
                       bool general = false);
+    /** x = A^{-1} b of own values; collective. */
+    using Solution = std::function<void(const double *b, double *x)>;
+    /**
+     * From now on this factor solves, of a matrix that is symmetric or not
+     * (@p general), until a matrix is prepared; it has so many @p entries.
+     * Collective.
+     */
+    void solve_with(Solution factor, bool general, double entries);
     /**
      * From now on solutions are those of another matrix, symmetric or not, by
      * generalised minimal residuals that what was prepared last preconditions,
@@ -86,7 +94,7 @@ namespace nsfd
                        std::size_t n, double tolerance);
 
     /** What was prepared last has a factor of the whole matrix. */
-    bool has_factor() const { return bool(factor_); }
+    bool has_factor() const { return factor_ || given_.factor; }
     /** Of the factor, 0: there is none on this rank. */
     double n_factor_entries() const;
 
@@ -109,6 +117,8 @@ namespace nsfd
     Product product_; ///< or null
     struct {
       Product product, preconditioner;
+      Solution factor;
+      double entries = 0.;    ///< of it
     } given_;                 ///< by the caller, or null
     bool is_general_ = false; ///< its preconditioner
     std::unique_ptr<Cholesky> factor_;

@@ -11,24 +11,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <tuple>
+#include <utility>
 
 namespace nsfd
 {
+  namespace
+  {
+    /** Of this rank, among those of all. Collective. */
+    long long first_unknown(const Communicator &communicator,
+                            const Bodies &bodies)
+    {
+      const long long mine = static_cast<long long>(bodies.n_dofs());
+      long long sum = 0;
+      MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
+      return sum - mine;
+    }
+  } // namespace
+
   template <int dim>
   JoinedBodies<dim>::JoinedBodies(const Communicator &communicator,
                                   const Bodies &bodies,
                                   const InterfacePoints<dim> &points,
                                   const std::vector<double> &coordinates,
+                                  FixedFaces faces,
                                   const long long largest_factor)
       : JoinedDelassus<dim>(communicator, bodies, points),
-        factor_(communicator, largest_factor), jacobi_(communicator),
-        tangent_(*this, communicator, largest_factor)
+        finest_(*this, first_unknown(communicator, bodies), std::move(faces)),
+        substructures_(finest_), factor_(communicator, largest_factor),
+        jacobi_(communicator),
+        tangent_(*this, finest_, communicator, largest_factor)
   {
-    const long long mine = static_cast<long long>(bodies.n_dofs());
-    long long sum = 0;
-    MPI_Scan(&mine, &sum, 1, MPI_LONG_LONG, MPI_SUM, communicator.mpi());
-    matrix_ = std::make_unique<JoinedMatrix<dim>>(*this, sum - mine);
+    matrix_ = std::make_unique<JoinedMatrix<dim>>(
+        *this, first_unknown(communicator, bodies));
     const SparseAssembly<dim> nodes(communicator, bodies, points, coordinates);
     conforming_ = std::make_unique<ConformingSpace>(
         communicator, dim, nodes.unknowns(), nodes.node_pairs(),
@@ -118,7 +134,9 @@ namespace nsfd
     means_ = Means::unknown;
     this->shares_nodes_ = sharing(this->bonded_);
     conforming_->conform(this->shares_nodes_);
+    set_finest();
     placed_ = false;
+    substructures_.space_changed();
     jacobi_.clear();
     factor_.set_space(conforming_->space());
     tangent_.set_space(conforming_->space());
@@ -130,6 +148,26 @@ namespace nsfd
       if (mine >= 0 && mine < nodes.n_own && representative_[mine] < 0)
         representative_[mine] = int(i);
     }
+  }
+
+  /** Once, where it may be of use, as soon as bonds are known. */
+  template <int dim>
+  void JoinedBodies<dim>::set_finest()
+  {
+    const CoarseSpace &space = conforming_->space();
+    const bool bonds =
+        std::any_of(this->bonded_.begin(), this->bonded_.end(),
+                    [](const std::uint8_t bond) { return bond; });
+    if (finest_.is_set() || !space.ties.empty() ||
+        tangent_.is_too_large(space) || !finest_.may_pay(space.n_global) ||
+        !this->communicator_.any(bonds))
+      return;
+    std::vector<char> joined = finest_.faces().joined;
+    for (std::size_t f = 0; f < joined.size(); ++f)
+      joined[f] = joined[f] && this->shares_nodes_[f];
+    conforming_->conform(joined);
+    finest_.set(space, std::move(joined));
+    conforming_->conform(this->shares_nodes_);
   }
 
   /**
@@ -160,27 +198,33 @@ namespace nsfd
 
   /**
    * Conjugate gradients with blocks on the diagonal are cheaper than factors
-   * where steps are short and unknowns are many. The step of the matrix is the
-   * present one from then on. Collective.
+   * where steps are short and unknowns are many.
    */
   template <int dim>
-  bool JoinedBodies<dim>::iterates() const
+  auto JoinedBodies<dim>::means_of_step() const -> Means
+  {
+    const CoarseSpace &space = conforming_->space();
+    const StepShares shares = this->shares(this->time_step_, this->theta_);
+    if (space.ties.empty() && finest_.pays())
+      return Means::substructures;
+    const long long n = space.n_global;
+    const double stiffest = n <= largest_joined_factor<dim>
+                                ? stiffest_beside_factor
+                                : stiffest_of_iterations;
+    const bool does = n > smallest_of_iterations && space.ties.empty() &&
+                      stiffness_over_mass(this->bodies_, shares,
+                                          this->communicator_) < stiffest;
+    return does ? Means::iterations : Means::factors;
+  }
+
+  /** The step of the matrix is the present one from then on. Collective. */
+  template <int dim>
+  auto JoinedBodies<dim>::means() const -> Means
   {
     matrix().set_step(this->shares(this->time_step_, this->theta_));
-    if (means_ == Means::unknown) {
-      const CoarseSpace &space = conforming_->space();
-      const long long n = space.n_global;
-      const double stiffest = n <= largest_joined_factor<dim>
-                                  ? stiffest_beside_factor
-                                  : stiffest_of_iterations;
-      const bool does =
-          n > smallest_of_iterations && space.ties.empty() &&
-          stiffness_over_mass(this->bodies_,
-                              this->shares(this->time_step_, this->theta_),
-                              this->communicator_) < stiffest;
-      means_ = does ? Means::iterations : Means::factors;
-    }
-    return means_ == Means::iterations;
+    if (means_ == Means::unknown)
+      means_ = means_of_step();
+    return means_;
   }
 
   /** M_hat + H^T T H in the space, @p springs the blocks T; none if empty. */
@@ -237,6 +281,25 @@ namespace nsfd
     DelassusOperator<dim>::reinit(time_step, theta);
   }
 
+  /** The factor of M_hat by substructures. */
+  template <int dim>
+  void JoinedBodies<dim>::factor_border() const
+  {
+    bool done = substructures_.prepare(
+        this->shares(this->time_step_, this->theta_), nullptr);
+    if (done) {
+      substructures_.set_space(conforming_->space(), matrix());
+      done = substructures_.factorise(nullptr, true);
+    }
+    if (!done)
+      throw std::runtime_error("the matrix of the joined bodies is not "
+                               "positive definite to machine precision, or "
+                               "too large for the memory");
+    factor_.solve_with(
+        [this](const double *b, double *x) { substructures_.solve(b, x); },
+        false, substructures_.n_entries());
+  }
+
   /** Factor M_hat if the step or the bonds have changed. */
   template <int dim>
   void JoinedBodies<dim>::update() const
@@ -256,7 +319,10 @@ namespace nsfd
             jacobi_.apply(r, z);
           });
     } else {
-      factor_.prepare(assemble({}));
+      if (condenses())
+        factor_border();
+      else
+        factor_.prepare(assemble({}));
       ++this->counters_.global_factorisations;
     }
     valid_ = true;

@@ -6,6 +6,7 @@
 #include "joined_delassus.h"
 #include "joined_matrix.h"
 #include "node_jacobi.h"
+#include "substructures.h"
 #include "tangent_factor.h"
 #include "velocity_solver.h"
 
@@ -34,7 +35,7 @@ namespace nsfd
     /** As make_joined_delassus(). */
     JoinedBodies(const Communicator &communicator, const Bodies &bodies,
                  const InterfacePoints<dim> &points,
-                 const std::vector<double> &coordinates,
+                 const std::vector<double> &coordinates, FixedFaces faces,
                  long long largest_factor);
 
     void reinit(double time_step, double theta) override;
@@ -57,6 +58,9 @@ namespace nsfd
     opens_with(const std::vector<std::uint8_t> &bonded) override;
     void serialize(Archive &archive) override;
 
+    /** Inner nodes are eliminated: see Substructures. Collective. */
+    bool condenses() const { return means() == Means::substructures; }
+
   protected:
     /// of iterations: the energy balance shows what a product with W leaves
     static constexpr double tight = 1e-12;
@@ -72,7 +76,20 @@ namespace nsfd
 
   private:
     friend JoinedMotion<dim>;
-    bool iterates() const;
+    /// factors, for the rest of a step where iterations have failed, conjugate
+    /// gradients, or factors of the border of Substructures
+    enum class Means {
+      unknown,
+      factors,
+      factors_once,
+      iterations,
+      substructures
+    };
+    Means means() const;
+    bool iterates() const { return means() == Means::iterations; }
+    Means means_of_step() const;
+    void set_finest();
+    void factor_border() const;
     bool factor_tangent(const std::vector<double> &springs, bool general);
     using Goal = ConformingSolver::Goal;
     bool solve_tangent(const std::vector<double> &T, bool symmetric,
@@ -85,12 +102,11 @@ namespace nsfd
     JoinedMatrix<dim> &matrix() const;
 
     mutable std::unique_ptr<JoinedMatrix<dim>> matrix_;
-    mutable bool placed_ = false;     ///< matrix_ is that of the present space
-    mutable ConformingSolver factor_; ///< of M_hat
-    mutable NodeJacobi<dim> jacobi_;  ///< the same, in short steps
-    /// factors, for the rest of a step where iterations have failed, or
-    /// conjugate gradients
-    enum class Means { unknown, factors, factors_once, iterations };
+    mutable bool placed_ = false; ///< matrix_ is that of the present space
+    FinestSpace<dim> finest_;
+    mutable Substructures<dim> substructures_; ///< of M_hat
+    mutable ConformingSolver factor_;          ///< of M_hat
+    mutable NodeJacobi<dim> jacobi_;           ///< the same, in short steps
     mutable Means means_ = Means::unknown;
     TangentFactor<dim> tangent_;
     mutable bool valid_ = false;       ///< factor_

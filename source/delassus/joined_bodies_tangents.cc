@@ -8,7 +8,8 @@
 
 namespace nsfd
 {
-  /** @p general: springs that are not symmetric, for iterations alone. */
+  /** @p general: springs that are not symmetric, for iterations and
+      substructures alone. */
   template <int dim>
   bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &springs,
                                          const bool general)
@@ -17,6 +18,10 @@ namespace nsfd
     if (iterates())
       return tangent_.precondition(matrix(), springs, general);
     ++this->counters_.global_factorisations;
+    if (condenses())
+      return tangent_.factor_border(
+          matrix(), this->shares(this->time_step_, this->theta_), springs,
+          general);
     if (tangent_.has_cycles()) {
       matrix().set_step(this->shares(this->time_step_, this->theta_));
       return tangent_.precondition_by_cycles(matrix(), springs);
@@ -33,9 +38,10 @@ namespace nsfd
   bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
                                         const bool symmetric, const Goal &goal)
   {
-    const bool iterates = this->iterates(),
+    const bool iterates = this->iterates(), condenses = this->condenses(),
                general =
-                   iterates && !symmetric && this->communicator_.size() == 1;
+                   !symmetric &&
+                   (condenses || (iterates && this->communicator_.size() == 1));
     const auto &points = matrix().parting_points();
     std::vector<double> positive;
     if (!symmetric && !general) {
@@ -45,7 +51,7 @@ namespace nsfd
     }
     const std::vector<double> &springs = positive.empty() ? T : positive;
     using Fit = typename TangentFactor<dim>::Fit;
-    const bool cycles = !iterates && tangent_.has_cycles();
+    const bool cycles = !iterates && !condenses && tangent_.has_cycles();
     const auto solved = [&](const bool exact) {
       const Charge charge(Cost::precondition);
       if (exact)
@@ -75,16 +81,18 @@ namespace nsfd
     // a point that changes costs about an iteration, a factor some five of
     // them, blocks on the diagonal some two or, vertex by vertex, none
     Fit fit = tangent_.fit(matrix(), springs,
-                           !iterates             ? 5
+                           condenses   ? tangent_.substructures().worth(5.)
+                           : !iterates ? 5
                            : tangent_.is_cheap() ? 0
                                                  : 2);
-    if (symmetric && tangent_.is_general())
+    if (iterates && symmetric && tangent_.is_general())
       fit = Fit::none; // conjugate gradients need a symmetric one
     if (iterates && symmetric && fit != Fit::none)
       tangent_.iterate_on(matrix(), springs);
     if ((fit != Fit::none &&
-         solved(symmetric && (iterates || fit == Fit::exact))) ||
-        (factor_tangent(springs, general) && solved(symmetric)))
+         solved(fit == Fit::exact ? symmetric || condenses
+                                  : symmetric && iterates)) ||
+        (factor_tangent(springs, general) && solved(symmetric || condenses)))
       return true;
     if (!iterates)
       return false;

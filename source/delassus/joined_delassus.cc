@@ -21,10 +21,10 @@ namespace nsfd
     public:
       Bonded(const Communicator &communicator, const Bodies &bodies,
              const InterfacePoints<dim> &points,
-             const std::vector<double> &coordinates,
+             const std::vector<double> &coordinates, FixedFaces faces,
              const long long largest_factor)
           : JoinedBodies<dim>(communicator, bodies, points, coordinates,
-                              largest_factor),
+                              std::move(faces), largest_factor),
             joined_(communicator, largest_factor)
       {
         joined_.set_space(this->conforming_->space());
@@ -207,11 +207,11 @@ namespace nsfd
   make_joined_delassus(const Communicator &communicator, const Bodies &bodies,
                        const InterfacePoints<dim> &points,
                        const std::string &solver,
-                       const std::vector<double> &coordinates)
+                       const std::vector<double> &coordinates, FixedFaces faces)
   {
     constexpr long long any = std::numeric_limits<long long>::max();
     return std::make_unique<Bonded<dim>>(
-        communicator, bodies, points, coordinates,
+        communicator, bodies, points, coordinates, std::move(faces),
         solver == "direct" ? any
         : solver == "cg"   ? 0
                            : largest_joined_factor<dim>);
@@ -222,9 +222,9 @@ namespace nsfd
   template std::unique_ptr<JoinedDelassus<2>>
   make_joined_delassus<2>(const Communicator &, const Bodies &,
                           const InterfacePoints<2> &, const std::string &,
-                          const std::vector<double> &);
+                          const std::vector<double> &, FixedFaces);
   template std::unique_ptr<JoinedDelassus<3>>
   make_joined_delassus<3>(const Communicator &, const Bodies &,
                           const InterfacePoints<3> &, const std::string &,
-                          const std::vector<double> &);
+                          const std::vector<double> &, FixedFaces);
 } // namespace nsfd

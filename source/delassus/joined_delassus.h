@@ -72,12 +72,12 @@ namespace nsfd
 
   /**
    * M_hat of the motions of the nodes has a factor or is inverted by
-   * iterations. @p solver and @p coordinates as in make_assembled_delassus().
+   * iterations. @p solver and @p coordinates as in make_assembled_delassus();
+   * @p faces are those that stay as they are.
    */
   template <int dim>
-  std::unique_ptr<JoinedDelassus<dim>>
-  make_joined_delassus(const Communicator &communicator, const Bodies &bodies,
-                       const InterfacePoints<dim> &points,
-                       const std::string &solver,
-                       const std::vector<double> &coordinates);
+  std::unique_ptr<JoinedDelassus<dim>> make_joined_delassus(
+      const Communicator &communicator, const Bodies &bodies,
+      const InterfacePoints<dim> &points, const std::string &solver,
+      const std::vector<double> &coordinates, FixedFaces faces);
 } // namespace nsfd

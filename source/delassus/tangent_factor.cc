@@ -12,6 +12,7 @@ namespace nsfd
   {
     space_ = &space;
     solver_.set_space(space);
+    substructures_.space_changed();
     clear();
   }
 
@@ -63,6 +64,26 @@ namespace nsfd
     if (!solver_.try_to_prepare(matrix))
       return false;
     springs_ = springs;
+    return true;
+  }
+
+  template <int dim>
+  bool TangentFactor<dim>::factor_border(const JoinedMatrix<dim> &matrix,
+                                         const StepShares &shares,
+                                         const std::vector<double> &springs,
+                                         const bool general)
+  {
+    clear();
+    if (!substructures_.prepare(shares, springs.data()))
+      return false;
+    substructures_.set_space(*space_, matrix);
+    if (!substructures_.factorise(springs.data(), !general))
+      return false;
+    springs_ = springs;
+    is_general_ = general;
+    solver_.solve_with(
+        [this](const double *b, double *x) { substructures_.solve(b, x); },
+        general, substructures_.n_entries());
     return true;
   }
 

@@ -4,6 +4,7 @@
 #include "delassus_operator.h"
 #include "node_jacobi.h"
 #include "node_values.h"
+#include "substructures.h"
 #include "tangent_multigrid.h"
 
 namespace nsfd
@@ -19,11 +20,12 @@ namespace nsfd
   {
   public:
     TangentFactor(const DelassusOperator<dim> &delassus,
+                  const FinestSpace<dim> &finest,
                   const Communicator &communicator, long long largest_factor)
         : delassus_(delassus), communicator_(communicator),
           largest_factor_(largest_factor),
-          solver_(communicator, largest_factor), jacobi_(communicator),
-          cycles_(communicator)
+          solver_(communicator, largest_factor), substructures_(finest),
+          jacobi_(communicator), cycles_(communicator)
     {
     }
 
@@ -49,15 +51,22 @@ namespace nsfd
             unsigned int few) const;
     /** False: not positive definite. Collective. */
     bool factor(const SparseRows &matrix, const std::vector<double> &springs);
+    /** The same of the border of substructures: @p matrix is that of the space
+        and of the step of @p shares. */
+    bool factor_border(const JoinedMatrix<dim> &matrix,
+                       const StepShares &shares,
+                       const std::vector<double> &springs, bool general);
+    const Substructures<dim> &substructures() const { return substructures_; }
     /** The same for iterations on @p matrix, of short steps; @p general: the
         springs are not symmetric, on one rank. */
     bool precondition(const JoinedMatrix<dim> &matrix,
                       const std::vector<double> &springs, bool general);
 
     /** Multigrid takes the place of factors. */
-    bool has_cycles() const
+    bool has_cycles() const { return is_too_large(*space_); }
+    bool is_too_large(const CoarseSpace &space) const
     {
-      return space_->n_global > largest_factor_ && space_->ties.empty();
+      return space.n_global > largest_factor_ && space.ties.empty();
     }
     /** Conjugate gradients with a new hierarchy from now on; @p springs, T,
         symmetric. False as factor(). Collective. */
@@ -106,6 +115,7 @@ namespace nsfd
     const long long largest_factor_;
     const CoarseSpace *space_ = nullptr;
     ConformingSolver solver_;
+    Substructures<dim> substructures_;
     NodeJacobi<dim> jacobi_;
     TangentMultigrid<dim> cycles_;
     Wear wear_;

@@ -142,6 +142,12 @@ namespace nsfd
     std::vector<double> frames_of_points() const;
   };
 
+  /** By face, what a run never changes. */
+  struct FixedFaces {
+    std::vector<char> joined;   ///< cells are, and no law ever parts them
+    std::vector<char> supports; ///< a motion is prescribed
+  };
+
   /** The bodies of this rank, class by class, in the order of their work. */
   struct BodyOrder {
     struct Members {

@@ -6,6 +6,7 @@
 #include "time_integration/time_scheme.h"
 
 #include "core/cost.h"
+#include "discretization/fixed_faces.h"
 #include "discretization/node_coordinates.h"
 #include "discretization/point_factors.h"
 #include "input/formula_check.h"
@@ -91,7 +92,8 @@ namespace nsfd
           input, *discretization,
           make_joined_delassus<dim>(
               communicator, discretization->bodies(), discretization->points(),
-              input.solver.linear_solver, node_coordinates(*discretization)),
+              input.solver.linear_solver, node_coordinates(*discretization),
+              fixed_faces(*discretization)),
           any_solver ? make_solver<dim>(input, "cascade")
                      : SolverRegistry<dim>::instance().create("cascade"));
     else
@@ -292,7 +294,7 @@ namespace nsfd
     if (input.has_bonded_faces()) {
       auto joined = make_joined_delassus<dim>(
           communicator, bodies, points, input.solver.linear_solver,
-          node_coordinates(*discretization));
+          node_coordinates(*discretization), fixed_faces(*discretization));
       bonded = joined.get();
       delassus = std::move(joined);
       return;

@@ -4,6 +4,7 @@
 #include "step_data.h"
 
 #include "discretization/cells.h"
+#include "discretization/fixed_faces.h"
 #include "discretization/loads.h"
 #include "discretization/node_coordinates.h"
 #include "nsfd/core/archive.h"
@@ -29,7 +30,8 @@ namespace nsfd
                                         discretization.points());
       auto free = make_joined_delassus<dim>(
           communicator, discretization.bodies(), discretization.points(),
-          input.solver.linear_solver, node_coordinates(discretization));
+          input.solver.linear_solver, node_coordinates(discretization),
+          fixed_faces(discretization));
       const auto points = bonded_points(start);
       bonded->set_bonds(points);
       free->set_bonds(points);

@@ -20,7 +20,7 @@ namespace surface_scene
 {
   using namespace nsfd;
 
-  const JoinedBodies apart = [](unsigned int, unsigned int) { return false; };
+  const AreJoined apart = [](unsigned int, unsigned int) { return false; };
 
   template <int dim>
   struct Scene {
@@ -66,7 +66,7 @@ namespace surface_scene
     }
 
     NearPairs<dim> find(const double reach,
-                        const JoinedBodies &joined = apart) const
+                        const AreJoined &joined = apart) const
     {
       SurfaceSearch<dim> search;
       NearPairs<dim> pairs;

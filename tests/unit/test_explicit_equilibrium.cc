@@ -99,12 +99,13 @@ end
     TEST(ExplicitEquilibrium, StaysAtRestWhereMuchComesTogether)
     {
       const double plain = expect_rest<2>(quads);
-      EXPECT_EQ(expect_rest<2>(with(quads, {"Time/front viscosity=0.3",
-                                            "Material: glass/shear viscosity="
-                                            "10 Pa*s",
-                                            "Material: glass/bulk viscosity="
-                                            "10 Pa*s"})),
-                plain);
+      // sums of BLAS may depend on where its vectors begin: the last digits
+      EXPECT_NEAR(expect_rest<2>(with(quads, {"Time/front viscosity=0.3",
+                                              "Material: glass/shear viscosity="
+                                              "10 Pa*s",
+                                              "Material: glass/bulk viscosity="
+                                              "10 Pa*s"})),
+                  plain, 1e-13 * plain);
       const double finer = expect_rest<2>(
           with(quads, {"Adaptivity/levels=1", "Indicator: near/type=region",
                        "Indicator: near/region=x < 5 mm",

@@ -370,7 +370,7 @@ namespace surface_scene::test_surface_candidates
     SurfaceSearch<2> search;
     NearPairs<2> pairs;
     bool are_joined = true;
-    const JoinedBodies joined = [&](unsigned int, unsigned int) {
+    const AreJoined joined = [&](unsigned int, unsigned int) {
       return are_joined;
     };
     search.find(scene.surfaces, scene.x.data(), 0.1, joined, pairs);

@@ -122,7 +122,8 @@ namespace nsfd
     for (const std::size_t i : work.problem.acting)
       for (unsigned int c = 0; c < dim; ++c) {
         rest_[i * dim + c] = impulse_[i * dim + c];
-        compliance_[i * dim + c] = share * work.evaluation.majorant(i, c);
+        compliance_[i * dim + c] =
+            (is_held(work, i) ? 1. : share) * work.evaluation.majorant(i, c);
       }
   }
 
@@ -214,6 +215,8 @@ namespace nsfd
     for (std::size_t a = 0; a < n; ++a)
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t i = work.problem.acting[a], k = i * dim + c;
+        if (is_held(work, i))
+          continue; // it does not move
         terms[a] +=
             dU_[k] * (impulse_[k] + length * dP_[k] - solutions_[i].impulse[c]);
       }
@@ -246,6 +249,7 @@ namespace nsfd
     const bool symmetric = differentiate(work);
     if (symmetric)
       symmetrise(work, false);
+    hold_supports(work);
     if (solved(symmetric))
       return true;
     symmetrise(work, true);
@@ -279,6 +283,10 @@ namespace nsfd
       (value < 0. ? at_low : at_high) = value;
     }
     add<dim>(work.problem.acting, length, dP_, impulse_);
+    for (const std::size_t i : work.problem.acting)
+      if (is_held(work, i))
+        std::copy_n(impulse_.begin() + long(i * dim), dim,
+                    rest_.begin() + long(i * dim));
     work.motion.move(length, impulse_, velocity_);
   }
 

@@ -44,14 +44,12 @@ namespace nsfd
   void AugmentedLagrangian<dim>::remove_springs(const Work &work)
   {
     for (const std::size_t i : work.problem.acting) {
+      if (is_held(work, i))
+        continue;
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
       const bool differences =
           has_difference_quotients(work.problem, i, solutions_[i]);
-      const bool support =
-          from_rest_ && work.problem.kind[i] == PointKind::prescribed;
-      double left = differences ? left_to_differences
-                    : support   ? of_supports
-                                : rigid_;
+      double left = differences ? left_to_differences : rigid_;
       // Points that are more than motions: what each of them carries is known
       // from its own compliance alone, as small as that may be.
       bool gives_way = from_rest_ && !differences;
@@ -78,6 +76,27 @@ namespace nsfd
         r[c] = right[c];
         for (unsigned int d = 0; d < dim; ++d)
           T[c * dim + d] = block[c][d];
+      }
+    }
+  }
+
+  /** T and the right-hand side of supports: the same T in every step. */
+  template <int dim>
+  void AugmentedLagrangian<dim>::hold_supports(const Work &work)
+  {
+    const auto &problem = work.problem;
+    for (const std::size_t i : problem.acting) {
+      if (!is_held(work, i))
+        continue;
+      double *T = &tangents_[i * dim * dim];
+      std::fill_n(T, dim * dim, 0.);
+      for (unsigned int c = 0; c < dim; ++c) {
+        const std::size_t k = i * dim + c;
+        if (!(problem.mask[i] & (1u << c)))
+          continue;
+        T[c * dim + c] = 1. / (of_supports * work.evaluation.majorant(i, c));
+        right_side_[k] =
+            T[c * dim + c] * (problem.given_velocity[k] - velocity_[k]);
       }
     }
   }
@@ -125,6 +144,7 @@ namespace nsfd
     defect_ = right_side_;
     const bool symmetric = differentiate(work);
     remove_springs(work);
+    hold_supports(work);
     if (symmetric)
       symmetrise(work, false);
     keep_tangents_at_rest(work);
@@ -308,6 +328,7 @@ namespace nsfd
 
 #define INSTANTIATE(dim)                                                       \
   template void AugmentedLagrangian<dim>::remove_springs(const Work &);        \
+  template void AugmentedLagrangian<dim>::hold_supports(const Work &);         \
   template bool AugmentedLagrangian<dim>::take_step(const Work &, double,      \
                                                     double);                   \
   template void AugmentedLagrangian<dim>::judge_velocities(const Work &);      \

@@ -1,0 +1,211 @@
+#include "substructures.h"
+
+#include "core/gather.h"
+
+#include <cmath>
+#include <utility>
+
+namespace nsfd
+{
+  template <int dim>
+  FinestSpace<dim>::FinestSpace(const DelassusOperator<dim> &delassus,
+                                const long long first_dof, FixedFaces faces)
+      : delassus_(delassus), first_dof_(first_dof), faces_(std::move(faces))
+  {
+  }
+
+  template <int dim>
+  bool FinestSpace<dim>::may_pay(const long long unknowns) const
+  {
+    const auto &points = delassus_.points();
+    unsigned long long seeing = 0;
+    for (std::size_t f = 0; f < points.faces.size(); ++f)
+      if (!faces_.joined[f] && !faces_.supports[f])
+        seeing += points.faces[f].count;
+    // a node of a plane is seen by four points, or by two in two dimensions
+    return double(delassus_.communicator().sum_integer(seeing)) * dim <
+           0.5 * double(unknowns);
+  }
+
+  template <int dim>
+  void FinestSpace<dim>::set(const CoarseSpace &space, std::vector<char> joined)
+  {
+    space_ = space;
+    joined_ = std::move(joined);
+    JoinedMatrix<dim> matrix(delassus_, first_dof_);
+    matrix.set_space(space_, joined_);
+    border_ = matrix.seen_unknowns(
+        [this](const std::size_t point) { return !is_support(point); });
+    const auto border =
+        delassus_.communicator().sum_integer(static_cast<unsigned long long>(
+            std::count(border_.begin(), border_.end(), 1)));
+    pays_ = border <= largest && double(border) < 0.2 * double(space.n_global);
+  }
+
+  template <int dim>
+  SparseRows FinestSpace<dim>::assemble(const StepShares &shares,
+                                        const double *supports) const
+  {
+    JoinedMatrix<dim> matrix(delassus_, first_dof_);
+    matrix.set_space(space_, joined_);
+    matrix.set_step(shares);
+    return matrix.assemble(supports);
+  }
+
+  namespace
+  {
+    /** But for the last digits. */
+    bool same(const std::vector<double> &a, const std::vector<double> &b)
+    {
+      constexpr double round_off = 1e-14;
+      return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                        [](const double x, const double y) {
+                          return std::abs(x - y) <= round_off * std::abs(x);
+                        });
+    }
+  } // namespace
+
+  template <int dim>
+  Substructures<dim>::Substructures(const FinestSpace<dim> &finest)
+      : finest_(finest), dissection_(finest.delassus().communicator())
+  {
+  }
+
+  template <int dim>
+  bool Substructures<dim>::prepare(const StepShares &shares,
+                                   const double *springs)
+  {
+    constexpr std::size_t n = std::size_t(dim) * dim;
+    const auto &points = finest_.delassus().points();
+    const auto &communicator = finest_.delassus().communicator();
+    std::vector<double> here;
+    for (std::size_t i = 0; i < points.n_points; ++i)
+      if (springs && finest_.is_support(i))
+        here.insert(here.end(), springs + i * n, springs + (i + 1) * n);
+    if (!communicator.any(shares.stiffness != shares_.stiffness ||
+                          shares.damping != shares_.damping ||
+                          !same(here, of_supports_)))
+      return true;
+    std::vector<double> all;
+    if (springs) {
+      all.assign(points.n_points * n, 0.);
+      for (std::size_t i = 0; i < points.n_points; ++i)
+        if (finest_.is_support(i))
+          std::copy_n(springs + i * n, n, &all[i * n]);
+    }
+    shares_ = {-1.};
+    matrix_ = nullptr;
+    const SparseRows rows =
+        finest_.assemble(shares, springs ? all.data() : nullptr);
+    if ((!is_analysed_ && !dissection_.analyse(rows, finest_.border())) ||
+        !dissection_.eliminate(rows))
+      return false;
+    is_analysed_ = true;
+    shares_ = shares;
+    of_supports_ = std::move(here);
+    return true;
+  }
+
+  template <int dim>
+  void Substructures<dim>::set_space(const CoarseSpace &space,
+                                     const JoinedMatrix<dim> &matrix)
+  {
+    if (matrix_)
+      return;
+    matrix_ = &matrix;
+    factor_.clear();
+    // own unknowns of the finest space in the present one
+    const CoarseSpace &finest = finest_.space();
+    std::vector<long long> name(std::size_t(finest.n_own), -1);
+    for (std::size_t i = 0; i < finest.number.size(); ++i) {
+      const long long k = finest.number[i] - finest.first;
+      if (k >= 0 && k < finest.n_own)
+        name[std::size_t(k)] = space.number[i];
+    }
+    Dissection::Places places;
+    std::vector<long long> common;
+    for (std::size_t k = 0; k < name.size(); ++k)
+      if (dissection_.number()[k] < 0)
+        places.inner.push_back(int(name[k] - space.first));
+      else
+        common.push_back(name[k]);
+    common = gather_all(finest_.delassus().communicator(), common);
+    std::vector<long long> merged = common;
+    std::sort(merged.begin(), merged.end());
+    merged.erase(std::unique(merged.begin(), merged.end()), merged.end());
+    const auto place = [&](const long long of) {
+      const auto found = std::lower_bound(merged.begin(), merged.end(), of);
+      return found != merged.end() && *found == of ? int(found - merged.begin())
+                                                   : -1;
+    };
+    for (const long long of : common)
+      places.merged.push_back(place(of));
+    places.n_merged = int(merged.size());
+    for (std::size_t k = 0; k < merged.size(); ++k)
+      if (merged[k] >= space.first && merged[k] < space.first + space.n_own)
+        places.own.emplace_back(int(k), int(merged[k] - space.first));
+    place_.clear();
+    for (const long long of : matrix.first_of_blocks())
+      place_.push_back(place(of));
+    const std::size_t n = merged.size();
+    condensed_.assign(n * n, 0.);
+    dissection_.for_terms([&](const int r, const int c, const double value) {
+      const auto row = std::size_t(places.merged[std::size_t(r)]),
+                 column = std::size_t(places.merged[std::size_t(c)]);
+      // an entry off the diagonal stands for two, which may meet on it
+      condensed_[std::min(row, column) * n + std::max(row, column)] +=
+          row == column && r != c ? 2. * value : value;
+    });
+    dissection_.set_places(std::move(places));
+  }
+
+  template <int dim>
+  bool Substructures<dim>::factorise(const double *springs,
+                                     const bool symmetric)
+  {
+    const auto &communicator = finest_.delassus().communicator();
+    const auto n = std::size_t(n_border());
+    const bool shared = springs && communicator.size() > 1;
+    std::vector<double> A;
+    if (shared)
+      A.assign(n * n, 0.);
+    else
+      A = condensed_;
+    if (springs)
+      matrix_->for_springs(
+          springs,
+          [this](const std::size_t point) {
+            return !finest_.is_support(point);
+          },
+          [&](const int row, const unsigned int k, const int column,
+              const unsigned int l, const double value) {
+            A[std::size_t(place_[std::size_t(column)] + int(l)) * n +
+              std::size_t(place_[std::size_t(row)] + int(k))] += value;
+          });
+    if (shared) {
+      MPI_Allreduce(MPI_IN_PLACE, A.data(), int(A.size()), MPI_DOUBLE, MPI_SUM,
+                    communicator.mpi());
+      for (std::size_t k = 0; k < A.size(); ++k)
+        A[k] += condensed_[k];
+    }
+    if (!symmetric)
+      for (std::size_t c = 1; c < n; ++c)
+        for (std::size_t r = 0; r < c; ++r)
+          A[c * n + r] += condensed_[r * n + c];
+    return !communicator.any(
+        !factor_.factorise(std::move(A), int(n), symmetric));
+  }
+
+  template <int dim>
+  void Substructures<dim>::solve(const double *b, double *x)
+  {
+    dissection_.forward(b, right_);
+    factor_.solve(right_.data());
+    dissection_.backward(right_, x);
+  }
+
+  template class FinestSpace<2>;
+  template class FinestSpace<3>;
+  template class Substructures<2>;
+  template class Substructures<3>;
+} // namespace nsfd

@@ -1,0 +1,122 @@
+#pragma once
+
+#include "delassus_operator.h"
+#include "joined_matrix.h"
+
+#include "linear_algebra/dense_factor.h"
+#include "linear_algebra/dissection.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace nsfd
+{
+  /**
+   * The space of bodies that share nodes at faces that are joined for ever, and
+   * nowhere else: whatever opens, its inner nodes, which no point but those of
+   * supports sees, stay what they are. The others are its border.
+   */
+  template <int dim>
+  class FinestSpace
+  {
+  public:
+    /** @p first_dof as of JoinedMatrix. */
+    FinestSpace(const DelassusOperator<dim> &delassus, long long first_dof,
+                FixedFaces faces);
+
+    const FixedFaces &faces() const { return faces_; }
+    /** The border may be small beside so many @p unknowns. Collective. */
+    bool may_pay(long long unknowns) const;
+    /** @p space has common nodes at @p joined faces alone. Collective. */
+    void set(const CoarseSpace &space, std::vector<char> joined);
+    bool is_set() const { return !space_.number.empty(); }
+    /** The border is small: a dense factor of it costs less than a sparse one
+        of all. */
+    bool pays() const { return pays_; }
+
+    const CoarseSpace &space() const { return space_; }
+    /** By own unknown: of the border. */
+    const std::vector<char> &border() const { return border_; }
+    /** M_hat of a step and the springs @p supports, the blocks T by point, or
+        null. Collective. */
+    SparseRows assemble(const StepShares &shares, const double *supports) const;
+    const DelassusOperator<dim> &delassus() const { return delassus_; }
+    bool is_support(const std::size_t point) const
+    {
+      return faces_.supports[delassus_.points().face_of[point]];
+    }
+
+  private:
+    /// unknowns: their matrix has 128 MB
+    static constexpr unsigned long long largest = 4000;
+
+    const DelassusOperator<dim> &delassus_;
+    const long long first_dof_;
+    const FixedFaces faces_;
+    CoarseSpace space_;
+    std::vector<char> joined_, border_;
+    bool pays_ = false;
+  };
+
+  /**
+   * Substructuring, or static condensation (Przemieniecki 1963): inner nodes,
+   * with the springs of supports, are eliminated once for a step length. What
+   * this leaves for the border is a dense matrix,
+   *
+   *     S = A_bb - A_bi A_ii^-1 A_ib,   A = M_hat + H_s^T T_s H_s,
+   *
+   * and faces that are joined or open and springs of points change that small
+   * matrix alone: its factor is all that a Newton step makes anew.
+   */
+  template <int dim>
+  class Substructures
+  {
+  public:
+    explicit Substructures(const FinestSpace<dim> &finest);
+
+    /**
+     * Eliminates for the step and for what @p springs, the blocks T by point or
+     * null, have at supports, unless that is what is there. False: not positive
+     * definite, or out of memory. Collective.
+     */
+    bool prepare(const StepShares &shares, const double *springs);
+    /** Other faces are open: set_space() is to be called again. */
+    void space_changed() { matrix_ = nullptr; }
+    /** Of @p space, whose matrix is @p matrix, from now on, if it is not; it is
+        prepared. Collective. */
+    void set_space(const CoarseSpace &space, const JoinedMatrix<dim> &matrix);
+
+    /** Factor of M_hat + H^T T H, T those prepare() knows. False: as of
+        DenseFactor. Collective. */
+    bool factorise(const double *springs, bool symmetric);
+    /** Own values of the space. Collective. */
+    void solve(const double *b, double *x);
+
+    /** Entries that a solution reads, on this rank. */
+    double n_entries() const
+    {
+      return dissection_.n_entries() + double(n_border()) * n_border();
+    }
+    /** Iterations with an old factor that a new one costs, but at most
+        @p most. */
+    unsigned int worth(const double most) const
+    {
+      const double n = n_border(), products = 4. * n_entries();
+      return unsigned(std::min(most, n * n * n / 3. / products));
+    }
+
+  private:
+    int n_border() const { return dissection_.places().n_merged; }
+
+    const FinestSpace<dim> &finest_;
+    Dissection dissection_;
+    bool is_analysed_ = false;
+    StepShares shares_{-1.};
+    std::vector<double> of_supports_; ///< T of their points, one by one
+    const JoinedMatrix<dim> *matrix_ = nullptr;
+    std::vector<int> place_;        ///< in the border, by block of the matrix
+    std::vector<double> condensed_; ///< S in the space, lower triangle
+    DenseFactor factor_;
+    std::vector<double> right_;
+  };
+} // namespace nsfd
