@@ -264,11 +264,10 @@ namespace nsfd
       for (std::size_t k = 0; k < cells_.size(); ++k)
         if (wanted.count(
                 {{cells_[k].first, cells_[k].level, cells_[k].path}}) == 0 &&
-            cells_[k].level < 63)
-          {
-            marked[k] = 1;
-            coarse = true;
-          }
+            cells_[k].level < 63) {
+          marked[k] = 1;
+          coarse = true;
+        }
       coarse = coarse && refine(marked);
     }
     settle();

@@ -134,40 +134,25 @@ namespace nsfd
     means_ = Means::unknown;
     this->shares_nodes_ = sharing(this->bonded_);
     conforming_->conform(this->shares_nodes_);
-    set_finest();
+    const CoarseSpace &nodes = conforming_->space();
+    const bool bonds =
+        std::any_of(this->bonded_.begin(), this->bonded_.end(),
+                    [](const std::uint8_t bond) { return bond; });
+    if (!finest_.is_known() && this->communicator_.any(bonds) &&
+        nodes.ties.empty() && !tangent_.is_too_large(nodes))
+      finest_.find(*conforming_, this->shares_nodes_);
     placed_ = false;
     substructures_.space_changed();
     jacobi_.clear();
-    factor_.set_space(conforming_->space());
-    tangent_.set_space(conforming_->space());
+    factor_.set_space(nodes);
+    tangent_.set_space(nodes);
     // of several unknowns that are one node, the first
-    const CoarseSpace &nodes = conforming_->space();
     representative_.assign(std::size_t(nodes.n_own), -1);
     for (std::size_t i = 0; i < nodes.number.size(); ++i) {
       const long long mine = nodes.number[i] - nodes.first;
       if (mine >= 0 && mine < nodes.n_own && representative_[mine] < 0)
         representative_[mine] = int(i);
     }
-  }
-
-  /** Once, where it may be of use, as soon as bonds are known. */
-  template <int dim>
-  void JoinedBodies<dim>::set_finest()
-  {
-    const CoarseSpace &space = conforming_->space();
-    const bool bonds =
-        std::any_of(this->bonded_.begin(), this->bonded_.end(),
-                    [](const std::uint8_t bond) { return bond; });
-    if (finest_.is_set() || !space.ties.empty() ||
-        tangent_.is_too_large(space) || !finest_.may_pay(space.n_global) ||
-        !this->communicator_.any(bonds))
-      return;
-    std::vector<char> joined = finest_.faces().joined;
-    for (std::size_t f = 0; f < joined.size(); ++f)
-      joined[f] = joined[f] && this->shares_nodes_[f];
-    conforming_->conform(joined);
-    finest_.set(space, std::move(joined));
-    conforming_->conform(this->shares_nodes_);
   }
 
   /**
@@ -182,49 +167,6 @@ namespace nsfd
       matrix_->set_space(conforming_->space(), this->shares_nodes_);
     placed_ = true;
     return *matrix_;
-  }
-
-  double stiffness_over_mass(const Bodies &bodies, const StepShares &shares,
-                             const Communicator &communicator)
-  {
-    double ratio = 0.;
-    for (const BodyClass &body : bodies.classes)
-      for (unsigned int i = 0; i < body.n_dofs && !body.rigid; ++i)
-        if (body.mass(i, i) > 0.)
-          ratio = std::max(ratio, shares.stiffness * body.stiffness(i, i) /
-                                      body.mass(i, i));
-    return communicator.max(ratio);
-  }
-
-  /**
-   * Conjugate gradients with blocks on the diagonal are cheaper than factors
-   * where steps are short and unknowns are many.
-   */
-  template <int dim>
-  auto JoinedBodies<dim>::means_of_step() const -> Means
-  {
-    const CoarseSpace &space = conforming_->space();
-    const StepShares shares = this->shares(this->time_step_, this->theta_);
-    if (space.ties.empty() && finest_.pays())
-      return Means::substructures;
-    const long long n = space.n_global;
-    const double stiffest = n <= largest_joined_factor<dim>
-                                ? stiffest_beside_factor
-                                : stiffest_of_iterations;
-    const bool does = n > smallest_of_iterations && space.ties.empty() &&
-                      stiffness_over_mass(this->bodies_, shares,
-                                          this->communicator_) < stiffest;
-    return does ? Means::iterations : Means::factors;
-  }
-
-  /** The step of the matrix is the present one from then on. Collective. */
-  template <int dim>
-  auto JoinedBodies<dim>::means() const -> Means
-  {
-    matrix().set_step(this->shares(this->time_step_, this->theta_));
-    if (means_ == Means::unknown)
-      means_ = means_of_step();
-    return means_;
   }
 
   /** M_hat + H^T T H in the space, @p springs the blocks T; none if empty. */
@@ -281,25 +223,6 @@ namespace nsfd
     DelassusOperator<dim>::reinit(time_step, theta);
   }
 
-  /** The factor of M_hat by substructures. */
-  template <int dim>
-  void JoinedBodies<dim>::factor_border() const
-  {
-    bool done = substructures_.prepare(
-        this->shares(this->time_step_, this->theta_), nullptr);
-    if (done) {
-      substructures_.set_space(conforming_->space(), matrix());
-      done = substructures_.factorise(nullptr, true);
-    }
-    if (!done)
-      throw std::runtime_error("the matrix of the joined bodies is not "
-                               "positive definite to machine precision, or "
-                               "too large for the memory");
-    factor_.solve_with(
-        [this](const double *b, double *x) { substructures_.solve(b, x); },
-        false, substructures_.n_entries());
-  }
-
   /** Factor M_hat if the step or the bonds have changed. */
   template <int dim>
   void JoinedBodies<dim>::update() const
@@ -307,7 +230,7 @@ namespace nsfd
     if (valid_)
       return;
     const Charge charge(Cost::preconditioner);
-    if (iterates()) {
+    if (means() == Means::iterations) {
       jacobi_.clear();
       jacobi_.prepare(matrix(), nullptr);
       factor_.iterate_with(
@@ -319,10 +242,14 @@ namespace nsfd
             jacobi_.apply(r, z);
           });
     } else {
-      if (condenses())
-        factor_border();
-      else
+      if (means() != Means::substructures)
         factor_.prepare(assemble({}));
+      else if (!substructures_.factor(
+                   this->shares(this->time_step_, this->theta_),
+                   conforming_->space(), matrix(), nullptr, true, factor_))
+        throw std::runtime_error("the matrix of the joined bodies is not "
+                                 "positive definite to machine precision, or "
+                                 "too large for the memory");
       ++this->counters_.global_factorisations;
     }
     valid_ = true;
@@ -358,7 +285,8 @@ namespace nsfd
       return;
     }
     ++n_solves_;
-    if (!solve(factor_, tolerance).converged && iterates()) {
+    if (!solve(factor_, tolerance).converged &&
+        (means() == Means::iterations)) {
       means_ = Means::factors_once;
       valid_ = false;
       return answer(tolerance);
@@ -379,7 +307,7 @@ namespace nsfd
       const auto outcome = factor_.solve(x, y, tight);
       this->counters_.inner_iterations += outcome.iterations;
       ++this->counters_.global_solves;
-      if (outcome.converged || !iterates())
+      if (outcome.converged || means() != Means::iterations)
         return;
       means_ = Means::factors_once;
       valid_ = false;
@@ -463,7 +391,7 @@ namespace nsfd
     const double by_factor =
         2. * factor_.n_factor_entries() + 10. * double(rows.size());
     if (rows.empty() || rows.size() > CondensedDelassus::largest ||
-        ((rows.size() > 64 || iterates()) &&
+        ((rows.size() > 64 || (means() == Means::iterations)) &&
          (4 * n_solves_ < rows.size() ||
           double(rows.size()) * double(rows.size()) > by_factor)))
       return false;

@@ -58,8 +58,18 @@ namespace nsfd
     opens_with(const std::vector<std::uint8_t> &bonded) override;
     void serialize(Archive &archive) override;
 
-    /** Inner nodes are eliminated: see Substructures. Collective. */
-    bool condenses() const { return means() == Means::substructures; }
+    /// how systems of M_hat are solved: factors, for the rest of a step where
+    /// iterations have failed, conjugate gradients, or the border of
+    /// Substructures
+    enum class Means {
+      unknown,
+      factors,
+      factors_once,
+      iterations,
+      substructures
+    };
+    /** Collective. */
+    Means means() const;
 
   protected:
     /// of iterations: the energy balance shows what a product with W leaves
@@ -76,20 +86,6 @@ namespace nsfd
 
   private:
     friend JoinedMotion<dim>;
-    /// factors, for the rest of a step where iterations have failed, conjugate
-    /// gradients, or factors of the border of Substructures
-    enum class Means {
-      unknown,
-      factors,
-      factors_once,
-      iterations,
-      substructures
-    };
-    Means means() const;
-    bool iterates() const { return means() == Means::iterations; }
-    Means means_of_step() const;
-    void set_finest();
-    void factor_border() const;
     bool factor_tangent(const std::vector<double> &springs, bool general);
     using Goal = ConformingSolver::Goal;
     bool solve_tangent(const std::vector<double> &T, bool symmetric,

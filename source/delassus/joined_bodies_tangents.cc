@@ -1,6 +1,7 @@
 #include "joined_bodies.h"
 
 #include "core/cost.h"
+#include "linear_algebra/factor_limits.h"
 #include "linear_algebra/positive_part.h"
 
 #include <algorithm>
@@ -8,6 +9,46 @@
 
 namespace nsfd
 {
+  double stiffness_over_mass(const Bodies &bodies, const StepShares &shares,
+                             const Communicator &communicator)
+  {
+    double ratio = 0.;
+    for (const BodyClass &body : bodies.classes)
+      for (unsigned int i = 0; i < body.n_dofs && !body.rigid; ++i)
+        if (body.mass(i, i) > 0.)
+          ratio = std::max(ratio, shares.stiffness * body.stiffness(i, i) /
+                                      body.mass(i, i));
+    return communicator.max(ratio);
+  }
+
+  /**
+   * Substructures where few nodes may be parted. Conjugate gradients with
+   * blocks on the diagonal are cheaper than factors where steps are short and
+   * unknowns are many. The step of the matrix is the present one from then on.
+   */
+  template <int dim>
+  auto JoinedBodies<dim>::means() const -> Means
+  {
+    const StepShares shares = this->shares(this->time_step_, this->theta_);
+    matrix().set_step(shares);
+    if (means_ != Means::unknown)
+      return means_;
+    const CoarseSpace &space = conforming_->space();
+    const long long n = space.n_global;
+    const double stiffest = n <= largest_joined_factor<dim>
+                                ? stiffest_beside_factor
+                                : stiffest_of_iterations;
+    if (space.ties.empty() && finest_.pays())
+      means_ = Means::substructures;
+    else if (n > smallest_of_iterations && space.ties.empty() &&
+             stiffness_over_mass(this->bodies_, shares, this->communicator_) <
+                 stiffest)
+      means_ = Means::iterations;
+    else
+      means_ = Means::factors;
+    return means_;
+  }
+
   /** @p general: springs that are not symmetric, for iterations and
       substructures alone. */
   template <int dim>
@@ -15,10 +56,10 @@ namespace nsfd
                                          const bool general)
   {
     const Charge charge(Cost::preconditioner);
-    if (iterates())
+    if (means() == Means::iterations)
       return tangent_.precondition(matrix(), springs, general);
     ++this->counters_.global_factorisations;
-    if (condenses())
+    if (means() == Means::substructures)
       return tangent_.factor_border(
           matrix(), this->shares(this->time_step_, this->theta_), springs,
           general);
@@ -38,7 +79,8 @@ namespace nsfd
   bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &T,
                                         const bool symmetric, const Goal &goal)
   {
-    const bool iterates = this->iterates(), condenses = this->condenses(),
+    const bool iterates = means() == Means::iterations,
+               condenses = means() == Means::substructures,
                general =
                    !symmetric &&
                    (condenses || (iterates && this->communicator_.size() == 1));
@@ -119,6 +161,7 @@ namespace nsfd
   }
 
 #define INSTANTIATE(dim)                                                       \
+  template auto JoinedBodies<dim>::means() const->Means;                       \
   template bool JoinedBodies<dim>::factor_tangent(const std::vector<double> &, \
                                                   bool);                       \
   template bool JoinedBodies<dim>::solve_tangent(const std::vector<double> &,  \

@@ -363,17 +363,6 @@ namespace nsfd
   }
 
   template <int dim>
-  std::vector<long long> JoinedMatrix<dim>::first_of_blocks() const
-  {
-    std::vector<long long> result;
-    for (int b = 0; b < n_own_; ++b)
-      result.push_back(space_->first + static_cast<long long>(b) * size_);
-    for (const long long block : ghosts_)
-      result.push_back(block * size_);
-    return result;
-  }
-
-  template <int dim>
   void JoinedMatrix<dim>::set_step(const StepShares &shares)
   {
     if (!(operators_.step.empty() && by_bodies_.step(0).rows == 0) &&

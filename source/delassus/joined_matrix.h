@@ -14,11 +14,15 @@
 namespace nsfd
 {
   template <int dim>
+  class FinestSpace;
+  template <int dim>
   class JoinedMotion;
   template <int dim>
   class NodeJacobi;
   template <int dim>
   class PointNodes;
+  template <int dim>
+  class Substructures;
   template <int dim>
   class TangentMultigrid;
 
@@ -64,51 +68,6 @@ namespace nsfd
       return sights_.points;
     }
 
-    /** By own unknown of the space: a point that @p counts (point) sees it.
-        Collective. */
-    template <typename Counts>
-    std::vector<char> seen_unknowns(const Counts &counts) const
-    {
-      std::fill(shared_.values.begin(), shared_.values.end(), 0.);
-      for (const std::size_t i : sights_.points)
-        for (std::size_t k = sights_.first[i];
-             counts(i) && k < sights_.first[i + 1]; ++k)
-          std::fill_n(shared_.values.begin() +
-                          long(sights_.entries[k].block) * size_,
-                      size_, 1.);
-      std::vector<double> own;
-      return_ghosts(own);
-      std::vector<char> result;
-      for (const double seen : own)
-        result.push_back(seen > 0.);
-      return result;
-    }
-    /** By block of this rank, own ones and ghosts: its first unknown. */
-    std::vector<long long> first_of_blocks() const;
-    /**
-     * @p add (block of the row, k, block of the column, l, value) of H^T T H of
-     * this rank, @p springs the blocks T, of points that @p count (point).
-     */
-    template <typename Counts, typename Add>
-    void for_springs(const double *springs, const Counts &counts,
-                     const Add &add) const
-    {
-      for (const std::size_t i : sights_.points)
-        if (counts(i))
-          sights_.for_spring(i, springs + i * dim * dim, size_,
-                             [&](const Entry &row, const Entry &column,
-                                 const double *product) {
-                               for (unsigned int k = 0; k < size_; ++k)
-                                 for (unsigned int l = 0; l < size_; ++l) {
-                                   double value = 0.;
-                                   for (unsigned int d = 0; d < dim; ++d)
-                                     value += row.own[d * size_ + k] *
-                                              product[d * size_ + l];
-                                   add(row.block, k, column.block, l, value);
-                                 }
-                             });
-    }
-
     /**
      * The node, by a number of all ranks, that is all that a point sees: -1
      * where it sees none, or several.
@@ -126,9 +85,11 @@ namespace nsfd
     std::vector<double> diagonal_blocks(const double *springs = nullptr) const;
 
   private:
+    friend class FinestSpace<dim>;
     friend class JoinedMotion<dim>;
     friend class NodeJacobi<dim>;
     friend class PointNodes<dim>;
+    friend class Substructures<dim>;
     friend class TangentMultigrid<dim>;
     /** Consecutive unknowns of the space that are coupled alike. */
     using Block = int;

@@ -28,18 +28,47 @@ namespace nsfd
   }
 
   template <int dim>
-  void FinestSpace<dim>::set(const CoarseSpace &space, std::vector<char> joined)
+  void FinestSpace<dim>::find(ConformingSpace &nodes,
+                              const std::vector<char> &joined)
   {
-    space_ = space;
-    joined_ = std::move(joined);
+    is_known_ = true;
+    if (!may_pay(nodes.space().n_global))
+      return;
+    joined_ = faces_.joined;
+    for (std::size_t f = 0; f < joined_.size(); ++f)
+      joined_[f] = joined_[f] && joined[f];
+    nodes.conform(joined_);
+    space_ = nodes.space();
+    nodes.conform(joined);
     JoinedMatrix<dim> matrix(delassus_, first_dof_);
     matrix.set_space(space_, joined_);
-    border_ = matrix.seen_unknowns(
-        [this](const std::size_t point) { return !is_support(point); });
-    const auto border =
-        delassus_.communicator().sum_integer(static_cast<unsigned long long>(
-            std::count(border_.begin(), border_.end(), 1)));
-    pays_ = border <= largest && double(border) < 0.2 * double(space.n_global);
+    set_border(matrix);
+  }
+
+  /** What points see that are not of supports; @p matrix is that of the
+      space. */
+  template <int dim>
+  void FinestSpace<dim>::set_border(const JoinedMatrix<dim> &matrix)
+  {
+    auto &values = matrix.shared_.values;
+    std::fill(values.begin(), values.end(), 0.);
+    const auto &sights = matrix.sights_;
+    for (const std::size_t i : sights.points)
+      for (std::size_t k = sights.first[i];
+           !is_support(i) && k < sights.first[i + 1]; ++k)
+        std::fill_n(values.begin() +
+                        long(sights.entries[k].block) * matrix.size_,
+                    matrix.size_, 1.);
+    std::vector<double> own;
+    matrix.return_ghosts(own);
+    border_.clear();
+    unsigned long long count = 0;
+    for (const double seen : own) {
+      border_.push_back(seen > 0.);
+      count += seen > 0.;
+    }
+    count = delassus_.communicator().sum_integer(count);
+    pays_ = count <= largest && double(count) < 0.2 * double(space_.n_global);
   }
 
   template <int dim>
@@ -72,8 +101,8 @@ namespace nsfd
   }
 
   template <int dim>
-  bool Substructures<dim>::prepare(const StepShares &shares,
-                                   const double *springs)
+  bool Substructures<dim>::eliminate(const StepShares &shares,
+                                     const double *springs)
   {
     constexpr std::size_t n = std::size_t(dim) * dim;
     const auto &points = finest_.delassus().points();
@@ -145,8 +174,11 @@ namespace nsfd
       if (merged[k] >= space.first && merged[k] < space.first + space.n_own)
         places.own.emplace_back(int(k), int(merged[k] - space.first));
     place_.clear();
-    for (const long long of : matrix.first_of_blocks())
-      place_.push_back(place(of));
+    const long long size = matrix.size_;
+    for (int b = 0; b < matrix.n_own_; ++b)
+      place_.push_back(place(space.first + b * size));
+    for (const long long block : matrix.ghosts_)
+      place_.push_back(place(block * size));
     const std::size_t n = merged.size();
     condensed_.assign(n * n, 0.);
     dissection_.for_terms([&](const int r, const int c, const double value) {
@@ -157,6 +189,28 @@ namespace nsfd
           row == column && r != c ? 2. * value : value;
     });
     dissection_.set_places(std::move(places));
+  }
+
+  /** To the dense matrix @p A what points of this rank add. */
+  template <int dim>
+  void Substructures<dim>::add_springs(const double *springs,
+                                       std::vector<double> &A) const
+  {
+    const auto n = std::size_t(n_border());
+    const unsigned int size = matrix_->size_;
+    for (const std::size_t i : matrix_->sights_.points)
+      if (!finest_.is_support(i))
+        matrix_->sights_.for_spring(
+            i, springs + i * dim * dim, size,
+            [&](const auto &row, const auto &column, const double *product) {
+              const auto r = std::size_t(place_[std::size_t(row.block)]),
+                         c = std::size_t(place_[std::size_t(column.block)]);
+              for (unsigned int d = 0; d < dim; ++d)
+                for (unsigned int k = 0; k < size; ++k)
+                  for (unsigned int l = 0; l < size; ++l)
+                    A[(c + l) * n + r + k] +=
+                        row.own[d * size + k] * product[d * size + l];
+            });
   }
 
   template <int dim>
@@ -172,16 +226,7 @@ namespace nsfd
     else
       A = condensed_;
     if (springs)
-      matrix_->for_springs(
-          springs,
-          [this](const std::size_t point) {
-            return !finest_.is_support(point);
-          },
-          [&](const int row, const unsigned int k, const int column,
-              const unsigned int l, const double value) {
-            A[std::size_t(place_[std::size_t(column)] + int(l)) * n +
-              std::size_t(place_[std::size_t(row)] + int(k))] += value;
-          });
+      add_springs(springs, A);
     if (shared) {
       MPI_Allreduce(MPI_IN_PLACE, A.data(), int(A.size()), MPI_DOUBLE, MPI_SUM,
                     communicator.mpi());
@@ -202,6 +247,23 @@ namespace nsfd
     dissection_.forward(b, right_);
     factor_.solve(right_.data());
     dissection_.backward(right_, x);
+  }
+
+  template <int dim>
+  bool Substructures<dim>::factor(const StepShares &shares,
+                                  const CoarseSpace &space,
+                                  const JoinedMatrix<dim> &matrix,
+                                  const double *springs, const bool symmetric,
+                                  ConformingSolver &solver)
+  {
+    if (!eliminate(shares, springs))
+      return false;
+    set_space(space, matrix);
+    if (!factorise(springs, symmetric))
+      return false;
+    solver.solve_with([this](const double *b, double *x) { solve(b, x); },
+                      !symmetric, n_entries());
+    return true;
   }
 
   template class FinestSpace<2>;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "conforming_solver.h"
+#include "conforming_space.h"
 #include "delassus_operator.h"
 #include "joined_matrix.h"
 
@@ -25,11 +27,12 @@ namespace nsfd
                 FixedFaces faces);
 
     const FixedFaces &faces() const { return faces_; }
-    /** The border may be small beside so many @p unknowns. Collective. */
-    bool may_pay(long long unknowns) const;
-    /** @p space has common nodes at @p joined faces alone. Collective. */
-    void set(const CoarseSpace &space, std::vector<char> joined);
-    bool is_set() const { return !space_.number.empty(); }
+    /**
+     * Once, where it may be of use: of @p nodes that have common ones at the
+     * faces that are @p joined now, and have them again afterwards. Collective.
+     */
+    void find(ConformingSpace &nodes, const std::vector<char> &joined);
+    bool is_known() const { return is_known_; }
     /** The border is small: a dense factor of it costs less than a sparse one
         of all. */
     bool pays() const { return pays_; }
@@ -47,6 +50,9 @@ namespace nsfd
     }
 
   private:
+    bool may_pay(long long unknowns) const;
+    void set_border(const JoinedMatrix<dim> &matrix);
+
     /// unknowns: their matrix has 128 MB
     static constexpr unsigned long long largest = 4000;
 
@@ -55,7 +61,7 @@ namespace nsfd
     const FixedFaces faces_;
     CoarseSpace space_;
     std::vector<char> joined_, border_;
-    bool pays_ = false;
+    bool is_known_ = false, pays_ = false;
   };
 
   /**
@@ -74,29 +80,19 @@ namespace nsfd
   public:
     explicit Substructures(const FinestSpace<dim> &finest);
 
-    /**
-     * Eliminates for the step and for what @p springs, the blocks T by point or
-     * null, have at supports, unless that is what is there. False: not positive
-     * definite, or out of memory. Collective.
-     */
-    bool prepare(const StepShares &shares, const double *springs);
-    /** Other faces are open: set_space() is to be called again. */
+    /** Other faces are open. */
     void space_changed() { matrix_ = nullptr; }
-    /** Of @p space, whose matrix is @p matrix, from now on, if it is not; it is
-        prepared. Collective. */
-    void set_space(const CoarseSpace &space, const JoinedMatrix<dim> &matrix);
+    /**
+     * Factor of M_hat of the step and H^T T H, @p springs the blocks T by point
+     * or null, on @p space, whose matrix is @p matrix: @p solver solves with it
+     * from now on. Inner nodes are eliminated if the step or T at supports have
+     * changed. False: not positive definite, singular, or out of memory.
+     * Collective.
+     */
+    bool factor(const StepShares &shares, const CoarseSpace &space,
+                const JoinedMatrix<dim> &matrix, const double *springs,
+                bool symmetric, ConformingSolver &solver);
 
-    /** Factor of M_hat + H^T T H, T those prepare() knows. False: as of
-        DenseFactor. Collective. */
-    bool factorise(const double *springs, bool symmetric);
-    /** Own values of the space. Collective. */
-    void solve(const double *b, double *x);
-
-    /** Entries that a solution reads, on this rank. */
-    double n_entries() const
-    {
-      return dissection_.n_entries() + double(n_border()) * n_border();
-    }
     /** Iterations with an old factor that a new one costs, but at most
         @p most. */
     unsigned int worth(const double most) const
@@ -106,7 +102,17 @@ namespace nsfd
     }
 
   private:
+    bool eliminate(const StepShares &shares, const double *springs);
+    void set_space(const CoarseSpace &space, const JoinedMatrix<dim> &matrix);
+    bool factorise(const double *springs, bool symmetric);
+    void add_springs(const double *springs, std::vector<double> &A) const;
+    void solve(const double *b, double *x);
     int n_border() const { return dissection_.places().n_merged; }
+    /** That a solution reads, on this rank. */
+    double n_entries() const
+    {
+      return dissection_.n_entries() + double(n_border()) * n_border();
+    }
 
     const FinestSpace<dim> &finest_;
     Dissection dissection_;

@@ -74,16 +74,11 @@ namespace nsfd
                                          const bool general)
   {
     clear();
-    if (!substructures_.prepare(shares, springs.data()))
-      return false;
-    substructures_.set_space(*space_, matrix);
-    if (!substructures_.factorise(springs.data(), !general))
+    if (!substructures_.factor(shares, *space_, matrix, springs.data(),
+                               !general, solver_))
       return false;
     springs_ = springs;
     is_general_ = general;
-    solver_.solve_with(
-        [this](const double *b, double *x) { substructures_.solve(b, x); },
-        general, substructures_.n_entries());
     return true;
   }
 

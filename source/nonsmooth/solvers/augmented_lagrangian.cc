@@ -1,4 +1,5 @@
 #include "augmented_lagrangian.h"
+#include "held_supports.h"
 
 #include "core/cost.h"
 #include "linear_algebra/positive_part.h"
@@ -123,7 +124,7 @@ namespace nsfd
       for (unsigned int c = 0; c < dim; ++c) {
         rest_[i * dim + c] = impulse_[i * dim + c];
         compliance_[i * dim + c] =
-            (is_held(work, i) ? 1. : share) * work.evaluation.majorant(i, c);
+            (work.holds(i) ? 1. : share) * work.evaluation.majorant(i, c);
       }
   }
 
@@ -215,7 +216,7 @@ namespace nsfd
     for (std::size_t a = 0; a < n; ++a)
       for (unsigned int c = 0; c < dim; ++c) {
         const std::size_t i = work.problem.acting[a], k = i * dim + c;
-        if (is_held(work, i))
+        if (work.holds(i))
           continue; // it does not move
         terms[a] +=
             dU_[k] * (impulse_[k] + length * dP_[k] - solutions_[i].impulse[c]);
@@ -249,7 +250,9 @@ namespace nsfd
     const bool symmetric = differentiate(work);
     if (symmetric)
       symmetrise(work, false);
-    hold_supports(work);
+    if (from_rest_)
+      hold_supports(work.problem, work.evaluation, velocity_, tangents_,
+                    right_side_);
     if (solved(symmetric))
       return true;
     symmetrise(work, true);
@@ -284,7 +287,7 @@ namespace nsfd
     }
     add<dim>(work.problem.acting, length, dP_, impulse_);
     for (const std::size_t i : work.problem.acting)
-      if (is_held(work, i))
+      if (work.holds(i))
         std::copy_n(impulse_.begin() + long(i * dim), dim,
                     rest_.begin() + long(i * dim));
     work.motion.move(length, impulse_, velocity_);
@@ -303,9 +306,9 @@ namespace nsfd
         own_motion_ ? *own_motion_
                     : dynamic_cast<VelocitySolver &>(delassus).motion();
     const unsigned int most = control.iterations_or(80);
-    const Work work{problem,   delassus, motion, evaluation,
-                    tolerance, most,     report};
     from_rest_ = problem.free_motion == FreeVelocity::unknown;
+    const Work work{problem,   delassus, motion, evaluation,
+                    tolerance, most,     report, from_rest_};
     const bool own = !motion.is_on(); // U_free is known, and w the rest
     if (own)
       motion.start({}, {}, problem.free_velocity);

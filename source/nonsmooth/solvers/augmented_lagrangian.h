@@ -60,6 +60,13 @@ namespace nsfd
       double tolerance;
       unsigned int most; ///< Newton steps
       SolverReport &report;
+      bool from_rest;
+
+      /** A support in a step from rest: held in every Newton step. */
+      bool holds(const std::size_t i) const
+      {
+        return from_rest && problem.kind[i] == PointKind::prescribed;
+      }
     };
 
     /** What is sought: P, and the motion of the nodes. */
@@ -94,12 +101,6 @@ namespace nsfd
     bool rests(const Work &work, std::size_t i) const;
     void keep_tangents_at_rest(const Work &work);
     void remove_springs(const Work &work);
-    /** A support in a step from rest: held in every Newton step, never soft. */
-    bool is_held(const Work &work, const std::size_t i) const
-    {
-      return from_rest_ && work.problem.kind[i] == PointKind::prescribed;
-    }
-    void hold_supports(const Work &work);
     bool take_step(const Work &work, double tolerance, double share);
     double eliminate(const Work &work, double error);
     bool jump(const Work &work, unsigned int most_idle);

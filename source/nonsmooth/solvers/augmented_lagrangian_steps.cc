@@ -1,4 +1,5 @@
 #include "augmented_lagrangian.h"
+#include "held_supports.h"
 
 #include <deal.II/base/tensor.h>
 
@@ -15,11 +16,6 @@ namespace nsfd
   {
     /// over A: a law that gives way by less is rigid to machine precision
     constexpr double own_compliance = 1e-11;
-    /// what rows with a prescribed velocity give way by in steps from rest,
-    /// over A, which knows the stiffness of the bodies: beside stiffer rows, of
-    /// 1e14 times a mass, round-off is as large as the mass that alone holds a
-    /// body which turns about its support
-    constexpr double of_supports = 1e-6;
     /// what a step of Newton's method leaves where it is near its solution
     constexpr double fast = 0.1;
     /// of the error, what a point has whose vertex is solved by itself
@@ -44,7 +40,7 @@ namespace nsfd
   void AugmentedLagrangian<dim>::remove_springs(const Work &work)
   {
     for (const std::size_t i : work.problem.acting) {
-      if (is_held(work, i))
+      if (work.holds(i))
         continue;
       double *T = &tangents_[i * dim * dim], *r = &right_side_[i * dim];
       const bool differences =
@@ -76,27 +72,6 @@ namespace nsfd
         r[c] = right[c];
         for (unsigned int d = 0; d < dim; ++d)
           T[c * dim + d] = block[c][d];
-      }
-    }
-  }
-
-  /** T and the right-hand side of supports: the same T in every step. */
-  template <int dim>
-  void AugmentedLagrangian<dim>::hold_supports(const Work &work)
-  {
-    const auto &problem = work.problem;
-    for (const std::size_t i : problem.acting) {
-      if (!is_held(work, i))
-        continue;
-      double *T = &tangents_[i * dim * dim];
-      std::fill_n(T, dim * dim, 0.);
-      for (unsigned int c = 0; c < dim; ++c) {
-        const std::size_t k = i * dim + c;
-        if (!(problem.mask[i] & (1u << c)))
-          continue;
-        T[c * dim + c] = 1. / (of_supports * work.evaluation.majorant(i, c));
-        right_side_[k] =
-            T[c * dim + c] * (problem.given_velocity[k] - velocity_[k]);
       }
     }
   }
@@ -144,7 +119,9 @@ namespace nsfd
     defect_ = right_side_;
     const bool symmetric = differentiate(work);
     remove_springs(work);
-    hold_supports(work);
+    if (from_rest_)
+      hold_supports(work.problem, work.evaluation, velocity_, tangents_,
+                    right_side_);
     if (symmetric)
       symmetrise(work, false);
     keep_tangents_at_rest(work);
@@ -328,7 +305,6 @@ namespace nsfd
 
 #define INSTANTIATE(dim)                                                       \
   template void AugmentedLagrangian<dim>::remove_springs(const Work &);        \
-  template void AugmentedLagrangian<dim>::hold_supports(const Work &);         \
   template bool AugmentedLagrangian<dim>::take_step(const Work &, double,      \
                                                     double);                   \
   template void AugmentedLagrangian<dim>::judge_velocities(const Work &);      \
