@@ -84,5 +84,7 @@ namespace nsfd
     double volume_of_simplex(std::size_t body) const;
 
     std::unique_ptr<const ClassBuilder<dim>> builder_;
+    mutable std::vector<typename ShapeOfBody<dim>::Spare>
+        spare_shapes_; ///< by class
   };
 } // namespace nsfd
