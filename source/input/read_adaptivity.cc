@@ -145,10 +145,10 @@ namespace nsfd
                        "of the mesh; 0: the mesh stays as it is");
     adaptivity.bisects = scene.time.scheme.at_nodes && has_simplices(scene);
     const bool changes = !scene.time.scheme.at_nodes;
-    adaptivity.coarsen_every =
-        reader.integer("coarsen every steps", changes ? "10" : "0", 0, 1000000,
-                       "cells without damage may be coarsened; 0: never");
-    if (!changes && adaptivity.coarsen_every > 0)
+    adaptivity.coarsen_every = reader.integer(
+        "coarsen every steps", changes || adaptivity.bisects ? "10" : "0", 0,
+        1000000, "cells without damage may be coarsened; 0: never");
+    if (!changes && !adaptivity.bisects && adaptivity.coarsen_every > 0)
       reader.error(
           "coarsen every steps",
           fmt::format("with scheme = explicit cells do not grow again: not "
