@@ -211,7 +211,8 @@ namespace nsfd
   }
 
   template <int dim>
-  ShapeOfBody<dim> Cells<dim>::shape(const std::size_t body) const
+  ShapeOfBody<dim> Cells<dim>::shape(const std::size_t body,
+                                     const std::vector<Point<dim>> &at) const
   {
     const auto &of_class = class_shape(body);
     if (!differ())
@@ -225,7 +226,7 @@ namespace nsfd
       spare.pop_back();
     }
     double size;
-    round_corners(corners[body], size, shape->corners, [](long long) {});
+    round_corners(at, size, shape->corners, [](long long) {});
     builder_->set_corners(*shape);
     return ShapeOfBody<dim>(std::move(shape), spare);
   }

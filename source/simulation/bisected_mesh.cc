@@ -270,10 +270,8 @@ namespace nsfd
       plan = HalvesToJoin(cells_, *model_.discretization,
                           model_.leapfrog->parts().mesh, state)
                  .plan(not_wanted(), transfer.front_viscosities());
-    fprintf(stderr,
-            "join: t %g families %zu: inertia %g motion %g elastic %g\n",
-            state.time, plan.families.size(), plan.inertia, plan.motion,
-            plan.elastic);
+    if (!plan.families.empty())
+      view_.reset(); // it numbers the cells
     cells_.join(plan.families);
     n_joined_ += plan.families.size();
     build();
@@ -327,36 +325,24 @@ namespace nsfd
 
   namespace
   {
-    using Corners = std::array<Point<2>, 3>;
-
-    /** Gradients of the linear shape functions. */
-    void set_gradients(const Corners &x, BodyShape<2> &shape)
-    {
-      const auto a = x[1] - x[0], b = x[2] - x[0];
-      const double twice = a[0] * b[1] - a[1] * b[0];
-      for (unsigned int i = 0; i < 3; ++i) {
-        const auto side = x[(i + 2) % 3] - x[(i + 1) % 3];
-        shape.gradients[i][0] = -side[1] / twice;
-        shape.gradients[i][1] = side[0] / twice;
-      }
-    }
-
     /** Over the descendants of a cell: the highest frequency at @p deepest
         bisections or less. All four shapes are among those of the first five,
         and come again at half of the size after two more. */
-    void look_at_halves(const Corners &x, const unsigned int level,
-                        const unsigned int deepest, BodyShape<2> &shape,
+    void look_at_halves(const Cells<2> &cells, const std::size_t body,
+                        const std::vector<Point<2>> &x,
+                        const unsigned int level, const unsigned int deepest,
                         double &highest)
     {
-      set_gradients(x, shape);
+      const auto of_half = cells.shape(body, x);
+      const auto &shape = *of_half;
       const double scale = std::ldexp(1., int((deepest - level) / 2));
       if (scale * frequency_bound(shape) > highest)
         highest = std::max(highest, scale * highest_frequency(shape));
       if (level == std::min(5u, deepest))
         return;
       const Point<2> m = x[1] + (x[2] - x[1]) / 2.;
-      look_at_halves({{m, x[0], x[1]}}, level + 1, deepest, shape, highest);
-      look_at_halves({{m, x[2], x[0]}}, level + 1, deepest, shape, highest);
+      look_at_halves(cells, body, {m, x[0], x[1]}, level + 1, deepest, highest);
+      look_at_halves(cells, body, {m, x[2], x[0]}, level + 1, deepest, highest);
     }
   } // namespace
 
@@ -366,11 +352,10 @@ namespace nsfd
     const auto &cells = model.discretization->cells();
     double highest = 0.;
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
-      BodyShape<2> shape = *cells.shape(b);
-      Corners x;
-      for (unsigned int k = 0; k < 3; ++k)
-        x[k] = mesh.vertex(mesh.cells()[b].vertices[k]);
-      look_at_halves(x, 0, 2 * input.adaptivity->levels, shape, highest);
+      std::vector<Point<2>> x;
+      for (const unsigned int v : mesh.cells()[b].vertices)
+        x.push_back(mesh.vertex(v));
+      look_at_halves(cells, b, x, 0, 2 * input.adaptivity->levels, highest);
     }
     return longest_step(highest, input.front_viscosity());
   }
