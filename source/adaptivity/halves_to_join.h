@@ -21,8 +21,9 @@ namespace nsfd
    * Velocities: mass and momentum of the node go to the two ends, half by half,
    * as in an inelastic impact. Displacements in the middle of the step, which
    * have the elastic energy: the nearest ones of the joined mesh in the norm of
-   * that energy (Ritz), which is never more for it than before; nodes some
-   * cells around move a little. What both lose is the change of the energy.
+   * that energy (Ritz); nodes some cells around move a little. What both lose
+   * is the change of the energy. It is less than before but for what nodes take
+   * that must not move: if the sum is more, nothing is joined.
    */
   class HalvesToJoin
   {

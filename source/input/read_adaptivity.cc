@@ -145,9 +145,11 @@ namespace nsfd
                        "of the mesh; 0: the mesh stays as it is");
     adaptivity.bisects = scene.time.scheme.at_nodes && has_simplices(scene);
     const bool changes = !scene.time.scheme.at_nodes;
-    adaptivity.coarsen_every = reader.integer(
-        "coarsen every steps", changes || adaptivity.bisects ? "10" : "0", 0,
-        1000000, "cells without damage may be coarsened; 0: never");
+    adaptivity.coarsen_every =
+        reader.integer("coarsen every steps",
+                       changes || adaptivity.bisects ? "10" : "0", 0, 1000000,
+                       "cells without damage may be coarsened; 0: never; "
+                       "triangles: whenever others are refined");
     if (!changes && !adaptivity.bisects && adaptivity.coarsen_every > 0)
       reader.error(
           "coarsen every steps",
