@@ -83,6 +83,7 @@ namespace nsfd
     old_cells_.clear();
     for (unsigned int k = 0; k < cells_.size(); ++k) {
       cells_[k].old = k;
+      cells_[k].other = none;
       old_cells_.push_back(cells_[k].vertices);
     }
   }
@@ -207,6 +208,71 @@ namespace nsfd
     half.path |= 1;
     half.vertices = {{m, c, a}};
     halve(half, cut, result);
+  }
+
+  /** The last vertex of a half is its first one: all cells that have it are to
+      say so. Halves lie one after the other. */
+  std::vector<Bisection::Family> Bisection::families() const
+  {
+    std::vector<unsigned int> n_cells(vertices_.size(), 0);
+    for (const Cell &cell : cells_)
+      for (const unsigned int v : cell.vertices)
+        ++n_cells[v];
+    std::vector<Family> result;
+    std::vector<unsigned int> family_of(vertices_.size(), none);
+    const auto is_old = [&](const Cell &cell) {
+      return cell.vertices == old_cells_[cell.old];
+    };
+    for (unsigned int k = 0; k + 1 < cells_.size(); ++k) {
+      const Cell &one = cells_[k], &two = cells_[k + 1];
+      if (one.level == 0 || one.level != two.level || one.first != two.first ||
+          (one.path ^ 1) != two.path || (one.path & 1) != 0 || !is_old(one) ||
+          !is_old(two))
+        continue;
+      const unsigned int m = one.vertices[0];
+      if (family_of[m] == none) {
+        family_of[m] = unsigned(result.size());
+        result.push_back({m});
+        result.back().pairs[0] = {{k, k + 1}};
+      } else
+        result[family_of[m]].pairs[1] = {{k, k + 1}};
+    }
+    const auto is_whole = [&](const Family &family) {
+      return n_cells[family.vertex] == (family.pairs[1][0] == none ? 2u : 4u);
+    };
+    result.erase(
+        std::remove_if(result.begin(), result.end(),
+                       [&](const Family &family) { return !is_whole(family); }),
+        result.end());
+    return result;
+  }
+
+  Bisection::Cell Bisection::joined(const unsigned int first,
+                                    const unsigned int second) const
+  {
+    const Cell &one = cells_[first], &two = cells_[second];
+    Cell whole = one;
+    whole.vertices = {{one.vertices[1], one.vertices[2], two.vertices[1]}};
+    --whole.level;
+    whole.path = one.path >> 1;
+    whole.other = two.old;
+    return whole;
+  }
+
+  void Bisection::join(const std::vector<Family> &families)
+  {
+    std::vector<char> gone(cells_.size(), 0);
+    for (const Family &family : families)
+      for (const auto &[first, second] : family.pairs)
+        if (first != none) {
+          cells_[first] = joined(first, second);
+          gone[second] = 1;
+        }
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < cells_.size(); ++k)
+      if (gone[k] == 0)
+        cells_[n++] = cells_[k];
+    cells_.resize(n);
   }
 
   CoarseMesh<2> Bisection::mesh() const

@@ -33,6 +33,7 @@ namespace nsfd
       unsigned int level; ///< bisections since then
       std::uint64_t path; ///< a bit of each: which half, the last one lowest
       unsigned int old;   ///< cell at the last settle() that it lies in
+      unsigned int other = none; ///< or that it consists of, beside `old`
     };
     /** By the cells of the first mesh and their halves: the order does not
         know in which one they were made. */
@@ -49,6 +50,21 @@ namespace nsfd
      * stay. False: all of them do.
      */
     bool refine(const std::vector<char> &marked, unsigned int deepest = 63);
+    /** Halves on all sides of a vertex in the middle of an edge: cells, the
+        first half before the second one; one pair at the boundary. */
+    struct Family {
+      unsigned int vertex;
+      std::array<std::array<unsigned int, 2>, 2> pairs{
+          {{{none, none}}, {{none, none}}}};
+    };
+    /** Those that can be joined again so that the mesh stays conforming: they
+        have been there at the last settle(). */
+    std::vector<Family> families() const;
+    /** The cell that two halves are made of. */
+    Cell joined(unsigned int first, unsigned int second) const;
+    /** Those of @p families become one cell each. */
+    void join(const std::vector<Family> &families);
+
     /** The present cells are the old ones of later ones. */
     void settle();
     /** Vertices of the cells at the last settle(). */

@@ -4,12 +4,20 @@
 #include "state/point_fields.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
 
 namespace nsfd
 {
+  namespace
+  {
+    /// see FrontViscosity::serialize()
+    constexpr const char *front_name = "front_viscosity";
+    enum Front { tension, rate, next_viscosity, viscosity };
+  } // namespace
+
   /** By name. */
   class BisectionTransfer::Store
   {
@@ -65,7 +73,9 @@ namespace nsfd
 
     void bodies(const std::string &name, std::vector<double> &values) override
     {
-      values = transfer_.cellwise(store_.bodies.at(path(name)));
+      if (name != front_name)
+        throw std::logic_error("bisected cells have no " + name);
+      values = transfer_.front(store_.bodies.at(path(name)));
     }
     void points(const std::string &name, std::vector<double> &values) override
     {
@@ -88,6 +98,8 @@ namespace nsfd
     void common(const std::string &name, std::vector<double> &values) override
     {
       values = store_.common.at(path(name));
+      if (name == "front" && !transfer_.rates_.empty())
+        values[2] = transfer_.stored_by_front_;
     }
     void on_root(const std::string &name, std::vector<double> &values) override
     {
@@ -236,30 +248,98 @@ namespace nsfd
       add_value(old, cell, end, share / 2., value);
   }
 
-  /** Two components at each of the three corners of a cell. */
-  std::vector<double>
-  BisectionTransfer::nodal(const std::vector<double> &old) const
+  /**
+   * Two components at each of the three corners of a cell. Two halves have the
+   * node in the middle of their edge no more: a quarter of the mass of the
+   * whole is there, and goes with its velocity to the ends of the edge.
+   */
+  std::vector<double> BisectionTransfer::nodal(const std::vector<double> &old,
+                                               const Field field) const
   {
     std::vector<double> result;
     result.reserve(6 * cells_.cells().size());
     for (const auto &cell : cells_.cells())
-      for (const unsigned int v : cell.vertices) {
+      for (unsigned int i = 0; i < 3; ++i) {
+        const unsigned int v = cell.vertices[i];
         double value[2] = {};
-        add_value(old, cell.old, v, 1., value);
+        if (cell.other == Bisection::none || i == 0)
+          add_value(old, cell.old, v, 1., value);
+        else {
+          const unsigned int half = i == 1 ? cell.old : cell.other,
+                             middle = cells_.old_cells()[half][0];
+          const double share = field == Field::velocity ? 0.5 : 0.;
+          add_value(old, half, v, 1. - share, value);
+          add_value(old, half, middle, share, value);
+        }
         result.insert(result.end(), value, value + 2);
       }
     return result;
   }
 
-  /** Whatever a cell keeps in the places of its unknowns. */
-  std::vector<double>
-  BisectionTransfer::cellwise(const std::vector<double> &old) const
+  void BisectionTransfer::set_motion(const State &given, const State &taken)
   {
-    std::vector<double> result;
-    result.reserve(6 * cells_.cells().size());
-    for (const auto &cell : cells_.cells())
-      result.insert(result.end(), old.begin() + 6 * long(cell.old),
-                    old.begin() + 6 * long(cell.old) + 6);
+    rates_.assign(cells_.cells().size(),
+                  std::numeric_limits<double>::quiet_NaN());
+    dilatations_.resize(rates_.size());
+    for (std::size_t k = 0; k < rates_.size(); ++k) {
+      const auto &cell = cells_.cells()[k];
+      const std::array<dealii::Point<2>, 3> x = {
+          {cells_.vertex(cell.vertices[0]), cells_.vertex(cell.vertices[1]),
+           cells_.vertex(cell.vertices[2])}};
+      const auto a = x[1] - x[0], b = x[2] - x[0];
+      dilatations_[k] = (a[0] * b[1] - a[1] * b[0]) / 2. *
+                        dilatation(x, &taken.displacement[6 * k]);
+      const double *const v = &taken.velocity[6 * k];
+      if (cell.other != Bisection::none ||
+          !std::equal(v, v + 6, given.velocity.begin() + 6 * long(k)))
+        rates_[k] = dilatation(x, v);
+    }
+  }
+
+  double BisectionTransfer::dilatation(const std::array<dealii::Point<2>, 3> &x,
+                                       const double *u)
+  {
+    const auto a = x[1] - x[0], b = x[2] - x[0];
+    const double p[2] = {u[2] - u[0], u[3] - u[1]},
+                 q[2] = {u[4] - u[0], u[5] - u[1]};
+    return (p[0] * b[1] - q[0] * a[1] + q[1] * a[0] - p[1] * b[0]) /
+           (a[0] * b[1] - a[1] * b[0]);
+  }
+
+  /**
+   * Four numbers in the first places of the unknowns of a cell. Halves that are
+   * joined have the mean of their viscosities; the tension is viscosity times
+   * rate, or the balance of energy would not close.
+   */
+  std::vector<double>
+  BisectionTransfer::front(const std::vector<double> &old) const
+  {
+    std::vector<double> result(6 * cells_.cells().size(), 0.);
+    for (std::size_t k = 0; k < cells_.cells().size(); ++k) {
+      const auto &cell = cells_.cells()[k];
+      double *const mine = &result[6 * k];
+      std::copy_n(&old[6 * std::size_t(cell.old)], 4, mine);
+      if (cell.other != Bisection::none)
+        for (const Front part : {next_viscosity, viscosity})
+          mine[part] =
+              (mine[part] + old[6 * std::size_t(cell.other) + part]) / 2.;
+      if (rates_.empty() || std::isnan(rates_[k]))
+        continue;
+      mine[rate] = rates_[k];
+      mine[tension] = mine[viscosity] * rates_[k];
+    }
+    stored_by_front_ = 0.;
+    for (std::size_t k = 0; k < dilatations_.size(); ++k)
+      stored_by_front_ += result[6 * k + tension] * dilatations_[k];
+    return result;
+  }
+
+  std::vector<double> BisectionTransfer::front_viscosities() const
+  {
+    std::vector<double> result(cells_.old_cells().size(), 0.);
+    for (const auto &[name, values] : store_->bodies) // there is one at most
+      for (std::size_t k = 0; k < result.size(); ++k)
+        result[k] = values[6 * k + viscosity];
     return result;
   }
 
@@ -301,8 +381,8 @@ namespace nsfd
   State BisectionTransfer::state(const State &old) const
   {
     State result = old;
-    result.displacement = nodal(old.displacement);
-    result.velocity = nodal(old.velocity);
+    result.displacement = nodal(old.displacement, Field::displacement);
+    result.velocity = nodal(old.velocity, Field::velocity);
     for_point_fields(
         [&](const PointField &, const auto member, const auto &...) {
           using T = typename std::decay_t<decltype(old.*member)>::value_type;

@@ -47,8 +47,19 @@ namespace nsfd
     /** The cells are others now, and so is the mesh of them. */
     void set_mesh(const Discretization<2> &discretization,
                   const JoinedMesh<2> &mesh);
-    /** The state there; times and energies stay. After set_mesh(). */
+    /** The state there; times and energies stay. After set_mesh(). Where cells
+        are joined, corners of a node may have several velocities: their mean
+        in the sense of the masses keeps the momentum. */
     State state(const State &old) const;
+    /** Where cells are joined: what the nodes have of the @p given state().
+        Rates of cells whose corners have other velocities are others. */
+    void set_motion(const State &given, const State &taken);
+    /** psi eta of the front viscosity of the old cells, Pa s; after old_parts()
+        was filled. */
+    std::vector<double> front_viscosities() const;
+    /** tr eps of a cell with corners @p x, two displacements each. */
+    static double dilatation(const std::array<dealii::Point<2>, 3> &x,
+                             const double *u);
     /** What went into old_parts(), in the order of the new mesh. */
     Archive &new_parts();
 
@@ -80,8 +91,10 @@ namespace nsfd
                     const std::array<unsigned int, 2> &edge) const;
     void add_value(const std::vector<double> &old, unsigned int cell,
                    unsigned int vertex, double share, double *value) const;
-    std::vector<double> nodal(const std::vector<double> &old) const;
-    std::vector<double> cellwise(const std::vector<double> &old) const;
+    enum class Field { displacement, velocity };
+    std::vector<double> nodal(const std::vector<double> &old,
+                              Field field) const;
+    std::vector<double> front(const std::vector<double> &old) const;
     template <typename T>
     std::vector<T> pointwise(const std::vector<T> &old, T fresh) const;
     std::vector<double> jumps(const std::vector<double> &old,
@@ -92,6 +105,10 @@ namespace nsfd
     std::unordered_multimap<Bisection::Edge, OldFace> old_faces_;
     std::vector<double> old_weights_;
     std::vector<Origin> origins_; ///< of the new points
+    /// where cells are joined: dilatations times area of the cells, and rates,
+    /// 1/s; NaN: it stayed
+    std::vector<double> dilatations_, rates_;
+    mutable double stored_by_front_ = 0.; ///< see FrontViscosity::Powers
     std::unique_ptr<Store> store_;
   };
 } // namespace nsfd

@@ -2,12 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nsfd
 {
   namespace
   {
     double square(const double x) { return x * x; }
+
+    /** A difference of squares of openings, m^2, has its digits: the first of
+        a wave that arrives are so small that it is 0, and quotients with it are
+        no numbers. The secant is constant there. */
+    bool is_known(const double difference)
+    {
+      using limits = std::numeric_limits<double>;
+      return std::abs(difference) >= limits::min() / limits::epsilon();
+    }
   } // namespace
 
   Reach LawPoint::history_after(const Reach &history, const Reach &end,
@@ -114,10 +124,13 @@ namespace nsfd
     const double growing = 2. * mean / (grown.from + grown.to);
     if (d >= grown.opening)
       return growing;
+    const double way = (opening - d) * (opening + d);
+    if (!is_known(way))
+      return growing;
     const double unloaded = secant_at(d_m) * (d_m - d) * (d_m + d);
     return (unloaded +
             growing * (opening - grown.opening) * (opening + grown.opening)) /
-           ((opening - d) * (opening + d));
+           way;
   }
 
   /** The same where W = T(d_m) d below d_m. */
@@ -211,9 +224,11 @@ namespace nsfd
       const double top = std::max(largest, bottom);
       if (now <= top)
         return secant(top);
+      const double way = (now - bottom) * (now + bottom);
+      if (!is_known(way))
+        return secant(now);
       const double elastic = secant(top) * (top - bottom) * (top + bottom);
-      return (elastic + 2. * energy(top, now)) /
-             ((now - bottom) * (now + bottom));
+      return (elastic + 2. * energy(top, now)) / way;
     };
     const double x_m = from.largest.opening, y_m = from.largest.slip;
     const auto normal = [&](const double y) {

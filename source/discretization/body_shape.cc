@@ -165,6 +165,14 @@ namespace nsfd
                                          material.is_viscous();
                                 }))
   {
+    const auto cell = element.reference_cell();
+    if (!cell.is_simplex())
+      return;
+    for (unsigned int f = 0; f <= dim; ++f) {
+      opposite_[f] = dim * (dim + 1) / 2; // the sum of all corners
+      for (unsigned int v = 0; v < dim; ++v)
+        opposite_[f] -= cell.face_to_cell_vertices(f, v, 1);
+    }
   }
 
   template <int dim>

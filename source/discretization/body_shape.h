@@ -9,6 +9,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/grid/reference_cell.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -58,22 +59,35 @@ namespace nsfd
     Block nodal_mass;          ///< rigid: of the nodal values
   };
 
-  /** The shape of a body: kept by its class, or made when it is asked for. */
+  /** The shape of a body: kept by its class, or made when it is asked for, in
+      memory that is given back for the next one. */
   template <int dim>
   class ShapeOfBody
   {
   public:
+    /// shapes of a class that nobody looks at any more
+    using Spare = std::vector<std::unique_ptr<BodyShape<dim>>>;
+
     explicit ShapeOfBody(const BodyShape<dim> &kept) : shape_(&kept) {}
-    explicit ShapeOfBody(std::unique_ptr<const BodyShape<dim>> made)
-        : made_(std::move(made)), shape_(made_.get())
+    /** @p spare is to live longer. */
+    ShapeOfBody(std::unique_ptr<BodyShape<dim>> made, Spare &spare)
+        : made_(std::move(made)), shape_(made_.get()), spare_(&spare)
     {
+    }
+    ShapeOfBody(ShapeOfBody &&) noexcept = default;
+    ShapeOfBody &operator=(ShapeOfBody &&) = delete;
+    ~ShapeOfBody()
+    {
+      if (made_)
+        spare_->push_back(std::move(made_));
     }
     const BodyShape<dim> &operator*() const { return *shape_; }
     const BodyShape<dim> *operator->() const { return shape_; }
 
   private:
-    std::unique_ptr<const BodyShape<dim>> made_;
+    std::unique_ptr<BodyShape<dim>> made_;
     const BodyShape<dim> *shape_;
+    Spare *spare_ = nullptr;
   };
 
   /** Of the places of a class: one for all, or one for each. */
@@ -139,10 +153,9 @@ namespace nsfd
      * material are of one class whatever their corners.
      */
     bool has_no_blocks() const { return no_blocks_; }
-    /** As @p of_class, a class without blocks, with other corners. */
-    std::unique_ptr<const BodyShape<dim>>
-    with_corners(const BodyShape<dim> &of_class,
-                 const std::vector<dealii::Point<dim>> &corners) const;
+    /** Into a copy of the shape of a class without blocks: what its corners
+        say, which are others now. */
+    void set_corners(BodyShape<dim> &shape) const;
 
   private:
     /** What does not depend on the corners, then what does. */
@@ -165,5 +178,7 @@ namespace nsfd
     dealii::Quadrature<dim> cell_rule_;
     dealii::Quadrature<dim - 1> face_rule_;
     bool no_blocks_;
+    /// of a simplex, by its faces: the corner that the face does not have
+    std::array<unsigned int, dim + 1> opposite_{};
   };
 } // namespace nsfd

@@ -20,26 +20,39 @@ namespace nsfd
 
   namespace
   {
-    /** Corners relative to the first one, as multiples of a power of two. */
+    /**
+     * @p relative: corners from the first one on, as multiples of a power of
+     * two, of which @p multiple is told. Returns its exponent.
+     */
+    template <int dim, typename Tell>
+    int round_corners(const std::vector<Point<dim>> &corners, double &size,
+                      std::vector<Point<dim>> &relative, const Tell &multiple)
+    {
+      size = 0.;
+      for (const auto &corner : corners)
+        for (unsigned int c = 0; c < dim; ++c)
+          size = std::max(size, std::abs(corner[c] - corners[0][c]));
+      int exponent;
+      std::frexp(size, &exponent);
+      const double unit = std::ldexp(1., exponent - 42);
+      relative.resize(corners.size());
+      for (unsigned int v = 0; v < corners.size(); ++v)
+        for (unsigned int c = 0; c < dim; ++c) {
+          const long long n =
+              std::llround((corners[v][c] - corners[0][c]) / unit);
+          multiple(n);
+          relative[v][c] = double(n) * unit;
+        }
+      return exponent;
+    }
+
     template <int dim>
     struct RoundedCorners {
-      explicit RoundedCorners(const std::vector<Point<dim>> &corners)
-          : relative(corners.size())
+      explicit RoundedCorners(const std::vector<Point<dim>> &corners) : key(2)
       {
-        for (const auto &corner : corners)
-          for (unsigned int c = 0; c < dim; ++c)
-            size = std::max(size, std::abs(corner[c] - corners[0][c]));
-        int exponent;
-        std::frexp(size, &exponent);
-        const double unit = std::ldexp(1., exponent - 42);
-        key = {static_cast<long long>(corners.size()), exponent};
-        for (unsigned int v = 0; v < corners.size(); ++v)
-          for (unsigned int c = 0; c < dim; ++c) {
-            const long long n =
-                std::llround((corners[v][c] - corners[0][c]) / unit);
-            key.push_back(n);
-            relative[v][c] = double(n) * unit;
-          }
+        key[0] = static_cast<long long>(corners.size());
+        key[1] = round_corners(corners, size, relative,
+                               [&](const long long n) { key.push_back(n); });
       }
 
       double size = 0.;
@@ -194,16 +207,28 @@ namespace nsfd
       global_cell.push_back(cell->global_active_cell_index());
       cell_id.push_back(cell->id().template to_binary<dim>());
     }
+    spare_shapes_.resize(shapes.size());
   }
 
   template <int dim>
-  ShapeOfBody<dim> Cells<dim>::shape(const std::size_t body) const
+  ShapeOfBody<dim> Cells<dim>::shape(const std::size_t body,
+                                     const std::vector<Point<dim>> &at) const
   {
     const auto &of_class = class_shape(body);
     if (!differ())
       return ShapeOfBody<dim>(of_class);
-    return ShapeOfBody<dim>(builder_->with_corners(
-        of_class, RoundedCorners<dim>(corners[body]).relative));
+    auto &spare = spare_shapes_[bodies.class_of[body]];
+    std::unique_ptr<BodyShape<dim>> shape;
+    if (spare.empty())
+      shape = std::make_unique<BodyShape<dim>>(of_class);
+    else {
+      shape = std::move(spare.back());
+      spare.pop_back();
+    }
+    double size;
+    round_corners(at, size, shape->corners, [](long long) {});
+    builder_->set_corners(*shape);
+    return ShapeOfBody<dim>(std::move(shape), spare);
   }
 
   /** Relative to corner 0. */

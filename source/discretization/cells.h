@@ -45,7 +45,13 @@ namespace nsfd
     /// this rank; -infinity: one is not a number somewhere
     std::map<unsigned int, std::array<LocalModuli, 2>> graded;
 
-    ShapeOfBody<dim> shape(std::size_t body) const;
+    ShapeOfBody<dim> shape(const std::size_t body) const
+    {
+      return shape(body, corners[body]);
+    }
+    /** What it would be with other corners, if bodies differ(). */
+    ShapeOfBody<dim> shape(std::size_t body,
+                           const std::vector<dealii::Point<dim>> &at) const;
     /** What all bodies of its class have, and its corners but for those. */
     const BodyShape<dim> &class_shape(const std::size_t body) const
     {
@@ -84,5 +90,7 @@ namespace nsfd
     double volume_of_simplex(std::size_t body) const;
 
     std::unique_ptr<const ClassBuilder<dim>> builder_;
+    mutable std::vector<typename ShapeOfBody<dim>::Spare>
+        spare_shapes_; ///< by class
   };
 } // namespace nsfd

@@ -24,6 +24,16 @@ namespace nsfd
 
   namespace
   {
+    /** As CellId::to_string(), without a stream. */
+    void add_id(const CellId &id, std::string &text)
+    {
+      const auto children = id.get_child_indices();
+      text += std::to_string(id.get_coarse_cell_id()) + '_' +
+              std::to_string(children.size()) + ':';
+      for (const auto child : children)
+        text += std::to_string(unsigned(child));
+    }
+
     std::uint64_t hash(const std::string &text)
     {
       std::uint64_t value = 1469598103934665603ull;
@@ -86,6 +96,8 @@ namespace nsfd
       const std::vector<unsigned int> &materials_, &driven_;
       const SceneInput &input_;
       const SpringShares<dim> shares_;
+      std::array<Quadrature<dim - 1>, 2> quadratures_; ///< second: of triangles
+      std::string text_;                               ///< of a face
       std::vector<int> body_of_; ///< by active cell index, -1 if not ours
 
       bool is_ours(const Cell &cell) const
@@ -128,15 +140,19 @@ namespace nsfd
       for (const unsigned int v : cell->vertex_indices())
         corners.push_back(cell->vertex(v));
       const FaceGeometry<dim> geometry(cell->reference_cell(), corners, f);
-      const auto quadrature = interface_quadrature<dim>(input_.discretization,
-                                                        geometry.is_triangle());
+      auto &quadrature = quadratures_[geometry.is_triangle()];
+      if (quadrature.size() == 0)
+        quadrature = interface_quadrature<dim>(input_.discretization,
+                                               geometry.is_triangle());
       NewFace<dim> result;
       result.origin = origin;
-      result.face.key = hash(
-          cell->id().to_string() + "/" + std::to_string(f) + "/" +
-          std::to_string(int(origin.kind)) + "/" +
-          std::to_string(
-              origin.kind == PointOrigin::Kind::interface ? 0 : origin.block));
+      const bool inside = origin.kind == PointOrigin::Kind::interface;
+      text_.clear();
+      add_id(cell->id(), text_);
+      text_ += '/' + std::to_string(f) + '/' +
+               std::to_string(int(origin.kind)) + '/' +
+               std::to_string(inside ? 0 : origin.block);
+      result.face.key = hash(text_);
       const Point<dim> centre = mean(geometry.corners());
       for (unsigned int c = 0; c < dim; ++c)
         result.face.centre[c] = centre[c];

@@ -84,10 +84,18 @@ namespace nsfd
   void Loads<dim>::add_volume(const Cells<dim> &cells, const double t,
                               std::vector<double> &nodal) const
   {
+    const auto is_loaded = [&](const MaterialInput &material) {
+      for (unsigned int c = 0; c < dim; ++c)
+        if (input_.gravity[c] != 0. || !material.body_force[c].is_zero())
+          return true;
+      return false;
+    };
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
+      const auto &material = input_.materials[cells.body_class(b).material];
+      if (!is_loaded(material))
+        continue;
       const auto of_body = cells.shape(b);
       const BodyShape<dim> &shape = *of_body;
-      const auto &material = input_.materials[cells.body_class(b).material];
       for (unsigned int q = 0; q < shape.JxW.size(); ++q) {
         const Point<dim> x = cells.place(b, shape.positions[q]);
         for (unsigned int c = 0; c < dim; ++c) {

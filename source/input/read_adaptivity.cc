@@ -146,9 +146,11 @@ namespace nsfd
     adaptivity.bisects = scene.time.scheme.at_nodes && has_simplices(scene);
     const bool changes = !scene.time.scheme.at_nodes;
     adaptivity.coarsen_every =
-        reader.integer("coarsen every steps", changes ? "10" : "0", 0, 1000000,
-                       "cells without damage may be coarsened; 0: never");
-    if (!changes && adaptivity.coarsen_every > 0)
+        reader.integer("coarsen every steps",
+                       changes || adaptivity.bisects ? "10" : "0", 0, 1000000,
+                       "cells without damage may be coarsened; 0: never; "
+                       "triangles: whenever others are refined");
+    if (!changes && !adaptivity.bisects && adaptivity.coarsen_every > 0)
       reader.error(
           "coarsen every steps",
           fmt::format("with scheme = explicit cells do not grow again: not "
@@ -172,19 +174,19 @@ namespace nsfd
     for (ParameterSection *block : blocks)
       if (auto indicator = read_indicator(*block, errors))
         adaptivity.indicators.push_back(std::move(indicator));
-    const auto &found = adaptivity.indicators;
-    if (adaptivity.bisects &&
-        !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
-          return indicator->is_of_points();
-        }))
+    const bool fit =
+        std::all_of(adaptivity.indicators.begin(), adaptivity.indicators.end(),
+                    [&](const auto &indicator) {
+                      return adaptivity.bisects
+                                 ? indicator->is_of_points()
+                                 : changes || indicator->is_fixed();
+                    });
+    if (!fit && adaptivity.bisects)
       reader.error("levels",
                    "triangles are bisected by indicators that look at points "
                    "and places alone",
                    "take indicators of type = process zone or region");
-    if (!changes && !adaptivity.bisects &&
-        !std::all_of(found.begin(), found.end(), [](const auto &indicator) {
-          return indicator->is_fixed();
-        }))
+    else if (!fit)
       reader.error("levels",
                    "with scheme = explicit the mesh does not change in a run "
                    "yet: it is refined before it",

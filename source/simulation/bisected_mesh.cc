@@ -1,6 +1,7 @@
 #include "bisected_mesh.h"
 
 #include "adaptivity/bisection_transfer.h"
+#include "adaptivity/halves_to_join.h"
 #include "adaptivity/mesh_view.h"
 #include "discretization/body_frequency.h"
 #include "discretization/cells.h"
@@ -70,6 +71,23 @@ namespace nsfd
         }
       return result;
     }
+
+    /** Of a point that has been released: what it carried in the last step over
+        the strength that it had. What is left of broken places that rest is
+        little. */
+    double share_of_strength(const LeapfrogChains<2> &chains,
+                             const std::size_t a)
+    {
+      const auto &problem = chains.problem;
+      const auto *law = problem.interactions[problem.interaction[a]].law.get();
+      if (!law || (chains.beta[a] <= 0. && chains.other.beta[a] <= 0.))
+        return 0.;
+      const double pull = std::max(0., -chains.impulse[2 * a]),
+                   slide = chains.impulse[2 * a + 1];
+      return std::hypot(pull, slide) /
+             (problem.weight[a] * problem.time_step * law->strength() *
+              problem.strength_factor[a]);
+    }
   } // namespace
 
   BisectedMesh::BisectedMesh(const SceneInput &input,
@@ -104,7 +122,7 @@ namespace nsfd
     std::vector<double> cells(ids.begin(), ids.end());
     archive.common("cells", cells);
     archive.numbers("sums", changes_, largest_cells_, cells_sum_, steps_, lost_,
-                    worst_);
+                    worst_, n_joined_);
   }
 
   /** All parts on the present cells. */
@@ -117,32 +135,50 @@ namespace nsfd
         std::max<unsigned long long>(largest_cells_, cells_.cells().size());
   }
 
-  /** Points that hold and are near their strength, or nearer to it than they
-      were when indicators were asked. */
+  /** @p look(point, share of its strength): points that carry half of it. */
+  template <typename Look>
+  void BisectedMesh::for_fronts(const Look &look) const
+  {
+    const auto &problem = model_.points();
+    const auto with_law = [&](const unsigned int i, const double share) {
+      if (problem.interactions[problem.interaction[i]].law)
+        look(i, share);
+    };
+    const auto parts = model_.leapfrog->parts();
+    parts.faces.visit_near(with_law);
+    const auto &chains = parts.points.chains();
+    for (std::size_t a = 0; a < chains.size(); ++a) {
+      const double share = share_of_strength(chains, a);
+      if (share >= 0.5)
+        with_law(chains.point[a], std::min(1., share));
+    }
+  }
+
+  MeshView::Point BisectedMesh::front(const unsigned int point,
+                                      const double share) const
+  {
+    const auto &discretization = *model_.discretization;
+    MeshView::Point result;
+    for (unsigned int c = 0; c < 2; ++c)
+      result.position[c] = discretization.points().position[2 * point + c];
+    result.utilisation = share;
+    result.zone =
+        cohesive_zone<2>(input_, discretization, model_.points(), point);
+    return result;
+  }
+
+  /** Those that are nearer to their strength than they were when indicators
+      were asked. */
   std::vector<MeshView::Point> BisectedMesh::new_fronts()
   {
     std::vector<MeshView::Point> result;
-    const auto &discretization = *model_.discretization;
-    const auto &problem = model_.points();
-    const auto look = [&](const unsigned int i, const double share) {
-      if (!problem.interactions[problem.interaction[i]].law)
-        return;
+    for_fronts([&](const unsigned int i, const double share) {
       const auto level = std::uint8_t(std::min(100., 100. * share));
       if (level <= asked_[i])
         return;
       asked_[i] = level;
-      auto &point = result.emplace_back();
-      for (unsigned int c = 0; c < 2; ++c)
-        point.position[c] = discretization.points().position[2 * i + c];
-      point.utilisation = share;
-      point.zone = cohesive_zone<2>(input_, discretization, problem, i);
-    };
-    const auto parts = model_.leapfrog->parts();
-    parts.faces.visit_near(look);
-    const auto &chains = parts.points.chains();
-    for (std::size_t a = 0; a < chains.size(); ++a)
-      if (chains.beta[a] > 0. || chains.other.beta[a] > 0.)
-        look(chains.point[a], 1.);
+      result.push_back(front(i, share));
+    });
     return result;
   }
 
@@ -191,6 +227,36 @@ namespace nsfd
     return true;
   }
 
+  /** Halves that are smaller than indicators ask for, and further from the
+      present fronts than these would be refined. */
+  std::vector<Bisection::Family> BisectedMesh::not_wanted() const
+  {
+    std::vector<MeshView::Point> points;
+    for_fronts([&](const unsigned int i, const double share) {
+      points.push_back(front(i, share));
+    });
+    LeafView view(cells_, Bisection::none);
+    view.set_points(and_ahead(input_.adaptivity->ahead, points));
+    std::vector<double> size(view.bodies().size(),
+                             std::numeric_limits<double>::max());
+    for (const auto &indicator : input_.adaptivity->indicators)
+      indicator->limit(view, size);
+    auto families = cells_.families();
+    const auto is_wanted = [&](const Bisection::Family &family) {
+      for (const auto &[first, second] : family.pairs) {
+        if (first == Bisection::none)
+          continue;
+        const double whole = cells_.longest_edge(cells_.joined(first, second));
+        if (size[first] < whole || size[second] < whole)
+          return true;
+      }
+      return false;
+    };
+    families.erase(std::remove_if(families.begin(), families.end(), is_wanted),
+                   families.end());
+    return families;
+  }
+
   void BisectedMesh::change(State &state)
   {
     model_.leapfrog->show(state);
@@ -199,15 +265,38 @@ namespace nsfd
     BisectionTransfer transfer(cells_, *model_.discretization,
                                model_.leapfrog->parts().mesh);
     model_.leapfrog->serialize(transfer.old_parts());
+    HalvesToJoin::Plan plan;
+    if (input_.adaptivity->coarsen_every > 0 && state.last_step > 0.)
+      plan = HalvesToJoin(cells_, *model_.discretization,
+                          model_.leapfrog->parts().mesh, state)
+                 .plan(not_wanted(), transfer.front_viscosities());
+    if (!plan.families.empty())
+      view_.reset(); // it numbers the cells
+    cells_.join(plan.families);
+    n_joined_ += plan.families.size();
     build();
     transfer.set_mesh(*model_.discretization, model_.leapfrog->parts().mesh);
     state = transfer.state(state);
+    for (std::size_t k = 0; !plan.moved.empty() && k < cells_.cells().size();
+         ++k)
+      for (unsigned int i = 0; i < 3; ++i) {
+        const auto moved = plan.moved.find(cells_.cells()[k].vertices[i]);
+        for (unsigned int c = 0; moved != plan.moved.end() && c < 2; ++c)
+          state.displacement[6 * k + 2 * i + c] += moved->second[c];
+      }
+    const State given = plan.families.empty() ? State() : state;
     model_.leapfrog->resume_from(state);
+    if (!plan.families.empty()) {
+      model_.leapfrog->show(state);
+      transfer.set_motion(given, state);
+    }
     model_.leapfrog->serialize(transfer.new_parts());
     model_.leapfrog->show(state);
     cells_.settle();
-    const double lost = before - kinetic_energy(state);
-    state.energy.kinetic -= lost;
+    const double of_motion = kinetic_energy(state) - before + plan.motion,
+                 lost = -of_motion - plan.elastic;
+    state.energy.kinetic += of_motion;
+    state.energy.elastic += plan.elastic;
     state.energy.numerical += lost;
     lost_ += lost;
     worst_ = std::max(worst_, lost / state.largest_energy);
@@ -227,6 +316,7 @@ namespace nsfd
   BisectedMesh::fill_counters(std::map<std::string, double> &counters) const
   {
     counters["mesh_changes"] = changes_;
+    counters["joined_halves"] = double(n_joined_);
     counters["largest_cells"] = double(largest_cells_);
     counters["mean_cells"] = cells_sum_ / std::max(1., steps_);
     counters["mesh_change_energy"] = lost_;
@@ -235,36 +325,24 @@ namespace nsfd
 
   namespace
   {
-    using Corners = std::array<Point<2>, 3>;
-
-    /** Gradients of the linear shape functions. */
-    void set_gradients(const Corners &x, BodyShape<2> &shape)
-    {
-      const auto a = x[1] - x[0], b = x[2] - x[0];
-      const double twice = a[0] * b[1] - a[1] * b[0];
-      for (unsigned int i = 0; i < 3; ++i) {
-        const auto side = x[(i + 2) % 3] - x[(i + 1) % 3];
-        shape.gradients[i][0] = -side[1] / twice;
-        shape.gradients[i][1] = side[0] / twice;
-      }
-    }
-
     /** Over the descendants of a cell: the highest frequency at @p deepest
         bisections or less. All four shapes are among those of the first five,
         and come again at half of the size after two more. */
-    void look_at_halves(const Corners &x, const unsigned int level,
-                        const unsigned int deepest, BodyShape<2> &shape,
+    void look_at_halves(const Cells<2> &cells, const std::size_t body,
+                        const std::vector<Point<2>> &x,
+                        const unsigned int level, const unsigned int deepest,
                         double &highest)
     {
-      set_gradients(x, shape);
+      const auto of_half = cells.shape(body, x);
+      const auto &shape = *of_half;
       const double scale = std::ldexp(1., int((deepest - level) / 2));
       if (scale * frequency_bound(shape) > highest)
         highest = std::max(highest, scale * highest_frequency(shape));
       if (level == std::min(5u, deepest))
         return;
       const Point<2> m = x[1] + (x[2] - x[1]) / 2.;
-      look_at_halves({{m, x[0], x[1]}}, level + 1, deepest, shape, highest);
-      look_at_halves({{m, x[2], x[0]}}, level + 1, deepest, shape, highest);
+      look_at_halves(cells, body, {m, x[0], x[1]}, level + 1, deepest, highest);
+      look_at_halves(cells, body, {m, x[2], x[0]}, level + 1, deepest, highest);
     }
   } // namespace
 
@@ -274,11 +352,10 @@ namespace nsfd
     const auto &cells = model.discretization->cells();
     double highest = 0.;
     for (std::size_t b = 0; b < cells.bodies.size(); ++b) {
-      BodyShape<2> shape = *cells.shape(b);
-      Corners x;
-      for (unsigned int k = 0; k < 3; ++k)
-        x[k] = mesh.vertex(mesh.cells()[b].vertices[k]);
-      look_at_halves(x, 0, 2 * input.adaptivity->levels, shape, highest);
+      std::vector<Point<2>> x;
+      for (const unsigned int v : mesh.cells()[b].vertices)
+        x.push_back(mesh.vertex(v));
+      look_at_halves(cells, b, x, 0, 2 * input.adaptivity->levels, highest);
     }
     return longest_step(highest, input.front_viscosity());
   }

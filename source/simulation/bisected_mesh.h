@@ -29,8 +29,12 @@ namespace nsfd
 
   private:
     std::vector<MeshView::Point> new_fronts();
+    template <typename Look>
+    void for_fronts(const Look &look) const;
+    MeshView::Point front(unsigned int point, double share) const;
     bool refine(std::vector<MeshView::Point> points);
     void build();
+    std::vector<Bisection::Family> not_wanted() const;
     void change(State &state);
     double kinetic_energy(const State &state) const;
 
@@ -45,6 +49,7 @@ namespace nsfd
     std::vector<std::uint8_t> asked_;
     unsigned int changes_ = 0;
     unsigned long long largest_cells_ = 0;
+    unsigned long long n_joined_ = 0; ///< families of halves
     double cells_sum_ = 0., steps_ = 0.;
     double lost_ = 0.;  ///< kinetic energy, J
     double worst_ = 0.; ///< of one change, relative to the largest energy

@@ -23,6 +23,13 @@ namespace nsfd
                                       const Discretization<dim> &discretization,
                                       const Components MaterialInput::*field)
     {
+      if (std::all_of(input.materials.begin(), input.materials.end(),
+                      [&](const MaterialInput &material) {
+                        return std::all_of(
+                            (material.*field).begin(), (material.*field).end(),
+                            [](const auto &part) { return part.is_zero(); });
+                      }))
+        return std::vector<double>(discretization.bodies().n_dofs(), 0.);
       return discretization.interpolate([&](const dealii::Point<dim> &x,
                                             const unsigned int body,
                                             double *value) {

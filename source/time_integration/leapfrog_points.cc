@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace nsfd
@@ -34,14 +35,21 @@ namespace nsfd
       return true;
     }
 
+    /** Velocities whose squares have lost their digits are none: in front of a
+        wave all that a node solves would be made of such squares. Energies do
+        not know them. */
     template <int dim>
     void fetch_velocities(const std::vector<unsigned int> &of,
                           const CornerGroups<dim> &groups,
                           NodeProblem<dim> &problem)
     {
+      using limits = std::numeric_limits<double>;
+      static const double least = std::sqrt(limits::min()) / limits::epsilon();
       for (std::size_t k = 0; k < of.size(); ++k)
-        std::copy_n(&groups.velocity[of[k] * dim], dim,
-                    problem.velocity[k].begin());
+        for (unsigned int c = 0; c < dim; ++c) {
+          const double v = groups.velocity[of[k] * dim + c];
+          problem.velocity[k][c] = std::abs(v) < least ? 0. : v;
+        }
     }
 
     template <int dim>

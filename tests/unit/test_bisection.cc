@@ -134,6 +134,53 @@ namespace nsfd::test_bisection
       EXPECT_EQ(one.vertices, two.vertices);
     }
 
+    // Joined round by round, halves are the first mesh in the end.
+    TEST(Bisection, JoinsWhatItHalved)
+    {
+      constexpr unsigned int n = 4;
+      const auto first = rough_mesh(n);
+      Bisection cells(first);
+      for (unsigned int round = 0; round < 9; ++round) {
+        std::vector<char> marked(cells.cells().size());
+        for (std::size_t k = 0; k < marked.size(); ++k)
+          marked[k] = wave(double(k) + 100. * round) > 0.7;
+        cells.refine(marked, 7);
+      }
+      // what was halved since the last settle() is not joined
+      EXPECT_TRUE(cells.families().empty());
+      const std::size_t most = cells.cells().size();
+      EXPECT_GT(most, 150u);
+      for (unsigned int round = 0; round < 20; ++round) {
+        cells.settle();
+        const auto families = cells.families();
+        if (families.empty())
+          break;
+        const std::size_t before = cells.cells().size();
+        std::size_t fewer = 0;
+        for (const auto &family : families)
+          fewer += family.pairs[1][0] == Bisection::none ? 1 : 2;
+        cells.join(families);
+        EXPECT_EQ(cells.cells().size() + fewer, before);
+        const auto mesh = cells.mesh();
+        std::map<std::pair<unsigned int, unsigned int>, int> n_cells;
+        for (const auto &cell : mesh.cells)
+          for (unsigned int k = 0; k < 3; ++k)
+            ++n_cells[std::minmax(cell.vertices[k],
+                                  cell.vertices[(k + 1) % 3])];
+        double perimeter = 0.;
+        for (const auto &[edge, count] : n_cells)
+          if (count == 1)
+            perimeter +=
+                mesh.vertices[edge.first].distance(mesh.vertices[edge.second]);
+        EXPECT_NEAR(perimeter, 4. * n, 1e-12);
+        for (int material = 0; material < 3; ++material)
+          EXPECT_NEAR(area(mesh, material), area(first, material), 1e-12);
+      }
+      ASSERT_EQ(cells.cells().size(), first.cells.size());
+      for (std::size_t k = 0; k < first.cells.size(); ++k)
+        EXPECT_EQ(cells.cells()[k].level, 0u);
+    }
+
     /** Wants cells of half the size in half of the places, when told so. */
     class Sometimes final : public Indicator
     {
@@ -144,13 +191,15 @@ namespace nsfd::test_bisection
         const auto &bodies = view.bodies();
         for (std::size_t b = 0; b < bodies.size(); ++b) {
           const auto &x = bodies[b].centre;
-          if (level > 0 && wave(std::floor(4e5 * x[0]) +
-                                7. * std::floor(4e5 * x[1]) + level) > -0.3)
+          if (level > 0 && (x[0] < 5e-6 ? left : right) &&
+              wave(std::floor(4e5 * x[0]) + 7. * std::floor(4e5 * x[1]) +
+                   level) > -0.3)
             size[b] = std::ldexp(bodies[b].largest, -int(level));
         }
       }
       bool is_of_points() const override { return true; }
       static inline unsigned int level = 0;
+      static inline bool left = true, right = true; ///< where it wants them
     };
     NSFD_REGISTER(IndicatorRegistry, Sometimes, "sometimes (test)",
                   "For tests");
@@ -198,6 +247,7 @@ end
             communicator(MPI_COMM_WORLD)
       {
         Sometimes::level = 0;
+        Sometimes::left = Sometimes::right = true;
         const auto problems = model.build(*input, communicator);
         if (!problems.empty())
           throw std::invalid_argument(problems.front());
@@ -253,7 +303,7 @@ end
 
     TEST(Bisection, CarriesBrokenPlates)
     {
-      BisectedRun run(plate);
+      BisectedRun run(plate, {"Adaptivity/coarsen every steps=0"});
       const double start = BisectedRun::total(run.state.energy);
       unsigned int changes = 0;
       bool was_open = false;
@@ -279,6 +329,50 @@ end
       EXPECT_GE(changes, 2u);
       EXPECT_TRUE(was_open); // faces that soften and broken ones were cut
       EXPECT_GT(run.state.broken_area, 20e-6);
+    }
+
+    // Where cells are not needed any more they are joined, on the left while
+    // the right is refined: momentum and damage stay, and there is less energy,
+    // which the balance of the steps that come confirms.
+    TEST(Bisection, JoinsHalvesWithLessEnergy)
+    {
+      BisectedRun run(
+          plate, {"Material: bulk/initial velocity x=if(x > 5 um, 20, 1) * "
+                  "(x - 5 um) / 5 um",
+                  "Material: bulk/initial velocity y=0"});
+      const double start = BisectedRun::total(run.state.energy);
+      const auto count = [&](const char *name) {
+        std::map<std::string, double> counters;
+        run.mesh->fill_counters(counters);
+        return counters.at(name);
+      };
+      unsigned int changes = 0;
+      for (unsigned int n = 0; run.state.time < 8e-9; ++n) {
+        if (n == 60) {
+          Sometimes::level = 2;
+          Sometimes::right = false;
+        }
+        if (n == 200)
+          std::swap(Sometimes::left, Sometimes::right);
+        const double joined = count("joined_halves");
+        const bool changed = run.step();
+        const auto &now = run.state.energy, &before = run.before.energy;
+        ASSERT_NEAR(BisectedRun::total(now), start, 1e-13 * start)
+            << "step " << n;
+        if (!changed || count("joined_halves") == joined)
+          continue;
+        ++changes;
+        const auto momentum = run.momentum();
+        for (unsigned int c = 0; c < 2; ++c)
+          EXPECT_NEAR(momentum[c], run.old_momentum[c], 1e-14 * momentum[2]);
+        EXPECT_LT(now.kinetic + now.elastic, before.kinetic + before.elastic);
+        EXPECT_NEAR(run.damaged_length(), run.old_damage,
+                    1e-13 * run.old_damage);
+        EXPECT_EQ(now.damage, before.damage);
+      }
+      EXPECT_GE(changes, 1u);
+      EXPECT_GT(count("joined_halves"), 4.);
+      EXPECT_GT(run.state.energy.damage, 0.);
     }
 
     // A plane, cut in halves while it breaks, takes its toughness.

@@ -327,4 +327,25 @@ namespace test_laws_two_scalars
                       1e-9);
     }
   }
+
+  // The first of a wave that arrives moves a point by less than any square
+  // holds: it has the secant of a point that was never open.
+  TEST(TwoScalars, SmallestWaysHaveTheFirstSecant)
+  {
+    for (const auto &law : examples()) {
+      const LawPoint point(*law, 1., 1., false);
+      const Secant first = point.secant({});
+      const double a = law->peak_opening(), b = law->mixed()->peak_slip();
+      for (const double share : {1e-90, 1e-150, 1e-170, 1e-300}) {
+        const Reach small{share * a, share * b},
+            more{2. * share * a, 3. * share * b};
+        for (const auto &[from, to] :
+             {std::pair(Reach{}, small), {small, more}}) {
+          const Secant mean = point.mean_secant({from, from}, {to, to});
+          expect_relative(mean.normal, first.normal, 1e-9);
+          expect_relative(mean.tangential, first.tangential, 1e-9);
+        }
+      }
+    }
+  }
 } // namespace test_laws_two_scalars

@@ -4,12 +4,94 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace nsfd
 {
   namespace
   {
+    /** Places with their zones, in boxes of the way that is looked around. */
+    class Fronts
+    {
+    public:
+      using Front = std::array<double, 4>; ///< place and zone, m
+
+      Fronts(const std::vector<double> &numbers, const double reach,
+             const double largest_body)
+          : fronts_(numbers.size() / 4)
+      {
+        std::array<double, 3> highest{};
+        for (std::size_t k = 0; k < fronts_.size(); ++k) {
+          std::copy_n(&numbers[4 * k], 4, fronts_[k].begin());
+          largest_ = std::max(largest_, fronts_[k][3]);
+          for (unsigned int c = 0; c < 3; ++c) {
+            const double x = fronts_[k][c];
+            lowest_[c] = k == 0 ? x : std::min(lowest_[c], x);
+            highest[c] = k == 0 ? x : std::max(highest[c], x);
+          }
+        }
+        width_ = reach * largest_ + largest_body;
+        std::size_t n = 1;
+        const auto set_sizes = [&] {
+          n = 1;
+          for (unsigned int c = 0; c < 3; ++c) {
+            size_[c] = std::size_t((highest[c] - lowest_[c]) / width_) + 1;
+            n *= size_[c];
+          }
+        };
+        for (set_sizes(); n > 64 + 8 * fronts_.size(); set_sizes())
+          width_ *= 2.;
+        first_.assign(n + 1, 0);
+        std::sort(fronts_.begin(), fronts_.end(),
+                  [&](const Front &a, const Front &b) {
+                    return std::pair(box_of(a), a) < std::pair(box_of(b), b);
+                  });
+        for (const Front &front : fronts_)
+          ++first_[box_of(front) + 1];
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+      }
+
+      /** All that may be near, until @p visit says that it has seen enough. */
+      template <typename Visit>
+      void visit(const std::array<double, 3> &centre, const Visit &visit) const
+      {
+        std::array<std::size_t, 3> begin{}, end{};
+        for (unsigned int c = 0; c < 3; ++c) {
+          const double at = (centre[c] - lowest_[c]) / width_;
+          if (!(at > -1. && at < double(size_[c]) + 1.))
+            return;
+          begin[c] = std::size_t(std::max(0., at - 1.));
+          end[c] = std::min(size_[c], std::size_t(at + 1.) + 1);
+        }
+        for (std::size_t z = begin[2]; z < end[2]; ++z)
+          for (std::size_t y = begin[1]; y < end[1]; ++y) {
+            const std::size_t row = (z * size_[1] + y) * size_[0];
+            for (std::size_t k = first_[row + begin[0]];
+                 k < first_[row + end[0]]; ++k)
+              if (visit(fronts_[k]))
+                return;
+          }
+      }
+
+    private:
+      std::size_t box_of(const Front &front) const
+      {
+        std::size_t box = 0;
+        for (unsigned int c = 3; c-- > 0;)
+          box = box * size_[c] + std::size_t((front[c] - lowest_[c]) / width_);
+        return box;
+      }
+
+      std::vector<Front> fronts_;
+      std::vector<std::size_t> first_; ///< of a box, x first; size n + 1
+      std::array<double, 3> lowest_{};
+      std::array<std::size_t, 3> size_{};
+      double largest_ = 0., width_ = 1.;
+    };
+
     /**
      * Around the points that soften or are near their strength, cells are at
      * most L_czm / r long, L_czm = 9 pi/32 E' G / R_max^2 the cohesive zone of
@@ -36,20 +118,29 @@ namespace nsfd
       void limit(const MeshView &view, std::vector<double> &size) const override
       {
         const auto &bodies = view.bodies();
-        for_near(view, traction_, [&](const std::size_t b, const double zone) {
-          size[b] = std::min(size[b], zone / cells_);
-        });
-        for_near(view, traction_ / 2., [&](const std::size_t b, double) {
-          size[b] = std::min(size[b], bodies[b].size);
-        });
+        for_near(
+            view, traction_,
+            [&](const std::size_t b, const double zone) {
+              return zone / cells_ < size[b];
+            },
+            [&](const std::size_t b, const double zone) {
+              size[b] = zone / cells_;
+            });
+        for_near(
+            view, traction_ / 2.,
+            [&](const std::size_t b, double) {
+              return bodies[b].size < size[b];
+            },
+            [&](const std::size_t b, double) { size[b] = bodies[b].size; });
       }
 
       bool is_of_points() const override { return true; }
 
     private:
-      /** @p visit (body, zone) near points that carry at least a share. */
-      template <typename Visit>
-      void for_near(const MeshView &view, const double share,
+      /** @p visit (body, zone) near points that carry at least a share, where
+          @p asks (body, zone). */
+      template <typename Asks, typename Visit>
+      void for_near(const MeshView &view, const double share, const Asks &asks,
                     const Visit &visit) const
       {
         // points of a few cells tell the same: the middle of a box of a quarter
@@ -69,39 +160,32 @@ namespace nsfd
         for (const auto &box : boxes)
           here.insert(here.end(), box.begin(), box.end());
         const std::vector<double> all = view.gather(here);
-        std::vector<std::array<double, 4>> fronts(all.size() / 4);
-        double largest = 0.;
-        for (std::size_t k = 0; k < fronts.size(); ++k) {
-          std::copy_n(&all[4 * k], 4, fronts[k].begin());
-          largest = std::max(largest, fronts[k][3]);
-        }
-        std::sort(fronts.begin(), fronts.end());
-
+        if (all.empty())
+          return;
         const auto &bodies = view.bodies();
-        for (std::size_t b = 0; b < bodies.size() && !fronts.empty(); ++b) {
-          const auto &centre = bodies[b].centre;
-          // the cell itself may be much larger than the zone
-          const auto reach_of = [&](const double zone) {
-            return (reach_ + 0.25) * zone + 0.75 * bodies[b].size;
-          };
-          const double furthest = reach_of(largest);
-          const auto left_of = [](const auto &front, const double x) {
-            return front[0] < x;
-          };
-          for (auto front = std::lower_bound(fronts.begin(), fronts.end(),
-                                             centre[0] - furthest, left_of);
-               front != fronts.end() && (*front)[0] <= centre[0] + furthest;
-               ++front) {
-            const double near = reach_of((*front)[3]);
+        double largest_body = 0., smallest_zone = all[3];
+        for (const auto &body : bodies)
+          largest_body = std::max(largest_body, body.size);
+        for (std::size_t k = 3; k < all.size(); k += 4)
+          smallest_zone = std::min(smallest_zone, all[k]);
+        // the cell itself may be much larger than the zone
+        const double reach = reach_ + 0.25, own = 0.75;
+        const Fronts fronts(all, reach, own * largest_body);
+        for (std::size_t b = 0; b < bodies.size(); ++b)
+          fronts.visit(bodies[b].centre, [&](const Fronts::Front &front) {
+            if (!asks(b, front[3]))
+              return false;
+            const double near = reach * front[3] + own * bodies[b].size;
             double square = 0.;
             for (unsigned int c = 0; c < 3; ++c) {
-              const double d = centre[c] - (*front)[c];
+              const double d = bodies[b].centre[c] - front[c];
               square += d * d;
             }
-            if (square < near * near)
-              visit(b, (*front)[3]);
-          }
-        }
+            if (!(square < near * near))
+              return false;
+            visit(b, front[3]);
+            return front[3] == smallest_zone;
+          });
       }
 
       double cells_, traction_, reach_;
