@@ -54,9 +54,17 @@ namespace nsfd
         std::array<double, dim> y;
         for (unsigned int c = 0; c < dim; ++c)
           y[c] = ends.of_2[0][c];
-        row.weights = closest_place<dim>(facet, plane_of<dim>(facet, x.data()),
-                                         x.data(), y)
-                          .weights;
+        const auto plane = plane_of<dim>(facet, x.data());
+        row.weights = closest_place<dim>(facet, plane, x.data(), y).weights;
+        if (dim == 2) {
+          // of the whole line: a corner may be a little past the end, and both
+          // bodies get the impulse at one place
+          const Tensor<1, dim> side = ends.of_1[1] - ends.of_1[0];
+          const double s =
+              side * (ends.of_2[0] - ends.of_1[0]) / side.norm_square();
+          row.weights[0] = 1. - s;
+          row.weights[1] = s;
+        }
       }
     }
   } // namespace
@@ -100,7 +108,10 @@ namespace nsfd
                                          ? chains.problem.kind[a]
                                          : chains.other.kind[a];
     const auto before = state_.kind;
-    surfaces_.part(state_);
+    // where the other end of a face still holds, too: compared node by node,
+    // its sides would overlap by how far they have slid times how far they turn
+    constexpr bool one_by_one = true;
+    surfaces_.part(state_, one_by_one);
     std::vector<unsigned int> parted;
     for (std::size_t i = 0; i < before.size(); ++i)
       if (state_.kind[i] == PointKind::separated &&
