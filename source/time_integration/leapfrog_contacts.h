@@ -71,7 +71,7 @@ namespace nsfd
     static constexpr std::size_t no_node = std::size_t(-1);
     /** The impulses of the last clusters(). */
     void take(const std::vector<Cluster> &clusters);
-    static constexpr double of_rigid = 1e-4; ///< part of the tolerance
+    static constexpr double part_of_tolerance = 1e-4;
     /** The others that push: their impulses, and what these do to the
        velocities of @p groups, which have none of them, and @p of_bodies, see
        RigidGroups::move(). What is left over of a problem with rigid bodies,

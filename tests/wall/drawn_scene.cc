@@ -151,7 +151,7 @@ namespace wall
       const double wanted =
           2. * draft.gap / draft.speed +
           draft.unit / draft.wave_speed() * draw.decades(2., 50.);
-      end = std::min(n * h, is_rigid ? 1e30 : wanted);
+      end = std::min({n * h, is_rigid ? 1e30 : wanted, draft.longest});
       // what Gmsh makes of a size is known to the program
       const bool in_crossings =
           !is_rigid && (draw.chance(0.5) ||
