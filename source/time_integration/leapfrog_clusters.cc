@@ -95,10 +95,15 @@ namespace nsfd
     Node &node = nodes_.of(mesh_.node_of_point(point));
     for (const unsigned int a : node.points)
       if (chains_.point[a] == point) {
+        chains_.closed[a] = 0;
+        chains_.released[a] = LeapfrogChains<dim>::left;
+        for (auto &elastic : node.elastic)
+          elastic.is_new = true;
+        if (!chains_.is_broken(a))
+          continue;
         chains_.problem.kind[a] = chains_.other.kind[a] = PointKind::separated;
         for (unsigned int c = 0; c < dim; ++c)
           chains_.impulse[a * dim + c] = 0.;
-        chains_.closed[a] = 0;
       }
     node.is_new = true;
   }

@@ -224,13 +224,13 @@ namespace nsfd
     if (!contacts_)
       return false;
     contacts_->accept();
-    const auto n_open = [&points] {
+    const auto n_open = [this, &points] {
       const auto &chains = points.chains();
       std::size_t n = chains.size();
       for (std::size_t a = 0; a < chains.size(); ++a)
-        n += (chains.other.kind[a] == PointKind::free &&
-              chains.problem.kind[a] == PointKind::free) +
-             (chains.other.kind[a] == PointKind::cohesive);
+        n += chains.is_broken(a) +
+             (chains.other.kind[a] == PointKind::cohesive) +
+             contacts_->has_slid_off(chains, a);
       return n;
     };
     if (n_open() == n_open_)

@@ -105,7 +105,7 @@ namespace nsfd
   {
     OneStepProblem<dim> &p = chains_.problem;
     const double h = p.time_step * p.theta;
-    p.contact[a] = p.compression_stiffness[a] == 0.;
+    p.contact[a] = p.compression_stiffness[a] == 0. && !chains_.is_left(a);
     const double u = p.jump_free[a * dim], U = chains_.old_velocity[a * dim];
     chains_.turned[a] = 0;
     p.target[a] = -(u + chains_.released[a]) / h;

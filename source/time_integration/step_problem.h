@@ -73,6 +73,9 @@ namespace nsfd
     const DrivenMotion<dim> &motion() const { return *motion_; }
 
   private:
+    bool gives_by_contact(const OneStepProblem<dim> &problem,
+                          const SolverControl &control, const State &old,
+                          const LawEvaluation<dim> &evaluation) const;
     bool rests(double still, const OneStepProblem<dim> &problem,
                double energy_scale, const State &old,
                const LawEvaluation<dim> &evaluation) const;

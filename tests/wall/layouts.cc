@@ -229,7 +229,9 @@ namespace wall
         block.angle = draft.large ? draw.between(-1., 1.) : 0.;
         return;
       }
-      hold(draft, "left", draw.chance(0.6));
+      // nothing else holds a body at rest
+      hold(draft, "left",
+           draw.chance(0.6) || draft.integrator == "quasi-static");
       drive(draft, draw, "right", draw.chance(0.7) ? 0 : up(draft),
             draw.chance(0.7) ? 1. : -1.);
     }
