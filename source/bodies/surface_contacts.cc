@@ -107,6 +107,20 @@ namespace nsfd
         state.surface_contact[places_.of_ball(b)] |= released;
   }
 
+  /** Which sides points were over at the start of the step. */
+  template <int dim>
+  void SurfaceContacts<dim>::store_facets(State &next) const
+  {
+    next.surface_facet.assign(places_.n_of_faces(), Surfaces<dim>::no_key);
+    next.surface_gap.assign(places_.n_of_faces(), 0.);
+    for (const auto &pair : pairs_.points) {
+      const std::size_t place = active_.set().point_places[pair.index];
+      next.surface_facet[place] =
+          active_.set().surfaces.facets[pair.facet].side;
+      next.surface_gap[place] = pair.gap;
+    }
+  }
+
   template class SurfaceContacts<2>;
   template class SurfaceContacts<3>;
 } // namespace nsfd

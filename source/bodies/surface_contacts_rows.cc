@@ -1,7 +1,9 @@
 #include "surface_contacts.h"
 
-#include "core/gather.h"
 #include "obstacle_geometry.h"
+
+#include "contact_detection/touching_rules.h"
+#include "core/gather.h"
 
 #include "nsfd/scene/scene_input.h"
 
@@ -255,6 +257,16 @@ namespace nsfd
     if (row.gap < 0.) {
       // bodies that turn touch with corners first, then with edges
       row.approach = old.last_step * away.norm();
+      // next to an end of both they were two corners that meet, and unseen
+      const double lengths[2] = {way[0].norm(), way[1].norm()};
+      const auto is_at_end = [&](const double place, const double length) {
+        return std::min(place, 1. - place) * length <=
+               edge_end * length + row.approach;
+      };
+      if (is_at_end(pair.place, lengths[0]) &&
+          is_at_end(pair.other_place, lengths[1]))
+        row.overlap =
+            std::min(-row.gap, edge_end * std::max(lengths[0], lengths[1]));
       for (unsigned int v = 0; v < 2; ++v) {
         take_at_vertex(old, edge.vertex[v], row.body_1, row);
         take_at_vertex(old, other.vertex[v], int(row.body_2), row);
@@ -355,20 +367,6 @@ namespace nsfd
     }
     for (const auto &pair : pairs_.edges)
       rows.push_back(edge_row(pair, old));
-  }
-
-  /** Which sides points were over at the start of the step. */
-  template <int dim>
-  void SurfaceContacts<dim>::store_facets(State &next) const
-  {
-    next.surface_facet.assign(places_.n_of_faces(), Surfaces<dim>::no_key);
-    next.surface_gap.assign(places_.n_of_faces(), 0.);
-    for (const auto &pair : pairs_.points) {
-      const std::size_t place = active_.set().point_places[pair.index];
-      next.surface_facet[place] =
-          active_.set().surfaces.facets[pair.facet].side;
-      next.surface_gap[place] = pair.gap;
-    }
   }
 
   template <int dim>
@@ -493,8 +491,7 @@ namespace nsfd
 
 #define INSTANTIATE(dim)                                                       \
   template std::vector<MovingRow<dim>> SurfaceContacts<dim>::rows(             \
-      const State &, double, double);                                          \
-  template void SurfaceContacts<dim>::store_facets(State &) const
+      const State &, double, double)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

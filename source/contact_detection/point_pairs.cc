@@ -187,6 +187,11 @@ namespace nsfd
             continue;
           const Plane<dim> &beside = planes_[sides[1 - i]];
           for (unsigned int v = 0; v < 2; ++v) {
+            const unsigned int next = next_[f][v];
+            if (next == NearCandidates::no_facet ||
+                !(dot(planes_[next].normal,
+                      difference(y, planes_[next].centre)) > 0.))
+              continue;
             const Place<dim> tip =
                 place<dim>(x_, surfaces_.facets[f].vertex[v]);
             // below the side that cuts, too

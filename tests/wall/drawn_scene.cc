@@ -166,7 +166,8 @@ namespace wall
         step = time(end / draw.whole(10, 40));
       }
       Block block{"Time", {"end = " + time(end)}};
-      if (draft.integrator != "moreau-jean" || draw.chance(0.2))
+      // the default of large motions is auto
+      if (draft.integrator != "moreau-jean" || draw.chance(0.2) || draft.large)
         block.entries.push_back("scheme = " + draft.integrator);
       block.entries.push_back("step = " + step);
       if (draft.integrator == "moreau-jean" && draw.chance(0.3))
