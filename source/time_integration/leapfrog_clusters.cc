@@ -116,8 +116,11 @@ namespace nsfd
       Outcome &outcome)
   {
     const std::size_t first = moved_.size();
-    for (const std::size_t node : cluster.nodes)
-      begin(nodes_.of(node));
+    for (const std::size_t node : cluster.nodes) {
+      Node &here = nodes_.of(node);
+      begin(here);
+      here.settled = 0; // what holds has the round-off of a velocity now
+    }
     springs_.resize(moved_.size(), nullptr);
     const std::size_t n = moved_.size() - first;
     // the problem: points, then contacts

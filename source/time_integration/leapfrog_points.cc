@@ -143,6 +143,12 @@ namespace nsfd
       if (node.settled < 3)
         std::fill_n(&chains_.impulse[point.index * dim], dim, 0.);
     }
+    // rounds of one step may come here before what holds has been accepted at
+    // rest, and nothing looks at it from now on
+    for (const auto &x : node.problem.points)
+      if (node.settled < 3 && chains_.problem.kind[x.point] == PointKind::rigid)
+        for (auto *velocity : {&chains_.velocity, &chains_.old_velocity})
+          std::fill_n(&(*velocity)[x.point * dim], dim, 0.);
     node.settled = 3;
     return true;
   }
