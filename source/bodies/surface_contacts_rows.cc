@@ -1,9 +1,7 @@
 #include "surface_contacts.h"
 
-#include "obstacle_geometry.h"
-
-#include "contact_detection/touching_rules.h"
 #include "core/gather.h"
+#include "obstacle_geometry.h"
 
 #include "nsfd/scene/scene_input.h"
 
@@ -257,16 +255,6 @@ namespace nsfd
     if (row.gap < 0.) {
       // bodies that turn touch with corners first, then with edges
       row.approach = old.last_step * away.norm();
-      // next to an end of both they were two corners that meet, and unseen
-      const double lengths[2] = {way[0].norm(), way[1].norm()};
-      const auto is_at_end = [&](const double place, const double length) {
-        return std::min(place, 1. - place) * length <=
-               edge_end * length + row.approach;
-      };
-      if (is_at_end(pair.place, lengths[0]) &&
-          is_at_end(pair.other_place, lengths[1]))
-        row.overlap =
-            std::min(-row.gap, edge_end * std::max(lengths[0], lengths[1]));
       for (unsigned int v = 0; v < 2; ++v) {
         take_at_vertex(old, edge.vertex[v], row.body_1, row);
         take_at_vertex(old, other.vertex[v], int(row.body_2), row);
