@@ -96,8 +96,9 @@ namespace nsfd
       const int face = cells_.mesh_face(f);
       if (face < 0 || points.faces[f].first >= points.n_owned)
         continue;
-      const char now =
-          state.kind[points.faces[f].first] == PointKind::separated;
+      char now = 0;
+      for (unsigned int i = 0; i < points.faces[f].count; ++i)
+        now |= state.kind[points.faces[f].first + i] == PointKind::separated;
       if (!wholes_.node.empty() && !opened_[std::size_t(face)])
         for (unsigned int i = 0; i < points.faces[f].count; ++i)
           if (const PointKind kind = state.kind[points.faces[f].first + i];

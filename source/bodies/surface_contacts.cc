@@ -55,7 +55,7 @@ namespace nsfd
 
   /** Both ranks of two bodies know all faces between them. */
   template <int dim>
-  void SurfaceContacts<dim>::part(State &state) const
+  void SurfaceContacts<dim>::part(State &state, const bool one_by_one) const
   {
     const auto &faces = discretization_.points().faces;
     const auto bodies_of = [&](const std::size_t f) {
@@ -68,23 +68,31 @@ namespace nsfd
     const auto pair = [&](const std::size_t f) {
       return pair_of(bodies_of(f).body_1, bodies_of(f).body_2);
     };
+    const auto holds = [&state](const unsigned int i) {
+      return state.kind[i] != PointKind::free &&
+             state.kind[i] != PointKind::separated;
+    };
     std::unordered_set<UnorderedPair> held;
-    for (std::size_t f = 0; f < faces.size(); ++f)
+    for (std::size_t f = 0; f < faces.size() && !one_by_one; ++f)
       for (unsigned int i = faces[f].first;
            is_between(f) && i < faces[f].first + faces[f].count; ++i)
-        if (state.kind[i] != PointKind::free &&
-            state.kind[i] != PointKind::separated)
+        if (holds(i))
           held.insert(pair(f));
     std::vector<unsigned int> opened;
-    for (std::size_t f = 0; f < faces.size(); ++f)
-      if (is_between(f) && held.count(pair(f)) == 0) {
-        if (state.kind[faces[f].first] != PointKind::separated)
-          opened.insert(opened.end(),
-                        {bodies_of(f).body_1, bodies_of(f).body_2});
-        for (unsigned int i = faces[f].first;
-             i < faces[f].first + faces[f].count; ++i)
-          state.kind[i] = PointKind::separated;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (!is_between(f) || (!one_by_one && held.count(pair(f)) > 0))
+        continue;
+      bool opens = false;
+      for (unsigned int i = faces[f].first; i < faces[f].first + faces[f].count;
+           ++i) {
+        if (one_by_one && holds(i))
+          continue;
+        opens = opens || state.kind[i] != PointKind::separated;
+        state.kind[i] = PointKind::separated;
       }
+      if (opens)
+        opened.insert(opened.end(), {bodies_of(f).body_1, bodies_of(f).body_2});
+    }
     if (!all_.any(!opened.empty()))
       return;
     std::vector<char> opens(table_.bodies.size(), 0);
@@ -97,6 +105,20 @@ namespace nsfd
     for (unsigned int b = 0; b < opens.size(); ++b)
       if (opens[b])
         state.surface_contact[places_.of_ball(b)] |= released;
+  }
+
+  /** Which sides points were over at the start of the step. */
+  template <int dim>
+  void SurfaceContacts<dim>::store_facets(State &next) const
+  {
+    next.surface_facet.assign(places_.n_of_faces(), Surfaces<dim>::no_key);
+    next.surface_gap.assign(places_.n_of_faces(), 0.);
+    for (const auto &pair : pairs_.points) {
+      const std::size_t place = active_.set().point_places[pair.index];
+      next.surface_facet[place] =
+          active_.set().surfaces.facets[pair.facet].side;
+      next.surface_gap[place] = pair.gap;
+    }
   }
 
   template class SurfaceContacts<2>;

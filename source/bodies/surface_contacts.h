@@ -50,9 +50,10 @@ namespace nsfd
 
     /**
      * Points between two bodies that nothing holds together any more are left
-     * to the search: `separated`. Collective.
+     * to the search: `separated`. Collective. With @p one_by_one each free one,
+     * also where its face still holds elsewhere.
      */
-    void part(State &state) const;
+    void part(State &state, bool one_by_one = false) const;
     /** After the step of the last call of rows(). */
     void store_facets(State &next) const;
 
@@ -104,6 +105,9 @@ namespace nsfd
     Row edge_row(const EdgePair<dim> &pair, const State &old) const;
     int body_of_key(std::uint64_t key) const;
     std::array<std::size_t, 2> places_of_face(unsigned int facet) const;
+    void take(const State &old, std::size_t place, int over, Row &row) const;
+    void take_at_vertex(const State &old, unsigned int vertex, int over,
+                        Row &row) const;
     void take_over(const FacetPair<dim> &pair, const State &old,
                    Row &row) const;
     std::uint8_t mark_of(const State &old, unsigned int facet) const;

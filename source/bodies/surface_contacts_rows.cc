@@ -119,6 +119,29 @@ namespace nsfd
     return {first, first + cells_.faces(cell)[face].nodes.size()};
   }
 
+  /** The bounds of a @p place that was over a body in the last step. */
+  template <int dim>
+  void SurfaceContacts<dim>::take(const State &old, const std::size_t place,
+                                  const int over, Row &row) const
+  {
+    if (body_of_key(old.surface_facet[place]) != over)
+      return;
+    row.approach = std::max(row.approach, old.surface_approach[place]);
+    row.overlap = std::max(row.overlap, old.surface_overlap[place]);
+  }
+
+  template <int dim>
+  void SurfaceContacts<dim>::take_at_vertex(const State &old,
+                                            const unsigned int vertex,
+                                            const int over, Row &row) const
+  {
+    const auto &points = active_.set().points_by_vertex;
+    for (auto p = std::lower_bound(points.begin(), points.end(),
+                                   std::pair(vertex, 0u));
+         p != points.end() && p->first == vertex; ++p)
+      take(old, active_.set().point_places[p->second], over, row);
+  }
+
   /**
    * Where two faces slide past each other's ends, other points go on with the
    * overlap that they have, and so does another point of the same corner when
@@ -129,24 +152,12 @@ namespace nsfd
                                        const State &old, Row &row) const
   {
     const auto &point = active_.set().surfaces.points[pair.index];
-    const auto take = [&](const std::size_t place, const int over) {
-      if (body_of_key(old.surface_facet[place]) != over)
-        return;
-      row.approach = std::max(row.approach, old.surface_approach[place]);
-      row.overlap = std::max(row.overlap, old.surface_overlap[place]);
-    };
     for (const bool own : {true, false}) {
       const auto places = places_of_face(own ? point.facet : pair.facet);
       for (std::size_t k = places[0]; k < places[1]; ++k)
-        take(k, own ? row.body_1 : int(row.body_2));
+        take(old, k, own ? row.body_1 : int(row.body_2), row);
     }
-    const auto first = std::lower_bound(active_.set().points_by_vertex.begin(),
-                                        active_.set().points_by_vertex.end(),
-                                        std::pair(point.vertex, 0u));
-    for (auto p = first;
-         p != active_.set().points_by_vertex.end() && p->first == point.vertex;
-         ++p)
-      take(active_.set().point_places[p->second], row.body_1);
+    take_at_vertex(old, point.vertex, row.body_1, row);
   }
 
   /** Facet and gap, and its rate with the velocities at the start. */
@@ -241,6 +252,14 @@ namespace nsfd
       }
     row.gap = pair.gap;
     row.rate = normal * away;
+    if (row.gap < 0.) {
+      // bodies that turn touch with corners first, then with edges
+      row.approach = old.last_step * away.norm();
+      for (unsigned int v = 0; v < 2; ++v) {
+        take_at_vertex(old, edge.vertex[v], row.body_1, row);
+        take_at_vertex(old, other.vertex[v], int(row.body_2), row);
+      }
+    }
     // as of a corner of a facet with these sides
     row.weight = way[0].norm() * way[1].norm() / 4.;
     row.place = place_of_edge(edge);
@@ -336,20 +355,6 @@ namespace nsfd
     }
     for (const auto &pair : pairs_.edges)
       rows.push_back(edge_row(pair, old));
-  }
-
-  /** Which sides points were over at the start of the step. */
-  template <int dim>
-  void SurfaceContacts<dim>::store_facets(State &next) const
-  {
-    next.surface_facet.assign(places_.n_of_faces(), Surfaces<dim>::no_key);
-    next.surface_gap.assign(places_.n_of_faces(), 0.);
-    for (const auto &pair : pairs_.points) {
-      const std::size_t place = active_.set().point_places[pair.index];
-      next.surface_facet[place] =
-          active_.set().surfaces.facets[pair.facet].side;
-      next.surface_gap[place] = pair.gap;
-    }
   }
 
   template <int dim>
@@ -474,8 +479,7 @@ namespace nsfd
 
 #define INSTANTIATE(dim)                                                       \
   template std::vector<MovingRow<dim>> SurfaceContacts<dim>::rows(             \
-      const State &, double, double);                                          \
-  template void SurfaceContacts<dim>::store_facets(State &) const
+      const State &, double, double)
 
   INSTANTIATE(2);
   INSTANTIATE(3);

@@ -78,14 +78,17 @@ namespace nsfd
       }
 
     private:
-      /** The facet beside that of a point, at the point; or null. */
-      const Plane<dim> *beside(const typename Surfaces<dim>::Point &point) const
+      /** The facet beside that of a point, at the point, if there is one. */
+      unsigned int next_at(const typename Surfaces<dim>::Point &point) const
       {
         if (dim == 3 || next_.empty())
-          return nullptr;
+          return NearCandidates::no_facet;
         const auto &ends = surfaces_.facets[point.facet].vertex;
-        const unsigned int next =
-            next_[point.facet][ends[0] == point.vertex ? 0 : 1];
+        return next_[point.facet][ends[0] == point.vertex ? 0 : 1];
+      }
+      const Plane<dim> *beside(const typename Surfaces<dim>::Point &point) const
+      {
+        const unsigned int next = next_at(point);
         return next == NearCandidates::no_facet ? nullptr : &planes_[next];
       }
 
@@ -130,7 +133,8 @@ namespace nsfd
         return within(touch.pair.gap, depth) &&
                !(touch.pair.gap < -same_length * own.size &&
                  is_outside(f, y, foot.place, touch.is_kept,
-                            same_length * own.size));
+                            same_length * own.size) &&
+                 !cuts(touch.pair.index, f));
       }
 
       /**
@@ -163,6 +167,42 @@ namespace nsfd
         return false;
       }
 
+      /**
+       * Two acute corners pass through each other like the blades of scissors:
+       * both tips are outside, and a side at point @p p leads through facet
+       * @p f, whose tip is in front of the other side there.
+       */
+      bool cuts(const unsigned int p, const unsigned int f) const
+      {
+        const auto &point = surfaces_.points[p];
+        const std::array<unsigned int, 2> sides = {point.facet, next_at(point)};
+        if (sides[1] == NearCandidates::no_facet)
+          return false;
+        const Place<dim> y = place<dim>(x_, point.vertex);
+        for (unsigned int i = 0; i < 2; ++i) {
+          const auto &ends = surfaces_.facets[sides[i]].vertex;
+          const Place<dim> other =
+              place<dim>(x_, ends[ends[0] == point.vertex ? 1 : 0]);
+          if (!crosses(f, other, y))
+            continue;
+          const Plane<dim> &beside = planes_[sides[1 - i]];
+          for (unsigned int v = 0; v < 2; ++v) {
+            const unsigned int next = next_[f][v];
+            if (next == NearCandidates::no_facet ||
+                !(dot(planes_[next].normal,
+                      difference(y, planes_[next].centre)) > 0.))
+              continue;
+            const Place<dim> tip =
+                place<dim>(x_, surfaces_.facets[f].vertex[v]);
+            // below the side that cuts, too
+            if (dot(beside.normal, difference(tip, y)) > 0. &&
+                dot(planes_[sides[i]].normal, difference(tip, y)) < 0.)
+              return true;
+          }
+        }
+        return false;
+      }
+
       /** The way from in front of facet @p f to @p foot goes through it. */
       bool crosses(const unsigned int f, const Place<dim> &y,
                    const Place<dim> &foot) const
@@ -171,7 +211,7 @@ namespace nsfd
         const double height = dot(plane.normal, difference(y, plane.centre)),
                      of_foot =
                          dot(plane.normal, difference(foot, plane.centre));
-        if (!(of_foot < 0.))
+        if (!(of_foot < 0. && height > 0.))
           return false;
         const Place<dim> there =
             sum(y, height / (height - of_foot), difference(foot, y));

@@ -271,7 +271,8 @@ namespace nsfd
   {
     const auto widen = [this](const auto &overlap, const auto &approach) {
       for (std::size_t i = 0; i < overlap.size(); ++i)
-        bound_ = std::max(bound_, overlap[i] + approach[i]);
+        if (std::isfinite(overlap[i])) // else others look for its contact
+          bound_ = std::max(bound_, overlap[i] + approach[i]);
     };
     widen(state.released_overlap, state.approach);
     widen(state.surface_overlap, state.surface_approach);

@@ -4,6 +4,7 @@
 #include "nonsmooth/point_law.h"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace nsfd
@@ -76,6 +77,14 @@ namespace nsfd
     std::vector<double> velocity, old_velocity;
     std::vector<double> impulse, slip;
     std::vector<double> released; ///< overlap where contact holds, m
+    /// `released` of a point whose contact is left to the search
+    static constexpr double left = std::numeric_limits<double>::infinity();
+    bool is_left(const std::size_t a) const { return released[a] == left; }
+    bool is_broken(const std::size_t a) const
+    {
+      return problem.kind[a] == PointKind::free &&
+             other.kind[a] == PointKind::free;
+    }
     std::vector<std::uint8_t> closed, turned; ///< friction opposes the mean
     std::vector<LocalSolution<dim>> solution;
 

@@ -95,10 +95,15 @@ namespace nsfd
     Node &node = nodes_.of(mesh_.node_of_point(point));
     for (const unsigned int a : node.points)
       if (chains_.point[a] == point) {
+        chains_.closed[a] = 0;
+        chains_.released[a] = LeapfrogChains<dim>::left;
+        for (auto &elastic : node.elastic)
+          elastic.is_new = true;
+        if (!chains_.is_broken(a))
+          continue;
         chains_.problem.kind[a] = chains_.other.kind[a] = PointKind::separated;
         for (unsigned int c = 0; c < dim; ++c)
           chains_.impulse[a * dim + c] = 0.;
-        chains_.closed[a] = 0;
       }
     node.is_new = true;
   }
@@ -111,8 +116,11 @@ namespace nsfd
       Outcome &outcome)
   {
     const std::size_t first = moved_.size();
-    for (const std::size_t node : cluster.nodes)
-      begin(nodes_.of(node));
+    for (const std::size_t node : cluster.nodes) {
+      Node &here = nodes_.of(node);
+      begin(here);
+      here.settled = 0; // what holds has the round-off of a velocity now
+    }
     springs_.resize(moved_.size(), nullptr);
     const std::size_t n = moved_.size() - first;
     // the problem: points, then contacts

@@ -211,8 +211,9 @@ namespace nsfd
       }
     }
     SolverControl control;
-    // bodies at rest have no energy but what is left over
-    control.tolerance = at_body.empty() ? tolerance : of_rigid * tolerance;
+    // what is left over is energy, which adds up over the steps, and bodies at
+    // rest have no other
+    control.tolerance = part_of_tolerance * tolerance;
     control.attempts = 1; // what is left is bounded by its own books
     const auto report = solve_contact_problem(
         problem, AssembledMethod<ContactMethod::automatic>(), "automatic",

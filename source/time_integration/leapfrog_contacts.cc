@@ -4,6 +4,7 @@
 #include "obstacle_motion.h"
 
 #include "contact_detection/facet_geometry.h"
+#include "contact_detection/touching_rules.h"
 #include "core/disjoint_sets.h"
 #include "discretization/cell_geometry.h"
 #include "nsfd/scene/scene_input.h"
@@ -54,9 +55,17 @@ namespace nsfd
         std::array<double, dim> y;
         for (unsigned int c = 0; c < dim; ++c)
           y[c] = ends.of_2[0][c];
-        row.weights = closest_place<dim>(facet, plane_of<dim>(facet, x.data()),
-                                         x.data(), y)
-                          .weights;
+        const auto plane = plane_of<dim>(facet, x.data());
+        row.weights = closest_place<dim>(facet, plane, x.data(), y).weights;
+        if (dim == 2) {
+          // of the whole line: a corner may be a little past the end, and both
+          // bodies get the impulse at one place
+          const Tensor<1, dim> side = ends.of_1[1] - ends.of_1[0];
+          const double s =
+              side * (ends.of_2[0] - ends.of_1[0]) / side.norm_square();
+          row.weights[0] = 1. - s;
+          row.weights[1] = s;
+        }
       }
     }
   } // namespace
@@ -76,6 +85,15 @@ namespace nsfd
     part_of_.resize(layout_.size());
     for (std::size_t b = 0; b < layout_.size(); ++b)
       part_of_[layout_[b].number] = parts.first(layout_[b].cells[0]);
+    const auto &points = discretization.points();
+    face_size_.resize(points.n_points);
+    for (const auto &face : points.faces) {
+      double area = 0.;
+      for (unsigned int i = face.first; i < face.first + face.count; ++i)
+        area += all.weight[i];
+      std::fill_n(face_size_.begin() + face.first, face.count,
+                  dim == 2 ? area : std::sqrt(area));
+    }
   }
 
   template <int dim>
@@ -85,6 +103,9 @@ namespace nsfd
   void LeapfrogContacts<dim>::start(const State &state)
   {
     state_ = state;
+    for (std::size_t i = 0; i < state_.kind.size(); ++i)
+      if (state_.released_overlap[i] == LeapfrogChains<dim>::left)
+        state_.kind[i] = PointKind::separated;
     state_.touches.clear();
     if (state_.obstacle_shift.empty())
       state_.obstacle_shift = initial_shifts(input_);
@@ -94,19 +115,50 @@ namespace nsfd
   std::vector<unsigned int>
   LeapfrogContacts<dim>::part(const LeapfrogChains<dim> &chains)
   {
-    // one of the two chains of a point may still hold
-    for (std::size_t a = 0; a < chains.size(); ++a)
-      state_.kind[chains.point[a]] = chains.other.kind[a] == PointKind::free
-                                         ? chains.problem.kind[a]
-                                         : chains.other.kind[a];
-    const auto before = state_.kind;
-    surfaces_.part(state_);
     std::vector<unsigned int> parted;
+    for (std::size_t a = 0; a < chains.size(); ++a) {
+      const unsigned int i = chains.point[a];
+      if (chains.is_left(a)) {
+        state_.kind[i] = PointKind::separated;
+        if (chains.is_broken(a)) // meanwhile
+          parted.push_back(i);
+        continue;
+      }
+      // one of the two chains of a point may still hold
+      const PointKind other = chains.other.kind[a];
+      state_.kind[i] = has_slid_off(chains, a)    ? PointKind::free
+                       : other == PointKind::free ? chains.problem.kind[a]
+                                                  : other;
+    }
+    const auto before = state_.kind;
+    // where the other end of a face still holds, too: compared node by node,
+    // its sides would overlap by how far they have slid times how far they turn
+    constexpr bool one_by_one = true;
+    surfaces_.part(state_, one_by_one);
     for (std::size_t i = 0; i < before.size(); ++i)
       if (state_.kind[i] == PointKind::separated &&
           before[i] != PointKind::separated)
         parted.push_back(unsigned(i));
     return parted;
+  }
+
+  template <int dim>
+  bool LeapfrogContacts<dim>::has_slid_off(const LeapfrogChains<dim> &chains,
+                                           const std::size_t a) const
+  {
+    const auto softens = [](const PointKind kind) {
+      return kind == PointKind::cohesive || kind == PointKind::free;
+    };
+    const OneStepProblem<dim> &p = chains.problem;
+    if (chains.is_left(a) || !softens(p.kind[a]) ||
+        !softens(chains.other.kind[a]) ||
+        p.compression_stiffness[a] + chains.other.compression[a] > 0.)
+      return false;
+    double square = 0.;
+    for (unsigned int c = 1; c < dim; ++c)
+      square += p.jump_free[a * dim + c] * p.jump_free[a * dim + c];
+    const double least = inset * face_size_[chains.point[a]];
+    return square > least * least;
   }
 
   /** Surfaces go to where the groups are. */

@@ -52,6 +52,9 @@ namespace nsfd
     /** Points of the mesh that are left to the search now, by what active ones
         are. */
     std::vector<unsigned int> part(const LeapfrogChains<dim> &chains);
+    /** Active point @p a softens, and has slid so far that its two sides touch
+        other places than each other. */
+    bool has_slid_off(const LeapfrogChains<dim> &chains, std::size_t a) const;
 
     /**
      * What may touch in a step of length @p h from @p time, groups at its
@@ -71,7 +74,7 @@ namespace nsfd
     static constexpr std::size_t no_node = std::size_t(-1);
     /** The impulses of the last clusters(). */
     void take(const std::vector<Cluster> &clusters);
-    static constexpr double of_rigid = 1e-4; ///< part of the tolerance
+    static constexpr double part_of_tolerance = 1e-4;
     /** The others that push: their impulses, and what these do to the
        velocities of @p groups, which have none of them, and @p of_bodies, see
        RigidGroups::move(). What is left over of a problem with rigid bodies,
@@ -160,6 +163,7 @@ namespace nsfd
     State state_; ///< of the surfaces
     State after_; ///< where they are at the end of the step
     std::vector<unsigned int> part_of_; ///< by body: of what was one
+    std::vector<double> face_size_;     ///< of the points of the mesh, m
     std::size_t n_groups_ = 0; ///< of the wholes that the surfaces know
     double time_step_ = 0.;
     const RigidGroups<dim> *rigid_ = nullptr; ///< of the step; null: none

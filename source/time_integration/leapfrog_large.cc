@@ -224,14 +224,20 @@ namespace nsfd
     if (!contacts_)
       return false;
     contacts_->accept();
-    const auto n_open = [&points] {
+    // how far they have come, which never goes back
+    const auto n_open = [this, &points] {
       const auto &chains = points.chains();
-      std::size_t n = chains.size();
-      for (std::size_t a = 0; a < chains.size(); ++a)
-        n += (chains.other.kind[a] == PointKind::free &&
-              chains.problem.kind[a] == PointKind::free) +
-             (chains.other.kind[a] == PointKind::cohesive);
-      return n;
+      std::size_t n = 0;
+      for (std::size_t a = 0; a < chains.size(); ++a) {
+        for (const PointKind kind :
+             {chains.problem.kind[a], chains.other.kind[a]})
+          n += kind == PointKind::separated  ? 3
+               : kind == PointKind::free     ? 2
+               : kind == PointKind::cohesive ? 1
+                                             : 0;
+        n += chains.is_left(a) || contacts_->has_slid_off(chains, a);
+      }
+      return n + chains.size();
     };
     if (n_open() == n_open_)
       return false;

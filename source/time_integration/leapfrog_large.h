@@ -134,7 +134,7 @@ namespace nsfd
     std::array<double, 2> flow_{};    ///< plastic and viscous, likewise, J
     double stored_ = 0., power_ = 0.; ///< of the step
     double stiffening_ = 1., way_ = 0.;
-    std::size_t n_open_ = 0; ///< points that hold less than they did
+    std::size_t n_open_ = 0; ///< how far points have opened, in sum
     unsigned long long rounds_ = 0;
   };
 } // namespace nsfd

@@ -113,7 +113,7 @@ namespace nsfd
   {
     OneStepProblem<dim> &p = chains_.problem;
     const double h = p.time_step * p.theta;
-    p.contact[a] = p.compression_stiffness[a] == 0.;
+    p.contact[a] = p.compression_stiffness[a] == 0. && !chains_.is_left(a);
     const double u = p.jump_free[a * dim], U = chains_.old_velocity[a * dim];
     chains_.turned[a] = 0;
     p.target[a] = -(u + chains_.released[a]) / h;
@@ -151,6 +151,12 @@ namespace nsfd
       if (node.settled < 3)
         std::fill_n(&chains_.impulse[point.index * dim], dim, 0.);
     }
+    // rounds of one step may come here before what holds has been accepted at
+    // rest, and nothing looks at it from now on
+    for (const auto &x : node.problem.points)
+      if (node.settled < 3 && chains_.problem.kind[x.point] == PointKind::rigid)
+        for (auto *velocity : {&chains_.velocity, &chains_.old_velocity})
+          std::fill_n(&(*velocity)[x.point * dim], dim, 0.);
     node.settled = 3;
     return true;
   }

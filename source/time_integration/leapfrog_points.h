@@ -54,7 +54,8 @@ namespace nsfd
     std::vector<double> turn(const AxesOf &axes_of,
                              const RigidGroups<dim> *rigid,
                              const CornerGroups<dim> &groups);
-    /** A point of the mesh is separated: others look for what it touches. */
+    /** A point of the mesh is separated, or has slid off what it was joined
+        with: others look for what it touches. */
     void part(unsigned int point);
 
     /** Stored in them at the start, J. Collective. */

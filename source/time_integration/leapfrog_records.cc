@@ -91,10 +91,11 @@ namespace nsfd
     const TakenStep step{old, next, h, scale, 0};
     check_.check_balance(step, report);
     check_.watch_energy(step, report);
-    // bodies at rest: their contacts are solved to LeapfrogContacts::of_rigid
-    // of the tolerance, and what that leaves of the work is no energy either
+    // bodies at rest: their contacts are solved to
+    // LeapfrogContacts::part_of_tolerance of the tolerance, and what that
+    // leaves of the work is no energy either
     if (rigid_ && large_)
-      report.changes.terms += LeapfrogContacts<dim>::of_rigid *
+      report.changes.terms += LeapfrogContacts<dim>::part_of_tolerance *
                               input_.solver.tolerance *
                               rigid_->sizes().impulses / round_off_of_step(1.);
   }

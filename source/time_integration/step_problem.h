@@ -73,6 +73,14 @@ namespace nsfd
     const DrivenMotion<dim> &motion() const { return *motion_; }
 
   private:
+    bool gives_by_contact(const OneStepProblem<dim> &problem,
+                          const SolverControl &control, const State &old,
+                          const std::vector<double> &impulse,
+                          const LawEvaluation<dim> &evaluation) const;
+    void solve_closer(NonsmoothSolver<dim> &solver,
+                      const OneStepProblem<dim> &problem, SolverControl control,
+                      double energy_scale, std::vector<double> &impulse,
+                      LawEvaluation<dim> &evaluation, SolverReport &report);
     bool rests(double still, const OneStepProblem<dim> &problem,
                double energy_scale, const State &old,
                const LawEvaluation<dim> &evaluation) const;

@@ -239,9 +239,10 @@ subsection Loads
   set gravity = 1, -10
 end
 subsection Time
-  set end   = 1.2
-  set step  = 20 ms
-  set theta = 1
+  set scheme = moreau-jean
+  set end    = 1.2
+  set step   = 20 ms
+  set theta  = 1
 end
 subsection Observable: pressure
   set type = contact pressure

@@ -58,6 +58,22 @@ namespace end_to_end::test_wall
                         Seed{30183, "large auto mixed contact"},
                         Seed{9, "large explicit breakable contact"},
                         Seed{30210, "large explicit breakable contact"},
+                        // faces that hold at one end and slide at the other
+                        Seed{30070, "large explicit mixed contact"},
+                        Seed{30342, "large explicit breakable alone"},
+                        // acute corners that cut through each other
+                        Seed{30088, "large explicit breakable contact"},
+                        Seed{30290, "large explicit breakable contact"},
+                        // edges where corners have touched
+                        Seed{30371, "large explicit breakable contact"},
+                        // what tolerances leave adds up
+                        Seed{30372, "large explicit elastic contact"},
+                        Seed{30324, "small symplectic breakable contact"},
+                        Seed{30491, "small moreau-jean elastic contact"},
+                        // driven by half a body, speeds of the softest one
+                        Seed{30221, "large explicit elastic alone"},
+                        Seed{30124, "large explicit breakable contact"},
+                        Seed{30023, "large explicit mixed contact"},
                         Seed{30340, "large explicit breakable contact"},
                         Seed{16, "large explicit breakable contact"},
                         Seed{103, "large explicit elastic alone"},

@@ -124,6 +124,46 @@ namespace surface_scene::test_surface_search
     EXPECT_EQ(held.count({3, 103, 102}), 1u);
   }
 
+  // Two acute tips pass through each other like the blades of scissors: both
+  // are in front of the other's lower side, which goes down to its end by
+  // `fall`, and below its upper one.
+  TEST(SurfaceSearch, BladesOfScissors)
+  {
+    for (const double fall : {0.3, 0.05}) {
+      Scene<2> scene;
+      add_polygon(scene, 0, {{-3., fall}, {0.2, 0.}, {-3., 1.6}}); // 100 to 102
+      add_polygon(scene, 1, {{-0.2, 0.}, {3., fall}, {3., 1.6}});  // 103 to 105
+      scene.all_points();
+      std::set<unsigned int> inside;
+      for (const auto &pair : scene.find(0.01).points) {
+        if (pair.gap > 0.) // the lower side is near
+          continue;
+        const unsigned int vertex = scene.surfaces.points[pair.index].vertex;
+        inside.insert(vertex);
+        // across the upper side, which the tip has come through
+        EXPECT_EQ(scene.surfaces.facets[pair.facet].key,
+                  vertex == 3 ? 101u : 105u);
+        EXPECT_NEAR(pair.gap, -0.4 / std::sqrt(5.), 1e-15);
+      }
+      EXPECT_EQ(inside, (std::set<unsigned int>{1, 3})) << fall;
+    }
+  }
+
+  // The tip of body 0 is a little inside the left side of body 1, whose lower
+  // corner is in front of the tip's lower side: it does not touch the upper
+  // one, although the side that leads to it cuts the tip.
+  TEST(SurfaceSearch, CornerBesideATipInItsSide)
+  {
+    Scene<2> scene;
+    add_polygon(scene, 0, {{0., 0.}, {-4., 0.7}, {-4., -5.}});    // 100 to 102
+    add_polygon(scene, 1, {{-0.3, -0.8}, {3., -0.4}, {1., 2.7}}); // 103 to 105
+    scene.all_points();
+    const auto pairs = scene.find(0.01);
+    ASSERT_EQ(pairs.points.size(), 1u);
+    EXPECT_EQ(scene.surfaces.points[pairs.points[0].index].vertex, 0u);
+    EXPECT_EQ(scene.surfaces.facets[pairs.points[0].facet].key, 105u);
+  }
+
   // A box has sunk in by 0.03 and rests on its support by 0.02 or 0.04 only:
   // the side of the support is nearer to the corner than its top, or the other
   // way round.

@@ -75,26 +75,29 @@ namespace wall
       block.entries.push_back(entry);
     draft.blocks.push_back(block);
     draft.keeps_momentum = false;
+    draft.end_at_half(draft.speed, up(draft), 0., draft.gap);
   }
 
   void drive(Draft &draft, Draw &draw, const std::string &side, const int d,
              const double sign)
   {
-    const double c = draft.substance.wave_speed(),
+    const double c = draft.slowest.wave_speed(),
                  rise = draft.unit / c * draw.between(1., 10.);
+    const bool grows = draw.chance(0.5), at_once = !grows && draw.chance(0.7);
     const std::string shape =
-        draw.chance(0.5)   ? fmt::format(" * min(1, t / ({}))", time(rise))
-        : draw.chance(0.7) ? ""
-                           : fmt::format(" * sin(t / ({}))", time(rise));
+        grows     ? fmt::format(" * min(1, t / ({}))", time(rise))
+        : at_once ? ""
+                  : fmt::format(" * sin(t / ({}))", time(rise));
     Block block{"Boundary: " + side, {}};
     const double stress =
         draft.kind == Kind::rigid
-            ? draft.substance.density * draft.speed * draft.speed
-            : draft.substance.density * c * draft.speed;
+            ? draft.slowest.density * draft.speed * draft.speed
+            : draft.slowest.density * c * draft.speed;
     // rigid bodies between two sides that move cannot follow
     if (draft.kind != Kind::rigid && draw.chance(0.75)) {
       block.entries.push_back(fmt::format("velocity {} = {}{}", axis(d),
                                           speed(sign * draft.speed), shape));
+      draft.end_at_half(draft.speed, d, grows ? 0.5 * rise : 0., 0.);
       if (draw.chance(0.5))
         block.entries.push_back(
             fmt::format("velocity {} = 0", axis((d + 1) % draft.dim)));

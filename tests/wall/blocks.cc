@@ -21,8 +21,12 @@ namespace wall
     {
       const bool history = draft.integrator == "moreau-jean";
       std::string name = "linear elastic";
-      if (draft.large)
+      if (draft.large) {
         name = draw.chance(0.75) ? "neo-hookean" : "saint-venant kirchhoff";
+        // what is crushed becomes soft, and turns inside out
+        if (draft.speed > 0.1 * draft.slowest.wave_speed())
+          name = "neo-hookean";
+      }
       if (history && draw.chance(0.1))
         name = draw.chance(0.6) ? "j2 plastic" : "viscoplastic";
       Entries entries = {"model = " + name,

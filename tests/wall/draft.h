@@ -92,6 +92,9 @@ namespace wall
 
   /** A scene before it is text. Lengths in m, times in s. */
   struct Draft {
+    /// of the bodies, the one with the slowest waves: speeds and loads are
+    /// counted from it
+    Substance slowest{};
     int dim = 2;
     bool large = true, touches = true, plane_stress = false;
     Kind kind = Kind::elastic;
@@ -106,11 +109,16 @@ namespace wall
     bool jointed =
         false; ///< parts of one mesh do not all touch: some are joined
     bool keeps_momentum = true;
+    /// until what is driven has gone half a body: no user drives on
+    double longest = 1e30;
 
     double wave_speed() const;
     double smallest_edge() const;
     int n_cells() const;
     bool is_rigid() const;
+    /** Something goes at @p speed from @p start on, along direction @p d, @p
+        away from what it meets. */
+    void end_at_half(double speed, int d, double start, double away);
   };
 
   /** Bodies, supports and drives. */

@@ -151,7 +151,7 @@ namespace wall
       const double wanted =
           2. * draft.gap / draft.speed +
           draft.unit / draft.wave_speed() * draw.decades(2., 50.);
-      end = std::min(n * h, is_rigid ? 1e30 : wanted);
+      end = std::min({n * h, is_rigid ? 1e30 : wanted, draft.longest});
       // what Gmsh makes of a size is known to the program
       const bool in_crossings =
           !is_rigid && (draw.chance(0.5) ||
@@ -166,7 +166,8 @@ namespace wall
         step = time(end / draw.whole(10, 40));
       }
       Block block{"Time", {"end = " + time(end)}};
-      if (draft.integrator != "moreau-jean" || draw.chance(0.2))
+      // the default of large motions is auto
+      if (draft.integrator != "moreau-jean" || draw.chance(0.2) || draft.large)
         block.entries.push_back("scheme = " + draft.integrator);
       block.entries.push_back("step = " + step);
       if (draft.integrator == "moreau-jean" && draw.chance(0.3))

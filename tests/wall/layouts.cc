@@ -173,11 +173,13 @@ namespace wall
                   u * draw.between(0.5, 1.));
         const double angle = draw.chance(0.7) ? draw.between(-0.4, 0.4) : 0.,
                      c = std::cos(angle), s = std::abs(std::sin(angle)),
-                     w = size[0], h = size[up(draft)];
+                     w = size[0], h = size[up(draft)],
+                     // numbers are rounded, and corners shall not overlap
+            hair = angle != 0. ? 1e-6 * u : 0.;
         // turned about its centre it needs more place
         Vector low{};
-        low[0] = x + 0.5 * (w * c + h * s - w);
-        low[up(draft)] = height + 0.5 * (h * c + w * s - h);
+        low[0] = x + 0.5 * (w * c + h * s - w) + hair;
+        low[up(draft)] = height + 0.5 * (h * c + w * s - h) + hair;
         const bool single = draft.kind == Kind::rigid || draft.dim == 3;
         draft.bodies.push_back(
             box(draft, fmt::format("stone{}", i + 1), low, size,
@@ -186,8 +188,8 @@ namespace wall
         stone.angle = angle;
         stone.velocity[up(draft)] = -draft.speed;
         stone.velocity[0] = draft.speed * draw.between(-0.5, 0.5);
-        x += w * c + h * s + draft.gap;
-        next = std::max(next, height + h * c + w * s);
+        x += w * c + h * s + 2. * hair + draft.gap;
+        next = std::max(next, height + h * c + w * s + 2. * hair);
       }
       draft.gravity = draw.chance(0.5) ? 9.81 : 0.;
       if (draw.chance(0.8))
@@ -227,7 +229,9 @@ namespace wall
         block.angle = draft.large ? draw.between(-1., 1.) : 0.;
         return;
       }
-      hold(draft, "left", draw.chance(0.6));
+      // nothing else holds a body at rest
+      hold(draft, "left",
+           draw.chance(0.6) || draft.integrator == "quasi-static");
       drive(draft, draw, "right", draw.chance(0.7) ? 0 : up(draft),
             draw.chance(0.7) ? 1. : -1.);
     }
@@ -307,6 +311,52 @@ namespace wall
           body.distortion = draw.between(0.05, 0.2);
       }
     }
+
+    /** Tetrahedra that may all break are what ten seconds of CPU hold. */
+    void coarsen(Draft &draft)
+    {
+      constexpr int most = 300;
+      const auto is_heavy = [&] {
+        int n = 0;
+        for (const Body &body : draft.bodies)
+          if (body.breakable && !body.is_boxes() && body.shape != "ball")
+            n += body.n_cells(draft.dim);
+        return draft.dim == 3 && draft.large && n > most;
+      };
+      while (is_heavy()) {
+        int *largest = nullptr;
+        for (Body &body : draft.bodies)
+          if (body.breakable && !body.is_boxes() && body.shape != "ball")
+            for (int &n : body.cells)
+              if (!largest || n > *largest)
+                largest = &n;
+        if (*largest == 1)
+          return;
+        --*largest;
+      }
+    }
+
+    void draw_bodies(Draft &draft, Draw &draw)
+    {
+      if (!draft.touches && draft.dim == 2 && draw.chance(0.3))
+        notched(draft, draw);
+      else if (!draft.touches)
+        alone(draft, draw);
+      else if (!draft.large) {
+        if (draw.chance(0.3))
+          alone(draft, draw);
+        else
+          parts(draft, draw);
+      } else {
+        const std::size_t which = draw.one_of({0.3, 0.2, 0.2, 0.2, 0.1});
+        (which == 0   ? projectile
+         : which == 1 ? stack
+         : which == 2 ? row
+         : which == 3 ? heap
+                      : alone)(draft, draw);
+      }
+      give_substances(draft, draw);
+    }
   } // namespace
 
   int Body::n_cells(const int dim) const
@@ -345,6 +395,15 @@ namespace wall
     return edge;
   }
 
+  void Draft::end_at_half(const double speed, const int d, const double start,
+                          const double away)
+  {
+    double size = 1e30;
+    for (const Body &body : bodies)
+      size = std::min(size, body.high[d] - body.low[d]);
+    longest = std::min(longest, start + (away + 0.5 * size) / speed);
+  }
+
   bool Draft::is_rigid() const
   {
     return std::all_of(bodies.begin(), bodies.end(),
@@ -373,23 +432,16 @@ namespace wall
         draw.chance(0.25)
             ? 0.
             : draft.unit * std::min(0.3, slowness * draw.decades(0.1, 2.));
-    if (!draft.touches && draft.dim == 2 && draw.chance(0.3))
-      notched(draft, draw);
-    else if (!draft.touches)
-      alone(draft, draw);
-    else if (!draft.large) {
-      if (draw.chance(0.3))
-        alone(draft, draw);
-      else
-        parts(draft, draw);
-    } else {
-      const std::size_t which = draw.one_of({0.3, 0.2, 0.2, 0.2, 0.1});
-      (which == 0   ? projectile
-       : which == 1 ? stack
-       : which == 2 ? row
-       : which == 3 ? heap
-                    : alone)(draft, draw);
-    }
-    give_substances(draft, draw);
+    // what they are made of comes last, and speeds depend on it
+    draft.slowest = draft.substance;
+    Draft trial = draft;
+    Draw again = draw;
+    draw_bodies(trial, again);
+    for (const Body &body : trial.bodies)
+      if (body.substance.wave_speed() < draft.slowest.wave_speed())
+        draft.slowest = body.substance;
+    draft.speed = slowness * draft.slowest.wave_speed();
+    draw_bodies(draft, draw);
+    coarsen(draft);
   }
 } // namespace wall
