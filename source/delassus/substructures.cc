@@ -127,12 +127,32 @@ namespace nsfd
     const SparseRows rows =
         finest_.assemble(shares, springs ? all.data() : nullptr);
     if ((!is_analysed_ && !dissection_.analyse(rows, finest_.border())) ||
-        !dissection_.eliminate(rows))
+        !dissection_.eliminate(rows) || !eliminate_between_ranks())
       return false;
     is_analysed_ = true;
     shares_ = shares;
     of_supports_ = std::move(here);
     return true;
+  }
+
+  /** S from what the ranks have left. */
+  template <int dim>
+  bool Substructures<dim>::eliminate_between_ranks()
+  {
+    const auto &communicator = finest_.delassus().communicator();
+    const auto &border = finest_.border();
+    std::vector<char> seen;
+    for (std::size_t k = 0; k < border.size(); ++k)
+      if (dissection_.number()[k] >= 0)
+        seen.push_back(border[k]);
+    seen = gather_all(communicator, seen);
+    const std::size_t n = seen.size();
+    std::vector<double> all(n * n, 0.);
+    dissection_.for_terms([&](const int r, const int c, const double value) {
+      all[std::size_t(c) * n + std::size_t(r)] += value;
+    });
+    dissection_.forget_terms();
+    return !communicator.any(!outer_.eliminate(all, seen, split_));
   }
 
   template <int dim>
@@ -159,7 +179,9 @@ namespace nsfd
       else
         common.push_back(name[k]);
     common = gather_all(finest_.delassus().communicator(), common);
-    std::vector<long long> merged = common;
+    std::vector<long long> merged;
+    for (const int k : outer_.kept())
+      merged.push_back(common[std::size_t(k)]);
     std::sort(merged.begin(), merged.end());
     merged.erase(std::unique(merged.begin(), merged.end()), merged.end());
     const auto place = [&](const long long of) {
@@ -167,12 +189,20 @@ namespace nsfd
       return found != merged.end() && *found == of ? int(found - merged.begin())
                                                    : -1;
     };
-    for (const long long of : common)
-      places.merged.push_back(place(of));
-    places.n_merged = int(merged.size());
-    for (std::size_t k = 0; k < merged.size(); ++k)
-      if (merged[k] >= space.first && merged[k] < space.first + space.n_own)
-        places.own.emplace_back(int(k), int(merged[k] - space.first));
+    merged_.clear();
+    for (const int k : outer_.kept())
+      merged_.push_back(place(common[std::size_t(k)]));
+    n_border_ = int(merged.size());
+    // a vector has what is one in the space once: with the first of its parts
+    std::vector<char> is_there(merged.size(), 0);
+    for (std::size_t k = 0; k < common.size(); ++k) {
+      const int one = place(common[k]);
+      if (common[k] >= space.first && common[k] < space.first + space.n_own &&
+          (one < 0 || !is_there[std::size_t(one)]))
+        places.own.emplace_back(int(k), int(common[k] - space.first));
+      if (one >= 0)
+        is_there[std::size_t(one)] = 1;
+    }
     place_.clear();
     const long long size = matrix.size_;
     for (int b = 0; b < matrix.n_own_; ++b)
@@ -181,13 +211,16 @@ namespace nsfd
       place_.push_back(place(block * size));
     const std::size_t n = merged.size();
     condensed_.assign(n * n, 0.);
-    dissection_.for_terms([&](const int r, const int c, const double value) {
-      const auto row = std::size_t(places.merged[std::size_t(r)]),
-                 column = std::size_t(places.merged[std::size_t(c)]);
-      // an entry off the diagonal stands for two, which may meet on it
-      condensed_[std::min(row, column) * n + std::max(row, column)] +=
-          row == column && r != c ? 2. * value : value;
-    });
+    const std::size_t n_split = merged_.size();
+    for (std::size_t c = 0; c < n_split; ++c)
+      for (std::size_t r = c; r < n_split; ++r) {
+        const auto row = std::size_t(merged_[r]),
+                   column = std::size_t(merged_[c]);
+        const double value = split_[c * n_split + r];
+        // an entry off the diagonal stands for two, which may meet on it
+        condensed_[std::min(row, column) * n + std::max(row, column)] +=
+            row == column && r != c ? 2. * value : value;
+      }
     dissection_.set_places(std::move(places));
   }
 
@@ -245,8 +278,15 @@ namespace nsfd
   void Substructures<dim>::solve(const double *b, double *x)
   {
     dissection_.forward(b, right_);
+    outer_.forward(right_, kept_);
+    right_.assign(std::size_t(n_border_), 0.);
+    for (std::size_t k = 0; k < kept_.size(); ++k)
+      right_[std::size_t(merged_[k])] += kept_[k];
     factor_.solve(right_.data());
-    dissection_.backward(right_, x);
+    for (std::size_t k = 0; k < kept_.size(); ++k)
+      kept_[k] = right_[std::size_t(merged_[k])];
+    outer_.backward(kept_, solution_);
+    dissection_.backward(solution_, x);
   }
 
   template <int dim>

@@ -5,6 +5,7 @@
 #include "delassus_operator.h"
 #include "joined_matrix.h"
 
+#include "linear_algebra/dense_elimination.h"
 #include "linear_algebra/dense_factor.h"
 #include "linear_algebra/dissection.h"
 
@@ -107,22 +108,28 @@ namespace nsfd
     bool factorise(const double *springs, bool symmetric);
     void add_springs(const double *springs, std::vector<double> &A) const;
     void solve(const double *b, double *x);
-    int n_border() const { return dissection_.places().n_merged; }
+    bool eliminate_between_ranks();
+    int n_border() const { return n_border_; }
     /** That a solution reads, on this rank. */
     double n_entries() const
     {
-      return dissection_.n_entries() + double(n_border()) * n_border();
+      return dissection_.n_entries() + outer_.n_entries() +
+             double(n_border()) * n_border();
     }
 
     const FinestSpace<dim> &finest_;
     Dissection dissection_;
+    DenseElimination outer_;    ///< of nodes between ranks that no point sees
+    std::vector<double> split_; ///< S, all open, lower triangle
     bool is_analysed_ = false;
     StepShares shares_{-1.};
     std::vector<double> of_supports_; ///< T of their points, one by one
     const JoinedMatrix<dim> *matrix_ = nullptr;
-    std::vector<int> place_;        ///< in the border, by block of the matrix
+    std::vector<int> place_;  ///< in the border, by block of the matrix
+    std::vector<int> merged_; ///< by row of S: that of the space
+    int n_border_ = 0;
     std::vector<double> condensed_; ///< S in the space, lower triangle
     DenseFactor factor_;
-    std::vector<double> right_;
+    std::vector<double> right_, kept_, solution_;
   };
 } // namespace nsfd

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <new>
-#include <numeric>
 #include <utility>
 
 namespace nsfd
@@ -168,11 +167,7 @@ namespace nsfd
       shares_.clear();
       return false;
     }
-    Places places = std::move(places_);
-    places.n_merged = n_common_;
-    places.merged.resize(std::size_t(n_common_));
-    std::iota(places.merged.begin(), places.merged.end(), 0);
-    set_places(std::move(places));
+    set_places(Places(places_));
     return true;
   }
 
@@ -206,8 +201,8 @@ namespace nsfd
   {
     places_ = std::move(places);
     std::vector<int> own;
-    for (const auto &[merged, place] : places_.own)
-      own.push_back(merged);
+    for (const auto &[k, place] : places_.own)
+      own.push_back(k);
     const int mine = int(own.size());
     std::vector<int> counts(communicator_.size());
     MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT,
@@ -227,17 +222,17 @@ namespace nsfd
       x_[std::size_t(k)] = b[places_.inner[std::size_t(k)]];
     inner_.forward(x_);
     std::vector<double> mine(x_.begin() + n_inner_, x_.end());
-    for (const auto &[merged, place] : places_.own)
+    for (const auto &[k, place] : places_.own)
       mine.push_back(b[place]);
     const auto all = gather(communicator_.mpi(), MPI_DOUBLE, mine, sums_.counts,
                             sums_.offsets);
-    right.assign(std::size_t(places_.n_merged), 0.);
+    right.assign(std::size_t(n_common_), 0.);
     const double *value = all.data();
     const int *owned = all_own_.data();
     for (std::size_t r = 0; r < shares_.size(); ++r) {
       const auto &boundary = shares_[r].boundary;
       for (const int k : boundary)
-        right[std::size_t(places_.merged[std::size_t(k)])] += *value++;
+        right[std::size_t(k)] += *value++;
       const std::size_t count = std::size_t(sums_.counts[r]) - boundary.size();
       for (std::size_t k = 0; k < count; ++k)
         right[std::size_t(*owned++)] += *value++;
@@ -247,12 +242,11 @@ namespace nsfd
   void Dissection::backward(const std::vector<double> &common, double *x)
   {
     for (std::size_t k = 0; k < own_.boundary.size(); ++k)
-      x_[std::size_t(n_inner_) + k] =
-          common[std::size_t(places_.merged[std::size_t(own_.boundary[k])])];
+      x_[std::size_t(n_inner_) + k] = common[std::size_t(own_.boundary[k])];
     inner_.backward(x_);
     for (int k = 0; k < n_inner_; ++k)
       x[places_.inner[std::size_t(k)]] = x_[std::size_t(k)];
-    for (const auto &[merged, place] : places_.own)
-      x[place] = common[std::size_t(merged)];
+    for (const auto &[k, place] : places_.own)
+      x[place] = common[std::size_t(k)];
   }
 } // namespace nsfd

@@ -66,22 +66,16 @@ namespace nsfd
     /** S is known to its user: no memory for its terms from now on. */
     void forget_terms() { terms_ = std::vector<double>(); }
 
-    /**
-     * Vectors are those of a space in which some of the common unknowns are
-     * one: their places. By default those of the matrix.
-     */
+    /** Where a vector has the unknowns; by default as the matrix. */
     struct Places {
-      std::vector<int> inner;  ///< by inner unknown: place in a vector
-      std::vector<int> merged; ///< by common unknown: that which it is one of
-      int n_merged = 0;
-      /// of those that vectors of this rank have: which, and the place
+      std::vector<int> inner; ///< by inner unknown
+      /// of common ones that vectors of this rank have: which, and the place
       std::vector<std::pair<int, int>> own;
     };
-    const Places &places() const { return places_; }
     /** Collective. */
     void set_places(Places places);
 
-    /** @p right side for S, by merged unknown, of @p b. Collective. */
+    /** @p right side for S of @p b. Collective. */
     void forward(const double *b, std::vector<double> &right);
     /** After forward(): all of @p x from @p common, the solution with S. */
     void backward(const std::vector<double> &common, double *x);
@@ -105,7 +99,7 @@ namespace nsfd
     std::vector<int> inner_source_, common_source_;
     std::vector<double> terms_; ///< of S, rank by rank
     Places places_;
-    std::vector<int> all_own_; ///< merged unknowns that ranks have, by rank
+    std::vector<int> all_own_; ///< common unknowns that ranks have, by rank
     struct {
       std::vector<int> counts, offsets;
     } values_, sums_; ///< of messages, by rank: of S, of right sides
