@@ -269,21 +269,15 @@ namespace nsfd
       ParameterFile parsed;
       InputErrors found;
       const bool can_be_read = parse(parsed, found);
-      const bool is_default =
-          parsed.find("Time") && !has_entry(parsed, "Time", "scheme");
-      const ParameterEntry *motion = parsed.top().find("motion");
-      // motions are large where bodies meet or break, which explicit steps are
-      // made for
-      const bool chooses =
-          has_entry(parsed, "Time", "scheme", "auto") ||
-          (is_default && motion && motion->value.text() == "large");
-      if (can_be_read && chooses)
+      if (can_be_read && has_entry(parsed, "Time", "scheme", "auto"))
         return read_automatic(parse, name, has_entry(parsed, "Time", "step"),
                               errors);
       for (const Diagnostic &one : found.diagnostics())
         errors.add(one);
       if (!can_be_read)
         return nullptr;
+      const bool is_default =
+          parsed.find("Time") && !has_entry(parsed, "Time", "scheme");
       auto scene = read_parsed(parsed, name, errors);
       if (scene && is_default)
         scene->alternative = read_alternative(parse, name);

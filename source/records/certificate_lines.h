@@ -41,7 +41,8 @@ namespace nsfd
       line.value = print(*line.number, digits);
       limit = print(*line.limit, digits);
     } while (line.verdict == CertificateLine::Verdict::bad &&
-             line.value == limit && ++digits < 17);
+             line.value == limit && *line.number != *line.limit &&
+             ++digits < 17);
     line.bound = relation + limit;
   }
 

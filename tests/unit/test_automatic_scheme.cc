@@ -140,23 +140,7 @@ end
         << scene->echo;
   }
 
-  TEST(AutomaticScheme, IsTheDefaultOfLargeMotions)
-  {
-    const auto without = [](std::string text) {
-      const std::string line = "  set scheme = auto\n";
-      return chosen(text.erase(text.find(line), line.size()));
-    };
-    const std::string end = "  set end = 10 s\n";
-    const SceneInput scene = without("set motion = large\n" +
-                                     plate("  set model = neo-hookean\n", end));
-    EXPECT_EQ(scene.time.scheme_name, "explicit");
-    EXPECT_EQ(scene.scheme_choice.find("explicit: "), 0u);
-    EXPECT_EQ(without("set motion = small\n" + plate("", end)).time.scheme_name,
-              "moreau-jean");
-  }
-
-  // Who names no scheme for small motions has implicit steps, and is told what
-  // others cost.
+  // Who names no scheme has implicit steps, and is told what others cost.
   TEST(AutomaticScheme, IsAdvisedWhereNoSchemeIsNamed)
   {
     const auto advice = [](const std::string &time, const bool check) {

@@ -176,6 +176,18 @@ namespace nsfd::test_certificate
     EXPECT_EQ(line(certificate, "rejected steps").number, 3.);
   }
 
+  // No digits tell apart what is equal.
+  TEST(Certificate, PrintsEqualNumbersShortly)
+  {
+    RunFacts facts = good_facts();
+    facts.rejected = facts.steps;
+    facts.overshoots = 0;
+    const Certificate certificate = certify(facts);
+    EXPECT_EQ(line(certificate, "rejected steps").verdict, Verdict::bad);
+    EXPECT_EQ(line(certificate, "rejected steps").value, "100 steps");
+    EXPECT_EQ(line(certificate, "rejected steps").bound, "less than 100 steps");
+  }
+
   TEST_P(CertificateTest, NamesWhatIsNot)
   {
     const Fault &fault = GetParam();

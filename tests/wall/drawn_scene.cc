@@ -166,7 +166,7 @@ namespace wall
         step = time(end / draw.whole(10, 40));
       }
       Block block{"Time", {"end = " + time(end)}};
-      // the default of large motions is auto
+      // named, so that no default changes what a seed means
       if (draft.integrator != "moreau-jean" || draw.chance(0.2) || draft.large)
         block.entries.push_back("scheme = " + draft.integrator);
       block.entries.push_back("step = " + step);
