@@ -106,7 +106,9 @@ end
       const Result result =
           run(workspace, "run", {pulse(), settings("cg", ratio, step, 5.)});
       ASSERT_TRUE(result.completed()) << result.description();
-      EXPECT_EQ(result.counter("rejected_steps"), 0.);
+      // what round-off of the sums of BLAS, which differ from processor to
+      // processor, may stop once
+      EXPECT_LE(result.counter("rejected_steps"), 1.);
       expect_below("applications per step",
                    result.counter("operator_applications") /
                        result.number("steps"),
