@@ -131,10 +131,7 @@ namespace nsfd
                                                   : other;
     }
     const auto before = state_.kind;
-    // where the other end of a face still holds, too: compared node by node,
-    // its sides would overlap by how far they have slid times how far they turn
-    constexpr bool one_by_one = true;
-    surfaces_.part(state_, one_by_one);
+    surfaces_.part(state_);
     for (std::size_t i = 0; i < before.size(); ++i)
       if (state_.kind[i] == PointKind::separated &&
           before[i] != PointKind::separated)
