@@ -55,7 +55,7 @@ namespace nsfd
 
   /** Both ranks of two bodies know all faces between them. */
   template <int dim>
-  void SurfaceContacts<dim>::part(State &state, const bool one_by_one) const
+  void SurfaceContacts<dim>::part(State &state) const
   {
     const auto &faces = discretization_.points().faces;
     const auto bodies_of = [&](const std::size_t f) {
@@ -68,25 +68,20 @@ namespace nsfd
     const auto pair = [&](const std::size_t f) {
       return pair_of(bodies_of(f).body_1, bodies_of(f).body_2);
     };
-    const auto holds = [&state](const unsigned int i) {
-      return state.kind[i] != PointKind::free &&
-             state.kind[i] != PointKind::separated;
-    };
     std::unordered_set<UnorderedPair> held;
-    for (std::size_t f = 0; f < faces.size() && !one_by_one; ++f)
+    for (std::size_t f = 0; f < faces.size(); ++f)
       for (unsigned int i = faces[f].first;
            is_between(f) && i < faces[f].first + faces[f].count; ++i)
-        if (holds(i))
+        if (state.kind[i] != PointKind::free &&
+            state.kind[i] != PointKind::separated)
           held.insert(pair(f));
     std::vector<unsigned int> opened;
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      if (!is_between(f) || (!one_by_one && held.count(pair(f)) > 0))
+      if (!is_between(f) || held.count(pair(f)) > 0)
         continue;
       bool opens = false;
       for (unsigned int i = faces[f].first; i < faces[f].first + faces[f].count;
            ++i) {
-        if (one_by_one && holds(i))
-          continue;
         opens = opens || state.kind[i] != PointKind::separated;
         state.kind[i] = PointKind::separated;
       }

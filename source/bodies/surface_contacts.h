@@ -50,10 +50,9 @@ namespace nsfd
 
     /**
      * Points between two bodies that nothing holds together any more are left
-     * to the search: `separated`. Collective. With @p one_by_one each free one,
-     * also where its face still holds elsewhere.
+     * to the search: `separated`. Collective.
      */
-    void part(State &state, bool one_by_one = false) const;
+    void part(State &state) const;
     /** After the step of the last call of rows(). */
     void store_facets(State &next) const;
 

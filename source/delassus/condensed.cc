@@ -1,17 +1,9 @@
 #include "condensed.h"
 
+#include "linear_algebra/lapack.h"
+
 #include <algorithm>
 #include <stdexcept>
-
-extern "C" {
-void dsymv_(const char *uplo, const int *n, const double *alpha,
-            const double *A, const int *lda, const double *x, const int *incx,
-            const double *beta, double *y, const int *incy);
-void dpotrf_(const char *uplo, const int *n, double *A, const int *lda,
-             int *info);
-void dpotrs_(const char *uplo, const int *n, const int *nrhs, const double *A,
-             const int *lda, double *b, const int *ldb, int *info);
-}
 
 namespace nsfd
 {

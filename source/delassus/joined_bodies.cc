@@ -43,8 +43,7 @@ namespace nsfd
         jacobi_(communicator),
         tangent_(*this, finest_, communicator, largest_factor)
   {
-    matrix_ = std::make_unique<JoinedMatrix<dim>>(
-        *this, first_unknown(communicator, bodies));
+    matrix_ = std::make_unique<JoinedMatrix<dim>>(*this, finest_.first_dof());
     const SparseAssembly<dim> nodes(communicator, bodies, points, coordinates);
     conforming_ = std::make_unique<ConformingSpace>(
         communicator, dim, nodes.unknowns(), nodes.node_pairs(),
@@ -285,8 +284,7 @@ namespace nsfd
       return;
     }
     ++n_solves_;
-    if (!solve(factor_, tolerance).converged &&
-        (means() == Means::iterations)) {
+    if (!solve(factor_, tolerance).converged && means() == Means::iterations) {
       means_ = Means::factors_once;
       valid_ = false;
       return answer(tolerance);
@@ -391,7 +389,7 @@ namespace nsfd
     const double by_factor =
         2. * factor_.n_factor_entries() + 10. * double(rows.size());
     if (rows.empty() || rows.size() > CondensedDelassus::largest ||
-        ((rows.size() > 64 || (means() == Means::iterations)) &&
+        ((rows.size() > 64 || means() == Means::iterations) &&
          (4 * n_solves_ < rows.size() ||
           double(rows.size()) * double(rows.size()) > by_factor)))
       return false;

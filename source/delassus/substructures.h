@@ -27,7 +27,7 @@ namespace nsfd
     FinestSpace(const DelassusOperator<dim> &delassus, long long first_dof,
                 FixedFaces faces);
 
-    const FixedFaces &faces() const { return faces_; }
+    long long first_dof() const { return first_dof_; }
     /**
      * Once, where it may be of use: of @p nodes that have common ones at the
      * faces that are @p joined now, and have them again afterwards. Collective.

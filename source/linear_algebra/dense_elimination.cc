@@ -1,25 +1,8 @@
 #include "dense_elimination.h"
 
-#include <algorithm>
+#include "lapack.h"
 
-extern "C" {
-void dpotrf_(const char *uplo, const int *n, double *A, const int *lda,
-             int *info);
-void dtrsm_(const char *side, const char *uplo, const char *transposed,
-            const char *diagonal, const int *m, const int *n,
-            const double *alpha, const double *A, const int *lda, double *B,
-            const int *ldb);
-void dsyrk_(const char *uplo, const char *transposed, const int *n,
-            const int *k, const double *alpha, const double *A, const int *lda,
-            const double *beta, double *C, const int *ldc);
-void dtrsv_(const char *uplo, const char *transposed, const char *diagonal,
-            const int *n, const double *A, const int *lda, double *x,
-            const int *step);
-void dgemv_(const char *transposed, const int *m, const int *n,
-            const double *alpha, const double *A, const int *lda,
-            const double *x, const int *step_x, const double *beta, double *y,
-            const int *step_y);
-}
+#include <algorithm>
 
 namespace nsfd
 {

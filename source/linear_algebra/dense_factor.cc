@@ -1,19 +1,8 @@
 #include "dense_factor.h"
 
-#include <utility>
+#include "lapack.h"
 
-extern "C" {
-void dpotrf_(const char *uplo, const int *n, double *A, const int *lda,
-             int *info);
-void dgetrf_(const int *m, const int *n, double *A, const int *lda, int *pivots,
-             int *info);
-void dgetrs_(const char *transposed, const int *n, const int *columns,
-             const double *A, const int *lda, const int *pivots, double *B,
-             const int *ldb, int *info);
-void dtrsv_(const char *uplo, const char *transposed, const char *diagonal,
-            const int *n, const double *A, const int *lda, double *x,
-            const int *step);
-}
+#include <utility>
 
 namespace nsfd
 {

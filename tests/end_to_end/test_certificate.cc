@@ -323,9 +323,8 @@ subsection Contact: all
   set friction = 0
 end
 subsection Time
-  set scheme = moreau-jean
-  set end    = 30 ms
-  set step   = 3 ms
+  set end  = 30 ms
+  set step = 3 ms
 end
 )");
     for (const char *const step : {"0.5 ms", "3 ms", "8.5 ms"}) {

@@ -239,10 +239,9 @@ subsection Loads
   set gravity = 1, -10
 end
 subsection Time
-  set scheme = moreau-jean
-  set end    = 1.2
-  set step   = 20 ms
-  set theta  = 1
+  set end   = 1.2
+  set step  = 20 ms
+  set theta = 1
 end
 subsection Observable: pressure
   set type = contact pressure

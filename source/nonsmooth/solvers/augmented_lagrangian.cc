@@ -53,7 +53,7 @@ namespace nsfd
   template <int dim>
   bool AugmentedLagrangian<dim>::may_be_rough(const Work &work) const
   {
-    return from_rest_ && work.motion.saves_by_rough_solutions();
+    return work.from_rest && work.motion.saves_by_rough_solutions();
   }
 
   /** See NodeMotion::solve(). */
@@ -83,7 +83,7 @@ namespace nsfd
     defect_.assign(n, 0.);
     tangents_.assign(n * dim, 0.);
     rigid_ = of_nodes;
-    if (!from_rest_) {
+    if (!work.from_rest) {
       // what is rigid is so beside the stiffness of the bodies as well, which
       // in long steps is far more than the mass that R knows
       rigid_ = std::max(of_nodes,
@@ -241,8 +241,8 @@ namespace nsfd
     set_right_side(work);
     defect_ = right_side_;
     const auto solved = [&](const bool symmetric) {
-      const double tolerance = from_rest_ ? 0. : enough(work),
-                   share = from_rest_ ? 0. : of_directions;
+      const double tolerance = work.from_rest ? 0. : enough(work),
+                   share = work.from_rest ? 0. : of_directions;
       return work.motion.solve(tangents_, symmetric, right_side_,
                                {tolerance, share, defect_}, dP_, dU_) &&
              slope(work, 0.) <= 0.;
@@ -250,7 +250,7 @@ namespace nsfd
     const bool symmetric = differentiate(work);
     if (symmetric)
       symmetrise(work, false);
-    if (from_rest_)
+    if (work.from_rest)
       hold_supports(work.problem, work.evaluation, velocity_, tangents_,
                     right_side_);
     if (solved(symmetric))
@@ -306,16 +306,16 @@ namespace nsfd
         own_motion_ ? *own_motion_
                     : dynamic_cast<VelocitySolver &>(delassus).motion();
     const unsigned int most = control.iterations_or(80);
-    from_rest_ = problem.free_motion == FreeVelocity::unknown;
+    const bool from_rest = problem.free_motion == FreeVelocity::unknown;
     const Work work{problem,   delassus, motion, evaluation,
-                    tolerance, most,     report, from_rest_};
+                    tolerance, most,     report, from_rest};
     const bool own = !motion.is_on(); // U_free is known, and w the rest
     if (own)
       motion.start({}, {}, problem.free_velocity);
     begin(work, impulse);
     double share = first_share;
     const auto judge = [&] {
-      if (!from_rest_)
+      if (!work.from_rest)
         polish(work); // momenta that are lost add up over steps
       judge_velocities(work);
       return evaluation.error <= tolerance;
@@ -325,7 +325,7 @@ namespace nsfd
       solved = judge(); // anew where round-off was left
     Iterate start;      // of a stage
     if (!solved) {
-      if (!from_rest_)
+      if (!work.from_rest)
         polish(work);
       start = iterate(work);
       report.switches.push_back("multipliers");
@@ -333,7 +333,7 @@ namespace nsfd
       answer(work, velocity_);
     }
     // a share over the one before
-    const double smallest = from_rest_ ? 1e-2 : 0.1;
+    const double smallest = work.from_rest ? 1e-2 : 0.1;
     double smaller = smallest;
     // Points that stay closed round a node can share what they carry in many
     // ways, and the springs, at their stiffest, let them come to the right one
@@ -349,26 +349,26 @@ namespace nsfd
       const double left = share * errors.shift;
       double ahead = 0.;
       if (errors.defect <= std::max(0.1 * std::max(tolerance, left),
-                                    from_rest_ ? round_off / share : 0.)) {
+                                    work.from_rest ? round_off / share : 0.)) {
         if (taken <= few_of_stage)
           smaller = std::max(smallest, 0.1 * smaller);
         taken = 0;
         start = iterate(work);
         const bool drifts =
-            from_rest_ && share == last_share && left > 0.5 * before;
+            work.from_rest && share == last_share && left > 0.5 * before;
         stretch = drifts ? std::min(2. * stretch, most_stretched) : 1.;
         before = left;
         shift = impulse_;
         add<dim>(problem.acting, -1., rest_, shift);
         // what is left may be digits, which stiff springs do not show
         const bool last = left <= 0.1 * tolerance;
-        const bool jumps = from_rest_ || !last;
-        solved =
-            (!jumps || jump(work, from_rest_ ? patience : between_stages)) &&
-            judge();
-        if (!solved && jumps && !from_rest_)
+        const bool jumps = work.from_rest || !last;
+        solved = (!jumps ||
+                  jump(work, work.from_rest ? patience : between_stages)) &&
+                 judge();
+        if (!solved && jumps && !work.from_rest)
           return_to(work, start);
-        if (from_rest_ && last)
+        if (work.from_rest && last)
           break;
         if (!last)
           share = std::max(last_share, smaller * share);
@@ -386,7 +386,7 @@ namespace nsfd
       answer(work, velocity_);
     }
     report.converged = solved || judge();
-    if (report.converged && !from_rest_)
+    if (report.converged && !work.from_rest)
       hold_rows(work, control.row_energy);
     impulse = impulse_;
     report.residual = evaluation.error;

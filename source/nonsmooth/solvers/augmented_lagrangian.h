@@ -60,7 +60,7 @@ namespace nsfd
       double tolerance;
       unsigned int most; ///< Newton steps
       SolverReport &report;
-      bool from_rest;
+      bool from_rest; ///< a round of statics
 
       /** A support in a step from rest: held in every Newton step. */
       bool holds(const std::size_t i) const
@@ -112,7 +112,6 @@ namespace nsfd
     NodeMotion *own_motion_ = nullptr;
     Vector impulse_, rest_, velocity_; ///< P, P_0, U
     Vector compliance_;                ///< A
-    bool from_rest_ = false;           ///< a round of statics
     double rigid_ = last_share; ///< what rigid points give way by, over A
     double scale_ = 0.;         ///< of errors, with the last impulses
     std::vector<LocalSolution<dim>> solutions_;

@@ -48,7 +48,7 @@ namespace nsfd
       double left = differences ? left_to_differences : rigid_;
       // Points that are more than motions: what each of them carries is known
       // from its own compliance alone, as small as that may be.
-      bool gives_way = from_rest_ && !differences;
+      bool gives_way = work.from_rest && !differences;
       for (unsigned int c = 0; c < dim; ++c)
         gives_way =
             gives_way &&
@@ -98,7 +98,7 @@ namespace nsfd
   void AugmentedLagrangian<dim>::keep_tangents_at_rest(const Work &work)
   {
     const Vector &factored = work.motion.factored();
-    if (from_rest_ || factored.size() != tangents_.size())
+    if (work.from_rest || factored.size() != tangents_.size())
       return;
     for (const std::size_t i : work.problem.acting)
       if (rests(work, i)) {
@@ -119,7 +119,7 @@ namespace nsfd
     defect_ = right_side_;
     const bool symmetric = differentiate(work);
     remove_springs(work);
-    if (from_rest_)
+    if (work.from_rest)
       hold_supports(work.problem, work.evaluation, velocity_, tangents_,
                     right_side_);
     if (symmetric)
@@ -251,17 +251,17 @@ namespace nsfd
       soften(work, 1.);
       answer(work, velocity_);
       double defect = errors(work).defect;
-      if (!from_rest_ && work.report.newton > 0 && defect > work.tolerance &&
-          defect > fast * before[0])
+      if (!work.from_rest && work.report.newton > 0 &&
+          defect > work.tolerance && defect > fast * before[0])
         defect = eliminate(work, defect);
-      if (!from_rest_ && work.report.newton == 0 &&
+      if (!work.from_rest && work.report.newton == 0 &&
           defect <= untouched * work.tolerance && !polished) {
         polish(work); // the impulses are right
         polished = true;
         continue;
       }
       // a step from rest balances from its first iteration on, if that is exact
-      const bool exact = from_rest_ && !may_be_rough(work);
+      const bool exact = work.from_rest && !may_be_rough(work);
       const bool balances =
           exact ? work.report.newton > 0 : work.motion.balances(enough(work));
       const double error = balances || exact
